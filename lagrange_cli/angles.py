@@ -20,7 +20,7 @@ multiplications a sample, however far the time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -86,8 +86,39 @@ class Growth(NamedTuple):
     slope: float
 
 
+class Sampler:
+    """Evaluation block by block, for any shape of the times."""
+
+    max_time: float
+
+    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
+        """See `Motion.angles`."""
+        times = np.asarray(t, dtype=np.float64)
+        self.check(times)
+        flat = np.ascontiguousarray(times).reshape(-1)
+        angles = Angles(*(np.empty_like(flat) for _ in range(3)))
+        for start in range(0, flat.size, BLOCK):
+            part = slice(start, start + BLOCK)
+            self._sample(flat[part], wrap, Angles(*(angle[part] for angle in angles)))
+        return Angles(*(angle.reshape(times.shape) for angle in angles))
+
+    def check(self, t: ArrayLike) -> None:
+        """Raise LagtopError where a time is not finite or names no phase."""
+        times = np.asarray(t, dtype=np.float64)
+        bad = ~(np.isfinite(times) & (np.abs(times) <= self.max_time))
+        if bad.any():
+            raise LagtopError(
+                f"t must be finite and within 2^50 periods = {self.max_time:.3g}, "
+                f"got {times[bad].flat[0]}",
+                "t",
+            )
+
+    def _sample(self, t: Array, wrap: bool, out: Angles) -> None:
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class ThetaSampler:
+class ThetaSampler(Sampler):
     """The constants of a nutating top that its angles need, ready to be evaluated."""
 
     steps_per_time: Pair
@@ -97,10 +128,6 @@ class ThetaSampler:
     frames: Sequence[Frame]
     phi: Growth
     psi: Growth
-
-    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """See `Motion.angles`."""
-        return _by_blocks(t, self.max_time, lambda times, out: self._sample(times, wrap, out))
 
     def _sample(self, t: Array, wrap: bool, out: Angles) -> None:
         step, phase = reduce_phase(t, self.steps_per_time)
@@ -133,17 +160,13 @@ class ThetaSampler:
 
 
 @dataclass(frozen=True)
-class SteadySampler:
+class SteadySampler(Sampler):
     """A constant tilt and constant rates of spin and precession."""
 
     theta: float
     phi: Growth
     psi: Growth
     max_time: float
-
-    def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """See `Motion.angles`."""
-        return _by_blocks(t, self.max_time, lambda times, out: self._sample(times, wrap, out))
 
     def _sample(self, t: Array, wrap: bool, out: Angles) -> None:
         out.theta.fill(self.theta)
@@ -153,9 +176,6 @@ class SteadySampler:
                 _into_half_open(turns * (2.0 * np.pi), angle)
             else:
                 np.add(t * growth.step.low, t * growth.step.high, out=angle)
-
-
-Sampler = ThetaSampler | SteadySampler
 
 
 def theta_sampler(
@@ -297,21 +317,6 @@ def _next(previous: list[int], current: list[int]) -> list[int]:
 
 
 # Evaluation.
-
-
-def _by_blocks(t: ArrayLike, max_time: float, sample: Callable[[Array, Angles], None]) -> Angles:
-    times = np.asarray(t, dtype=np.float64)
-    flat = np.ascontiguousarray(times).reshape(-1)
-    bad = ~((np.abs(flat) <= max_time) & np.isfinite(flat))
-    if bad.any():
-        raise LagtopError(
-            f"t must be finite and within 2^50 periods (+-{max_time:.3g}), got {flat[bad][0]}", "t"
-        )
-    angles = Angles(*(np.empty_like(flat) for _ in range(3)))
-    for start in range(0, flat.size, BLOCK):
-        part = slice(start, start + BLOCK)
-        sample(flat[part], Angles(*(angle[part] for angle in angles)))
-    return Angles(*(angle.reshape(times.shape) for angle in angles))
 
 
 def reduce_phase(t: Array, rate: Pair) -> tuple[Array, Array]:

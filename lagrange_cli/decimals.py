@@ -50,7 +50,7 @@ def cos(x: Decimal) -> Decimal:
 def atan2(y: Decimal, x: Decimal) -> Decimal:
     """Angle of the point (x, y) in the first quadrant, halved four times before its series."""
     for _ in range(4):
-        x, y = x + hypot(x, y), y
+        x = x + hypot(x, y)
     tangent = y / x
     square, power, total, n = -tangent * tangent, tangent, tangent, 1
     while abs(power) > eps * abs(total) / 100:

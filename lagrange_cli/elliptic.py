@@ -71,15 +71,9 @@ def period_mean(ar: Arithmetic, k_prime: Real, p: Real, a: Real, b: Real) -> Rea
     return (a * mean + b) / (mean + p)
 
 
-def complete_e(ar: Arithmetic, k: Real, k_prime: Real) -> Real:
-    """E = E(pi/2, k), the complete integral of the second kind (0 <= k < 1).
-
-    Past k = k' by Legendre's relation E K' + E' K - K K' = pi/2, whose terms are then both positive.
-    """
-    K, K_prime = complete_k(ar, k_prime), complete_k(ar, where(k > k_prime, k, 1 + 0 * k))
-    direct = K * period_mean(ar, k_prime, 1, 1, k_prime * k_prime)
-    gap = k_prime * k_prime * period_mean(ar, where(k > k_prime, k, 1 + 0 * k), 1, 0, 1)
-    return where(k > k_prime, ar.pi / (2 * K_prime) + K * gap, direct)
+def complete_e(ar: Arithmetic, k_prime: Real) -> Real:
+    """E = E(pi/2, k), the complete integral of the second kind, from k' in (0, 1]."""
+    return complete_k(ar, k_prime) * period_mean(ar, k_prime, 1, 1, k_prime * k_prime)
 
 
 def nome(ar: Arithmetic, *, m: Real, k_prime: Real) -> Real:

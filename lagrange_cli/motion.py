@@ -363,7 +363,7 @@ def _released(ar: Arithmetic, top: Top, regime: Regime) -> Motion:
         nome=nome(ar, m=roots.u1_u2 / roots.u3_u2, k_prime=k_prime),
         K=K,
         K_prime=complete_k(ar, k),
-        E=complete_e(ar, k, k_prime),
+        E=complete_e(ar, k_prime),
         amplitude_deg=_degrees(ar, amplitude(ar, roots)),
         alpha=parameter_alpha(ar, roots),
         T_nutation=T,

@@ -1,0 +1,293 @@
+"""The command line: parse, one library call, one writer."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any, NoReturn, TypeVar
+
+import click
+
+from . import __version__
+from .motion import solve
+from .output import MAX_TABLE_ROWS, CannotWriteError, write_record, write_rows
+from .top import LagtopError, Number, SceneError, Top, build_top, parse_number, read_scene
+
+EXIT_USAGE, EXIT_SCENE, EXIT_WRITE = 2, 65, 74
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class Terminated(BaseException):
+    """SIGTERM, raised so that temporary files are removed on the way out."""
+
+
+class Failure(click.ClickException):
+    """One line on standard error and an exit code of its own."""
+
+    def __init__(self, message: str, exit_code: int) -> None:
+        super().__init__(message)
+        self.exit_code = exit_code
+
+
+class DecimalType(click.ParamType):
+    """A decimal number, kept exact."""
+
+    name = "number"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Fraction:
+        """The exact value of the text."""
+        if isinstance(value, Fraction):
+            return value
+        try:
+            return parse_number(str(value))
+        except LagtopError as error:
+            raise click.UsageError(f"{_option(param)} {error}", ctx) from None
+
+
+class CountType(DecimalType):
+    """A whole number, also as 1e6."""
+
+    name = "integer"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
+        """The integer."""
+        exact = super().convert(value, param, ctx)
+        if exact.denominator != 1:
+            raise click.UsageError(f"{_option(param)} must be a whole number, got {value}", ctx)
+        return int(exact)
+
+
+def _option(param: click.Parameter | None) -> str:
+    return param.opts[0] if param else "value"
+
+
+class ExamplesFirst(click.Command):
+    """A command whose help starts with its examples."""
+
+    def __init__(self, *args: Any, examples: str = "", **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.examples = [line.strip() for line in examples.strip().splitlines()]
+
+    def format_help(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Examples, then what click writes."""
+        formatter.write("Examples:\n")
+        formatter.write("".join(f"  {line}\n" for line in self.examples) + "\n")
+        super().format_help(ctx, formatter)
+
+
+class LagtopGroup(ExamplesFirst, click.Group):
+    """The group of commands, with our errors (one line), exit codes and deaths by signal."""
+
+    command_class = ExamplesFirst
+
+    def main(self, *args: Any, standalone_mode: bool = True, **extra: Any) -> Any:
+        """As click's; errors are one line on standard error."""
+        if not standalone_mode:
+            return super().main(*args, standalone_mode=False, **extra)
+        try:
+            sys.exit(super().main(*args, standalone_mode=False, **extra) or 0)
+        except click.ClickException as error:
+            click.echo("Error: " + " ".join(error.format_message().split()), err=True)
+            sys.exit(error.exit_code)
+        except click.Abort:
+            _die_by(signal.SIGINT)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; its failures become exit codes or the signal they came from."""
+        try:
+            return super().invoke(ctx)
+        except SceneError as error:
+            raise Failure(str(error), EXIT_SCENE) from None
+        except LagtopError as error:
+            raise Failure(str(error), EXIT_USAGE) from None
+        except CannotWriteError as error:
+            raise Failure(str(error), EXIT_WRITE) from None
+        except BrokenPipeError:
+            _die_by(signal.SIGPIPE)
+        except KeyboardInterrupt:
+            _die_by(signal.SIGINT)
+        except Terminated:
+            _die_by(signal.SIGTERM)
+
+
+def _die_by(number: signal.Signals) -> NoReturn:
+    """End by the signal itself: only that stops the shell loop we may be running in."""
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    raise AssertionError("unreachable")
+
+
+def _terminate(*_: Any) -> NoReturn:
+    raise Terminated
+
+
+NUMBER, COUNT = DecimalType(), CountType()
+
+_SCENE_OPTIONS = [
+    ("--m", "Mass."),
+    ("--A", "Equatorial moment of inertia about the pivot."),
+    ("--C", "Polar moment of inertia."),
+    ("--s", "Distance from the pivot to the centre of mass."),
+    ("--g", "Gravity."),
+    ("--r0", "Spin: angular velocity about the figure axis."),
+    ("--theta0", "Tilt of the axis from the upward vertical, 0 to 180 degrees."),
+    ("--thetadot0", "Nutation rate at the start."),
+    ("--psidot0", "Precession rate at the start."),
+]
+
+
+def scene_options(command: F) -> F:
+    """The scene file and the inputs that override it."""
+    for name, text in reversed(_SCENE_OPTIONS):
+        command = click.option(name, name[2:], type=NUMBER, help=text)(command)
+    command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(command)
+    return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
+        command
+    )
+
+
+def output_options(*styles: str) -> Callable[[F], F]:
+    """--format and --output; the first style is the default."""
+
+    def decorate(command: F) -> F:
+        command = click.option(
+            "-o", "--output", default="-", metavar="FILE|-", help="Replace FILE when all is written."
+        )(command)
+        choice = click.Choice(styles)
+        return click.option(
+            "--format", "style", type=choice, default=styles[0], show_default=True, help="Output."
+        )(command)
+
+    return decorate
+
+
+def read_top(scene: str | None, rad: bool, options: dict[str, Fraction | None]) -> Top:
+    """The top of a scene file, if any, and of the options, which win."""
+    from_file = read_scene(scene) if scene is not None else {}
+    given: dict[str, Number] = {key: x for key, x in options.items() if x is not None}
+    if "theta0" in given:
+        given["theta0_rad" if rad else "theta0_deg"] = given.pop("theta0")
+        from_file = {key: x for key, x in from_file.items() if not key.startswith("theta0_")}
+    try:
+        top = build_top(from_file | given)
+    except LagtopError as error:
+        if scene is not None and error.key in from_file and error.key not in given:
+            raise SceneError(f"{scene}: {error}", error.key) from None
+        raise
+    if caveat := top.caveat():
+        click.echo(f"Warning: {caveat}", err=True)
+    return top
+
+
+@click.group(
+    cls=LagtopGroup,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    examples="""
+        lagtop solve --theta0 30
+        lagtop solve sample_inputs/chrapan-1952.toml --format json
+        lagtop table --t-max 1 > out.csv
+    """,
+)
+@click.version_option(__version__, prog_name="lagtop")
+@click.pass_context
+def main(ctx: click.Context) -> None:
+    """The Lagrange top, a heavy symmetric top with a fixed point, in closed form.
+
+    Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.
+    """
+    signal.signal(signal.SIGTERM, _terminate)
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())
+
+
+@main.command(
+    "solve",
+    examples="""
+        lagtop solve --theta0 30
+        lagtop solve sample_inputs/simo-wong-1991.toml --r0 40
+        lagtop solve --r0 -20 --theta0 120 --format json | jq .T_nutation
+        lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
+    """,
+)
+@scene_options
+@output_options("table", "json", "csv")
+def solve_command(scene: str | None, rad: bool, style: str, output: str, **options: Any) -> None:
+    """Roots, moduli, periods and mean rates of one top.
+
+    Every number is the double nearest to its exact value.  JSON and CSV hold the same keys; what a
+    regime does not have is null or empty.
+    """
+    motion = solve(read_top(scene, rad, options))
+    write_record(motion.record(radians=rad), style, output)
+
+
+@main.command(
+    "table",
+    examples="""
+        lagtop table --t-max 1 > out.csv
+        lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
+        lagtop table --t-min -5 --t-max 5 --n 1e6 --rad -o angles.csv
+        seq 0 0.25 2 | lagtop table --times - --format json
+    """,
+)
+@scene_options
+@click.option("--t-max", type=NUMBER, help="Last time.  [default: one nutation period, or 1]")
+@click.option("--t-min", type=NUMBER, help="First time.  [default: 0]")
+@click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")
+@click.option("--dt", type=NUMBER, help="Step, instead of --n.")
+@click.option("--times", metavar="FILE|-", help="Times from a file, one a line, instead of a grid.")
+@click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
+@output_options("csv", "json", "table")
+def table_command(  # noqa: PLR0917 - click passes them by name
+    scene: str | None,
+    rad: bool,
+    t_max: Fraction | None,
+    t_min: Fraction | None,
+    count: int | None,
+    dt: Fraction | None,
+    times: str | None,
+    wrap: bool,
+    style: str,
+    output: str,
+    **options: Any,
+) -> None:
+    """Tilt theta, spin phi and precession psi over time.
+
+    About one ulp at any time, up to 2^50 nutation periods away.  Spin and precession count on from
+    0 at t = 0 unless --wrap.
+    """
+    from .table import column_names, grid, read_times, rows
+
+    _exclude({"--n": count, "--dt": dt})
+    if times is not None:
+        for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
+            _exclude({"--times": times, name: value})
+    motion = solve(read_top(scene, rad, options))
+    if times is not None:
+        with click.open_file(times, encoding="utf-8") as lines:
+            chosen = read_times(lines, "standard input" if times == "-" else times)
+    else:
+        chosen = grid(motion, t_min, t_max, n=count, dt=dt)
+    if style == "table" and chosen.count > MAX_TABLE_ROWS:
+        raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {chosen.count}")
+    blocks = rows(motion, chosen, radians=rad, wrap=wrap)
+    write_rows(column_names(radians=rad), blocks, style, output)
+
+
+def _exclude(options: dict[str, Any]) -> None:
+    given = [name for name, value in options.items() if value is not None]
+    if len(given) > 1:
+        raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
+
+
+if __name__ == "__main__":
+    main()
