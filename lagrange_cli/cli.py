@@ -3,37 +3,52 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
 from . import __version__
 from .motion import solve
-from .output import MAX_TABLE_ROWS, CannotWriteError, write_record, write_rows
-from .top import LagtopError, Number, SceneError, Top, build_top, parse_number, read_scene
+from .output import MAX_TABLE_ROWS, CannotWriteError, Terminated, write_record, write_rows
+from .top import (
+    LagtopError,
+    Number,
+    SceneError,
+    Top,
+    build_top,
+    parse_number,
+    read_scene,
+    scene_error,
+)
 
-EXIT_USAGE, EXIT_SCENE, EXIT_WRITE = 2, 65, 74
+if TYPE_CHECKING:
+    from .table import Times
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-class Terminated(BaseException):
-    """SIGTERM, raised so that temporary files are removed on the way out."""
+class BadValue(click.ClickException):
+    """A bad option or input."""
+
+    exit_code = 2
 
 
-class Failure(click.ClickException):
-    """One line on standard error and an exit code of its own."""
+class BadScene(click.ClickException):
+    """A bad scene file."""
 
-    def __init__(self, message: str, exit_code: int) -> None:
-        super().__init__(message)
-        self.exit_code = exit_code
+    exit_code = 65
 
 
-class DecimalType(click.ParamType):
+class CannotWrite(click.ClickException):
+    """The output could not be written."""
+
+    exit_code = 74
+
+
+class DecimalType(click.ParamType):  # type: ignore[type-arg]
     """A decimal number, kept exact."""
 
     name = "number"
@@ -55,9 +70,7 @@ class CountType(DecimalType):
 
     name = "integer"
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The integer."""
         exact = super().convert(value, param, ctx)
         if exact.denominator != 1:
@@ -88,45 +101,45 @@ class LagtopGroup(ExamplesFirst, click.Group):
 
     command_class = ExamplesFirst
 
-    def main(self, *args: Any, standalone_mode: bool = True, **extra: Any) -> Any:
+    def main(self, *args: Any, **extra: Any) -> Any:
         """As click's; errors are one line on standard error."""
-        if not standalone_mode:
-            return super().main(*args, standalone_mode=False, **extra)
+        run: Any = super().main
+        if not extra.pop("standalone_mode", True):
+            return run(*args, standalone_mode=False, **extra)
         try:
-            sys.exit(super().main(*args, standalone_mode=False, **extra) or 0)
+            sys.exit(run(*args, standalone_mode=False, **extra) or 0)
         except click.ClickException as error:
             click.echo("Error: " + " ".join(error.format_message().split()), err=True)
             sys.exit(error.exit_code)
         except click.Abort:
-            _die_by(signal.SIGINT)
+            _die_by("SIGINT")
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; its failures become exit codes or the signal they came from."""
         try:
             return super().invoke(ctx)
         except SceneError as error:
-            raise Failure(str(error), EXIT_SCENE) from None
+            raise BadScene(str(error)) from None
         except LagtopError as error:
-            raise Failure(str(error), EXIT_USAGE) from None
+            raise BadValue(str(error)) from None
         except CannotWriteError as error:
-            raise Failure(str(error), EXIT_WRITE) from None
+            raise CannotWrite(str(error)) from None
         except BrokenPipeError:
-            _die_by(signal.SIGPIPE)
+            _die_by("SIGPIPE")
         except KeyboardInterrupt:
-            _die_by(signal.SIGINT)
+            _die_by("SIGINT")
         except Terminated:
-            _die_by(signal.SIGTERM)
+            _die_by("SIGTERM")
 
 
-def _die_by(number: signal.Signals) -> NoReturn:
+def _die_by(name: str) -> NoReturn:
     """End by the signal itself: only that stops the shell loop we may be running in."""
+    import signal
+
+    number = signal.Signals[name]
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)
     raise AssertionError("unreachable")
-
-
-def _terminate(*_: Any) -> NoReturn:
-    raise Terminated
 
 
 NUMBER, COUNT = DecimalType(), CountType()
@@ -159,7 +172,11 @@ def output_options(*styles: str) -> Callable[[F], F]:
 
     def decorate(command: F) -> F:
         command = click.option(
-            "-o", "--output", default="-", metavar="FILE|-", help="Replace FILE when all is written."
+            "-o",
+            "--output",
+            default="-",
+            metavar="FILE|-",
+            help="Replace FILE when all is written.",
         )(command)
         choice = click.Choice(styles)
         return click.option(
@@ -180,7 +197,7 @@ def read_top(scene: str | None, rad: bool, options: dict[str, Fraction | None]) 
         top = build_top(from_file | given)
     except LagtopError as error:
         if scene is not None and error.key in from_file and error.key not in given:
-            raise SceneError(f"{scene}: {error}", error.key) from None
+            raise scene_error(scene, error) from None
         raise
     if caveat := top.caveat():
         click.echo(f"Warning: {caveat}", err=True)
@@ -204,7 +221,6 @@ def main(ctx: click.Context) -> None:
 
     Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.
     """
-    signal.signal(signal.SIGTERM, _terminate)
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
 
@@ -268,15 +284,13 @@ def table_command(  # noqa: PLR0917 - click passes them by name
     from .table import column_names, grid, read_times, rows
 
     _exclude({"--n": count, "--dt": dt})
-    if times is not None:
+    motion = solve(read_top(scene, rad, options))
+    if times is None:
+        chosen: Times = grid(motion, t_min, t_max, n=count, dt=dt)
+    else:
         for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
             _exclude({"--times": times, name: value})
-    motion = solve(read_top(scene, rad, options))
-    if times is not None:
-        with click.open_file(times, encoding="utf-8") as lines:
-            chosen = read_times(lines, "standard input" if times == "-" else times)
-    else:
-        chosen = grid(motion, t_min, t_max, n=count, dt=dt)
+        chosen = read_times(times)
     if style == "table" and chosen.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {chosen.count}")
     blocks = rows(motion, chosen, radians=rad, wrap=wrap)

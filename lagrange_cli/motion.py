@@ -9,7 +9,6 @@ Equation numbers in parentheses are those of Chrapan (1952).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
 from decimal import localcontext
 from enum import Enum
 from fractions import Fraction
@@ -83,8 +82,7 @@ class Roots(NamedTuple):
     """u3 - 1."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Motion:
+class Motion(NamedTuple):
     """One motion, solved: the numbers of its record, under their keys, and its angles over time.
 
     A number that the regime does not have is None.
@@ -110,8 +108,8 @@ class Motion:
     T_spin: Real | None = None
     T_precession: Real | None = None
     u_quarter: Real | None = None
-    theta_min_deg: Real
-    theta_max_deg: Real
+    theta_min_deg: Real | None = None
+    theta_max_deg: Real | None = None
     mean_spin_rate: Real | None = None
     mean_precession_rate: Real | None = None
     spin_rate_start: Real | None = None
@@ -119,19 +117,19 @@ class Motion:
     precession_rate_start: Real | None = None
     precession_rate_half: Real | None = None
 
+    def numbers(self) -> dict[str, Real | None]:
+        """The results by key, without the top and the regime."""
+        return dict(zip(self._fields[2:], self[2:], strict=True))
+
     def record(self, *, radians: bool = False) -> dict[str, Real | str | None]:
         """Inputs and results by key, in the order of the paper; `radians` renames _deg to _rad."""
         inputs = self.top.inputs(radians=radians)
-        results: dict[str, Real | str | None] = {"regime": self.regime.value}
-        for field in fields(self)[2:]:
-            name, value = field.name, getattr(self, field.name)
-            if radians and name.endswith("_deg"):
-                name = name.removesuffix("deg") + "rad"
-                value = None if value is None else math.radians(value)
-            results[name] = value
-        unit = "rad" if radians else "deg"
-        results[f"theta_min_{unit}"] = inputs[f"theta0_{unit}"]  # released from rest: a cusp
-        return inputs | results
+        results = self.numbers()
+        results["theta_min_deg"] = self.top.inputs()["theta0_deg"]  # it starts there, at rest
+        if radians:
+            results = {_in_radians(key): _radians(key, x) for key, x in results.items()}
+            results["theta_min_rad"] = inputs["theta0_rad"]
+        return inputs | {"regime": self.regime.value} | results
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Tilt, spin and precession (radians) at the times t, in the shape of t.
@@ -150,17 +148,18 @@ class Motion:
             theta = _angle(ar, self.top.tilt(ar))
             return steady_sampler(ar, theta, number(ar, self.top.r0), ar.mpf(0))
         exact, roots = solve_in(ar, self.top), _roots(ar, self.top)
+        period: Real = exact.T_nutation
         return theta_sampler(
             ar,
-            period=exact.T_nutation,
+            period=period,
             quarter=exact.K,
             quarter_prime=exact.K_prime,
             eta_plus=_eta_plus(ar, roots),
             eta_minus=exact.alpha,
             x_size=ar.sqrt(roots.below_u1 / 2),
             y_size=ar.sqrt(exact.k_prime * roots.above_u2 / 2),
-            spin=exact.mean_spin_rate * exact.T_nutation,
-            precession=exact.mean_precession_rate * exact.T_nutation,
+            spin=exact.mean_spin_rate * period,
+            precession=exact.mean_precession_rate * period,
             sign_plus=spin_sign(self.top),
             sign_minus=-spin_sign(self.top),
         )
@@ -174,8 +173,7 @@ def solve(top: Top) -> Motion:
     """
     with localcontext(decimals.context()):
         exact = solve_in(decimals, top)
-        values = {field.name: getattr(exact, field.name) for field in fields(exact)[2:]}
-        rounded = {name: _double(name, value) for name, value in values.items()}
+        rounded = {name: _double(name, value) for name, value in exact.numbers().items()}
     return Motion(top=top, regime=exact.regime, **rounded)
 
 
@@ -190,6 +188,14 @@ def solve_in(ar: Arithmetic, top: Top) -> Motion:
         )
     regime = classify(top)
     return (_unmoved if regime.is_steady else _released)(ar, top, regime)
+
+
+def _in_radians(key: str) -> str:
+    return key.removesuffix("deg") + "rad" if key.endswith("_deg") else key
+
+
+def _radians(key: str, value: Real | None) -> Real | None:
+    return math.radians(value) if key.endswith("_deg") and value is not None else value
 
 
 def _double(name: str, value: Real | None) -> float | None:

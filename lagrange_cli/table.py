@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from .motion import Motion
 from .top import LagtopError, parse_number
@@ -99,11 +100,24 @@ def grid(
     return Grid(float(t_min), step, count)
 
 
-def read_times(lines: TextIO, name: str) -> TimeList:
-    """One time a line; blank lines and lines that start with # are passed over.
+def read_times(path: str) -> TimeList:
+    """One time a line, from a file or from standard input for `-`; # starts a comment line.
 
-    Raises LagtopError with the line's number.
+    Raises LagtopError, with the line's number.
     """
+    name = "standard input" if path == "-" else path
+    try:
+        if path == "-":
+            return TimeList(_parse_times(sys.stdin, name))
+        with open(path, encoding="utf-8-sig") as lines:
+            return TimeList(_parse_times(lines, name))
+    except OSError as error:
+        raise LagtopError(f"--times {name}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise LagtopError(f"--times {name} must be UTF-8 text, a time a line") from None
+
+
+def _parse_times(lines: Iterable[str], name: str) -> list[float]:
     times = []
     for i, line in enumerate(lines, 1):
         text = line.strip()
@@ -114,7 +128,7 @@ def read_times(lines: TextIO, name: str) -> TimeList:
                 raise LagtopError(f"{name}, line {i}: the time {error}") from None
     if not times:
         raise LagtopError(f"{name} must hold at least one time, got none")
-    return TimeList(times)
+    return times
 
 
 def column_names(*, radians: bool) -> list[str]:

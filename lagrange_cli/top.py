@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -14,7 +12,7 @@ from .elliptic import Arithmetic, Real
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
 
-_DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_DECIMAL = set("0123456789.eE+-")
 _MAX_SCENE_BYTES = 1 << 20
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 
@@ -37,12 +35,15 @@ def parse_number(text: str) -> Fraction:
     Raises LagtopError, with the remedy, for anything else and for what no double can hold.
     """
     text = text.strip()
-    if not _DECIMAL.fullmatch(text):
+    try:
+        nearest = float(text) if set(text) <= _DECIMAL else math.nan
+    except ValueError:
+        nearest = math.nan
+    if math.isnan(nearest):
         raise LagtopError(f"must be a finite decimal number, got {text!r}{_remedy(text)}")
-    nearest = float(text)
     if math.isinf(nearest):
         raise LagtopError(f"must be at most 1.8e308 in size, got {text}")
-    if nearest == 0 and re.search("[1-9]", re.split("[eE]", text)[0]):
+    if nearest == 0 and set(text.lower().partition("e")[0]) & set("123456789"):
         raise LagtopError(f"must be 0 or at least 5e-324 in size, got {text}")
     return Fraction(text)
 
@@ -66,44 +67,62 @@ class Tilt(NamedTuple):
     cos_half: Real
 
 
-@dataclass(frozen=True, kw_only=True)
-class Top:
+class _Inputs(NamedTuple):
+    m: Number
+    A: Number
+    C: Number
+    s: Number
+    g: Number
+    r0: Number
+    theta0_deg: Number | None
+    thetadot0: Number
+    psidot0: Number
+    theta0_rad: Number | None
+
+
+class Top(_Inputs):
     """A heavy symmetric top with a fixed point, and its state at t = 0 (phi = psi = 0 there).
 
     Any consistent units; the defaults are the worked example of Chrapan (1952), section 8, in CGS.
-    Give the tilt as `theta0_deg` or as `theta0_rad`, not both.  Raises LagtopError for a body or a
-    start that cannot be.
+
+    m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
+    s, g        distance from the pivot to the centre of mass, and gravity, >= 0
+    r0          spin: the angular velocity about the figure axis, which is constant (any sign)
+    theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
+    theta0_rad  or the same in radians, 0 to pi; not both
+    thetadot0   nutation rate at t = 0
+    psidot0     precession rate at t = 0
+
+    Raises LagtopError for a body or a start that cannot be.
     """
 
-    m: Number = 1587.0
-    """Mass, > 0."""
-    A: Number = 39032.0
-    """Equatorial moment of inertia about the pivot, > 0."""
-    C: Number = 17458.0
-    """Polar moment of inertia, 0 < C <= 2A."""
-    s: Number = 4.0
-    """Distance from the pivot to the centre of mass, >= 0."""
-    g: Number = 981.0
-    """Gravity, >= 0."""
-    r0: Number = 50.0
-    """Spin: the angular velocity about the figure axis, which is constant (any sign)."""
-    theta0_deg: Number | None = None
-    """Tilt of the figure axis from the upward vertical, 0 to 180 degrees."""
-    thetadot0: Number = 0.0
-    """Nutation rate at t = 0."""
-    psidot0: Number = 0.0
-    """Precession rate at t = 0."""
-    theta0_rad: Number | None = None
-    """The tilt in radians, 0 to pi, instead of `theta0_deg`."""
+    __slots__ = ()
 
-    def __post_init__(self) -> None:
-        if self.theta0_deg is None and self.theta0_rad is None:
-            object.__setattr__(self, "theta0_deg", 30.0)
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if value is not None:
-                object.__setattr__(self, field.name, _finite(field.name, value))
-        _check_ranges(self)
+    def __new__(
+        cls,
+        *,
+        m: Number = 1587.0,
+        A: Number = 39032.0,
+        C: Number = 17458.0,
+        s: Number = 4.0,
+        g: Number = 981.0,
+        r0: Number = 50.0,
+        theta0_deg: Number | None = None,
+        thetadot0: Number = 0.0,
+        psidot0: Number = 0.0,
+        theta0_rad: Number | None = None,
+    ) -> Top:
+        """Check the inputs and keep them."""
+        if theta0_deg is None and theta0_rad is None:
+            theta0_deg = 30.0
+        given = _Inputs(m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad)
+        numbers: Iterator[Any] = (
+            None if value is None else _finite(name, value)
+            for name, value in zip(given._fields, given, strict=True)
+        )
+        top = super().__new__(cls, *numbers)
+        _check_ranges(top)
+        return top
 
     def inputs(self, *, radians: bool = False) -> dict[str, Number]:
         """The nine inputs by record key, the tilt in degrees or in radians."""
@@ -135,13 +154,15 @@ class Top:
 
     def caveat(self) -> str | None:
         """One line on a body that can be computed but not built, or None."""
-        about_centre = Fraction(self.A) - Fraction(self.m) * Fraction(self.s) ** 2
-        if Fraction(self.C) <= 2 * about_centre:
+        offset = Fraction(self.m) * Fraction(self.s) ** 2
+        limit = 2 * (Fraction(self.A) - offset)
+        if limit <= 0:
+            bound = f"A > m s^2 = {float(offset)}, got {float(self.A)}"
+        elif self.C > limit:
+            bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
+        else:
             return None
-        return (
-            f"no rigid body has C = {self.C} with A = {self.A} about the pivot: "
-            f"C must be <= 2 (A - m s^2) = {float(2 * about_centre)}"
-        )
+        return f"a rigid body with its mass centre at s has {bound}; computing all the same"
 
 
 def number(ar: Arithmetic, value: Number) -> Real:
@@ -158,12 +179,12 @@ def _finite(name: str, value: Any) -> Number:
     if isinstance(value, Fraction):
         return value
     try:
-        value = float(value)
-    except (TypeError, ValueError):
+        nearest = float(value)
+    except (TypeError, ValueError, OverflowError):
         raise LagtopError(f"{name} must be a number, got {value!r}", name) from None
-    if not math.isfinite(value):
-        raise LagtopError(f"{name} must be finite, got {value}", name)
-    return value
+    if not math.isfinite(nearest):
+        raise LagtopError(f"{name} must be finite, got {nearest}", name)
+    return nearest
 
 
 def _check_ranges(top: Top) -> None:
@@ -171,8 +192,8 @@ def _check_ranges(top: Top) -> None:
         _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
     _require(top.s >= 0, "s", ">= 0", top.s, "for a low centre of mass use 180 - theta0 and -r0")
     _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
-    limit = 2 * Fraction(top.A)
-    _require(top.C <= limit, "C", f"<= 2 A = {float(limit)}", top.C, "no rigid body has more")
+    twice = 2 * Fraction(top.A)
+    _require(twice >= top.C, "C", f"<= 2 A = {float(twice)}", top.C, "no rigid body has more")
     if top.theta0_deg is not None and top.theta0_rad is not None:
         raise LagtopError("theta0_deg and theta0_rad are both given: leave one out", "theta0_rad")
     if top.theta0_deg is not None:
@@ -213,26 +234,30 @@ def _toml_float(text: str) -> Fraction | str:
 
 
 def _scene_value(path: str, text: str, key: str, value: Any) -> Fraction:
-    known = [field.name for field in fields(Top)]
-    where = f"{path}, line {scene_line(text, key)}"
-    if key not in known:
-        raise SceneError(f"{where}: unknown key {key!r} (known: {' '.join(known)})", key)
-    if isinstance(value, Fraction):
-        return value
+    if key not in Top._fields:
+        known = " ".join(Top._fields)
+        raise SceneError(f"{_place(path, text, key)}: unknown key {key!r} (known: {known})", key)
     if isinstance(value, int) and not isinstance(value, bool):
-        value = str(value)
-        try:
-            return parse_number(value)
-        except LagtopError as error:
-            raise SceneError(f"{where}: {key} {error}", key) from None
-    raise SceneError(f"{where}: {key} must be a finite number, got {value!r}", key)
+        value = Fraction(value)
+    if not isinstance(value, Fraction):
+        message = f"{key} must be a finite number, got {value!r}"
+        raise SceneError(f"{_place(path, text, key)}: {message}", key)
+    return value
 
 
-def scene_line(text: str, key: str) -> int:
-    """The line of a scene file's text that sets a key (1 where it cannot be told)."""
+def scene_error(path: str, error: LagtopError) -> SceneError:
+    """The same error, laid at the door of the line of the scene file that it comes from."""
+    with open(path, encoding="utf-8-sig") as file:
+        return SceneError(f"{_place(path, file.read(), error.key or '')}: {error}", error.key)
+
+
+def _place(path: str, text: str, key: str) -> str:
+    import re
+
     pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(key)}\b""")
     lines = text.splitlines()
-    return next((i for i, line in enumerate(lines, 1) if pattern.match(line)), 1)
+    line = next((i for i, line in enumerate(lines, 1) if pattern.match(line)), 1)
+    return f"{path}, line {line}"
 
 
 def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:
@@ -240,4 +265,11 @@ def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:
 
     Raises LagtopError.
     """
-    return Top(**{key: value if exact else float(value) for key, value in inputs.items()})
+    return Top(**{key: value if exact else _nearest(key, value) for key, value in inputs.items()})
+
+
+def _nearest(key: str, value: Number) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None

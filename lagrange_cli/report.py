@@ -1,0 +1,129 @@
+"""Rich tables: the record in the order of the paper, and rows over time.  No digit is ever cut."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+
+class Row(NamedTuple):
+    """How a key is shown: symbol, name, unit and the equation it comes from."""
+
+    key: str
+    symbol: str
+    name: str
+    unit: str = ""
+    equation: str = ""
+
+
+_GROUPS: dict[str, list[Row]] = {
+    "Inputs": [
+        Row("m", "m", "mass", "mass"),
+        Row("A", "A", "equatorial moment", "mass len²"),
+        Row("C", "C", "polar moment", "mass len²"),
+        Row("s", "s", "pivot to mass centre", "len"),
+        Row("g", "g", "gravity", "len/time²"),
+        Row("r0", "r0", "spin", "rad/time"),
+        Row("theta0", "ϑ0", "tilt at the start", "angle"),
+        Row("thetadot0", "ϑ'0", "nutation rate at start", "rad/time"),
+        Row("psidot0", "ψ'0", "precession rate at start", "rad/time"),
+    ],
+    "Constants": [
+        Row("regime", "", "regime"),
+        Row("a", "a", "2mgs/A", "1/time²", "(4,4)"),
+        Row("b", "b", "C r0/A", "1/time", "(4,5)"),
+    ],
+    "Roots": [
+        Row("u1", "u1", "cos ϑ, highest", "", "(4,9)"),
+        Row("u2", "u2", "cos ϑ, lowest", "", "(4,11)"),
+        Row("u3", "u3", "third root", "", "(4,11)"),
+    ],
+    "Moduli and integrals": [
+        Row("k", "k", "modulus", "", "(4,19)"),
+        Row("k_prime", "k'", "complementary modulus", "", "(4,21)"),
+        Row("modular_angle", "arcsin k", "modular angle", "angle", "(4,19)"),
+        Row("nome", "q", "nome", "", "(2,4)"),
+        Row("K", "K", "first kind, k", "", "(5,1)"),
+        Row("K_prime", "K'", "first kind, k'", "", "(2,4)"),
+        Row("E", "E", "second kind, k", "", "(7,3)"),
+        Row("amplitude", "am α", "amplitude of α", "angle", "(7,2)"),
+        Row("alpha", "α", "parameter", "", "(1,6)"),
+    ],
+    "Periods": [
+        Row("T_nutation", "T", "of the nutation", "time", "(5,1)"),
+        Row("T_spin", "Tφ", "of the mean spin", "time", "§8"),
+        Row("T_precession", "Tψ", "of the mean precession", "time", "§8"),
+    ],
+    "Mean rates": [
+        Row("mean_spin_rate", "φ' mean", "spin", "rad/time", "(6,3)"),
+        Row("mean_precession_rate", "ψ' mean", "precession", "rad/time", "(7,3)"),
+    ],
+    "Values at 0, T/4 and T/2": [
+        Row("u_quarter", "u(T/4)", "cos ϑ at T/4", "", "(5,2)"),
+        Row("theta_min", "ϑ min", "least tilt, at 0", "angle", "(4,9)"),
+        Row("theta_max", "ϑ max", "greatest tilt, at T/2", "angle", "(4,9)"),
+        Row("spin_rate_start", "φ'(0)", "spin", "rad/time", "(6,2)"),
+        Row("spin_rate_half", "φ'(T/2)", "spin", "rad/time", "(6,2)"),
+        Row("precession_rate_start", "ψ'(0)", "precession", "rad/time", "(4,7)"),
+        Row("precession_rate_half", "ψ'(T/2)", "precession", "rad/time", "(4,7)"),
+    ],
+}
+
+_ASCII = str.maketrans(
+    {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "§": "sec. ", "─": "-"}
+)
+
+
+def record_table(record: Mapping[str, Any], *, terminal: bool, encoding: str) -> bytes:
+    """The record by groups, a line for each key that the regime has."""
+    angle = "rad" if "theta0_rad" in record else "deg"
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for heading in ("Symbol", "Name", "Value", "Unit", "Equation"):
+        table.add_column(heading, justify="right" if heading == "Value" else "left", no_wrap=True)
+    for group, rows in _GROUPS.items():
+        shown = [line for row in rows if (line := _line(record, row, angle))]
+        if shown:
+            # One row of many lines a group: rich takes its time for every cell.
+            symbols, names, *rest = ("\n".join(column) for column in zip(*shown, strict=True))
+            name_cell = Text.assemble((f"{group}\n", "bold"), names)
+            table.add_row(f"\n{symbols}", name_cell, *(f"\n{column}" for column in rest))
+    return _rendered(table, terminal, encoding)
+
+
+def _line(record: Mapping[str, Any], row: Row, angle: str) -> tuple[str, ...] | None:
+    is_angle = row.unit == "angle"
+    value = record[f"{row.key}_{angle}" if is_angle else row.key]
+    if value is None:
+        return None
+    return row.symbol, row.name, str(value), angle if is_angle else row.unit, row.equation
+
+
+def rows_table(
+    names: Sequence[str], rows: Iterable[Sequence[float]], *, terminal: bool, encoding: str
+) -> bytes:
+    """A column for each name, a line for each row."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for name in names:
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in rows:
+        table.add_row(*map(repr, row))
+    return _rendered(table, terminal, encoding)
+
+
+def _rendered(table: Table, terminal: bool, encoding: str) -> bytes:
+    """The table at its natural width, whatever the terminal's; colour only on a terminal."""
+    file = io.StringIO()
+    Console(file=file, force_terminal=terminal, width=10_000, highlight=False, markup=False).print(
+        table
+    )
+    lines = [line.rstrip() for line in file.getvalue().splitlines()]
+    text = "\n".join(lines).strip("\n") + "\n"
+    if encoding.lower().startswith("utf"):
+        return text.encode()
+    return text.translate(_ASCII).encode("ascii", "replace")

@@ -1,0 +1,48 @@
+"""Ways to call the program, shared by the tests."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from lagrange_cli.cli import main
+
+ROOT = Path(__file__).parent.parent
+LAGTOP = [sys.executable, "-m", "lagrange_cli"]
+
+Lagtop = Callable[..., Result]
+
+
+@pytest.fixture
+def lagtop() -> Lagtop:
+    """Run the command in this process: lagtop("solve", "--r0", 3, charset="ascii")."""
+
+    def run(*args: Any, charset: str = "utf-8", **extra: Any) -> Result:
+        return CliRunner(charset=charset).invoke(main, list(map(str, args)), **extra)
+
+    return run
+
+
+@pytest.fixture
+def solved(lagtop: Lagtop) -> Callable[..., dict[str, Any]]:
+    """The record of `lagtop solve` as a dictionary."""
+
+    def run(*args: Any) -> dict[str, Any]:
+        result = lagtop("solve", *args, "--format", "json")
+        assert result.exit_code == 0, result.stderr
+        record: dict[str, Any] = json.loads(result.stdout)
+        return record
+
+    return run
+
+
+def process(*args: str, check: bool = True, **extra: Any) -> subprocess.CompletedProcess[bytes]:
+    """Run the command as a process of its own."""
+    return subprocess.run([*LAGTOP, *args], capture_output=True, check=check, **extra)

@@ -1,0 +1,50 @@
+"""Scenes that tests share: named ones, and random ones over all the ranges we promise."""
+
+from __future__ import annotations
+
+import math
+import random
+
+NAMED: dict[str, dict[str, float]] = {
+    "worked example": {},
+    "other way round": {"r0": -50},
+    "starts below the horizontal": {"theta0_deg": 120, "r0": -20},
+    "falls below the horizontal": {"r0": 10},
+    "disc": {"C": 78064, "r0": 30},
+    "sphere": {"C": 39032, "theta0_deg": 75},
+    "fast": {"r0": 1e4},
+    "slow": {"r0": 1},
+    "nearly hanging": {"theta0_deg": 179.9, "r0": 3},
+    "nearly upright, unstable": {"theta0_deg": 0.01},
+    "nearly upright, stable": {"theta0_deg": 0.01, "r0": 60},
+    "at the sleeping threshold": {"A": 1, "C": 1, "m": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 1},
+}
+
+
+def random_scene(rng: random.Random) -> dict[str, float]:
+    """m = g = s = 1; body, spin and tilt generic or at one of the extremes."""
+    A = rng.uniform(0.5, 2)
+    C = A * rng.choice([rng.uniform(0.01, 2), rng.uniform(0.2, 2), 1, 2])
+    r0, tilt = rng.uniform(-30, 30), rng.uniform(0.1, 179.9)
+    kind = rng.choice(
+        ["generic", "upright", "hanging", "any spin", "threshold", "upright any spin"]
+    )
+    if kind == "upright":
+        tilt = 10 ** rng.uniform(-12, 0)
+    elif kind == "hanging":
+        tilt = 180 - 10 ** rng.uniform(-12, 0)
+    elif kind == "any spin":
+        r0 = 10 ** rng.uniform(-12, 12)
+    elif kind == "threshold":
+        tilt = 10 ** rng.uniform(-12, 1)
+        r0 = 2 * math.sqrt(A) / C * (1 + rng.choice([-1, 1]) * 10 ** rng.uniform(-14, -1))
+    elif kind == "upright any spin":
+        tilt, r0 = 10 ** rng.uniform(-12, 0), 10 ** rng.uniform(-6, 6)
+    return {"m": 1, "A": A, "C": C, "s": 1, "g": 1, "r0": r0, "theta0_deg": tilt}
+
+
+def random_times(rng: random.Random, period: float) -> list[float]:
+    """Times from 1e-9 to 1e12 periods, and near turning points far away."""
+    spread = [rng.uniform(-1, 1) * 10.0 ** rng.choice([-9, -3, 0, 0, 3, 6, 12]) for _ in range(4)]
+    near_turn = rng.randrange(1000) + rng.choice([0, 0.5]) + 10 ** rng.uniform(-12, -1)
+    return [period * x for x in [*spread, near_turn]]

@@ -1,0 +1,342 @@
+"""The commands: formats, times, errors and help, in process."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import ROOT, Lagtop
+
+from lagrange_cli import Motion, Top, solve
+from lagrange_cli.report import _GROUPS
+
+Solved = Callable[..., dict[str, Any]]
+SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
+KEYS = """
+    m A C s g r0 theta0_deg thetadot0 psidot0 regime a b u1 u2 u3 k k_prime modular_angle_deg nome
+    K K_prime E amplitude_deg alpha T_nutation T_spin T_precession u_quarter theta_min_deg
+    theta_max_deg mean_spin_rate mean_precession_rate spin_rate_start spin_rate_half
+    precession_rate_start precession_rate_half
+""".split()
+
+
+def rows(text: str) -> list[list[float]]:
+    return [list(map(float, row)) for row in list(csv.reader(io.StringIO(text)))[1:]]
+
+
+# solve
+
+
+def test_json_has_the_keys_in_order(solved: Solved) -> None:
+    assert list(solved()) == KEYS
+
+
+def test_csv_and_json_carry_the_same_doubles(lagtop: Lagtop, solved: Solved) -> None:
+    text = lagtop("solve", "--r0", "0", "--format", "csv").stdout
+    header, cells = csv.reader(io.StringIO(text))
+    for key, cell, value in zip(header, cells, solved("--r0", "0").values(), strict=True):
+        if isinstance(value, float):
+            assert float(cell) == value, key
+        else:
+            assert cell == (value or ""), key
+
+
+def test_radians_rename_and_convert(solved: Solved) -> None:
+    degrees, radians = solved(), solved("--rad", "--theta0", "0.5235987755982988")
+    assert [key.replace("_deg", "_rad") for key in KEYS] == list(radians)
+    assert radians["theta_max_rad"] == pytest.approx(math.radians(degrees["theta_max_deg"]))
+    assert radians["theta_min_rad"] == radians["theta0_rad"] == 0.5235987755982988
+    assert radians["T_nutation"] == pytest.approx(degrees["T_nutation"], rel=1e-14)
+
+
+def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> None:
+    shown = lagtop("solve").stdout
+    words = set(shown.split())
+    assert {str(value) for value in solved().values()} <= words
+    assert "…" not in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    order = [shown.index(group) for group in _GROUPS]
+    assert order == sorted(order)
+
+
+def test_table_explains_every_key() -> None:
+    angles = {"theta0", "modular_angle", "amplitude", "theta_min", "theta_max"}
+    keys = [row.key for group in _GROUPS.values() for row in group]
+    assert sorted(f"{key}_deg" if key in angles else key for key in keys) == sorted(KEYS)
+
+
+def test_table_in_ascii(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", charset="ascii").stdout
+    assert shown.isascii()
+    assert "?" not in shown
+    assert "theta max" in shown
+
+
+def test_record_agrees_with_the_library(solved: Solved) -> None:
+    record = solved("--r0", "-20", "--theta0", "100")
+    motion = solve(Top(r0=-20, theta0_deg=100))
+    assert all(record[key] == value for key, value in motion.numbers().items())
+    assert set(Motion._fields[2:]) <= set(record)
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_sample_inputs(path: Path, lagtop: Lagtop, solved: Solved) -> None:
+    assert path.read_text().startswith("# ")
+    record = solved(path)
+    assert record["regime"] == "regular"
+    result = lagtop("table", path, "--n", "5")
+    assert result.exit_code == 0
+    assert len(rows(result.stdout)) == 5
+
+
+def test_samples_show_what_they_say(solved: Solved) -> None:
+    def sample(name: str) -> dict[str, Any]:
+        return solved(ROOT / "sample_inputs" / f"{name}.toml")
+
+    assert sample("chrapan-1952")["T_nutation"] == pytest.approx(0.429, abs=5e-4)
+    gyroscope = sample("fast-gyroscope")
+    assert 1 / gyroscope["T_nutation"] == pytest.approx(94, abs=0.5)
+    assert gyroscope["theta_max_deg"] - 60 == pytest.approx(0.034, abs=5e-4)
+    assert sample("slow-top")["theta_max_deg"] > 179
+    assert sample("slow-top")["precession_rate_half"] == pytest.approx(1427, abs=0.5)
+    assert sample("hanging-top")["theta_min_deg"] > 90
+
+
+def test_published_values_of_simo_and_wong(lagtop: Lagtop) -> None:
+    """A long double Taylor integration found elsewhere, at t = 10."""
+    path = ROOT / "sample_inputs" / "simo-wong-1991.toml"
+    result = lagtop("table", path, "--rad", "--t-max", "10", "--n", "2")
+    assert rows(result.stdout)[1] == pytest.approx(
+        [10, 0.0542200994026610601, 495.809793424335, 4.19619104074063746], rel=1e-13
+    )
+    assert "Warning: a rigid body with its mass centre at s has A > m s^2" in result.stderr
+
+
+# table
+
+
+def test_one_second_in_a_hundred_steps(lagtop: Lagtop) -> None:
+    text = lagtop("table", "--t-max", "1").stdout
+    assert text.splitlines()[0] == "t,theta_deg,phi_deg,psi_deg"
+    times = [row[0] for row in rows(text)]
+    assert times == [i * 0.01 for i in range(101)]
+
+
+def test_table_agrees_with_the_library(lagtop: Lagtop) -> None:
+    angles = solve(Top(r0=20)).angles([0.0, 0.5, 1.0])
+    shown = rows(lagtop("table", "--r0", "20", "--t-max", "1", "--n", "3", "--rad").stdout)
+    for i, row in enumerate(shown):
+        assert row[1:] == [angle[i] for angle in angles]
+
+
+def test_formats_carry_the_same_doubles(lagtop: Lagtop) -> None:
+    plain = rows(lagtop("table", "--t-max", "2").stdout)
+    objects = json.loads(lagtop("table", "--t-max", "2", "--format", "json").stdout)
+    assert [list(item.values()) for item in objects] == plain
+    assert list(objects[0]) == ["t", "theta_deg", "phi_deg", "psi_deg"]
+    shown = lagtop("table", "--t-max", "2", "--format", "table").stdout.splitlines()[2:]
+    assert [list(map(float, line.split())) for line in shown] == plain
+
+
+def test_a_step_that_fits(lagtop: Lagtop) -> None:
+    """0.1 is not a tenth in binary; ten steps of it still make one."""
+    times = [row[0] for row in rows(lagtop("table", "--t-max", "1", "--dt", "0.1").stdout)]
+    assert times == [i * 0.1 for i in range(11)]
+    times = [row[0] for row in rows(lagtop("table", "--t-max", "1", "--dt", "0.3").stdout)]
+    assert times == [i * 0.3 for i in range(4)]
+
+
+def test_grid_from_below_zero(lagtop: Lagtop) -> None:
+    text = lagtop("table", "--t-min", "-2", "--t-max", "2", "--n", "5e0").stdout
+    assert [row[0] for row in rows(text)] == [-2, -1, 0, 1, 2]
+
+
+def test_default_is_one_period(lagtop: Lagtop) -> None:
+    times = [row[0] for row in rows(lagtop("table").stdout)]
+    assert len(times) == 101
+    assert times[-1] == pytest.approx(solve(Top()).T_nutation, rel=1e-15)
+    assert rows(lagtop("table", "--theta0", "0").stdout)[-1][0] == 1
+
+
+def test_single_time(lagtop: Lagtop) -> None:
+    text = lagtop("table", "--t-min", "3", "--t-max", "3").stdout
+    assert [row[0] for row in rows(text)] == [3]
+
+
+def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Path) -> None:
+    text = "# times\n0.3\n\n  -1e2 \n0.1\n"
+    (tmp_path / "t.txt").write_text(text)
+    from_file = lagtop("table", "--times", tmp_path / "t.txt").stdout
+    assert from_file == lagtop("table", "--times", "-", input=text).stdout
+    assert [row[0] for row in rows(from_file)] == [0.3, -100, 0.1]
+
+
+def test_long_tables_come_in_blocks(lagtop: Lagtop) -> None:
+    text = lagtop("table", "--t-max", "1000", "--n", "1.5e5").stdout
+    assert text.count("\n") == 150_001
+    last = rows(text)[-1]
+    assert last[0] == pytest.approx(1000, rel=1e-15)
+
+
+def test_wrap(lagtop: Lagtop) -> None:
+    wrapped = rows(lagtop("table", "--t-max", "5", "--wrap").stdout)
+    assert all(-180 < angle <= 180 for row in wrapped for angle in row[2:])
+
+
+# errors
+
+BAD = {
+    "--r0 nan": "--r0 must be a finite decimal number, got 'nan'",
+    "--r0 inf": "--r0 must be a finite decimal number, got 'inf'",
+    "--r0 1e400": "--r0 must be at most 1.8e308 in size, got 1e400",
+    "--r0 1e-400": "--r0 must be 0 or at least 5e-324 in size, got 1e-400",
+    "--r0 1,5": "(write a decimal point, not a comma)",
+    "--r0 −5": "(write the minus sign as an ASCII hyphen, -)",
+    "--r0 1_000": "(leave out the underscores)",
+    "--r0 ٣": "--r0 must be a finite decimal number, got '٣'",
+    "--r0 0x10": "--r0 must be a finite decimal number",
+    "--m 0": "m must be > 0, got 0.0",
+    "--A -1": "A must be > 0, got -1.0",
+    "--C 0": "C must be > 0, got 0.0",
+    "--s -1": "s must be >= 0, got -1.0",
+    "--g -981": "(for upward gravity use 180 - theta0 and -r0)",
+    "--C 80000": "C must be <= 2 A = 78064.0, got 80000.0 (no rigid body has more)",
+    "--theta0 -1": "theta0_deg must be in [0, 180], got -1.0",
+    "--theta0 181": "theta0_deg must be in [0, 180], got 181.0",
+    "--theta0 3.15 --rad": "theta0_rad must be in [0, pi], got 3.15",
+    "--theta 3": "No such option",
+    "--format xml": "'xml' is not one of",
+    "a.toml b.toml": "unexpected extra argument",
+}
+BAD_TIMES = {
+    "--n 0": "--n must be >= 1, got 0",
+    "--n -3": "--n must be >= 1, got -3",
+    "--n 1.5": "--n must be a whole number, got 1.5",
+    "--dt 0": "--dt must be > 0, got 0.0",
+    "--dt -0.1": "--dt must be > 0",
+    "--t-max -1": "--t-max must be >= --t-min = 0.0, got -1.0",
+    "--t-max 1 --dt 1e-10": "at most 1e9 rows, this one would have 1e+10",
+    "--n 2e9": "at most 1e9 rows",
+    "--n 3 --dt 1": "--n and --dt exclude each other: leave one out",
+    "--times x --n 3": "--times and --n exclude each other",
+    "--times nowhere.txt": "--times nowhere.txt: No such file or directory",
+    "--t-max 1e30": "t must be finite and within 2^50 periods",
+    "--format table --n 20000": "--format table shows at most 10000 rows, got 20000",
+}
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [(f"solve {line}", message) for line, message in BAD.items()]
+    + [(f"table {line}", message) for line, message in (BAD | BAD_TIMES).items()]
+    + [("solv", "No such command 'solv'")],
+)
+def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:
+    result = lagtop(*line.split())
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert message in result.stderr
+    assert result.stderr.startswith("Error: ")
+    assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("m = 1\nmass = 2\n", "line 2: unknown key 'mass'"),
+        ("m = 1\n[top]\nr0 = 3\n", "line 2: unknown key 'top'"),
+        ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
+        ("m = nan\n", "line 1: m must be a finite number, got 'nan'"),
+        ("m = 1e400\n", "line 1: m must be a finite number, got '1e400'"),
+        ("\nr0 = 'fast'\n", "line 2: r0 must be a finite number, got 'fast'"),
+        ("r0 = true\n", "line 1: r0 must be a finite number, got True"),
+        ("A = 1\nC = 3\n", "line 2: C must be <= 2 A = 2.0, got 3.0"),
+        ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_deg and theta0_rad are both given"),
+    ],
+)
+def test_bad_scene_file(text: str, message: str, lagtop: Lagtop, tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    result = lagtop("solve", path)
+    assert result.exit_code == 65
+    assert result.stdout == ""
+    assert message in result.stderr
+    assert result.stderr.startswith(f"Error: {path}")
+    assert result.stderr.count("\n") == 1
+
+
+def test_missing_and_unreadable_scene_files(lagtop: Lagtop, tmp_path: Path) -> None:
+    missing = lagtop("solve", tmp_path / "none.toml")
+    assert (missing.exit_code, missing.stdout) == (65, "")
+    assert "none.toml: No such file or directory" in missing.stderr
+    assert lagtop("solve", tmp_path).exit_code == 65
+    (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
+    assert lagtop("solve", tmp_path / "binary").exit_code == 65
+    (tmp_path / "huge").write_bytes(b"#" * (1 << 21))
+    assert "at most 1 MiB" in lagtop("solve", tmp_path / "huge").stderr
+
+
+def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("r0 = 7\ntheta0_rad = 1.0\nm = 1_500\n")
+    record = solved(path, "--r0", "8", "--theta0", "20")
+    assert (record["r0"], record["theta0_deg"], record["m"]) == (8, 20, 1500)
+    assert solved(path)["theta0_deg"] == pytest.approx(math.degrees(1))
+
+
+def test_bad_line_of_times(lagtop: Lagtop) -> None:
+    result = lagtop("table", "--times", "-", input="0\n1\nsoon\n")
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "standard input, line 3: the time must be a finite decimal number" in result.stderr
+    assert "at least one time" in lagtop("table", "--times", "-", input="").stderr
+
+
+def test_a_body_that_cannot_be_built_is_computed_with_a_warning(lagtop: Lagtop) -> None:
+    result = lagtop("solve", "--C", "30000", "--format", "json")
+    assert result.exit_code == 0
+    assert json.loads(result.stdout)["C"] == 30000
+    assert "Warning: a rigid body with its mass centre at s has C <= 2 (A - m s^2)" in result.stderr
+
+
+@pytest.mark.parametrize("options", ["--r0 0", "--g 0", "--s 0", "--theta0 0", "--theta0 180"])
+def test_edges_are_legal_scenes(options: str, lagtop: Lagtop) -> None:
+    for command in ("solve --format json", "solve", "table"):
+        result = lagtop(*command.split(), *options.split())
+        assert result.exit_code == 0
+        assert "nan" not in result.stdout.lower()
+        assert "inf" not in result.stdout.lower()
+
+
+# help
+
+
+@pytest.mark.parametrize(
+    "command", ["", "-h", "--help", "solve -h", "solve --help", "table --help"]
+)
+def test_help_starts_with_examples(command: str, lagtop: Lagtop) -> None:
+    result = lagtop(*command.split())
+    assert result.exit_code == 0
+    assert result.stdout.startswith("Examples:\n  lagtop ")
+
+
+def test_examples_of_the_help_run(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    from lagrange_cli.cli import main
+
+    monkeypatch.chdir(ROOT)
+    for command in main.commands.values():
+        for example in command.examples:  # type: ignore[attr-defined]
+            line = example.replace("> out.csv", "").replace("-o ", "-o /dev/null ").split("|")
+            words = next(part for part in line if "lagtop" in part).replace("1e6", "9").split()
+            words = [word for word in words[1:] if word not in ("solved.csv", "angles.csv")]
+            assert lagtop(*words, input="0\n1\n").exit_code == 0, example
+
+
+def test_version(lagtop: Lagtop) -> None:
+    assert lagtop("--version").stdout == "lagtop, version 0.1.0\n"

@@ -1,0 +1,181 @@
+"""The record against the paper's own formulas at 50 digits."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any, cast
+
+import mpmath
+import numpy as np
+import oracle
+import pytest
+from scenes import NAMED, random_scene
+
+from lagrange_cli import LagtopError, Top, decimals, solve
+from lagrange_cli.motion import Regime, invariants, many_digits, roots_from_rest, solve_in
+
+EPS = 2.0**-52
+
+
+def errors(scene: dict[str, float]) -> dict[str, float]:
+    """Relative error of each number in eps."""
+    motion, exact = solve(Top(**scene)), oracle.constants(oracle.Scene(**scene))
+    with mpmath.workdps(60):
+        return {
+            key: float(abs(mpmath.mpf(getattr(motion, key)) / true - 1) / EPS) if true else 0.0
+            for key, true in exact.items()
+            if key != "precession_rate_start"
+        }
+
+
+@pytest.mark.parametrize("scene", NAMED.values(), ids=NAMED)
+def test_every_number_is_the_nearest_double(scene: dict[str, float]) -> None:
+    assert max(errors(scene).values()) <= 0.5
+
+
+def test_random_scenes() -> None:
+    rng = random.Random(1952)
+    for scene in (random_scene(rng) for _ in range(60)):
+        assert max(errors(scene).values()) <= 0.5, scene
+
+
+def test_tilt_in_radians() -> None:
+    exact = oracle.constants(oracle.Scene(theta0_deg=mpmath.mpf(0.05) * 180 / mpmath.pi))
+    assert solve(Top(theta0_rad=0.05)).T_nutation == float(exact["T_nutation"])
+    assert solve(Top(theta0_rad=math.pi)).theta_max_deg == 180
+    assert solve(Top(theta0_rad=math.pi)).regime is Regime.REGULAR  # the double is not pi
+
+
+def test_released_at_rest_means_zero_precession_rate() -> None:
+    assert solve(Top()).precession_rate_start == 0.0
+
+
+@pytest.mark.parametrize("scene", NAMED.values(), ids=NAMED)
+def test_the_formulas_hold_in_every_arithmetic(scene: dict[str, float]) -> None:
+    """Floats and mpmath give what decimals give: the formulas do not depend on the digits."""
+    top = Top(**scene)
+    nearest, many, floats = (
+        cast(dict[str, Any], motion.numbers())
+        for motion in (solve(top), solve_in(many_digits(80), top), solve_in(math, top))
+    )
+    for key, value in nearest.items():
+        assert float(many[key]) == value, key
+        unit = 1 if key in ("u1", "u2", "u_quarter") else abs(value)
+        unit = max(unit, abs(top.r0)) if key == "spin_rate_half" else unit
+        assert abs(floats[key] - value) <= 6 * EPS * unit, key
+
+
+def test_the_formulas_hold_on_arrays() -> None:
+    tops = [Top(**scene) for scene in NAMED.values()]
+    columns = [(*invariants(math, top)[2:4], *top.tilt(math)) for top in tops]
+    lam, lam_minus_1, *tilt = (np.array(column) for column in zip(*columns, strict=True))
+    from lagrange_cli.top import Tilt
+
+    together = roots_from_rest(np, lam, lam_minus_1, Tilt(*tilt))
+    for i, top in enumerate(tops):
+        inv = invariants(math, top)
+        alone = roots_from_rest(math, inv.lam, inv.lam_minus_1, top.tilt(math))
+        assert [float(column[i]) for column in together] == pytest.approx(alone, rel=4 * EPS)
+
+
+def test_one_ulp_across_the_threshold_of_sleeping() -> None:
+    """lambda = 1: the formulas change sides, the numbers do not jump."""
+    scene = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "theta0_deg": 1}
+    below, at, above = (
+        cast(dict[str, Any], solve(Top(**scene, r0=r0)).numbers())
+        for r0 in (math.nextafter(2, 0), 2.0, math.nextafter(2, 3))
+    )
+    for key in at:
+        step = abs(above[key] - below[key])
+        assert step <= 300 * EPS * max(abs(at[key]), 1e-3), key
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e30])
+def test_change_of_units(scale: float) -> None:
+    """Powers of two in length, mass and time only shift exponents."""
+    unit = 2.0 ** round(math.log2(scale))
+    plain = solve(Top())
+    shifted = solve(
+        Top(m=1587 * unit, A=39032 * unit**3, C=17458 * unit**3, s=4 * unit, g=981 * unit)
+    )
+    assert shifted.T_nutation == plain.T_nutation
+    assert shifted.mean_precession_rate == plain.mean_precession_rate
+
+
+@pytest.mark.parametrize(
+    ("inputs", "regime"),
+    [
+        ({"g": 0}, Regime.TORQUE_FREE),
+        ({"s": 0}, Regime.TORQUE_FREE),
+        ({"theta0_deg": 0}, Regime.SLEEPING),
+        ({"theta0_deg": 180}, Regime.HANGING),
+        ({"r0": 0}, Regime.NO_SPIN),
+    ],
+)
+def test_regimes_at_the_edge(inputs: dict[str, float], regime: Regime) -> None:
+    motion = solve(Top(**inputs))
+    assert motion.regime is regime
+    assert all(value is None or math.isfinite(value) for value in motion.numbers().values())
+    angles = motion.angles([-3.0, 0.0, 2.0])
+    assert np.isfinite(angles).all()
+    assert angles.phi[1] == 0
+    assert angles.psi[1] == 0
+
+
+def test_no_spin_is_the_plane_pendulum() -> None:
+    """K(sin(alpha/2)) for the amplitude alpha = 150 degrees of the swing about the bottom."""
+    motion = solve(Top(r0=0, theta0_deg=30))
+    with mpmath.workdps(40):
+        amplitude = mpmath.radians(150)
+        period = 4 * mpmath.ellipk(mpmath.sin(amplitude / 2) ** 2)
+        period *= mpmath.sqrt(mpmath.mpf(39032) / (1587 * 981 * 4))
+    assert motion.T_nutation == float(period / 2) or motion.T_nutation == float(period)
+
+
+def test_unknown_start_is_refused() -> None:
+    with pytest.raises(LagtopError, match="psidot0 must be 0"):
+        solve(Top(psidot0=1.0))
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        ({"m": 0}, "m must be > 0, got 0.0"),
+        ({"A": -1}, "A must be > 0, got -1.0"),
+        ({"C": 0}, "C must be > 0"),
+        ({"C": 78065}, r"C must be <= 2 A = 78064.0, got 78065.0 \(no rigid body has more\)"),
+        ({"s": -4}, "s must be >= 0, got -4.0"),
+        ({"g": -1}, "g must be >= 0"),
+        ({"theta0_deg": 180.1}, r"theta0_deg must be in \[0, 180\], got 180.1"),
+        ({"theta0_rad": 3.2}, r"theta0_rad must be in \[0, pi\], got 3.2"),
+        ({"theta0_rad": 1, "theta0_deg": 1}, "leave one out"),
+        ({"r0": math.nan}, "r0 must be finite, got nan"),
+        ({"r0": math.inf}, "r0 must be finite, got inf"),
+        ({"r0": "fast"}, "r0 must be a number, got 'fast'"),
+    ],
+)
+def test_guards(inputs: dict[str, Any], message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        Top(**inputs)
+
+
+def test_numbers_out_of_range() -> None:
+    with pytest.raises(LagtopError, match=r"a must be within 1\.8e308 in size"):
+        solve(Top(m=1e300, g=1e300))
+
+
+def test_decimal_functions_against_mpmath() -> None:
+    """sin, cos and atan2 of the 40-digit arithmetic."""
+    from decimal import Decimal, localcontext
+
+    rng = random.Random(40)
+    with localcontext(decimals.context()), mpmath.workdps(60):
+        for _ in range(50):
+            x, y = Decimal(rng.uniform(0, 3.1)), Decimal(rng.uniform(0, 1) ** 8)
+            ours = decimals.sin(x), decimals.cos(x), decimals.atan2(y, x)
+            X, Y = mpmath.mpf(str(x)), mpmath.mpf(str(y))
+            exact = mpmath.sin(X), mpmath.cos(X), mpmath.atan2(Y, X)
+            for mine, true in zip(ours, exact, strict=True):
+                assert abs(mpmath.mpf(str(mine)) - true) <= 1e-38
+        assert mpmath.mpf(str(decimals.pi)) - mpmath.pi < 1e-55
