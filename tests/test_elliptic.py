@@ -40,13 +40,13 @@ def test_complete_integrals(kind: str) -> None:
 
 
 def test_nome() -> None:
-    """Worst seen: 2.7 eps, from q = 1e-29 to 0.9."""
-    with mpmath.workdps(40):
+    """Worst seen: 2.2 eps, from q = 1e-29 to 0.9."""
+    with mpmath.workdps(80):
         for k in COMPLEMENTS:
             m = mpmath.mpf(k * k)
             if m < 1:
                 true = mpmath.exp(-mpmath.pi * mpmath.ellipk(1 - m) / mpmath.ellipk(m))
-                assert error(nome(math, m=k * k, k_prime=float(mpmath.sqrt(1 - m))), true) <= 2.7
+                assert error(nome(math, m=k * k, k_prime=float(mpmath.sqrt(1 - m))), true) <= 2.2
 
 
 def test_carlson_rf() -> None:

@@ -61,8 +61,8 @@ def test_the_formulas_hold_in_every_arithmetic(scene: dict[str, float]) -> None:
     )
     for key, value in nearest.items():
         assert float(many[key]) == value, key
-        unit = 1 if key in ("u1", "u2", "u_quarter") else abs(value)
-        unit = max(unit, abs(top.r0)) if key == "spin_rate_half" else unit
+        unit: float = 1 if key in ("u1", "u2", "u_quarter") else abs(value)
+        unit = max(unit, abs(float(top.r0))) if key == "spin_rate_half" else unit
         assert abs(floats[key] - value) <= 6 * EPS * unit, key
 
 
