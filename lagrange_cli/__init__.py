@@ -1,6 +1,7 @@
 """Lagrange top in closed form: `solve(Top(theta0_deg=30)).angles([0.0, 0.1])`."""
 
-from .motion import Motion, Regime, solve
+from .motion import Motion, solve
+from .record import Regime
 from .top import LagtopError, Top
 
 __version__ = "0.1.0"

@@ -1,26 +1,22 @@
-"""Tilt, spin and precession at given times, by theta series: about one ulp at any time.
+"""Tilt, spin and precession at given times: about one ulp at any time.
 
 The attitude is a pair of complex numbers (Klein's Cayley-Klein parameters; the Pi functions of
-Chrapan's sections 3 and 4 are their logarithms), with x = pi t/T and signs s+ = sgn r0, s- = -s+:
+Chrapan's sections 3 and 4 are their logarithms), each a theta function times a uniform rotation:
 
-    X = cos(theta/2) exp(i (psi + phi)/2)  ~  exp(i rate+ t) theta2(x - i s+ y+)
-    Y = sin(theta/2) exp(i (psi - phi)/2)  ~  exp(i rate- t) theta1(x - i s- y-)
+    X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
 One atan2 each gives the tilt and the half sum and half difference of the other two angles.  Of the
-half-period representations these are the ones whose zeros are the passes over the poles (y+ = 0
-below, y- = 0 above): there real and imaginary part vanish each by itself, and nothing cancels.
+half-period representations `series` takes the ones whose zeros are the passes over the poles: there
+real and imaginary part vanish each by itself, and nothing cancels.
 
-A time is first reduced, exactly, to whole steps and a phase.  While K <= K' the step is a period
-and the series run in the nome q; beyond, it is half a period, and Jacobi's imaginary transformation
-about the nearer turning point gives series in q' = exp(-pi K/K').  The nome in use is at most
-exp(-pi), so four terms are enough for doubles.  Written as polynomials in sin^2 or sinh^2 of the
-phase, with coefficients from the many-digit arithmetic of the caller, they cost a few
-multiplications a sample, however far the time.
+A time is first reduced, exactly, to whole steps and a phase; then a few multiplications a sample
+evaluate the polynomials, however far the time.  All constants come from the many-digit arithmetic
+of the caller.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -28,7 +24,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .elliptic import Arithmetic, Real
-from .top import LagtopError
+from .roots import Roots, Start
+from .series import Component, Constants, Frame, Polynomial, Series, theta_series
+from .top import LagtopError, Tilt
 
 Array = NDArray[np.float64]
 
@@ -38,8 +36,8 @@ BLOCK = 16384
 MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
 
-_TERMS = 4
 _SPLITTER = 2.0**27 + 1
+_NEGLIGIBLE = 2.0**-60
 
 
 class Pair(NamedTuple):
@@ -60,34 +58,97 @@ class Angles(NamedTuple):
     """Precession."""
 
 
-class Component(NamedTuple):
-    """X or Y about one turning point: two polynomials in s = S^2, the lowest power first.
-
-    Real and imaginary part are C P(s) and S Q(s), or P(s) and S C Q(s) where `even`.
-    """
-
-    real: list[float]
-    imag: list[float]
-    even: bool = False
-
-
-class Frame(NamedTuple):
-    """X and Y about one turning point."""
-
-    x: Component
-    y: Component
-
-
 class Growth(NamedTuple):
-    """How an angle grows: per step, in turns per step, and with the phase within a step."""
+    """How an angle grows: per step, in turns per step, with the phase in a step; its start at 0."""
 
     step: Pair
     turns: Pair
     slope: float
+    start: float
+
+    def unwrapped(self, step: Array, phase: Array, series: Array) -> Array:
+        """The angle, counted on from 0 at t = 0; `series` is overwritten."""
+        series += phase * self.slope
+        series += step * self.step.low
+        if self.start:
+            series -= self.start
+        series += step * self.step.high
+        return series
+
+    def wrapped(self, step: Array, phase: Array, series: Array) -> Array:
+        """The same in (-pi, pi], as exact far away as near; `series` is overwritten."""
+        _, turns = reduce_phase(step, self.turns)
+        series += phase * self.slope
+        if self.start:
+            series -= self.start
+        series += turns * (2.0 * np.pi)
+        series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
+        return series
+
+
+class Growths(NamedTuple):
+    """Growth of spin and precession and of arg X and arg Y, their half sum and difference."""
+
+    phi: Growth
+    psi: Growth
+    arg_x: Growth
+    arg_y: Growth
+
+
+class Spinor(NamedTuple):
+    """X and Y about their turning point, up to a common positive factor."""
+
+    x: Array
+    """|X|."""
+    y: Array
+    """|Y|."""
+    arg_x: Array
+    arg_y: Array
+    rate: Array | None
+    """2 (x^2 + y^2) x y times the nutation rate, where it was asked for."""
+
+
+@dataclass(frozen=True)
+class Attitude:
+    """The attitude at a block of times; each of its angles is computed when it is asked for."""
+
+    growths: Growths
+    t: Array
+    step: Array
+    phase: Array
+    spinor: Spinor
+
+    def theta(self) -> Array:
+        """Tilt."""
+        theta: Array = np.arctan2(self.spinor.y, self.spinor.x)
+        theta *= 2.0
+        return theta
+
+    def phi(self, *, wrap: bool = False) -> Array:
+        """Spin = arg X - arg Y."""
+        return self._angle(self.growths.phi, self.spinor.arg_x - self.spinor.arg_y, wrap)
+
+    def psi(self, *, wrap: bool = False) -> Array:
+        """Precession = arg X + arg Y."""
+        return self._angle(self.growths.psi, self.spinor.arg_x + self.spinor.arg_y, wrap)
+
+    def args(self) -> tuple[Array, Array]:
+        """(psi + phi)/2 and (psi - phi)/2, each in (-pi, pi]."""
+        return (
+            self._angle(self.growths.arg_x, self.spinor.arg_x.copy(), True),
+            self._angle(self.growths.arg_y, self.spinor.arg_y.copy(), True),
+        )
+
+    def _angle(self, growth: Growth, series: Array, wrap: bool) -> Array:
+        grow = growth.wrapped if wrap else growth.unwrapped
+        angle = grow(self.step, self.phase, series)
+        if growth.start:
+            angle[self.t == 0] = 0.0
+        return angle
 
 
 class Sampler:
-    """Evaluation block by block, for any shape of the times."""
+    """The constants of one motion that its angles need, ready to be evaluated."""
 
     max_time: float
 
@@ -97,10 +158,21 @@ class Sampler:
         self.check(times)
         flat = np.ascontiguousarray(times).reshape(-1)
         angles = Angles(*(np.empty_like(flat) for _ in range(3)))
-        for start in range(0, flat.size, BLOCK):
-            part = slice(start, start + BLOCK)
-            self._sample(flat[part], wrap, Angles(*(angle[part] for angle in angles)))
+        for part, attitude in self.attitudes(flat):
+            angles.theta[part] = attitude.theta()
+            angles.phi[part] = attitude.phi(wrap=wrap)
+            angles.psi[part] = attitude.psi(wrap=wrap)
         return Angles(*(angle.reshape(times.shape) for angle in angles))
+
+    def attitudes(self, t: Array, *, rate: bool = False) -> Iterator[tuple[slice, Attitude]]:
+        """The attitude block by block; with the nutation rate where `rate` asks for it."""
+        for start in range(0, t.size, BLOCK):
+            part = slice(start, start + BLOCK)
+            yield part, self.attitude(t[part], rate)
+
+    def attitude(self, t: Array, rate: bool) -> Attitude:
+        """The attitude at a block of times."""
+        raise NotImplementedError
 
     def check(self, t: ArrayLike) -> None:
         """Raise LagtopError where a time is not finite or names no phase."""
@@ -113,132 +185,203 @@ class Sampler:
                 "t",
             )
 
-    def _sample(self, t: Array, wrap: bool, out: Angles) -> None:
-        raise NotImplementedError
-
 
 @dataclass(frozen=True)
 class ThetaSampler(Sampler):
-    """The constants of a nutating top that its angles need, ready to be evaluated."""
+    """A nutating top, by its theta series."""
 
     steps_per_time: Pair
+    offset: Pair
     max_time: float
     scale: float
     hyperbolic: bool
     frames: Sequence[Frame]
-    phi: Growth
-    psi: Growth
+    growths: Growths
 
-    def _sample(self, t: Array, wrap: bool, out: Angles) -> None:
-        step, phase = reduce_phase(t, self.steps_per_time)
+    def attitude(self, t: Array, rate: bool) -> Attitude:
+        """See `Sampler.attitude`."""
+        step, phase = reduce_phase(t, self.steps_per_time, self.offset)
         if len(self.frames) == 1:
-            arg_x, arg_y = self._spinor(self.frames[0], phase, out.theta)
+            spinor = self._spinor(self.frames[0], phase, rate)
         else:
-            arg_x, arg_y = self._spinor_by_parity(step, phase, out.theta)
-        assemble = _wrapped if wrap else _unwrapped
-        assemble(self.phi, step, phase, arg_x - arg_y, out.phi)
-        assemble(self.psi, step, phase, arg_x + arg_y, out.psi)
+            spinor = self._spinor_by_parity(step, phase, rate)
+        return Attitude(self.growths, t, step, phase, spinor)
 
-    def _spinor_by_parity(self, step: Array, phase: Array, theta: Array) -> tuple[Array, Array]:
-        arg_x, arg_y = np.empty_like(phase), np.empty_like(phase)
-        odd = np.rint(step * 0.5) != step * 0.5
+    def _spinor_by_parity(self, step: Array, phase: Array, rate: bool) -> Spinor:
+        half = step * 0.5
+        odd = np.rint(half) != half
+        whole = Spinor(
+            *(np.empty_like(phase) for _ in range(4)), np.empty_like(phase) if rate else None
+        )
         for frame, chosen in zip(self.frames, (~odd, odd), strict=True):
             index = np.flatnonzero(chosen)
-            tilt = np.empty(index.size)
-            arg_x[index], arg_y[index] = self._spinor(frame, phase[index], tilt)
-            theta[index] = tilt
-        return arg_x, arg_y
+            for target, part in zip(whole, self._spinor(frame, phase[index], rate), strict=True):
+                if target is not None:
+                    target[index] = part
+        return whole
 
-    def _spinor(self, frame: Frame, phase: Array, theta: Array) -> tuple[Array, Array]:
-        """arg X and arg Y about the turning point; theta = 2 atan2(|Y|, |X|) is written out."""
-        S, C, s = (_hyperbolic if self.hyperbolic else _circular)(phase * self.scale)
-        x_real, x_imag = _component(frame.x, S, C, s)
-        y_real, y_imag = _component(frame.y, S, C, s)
-        np.arctan2(_modulus(y_real, y_imag), _modulus(x_real, x_imag), out=theta)
-        theta *= 2.0
-        return np.arctan2(x_imag, x_real, out=x_imag), np.arctan2(y_imag, y_real, out=y_imag)
+    def _spinor(self, frame: Frame, phase: Array, rate: bool) -> Spinor:
+        argument = phase * self.scale
+        S, C, s = _hyperbolic(argument) if self.hyperbolic else _circular(argument)
+        x, arg_x = _polar(*_component(frame.x, S, C, s))
+        y, arg_y = _polar(*_component(frame.y, S, C, s))
+        return Spinor(x, y, arg_x, arg_y, _rate(frame.rate, S, C, s) if rate else None)
 
 
 @dataclass(frozen=True)
 class SteadySampler(Sampler):
     """A constant tilt and constant rates of spin and precession."""
 
-    theta: float
-    phi: Growth
-    psi: Growth
+    x: float
+    y: float
+    growths: Growths
     max_time: float
 
-    def _sample(self, t: Array, wrap: bool, out: Angles) -> None:
-        out.theta.fill(self.theta)
-        for growth, angle in ((self.phi, out.phi), (self.psi, out.psi)):
-            if wrap:
-                _, turns = reduce_phase(t, growth.turns)
-                _into_half_open(turns * (2.0 * np.pi), angle)
-            else:
-                np.add(t * growth.step.low, t * growth.step.high, out=angle)
+    def attitude(self, t: Array, rate: bool) -> Attitude:
+        """A step is a unit of time, and there is no phase."""
+        zero = np.zeros_like(t)
+        x, y = np.full_like(t, self.x), np.full_like(t, self.y)
+        return Attitude(self.growths, t, t, zero, Spinor(x, y, zero, zero, zero if rate else None))
 
 
-def theta_sampler(
-    ar: Arithmetic,
-    *,
-    period: Real,
-    quarter: Real,
-    quarter_prime: Real,
-    eta_plus: Real,
-    eta_minus: Real,
-    x_size: Real,
-    y_size: Real,
-    spin: Real,
-    precession: Real,
-    sign_plus: int,
-    sign_minus: int,
-) -> ThetaSampler:
-    """The sampler of a nutating top from its constants in an mpmath context `ar`.
+@dataclass(frozen=True)
+class SeparatrixSampler(Sampler):
+    """The one swing from the upright position down and up again, k = 1 and T infinite."""
 
-    Nutation period, quarter periods K and K', eta+- = 2K y+-/pi, the sizes of X at u1 and of Y at
-    u2 (cos(theta_min/2) and, as theta3 shrinks by sqrt(k') on the way, sqrt(k') sin(theta_max/2)),
-    the advance of spin and precession over a period, and the signs s+ and s-.
-    """
-    hyperbolic = quarter > quarter_prime
-    steps = 2 if hyperbolic else 1
-    divisor = quarter_prime if hyperbolic else quarter
-    y_plus, y_minus = ar.pi * eta_plus / (2 * divisor), ar.pi * eta_minus / (2 * divisor)
-    q = ar.exp(-ar.pi * (quarter / quarter_prime if hyperbolic else quarter_prime / quarter))
-    components = _hyperbolic_components if hyperbolic else _circular_components
-    x_frames = components(ar, q, y_plus, x_size, sign_plus)
-    y_frames = components(ar, q, y_minus, y_size, sign_minus)
-    # Linear rates: the whole advance less the winding of the series (and, transformed, plus its
-    # own linear exponent).
-    slope_x = ((precession + spin) / 2 - sign_plus * ar.pi) / steps
-    slope_y = ((precession - spin) / 2 - sign_minus * ar.pi) / steps
-    if hyperbolic:
-        slope_x, slope_y = slope_x + sign_plus * y_plus, slope_y + sign_minus * y_minus
+    speed: float
+    offset: float
+    x: float
+    """cos(theta_max/2)."""
+    y: float
+    """sin(theta_max/2)."""
+    sign: int
+    growths: Growths
+    max_time: float
+
+    def attitude(self, t: Array, rate: bool) -> Attitude:
+        """1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
+        h = t * self.speed + self.offset
+        shrink = np.exp(-np.abs(h))
+        sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
+        x, arg_x = _polar(np.full_like(h, self.x), self.y * self.sign * tanh)
+        y = self.y * sech
+        falling = -4.0 * self.speed * y * y * tanh if rate else None
+        zero = np.zeros_like(h)
+        return Attitude(self.growths, t, t, zero, Spinor(x, y, arg_x, zero, falling))
+
+
+def theta_sampler(ar: Arithmetic, c: Constants) -> ThetaSampler:
+    """The sampler of a nutating top from its constants in an mpmath context `ar`."""
+    series = theta_series(ar, c)
+    steps = len(series.frames)
+    turn_x, turn_y = (c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)
+    start_x, start_y = _start(ar, series, c, turn_x, turn_y)
     return ThetaSampler(
-        steps_per_time=_pair(steps / period),
-        max_time=float(MAX_PERIODS * period),
-        scale=float(ar.pi / 2 * quarter / quarter_prime if hyperbolic else ar.pi),
-        hyperbolic=hyperbolic,
-        frames=[Frame(x_frames[i], y_frames[1 - i]) for i in range(steps)],
-        phi=_growth(ar, spin / steps, slope_x - slope_y),
-        psi=_growth(ar, precession / steps, slope_x + slope_y),
+        steps_per_time=_pair(steps / c.period),
+        offset=_pair(c.offset * steps),
+        max_time=float(MAX_PERIODS * c.period),
+        scale=float(series.scale),
+        hyperbolic=series.hyperbolic,
+        frames=[_rounded(frame, series.hyperbolic) for frame in series.frames],
+        growths=_growths(
+            ar, (turn_x, turn_y), (series.slope_x, series.slope_y), (start_x, start_y)
+        ),
     )
 
 
 def steady_sampler(
-    ar: Arithmetic, theta: Real, spin_rate: Real, precession_rate: Real
+    ar: Arithmetic, tilt: Tilt, spin_rate: Real, precession_rate: Real
 ) -> SteadySampler:
     """The sampler of a constant tilt and two constant rates, in an mpmath context `ar`."""
-    fastest = max(abs(spin_rate), abs(precession_rate))
+    half_sum, half_difference = (precession_rate + spin_rate) / 2, (precession_rate - spin_rate) / 2
     return SteadySampler(
-        theta=float(theta),
-        phi=_growth(ar, spin_rate, ar.mpf(0)),
-        psi=_growth(ar, precession_rate, ar.mpf(0)),
-        max_time=float(MAX_PERIODS / fastest) if fastest else float("inf"),
+        x=float(tilt.cos_half),
+        y=float(tilt.sin_half),
+        growths=_growths(ar, (half_sum, half_difference)),
+        max_time=_reach(abs(half_sum) + abs(half_difference)),
     )
 
 
-def _growth(ar: Arithmetic, step: Real, slope: Real) -> Growth:
-    return Growth(_pair(step), _pair(step / (2 * ar.pi)), float(slope))
+def separatrix_sampler(
+    ar: Arithmetic, begin: Start, roots: Roots, speed: Real
+) -> SeparatrixSampler:
+    """The sampler of the separatrix, u1 = u3 = 1, where 1 - u = (1 - u2)/cosh^2 h."""
+    x, y = ar.sqrt(roots.below_u2 / 2), ar.sqrt(roots.above_u2 / 2)
+    offset = ar.asinh(ar.sqrt(max(begin.u - roots.u2, 0) / (1 - begin.u)))
+    if begin.theta_rate > 0:
+        offset = -offset
+    sign = -1 if begin.b < 0 else 1
+    halves = begin.r0 / 2, (begin.b - begin.r0) / 2
+    return SeparatrixSampler(
+        speed=float(speed),
+        offset=float(offset),
+        x=float(x),
+        y=float(y),
+        sign=sign,
+        growths=_growths(ar, halves, starts=(ar.atan2(sign * y * ar.tanh(offset), x), 0 * offset)),
+        max_time=_reach(abs(halves[0]) + abs(halves[1]) + speed),
+    )
+
+
+def _reach(rate: Real) -> float:
+    return float(MAX_PERIODS / rate) if rate else float("inf")
+
+
+def _growths(
+    ar: Arithmetic,
+    steps: tuple[Real, Real],
+    slopes: tuple[Real, Real] = (0, 0),
+    starts: tuple[Real, Real] = (0, 0),
+) -> Growths:
+    """Growth of the four angles from those of arg X and arg Y."""
+
+    def growth(x: int, y: int) -> Growth:
+        step, slope, start = (x * p + y * q for p, q in (steps, slopes, starts))
+        return Growth(_pair(step), _pair(step / (2 * ar.pi)), float(slope), float(start))
+
+    return Growths(phi=growth(1, -1), psi=growth(1, 1), arg_x=growth(1, 0), arg_y=growth(0, 1))
+
+
+def _start(
+    ar: Arithmetic, series: Series, c: Constants, turn_x: Real, turn_y: Real
+) -> tuple[Real, Real]:
+    """arg X and arg Y at t = 0 (on a pole: just after, or just before where the tilt falls)."""
+    offset = c.offset * len(series.frames)
+    step = int(ar.nint(offset))
+    phase = offset - step
+    frame = series.frames[step % len(series.frames)]
+    z = phase * series.scale
+    S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
+
+    def argument(component: Component) -> Real:
+        P, Q = (
+            sum(c * (S * S) ** i for i, c in enumerate(p)) for p in (component.real, component.imag)
+        )
+        if P == 0 and S == 0:
+            return ar.atan2(c.rises * Q, 0)
+        return ar.atan2(S * C * Q, P) if component.even else ar.atan2(S * Q, C * P)
+
+    return (
+        step * turn_x + phase * series.slope_x + argument(frame.x),
+        step * turn_y + phase * series.slope_y + argument(frame.y),
+    )
+
+
+def _rounded(frame: Frame, hyperbolic: bool) -> Frame:
+    """The frame in doubles, without the coefficients that are too small to matter."""
+
+    def component(c: Component) -> Component:
+        return Component(_trimmed(c.real, hyperbolic), _trimmed(c.imag, hyperbolic), c.even)
+
+    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, hyperbolic))
+
+
+def _trimmed(polynomial: Polynomial, hyperbolic: bool) -> Polynomial:
+    kept = [float(coefficient) for coefficient in polynomial]
+    smallest = 0.0 if hyperbolic else _NEGLIGIBLE * abs(kept[0])
+    while len(kept) > 2 and abs(kept[-1]) <= smallest:
+        del kept[-1]
+    return kept
 
 
 def _pair(value: Real) -> Pair:
@@ -246,87 +389,23 @@ def _pair(value: Real) -> Pair:
     return Pair(high, float(value - high))
 
 
-# The series.  sin and cos of multiples of x are polynomials in s = sin^2 x (for even multiples
-# and sines over C or S or S C), all four families by one recurrence; sinh^2 flips a sign.
-
-_COS_ODD, _SIN_ODD, _COS_EVEN, _SIN_EVEN = (
-    ([1], [1, -4]),
-    ([1], [3, -4]),
-    ([1], [1, -2]),
-    ([0], [2]),
-)
-
-
-def _circular_components(
-    ar: Arithmetic, q: Real, y: Real, size: Real, sign: int
-) -> list[Component]:
-    """theta2(x - i sign y) and theta1(x - i sign y) over i^-sign, as series in the nome q."""
-    weights = [q ** (n * (n + 1)) for n in range(_TERMS)]
-    cosh = [w * ar.cosh((2 * n + 1) * y) for n, w in enumerate(weights)]
-    sinh = [w * ar.sinh((2 * n + 1) * y) for n, w in enumerate(weights)]
-    unit = size / sum(cosh)
-    return [
-        Component(_sum(_COS_ODD, 1, unit, cosh), _sum(_SIN_ODD, 1, sign * unit, sinh)),
-        Component(
-            _sum(_COS_ODD, 1, unit, _alternate(sinh)),
-            _sum(_SIN_ODD, 1, sign * unit, _alternate(cosh)),
-        ),
-    ]
-
-
-def _hyperbolic_components(
-    ar: Arithmetic, q: Real, v: Real, size: Real, sign: int
-) -> list[Component]:
-    """The same two functions after Jacobi's transformation: theta4 and theta1 of v + i h."""
-    even = [(2 if n else 1) * q ** (n * n) for n in range(_TERMS)]
-    odd = [2 * ar.sqrt(ar.sqrt(q)) * q ** (n * (n + 1)) for n in range(_TERMS)]
-    cos_even = _alternate([w * ar.cos(2 * n * v) for n, w in enumerate(even)])
-    sin_even = _alternate([w * ar.sin(2 * n * v) for n, w in enumerate(even)])
-    cos_odd = _alternate([w * ar.cos((2 * n + 1) * v) for n, w in enumerate(odd)])
-    sin_odd = _alternate([w * ar.sin((2 * n + 1) * v) for n, w in enumerate(odd)])
-    unit = size / sum(cos_even)
-    return [
-        Component(
-            _sum(_COS_EVEN, -1, unit, cos_even), _sum(_SIN_EVEN, -1, -sign * unit, sin_even), True
-        ),
-        Component(_sum(_COS_ODD, -1, unit, sin_odd), _sum(_SIN_ODD, -1, sign * unit, cos_odd)),
-    ]
-
-
-def _alternate(terms: list[Real]) -> list[Real]:
-    return [-term if n % 2 else term for n, term in enumerate(terms)]
-
-
-def _sum(
-    family: tuple[list[int], list[int]], curvature: int, unit: Real, weights: list[Real]
-) -> list[float]:
-    """Coefficients in s of the weighted sum of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
-    total: list[Real] = [0] * len(weights)
-    power, following = family
-    for weight in weights:
-        for i, coefficient in enumerate(power):
-            total[i] += unit * weight * coefficient * curvature**i
-        power, following = following, _next(power, following)
-    return [float(coefficient) for coefficient in total]
-
-
-def _next(previous: list[int], current: list[int]) -> list[int]:
-    doubled, shifted = [2 * c for c in current] + [0], [0] + [4 * c for c in current]
-    padded = previous + [0] * (len(doubled) - len(previous))
-    return [a - b - c for a, b, c in zip(doubled, shifted, padded, strict=True)]
-
-
 # Evaluation.
 
 
-def reduce_phase(t: Array, rate: Pair) -> tuple[Array, Array]:
-    """The nearest integer to t * rate, and what is left, |phase| <= 1/2, free of cancellation."""
-    product, rest = _two_product(t, rate.high)
-    step = np.rint(product)
+def reduce_phase(t: Array, rate: Pair, offset: Pair | None = None) -> tuple[Array, Array]:
+    """The nearest integer to t * rate + offset, and what is left, |phase| <= 1/2, not cancelled."""
+    phase, rest = _two_product(t, rate.high)
     rest += t * rate.low
-    product -= step
-    product += rest
-    return step, product
+    if offset is None or offset.high == 0:
+        step = np.rint(phase)
+        phase -= step
+    else:
+        step = np.rint(phase + offset.high)
+        phase -= step
+        phase += offset.high
+        rest += offset.low
+    phase += rest
+    return step, phase
 
 
 def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
@@ -363,14 +442,23 @@ def _hyperbolic(x: Array) -> tuple[Array, Array, Array]:
 
 
 def _component(component: Component, S: Array, C: Array | None, s: Array) -> tuple[Array, Array]:
+    """Real and imaginary part."""
     real, imag = _polynomial(component.real, s), _polynomial(component.imag, s)
     imag *= S
     if C is not None:
-        (imag if component.even else real).__imul__(C)
+        scaled = imag if component.even else real
+        scaled *= C
     return real, imag
 
 
-def _polynomial(coefficients: list[float], s: Array) -> Array:
+def _rate(polynomial: Polynomial, S: Array, C: Array | None, s: Array) -> Array:
+    rate = _polynomial(polynomial, s)
+    rate *= S
+    rate *= C if C is not None else 1.0 + S * S
+    return rate
+
+
+def _polynomial(coefficients: Polynomial, s: Array) -> Array:
     value = s * coefficients[-1]
     for coefficient in coefficients[-2:0:-1]:
         value += coefficient
@@ -379,25 +467,8 @@ def _polynomial(coefficients: list[float], s: Array) -> Array:
     return value
 
 
-def _modulus(real: Array, imag: Array) -> Array:
+def _polar(real: Array, imag: Array) -> tuple[Array, Array]:
+    """Modulus and argument."""
     square = real * real
     square += imag * imag
-    return np.sqrt(square, out=square)
-
-
-def _unwrapped(growth: Growth, step: Array, phase: Array, args: Array, out: Array) -> None:
-    np.multiply(phase, growth.slope, out=out)
-    out += step * growth.step.low
-    out += args
-    out += step * growth.step.high
-
-
-def _wrapped(growth: Growth, step: Array, phase: Array, args: Array, out: Array) -> None:
-    _, turns = reduce_phase(step, growth.turns)
-    _into_half_open(turns * (2.0 * np.pi) + (phase * growth.slope + args), out)
-
-
-def _into_half_open(angle: Array, out: Array) -> None:
-    """Bring angles to (-pi, pi]."""
-    turns = np.ceil(angle / (2.0 * np.pi) - 0.5)
-    np.subtract(angle, turns * (2.0 * np.pi), out=out)
+    return np.sqrt(square, out=square), np.arctan2(imag, real, out=imag)

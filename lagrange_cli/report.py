@@ -36,6 +36,8 @@ _GROUPS: dict[str, list[Row]] = {
     ],
     "Constants": [
         Row("regime", "", "regime"),
+        Row("path", "", "path of the axis"),
+        Row("remark", "", "remark"),
         Row("a", "a", "2mgs/A", "1/time²", "(4,4)"),
         Row("b", "b", "C r0/A", "1/time", "(4,5)"),
     ],

@@ -66,6 +66,10 @@ class Tilt(NamedTuple):
     sin_half: Real
     cos_half: Real
 
+    def degrees(self, ar: Arithmetic) -> Real:
+        """The angle itself, in degrees."""
+        return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
+
 
 class _Inputs(NamedTuple):
     m: Number
@@ -151,6 +155,23 @@ class Top(_Inputs):
             sin_half, cos_half = cos_half, sin_half
         cosine = ar.sin(number(ar, 90 - tilt) * ar.pi / 180)
         return Tilt(ar.sin(nearer), cosine, sin_half, cos_half)
+
+    @property
+    def is_released(self) -> bool:
+        """Whether it starts at rest in nutation and precession, the paper's case."""
+        return self.thetadot0 == 0 and self.psidot0 == 0
+
+    @property
+    def pole(self) -> int:
+        """1 where the axis starts upright, -1 where it hangs, else 0."""
+        if self.theta0_deg == 0 or self.theta0_rad == 0:
+            return 1
+        return -1 if self.theta0_deg == 180 else 0
+
+    def sleeps_stably(self) -> bool:
+        """Whether lambda = C^2 r0^2 / 4Amgs >= 1, so that the upright top stays up."""
+        m, A, C, s, g, r0 = (Fraction(x) for x in self[:6] if x is not None)
+        return (C * r0) ** 2 >= 4 * A * m * g * s
 
     def caveat(self) -> str | None:
         """One line on a body that can be computed but not built, or None."""

@@ -22,7 +22,7 @@ KEYS = """
     m A C s g r0 theta0_deg thetadot0 psidot0 regime a b u1 u2 u3 k k_prime modular_angle_deg nome
     K K_prime E amplitude_deg alpha T_nutation T_spin T_precession u_quarter theta_min_deg
     theta_max_deg mean_spin_rate mean_precession_rate spin_rate_start spin_rate_half
-    precession_rate_start precession_rate_half
+    precession_rate_start precession_rate_half path remark
 """.split()
 
 

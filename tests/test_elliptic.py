@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lagrange_cli.elliptic import carlson_rf, complete_e, complete_k, nome, period_mean
-from lagrange_cli.motion import many_digits
+from lagrange_cli.general import many_digits
 
 EPS = 2.0**-52
 RANDOM = random.Random(4)

@@ -13,7 +13,10 @@ import pytest
 from scenes import NAMED, random_scene
 
 from lagrange_cli import LagtopError, Top, decimals, solve
-from lagrange_cli.motion import Regime, invariants, many_digits, roots_from_rest, solve_in
+from lagrange_cli.general import many_digits
+from lagrange_cli.record import Regime
+from lagrange_cli.released import released_record
+from lagrange_cli.roots import invariants, roots_from_rest
 
 EPS = 2.0**-52
 
@@ -57,7 +60,11 @@ def test_the_formulas_hold_in_every_arithmetic(scene: dict[str, float]) -> None:
     top = Top(**scene)
     nearest, many, floats = (
         cast(dict[str, Any], motion.numbers())
-        for motion in (solve(top), solve_in(many_digits(80), top), solve_in(math, top))
+        for motion in (
+            solve(top),
+            released_record(many_digits(80), top),
+            released_record(math, top),
+        )
     )
     for key, value in nearest.items():
         assert float(many[key]) == value, key

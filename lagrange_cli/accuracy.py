@@ -1,0 +1,149 @@
+"""The one definition of error, and a many-digit reference that shares no formula with the program.
+
+Where the program uses theta functions about the highest point, the reference uses Legendre's third
+integral about the lowest, by mpmath's sn, R_F and R_J, from roots that mpmath finds:
+
+    u = u2 + (u1 - u2) sn^2 w,  w = sqrt(a (u3 - u2)) (t - t2)/2,
+    (psi +- phi)/2 = +-(r0 - b) t/2 + (beta +- b)/2 * integral of dt / (1 +- u).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import mpmath
+
+from .top import LagtopError, Top
+
+EPS = 2.0**-52
+
+Many = Any
+"""An mpf with many digits."""
+
+
+class Exact(NamedTuple):
+    """Tilt, spin and precession at one time (radians, unwrapped), and their rates."""
+
+    theta: Many
+    phi: Many
+    psi: Many
+    theta_rate: Many
+    phi_rate: Many
+    psi_rate: Many
+    tau: Many
+    """The time reduced to the nearest multiple of the nutation period."""
+
+
+def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
+    """|computed - exact| / (eps (max(1, |exact|) + |tau rate|)); not a number counts as infinite.
+
+    The second term in the denominator is what one rounding of the reduced time does.
+    """
+    if not math.isfinite(computed):
+        return math.inf
+    unit = max(1, abs(exact)) + abs(tau * rate)
+    return float(abs(mpmath.mpf(computed) - exact) / (EPS * unit))
+
+
+def angle_units(angles: tuple[float, float, float], exact: Exact) -> tuple[float, float, float]:
+    """Errors of tilt, spin and precession."""
+    pairs = zip(angles, exact[:3], exact[3:6], strict=True)
+    theta, phi, psi = (units(float(x), true, rate, exact.tau) for x, true, rate in pairs)
+    return theta, phi, psi
+
+
+class Reference:
+    """The exact motion of a nutating top."""
+
+    def __init__(self, top: Top, digits: int = 50) -> None:
+        """Raise LagtopError for a top that does not nutate."""
+        self.digits = digits
+        with mpmath.workdps(digits):
+            self._constants(top)
+
+    def _constants(self, top: Top) -> None:
+        m, A, C, s, g, r0 = (mpmath.mpf(x) for x in top[:6])
+        self.r0, self.a, self.b = r0, 2 * m * g * s / A, C * r0 / A
+        tilt = mpmath.mpf(top.theta0_rad or 0)
+        if top.theta0_deg is not None:
+            tilt = mpmath.mpf(top.theta0_deg) * mpmath.pi / 180
+        self.u0 = mpmath.cos(tilt)
+        around = mpmath.mpf(top.psidot0) * mpmath.sin(tilt) ** 2
+        self.beta = around + self.b * self.u0
+        energy = mpmath.mpf(top.thetadot0) ** 2 + around * mpmath.mpf(top.psidot0)
+        alpha = energy + self.a * self.u0
+        cubic = [
+            self.a,
+            -(alpha + self.b**2),
+            2 * self.b * self.beta - self.a,
+            alpha - self.beta**2,
+        ]
+        if not self.a:
+            raise LagtopError("the reference needs a torque")
+        found = mpmath.polyroots(cubic, maxsteps=500, extraprec=4 * mpmath.mp.prec)
+        self.u2, self.u1, self.u3 = sorted(mpmath.re(root) for root in found)
+        if not top.thetadot0:  # the start is a root, to all digits
+            near_u1 = abs(self.u0 - self.u1) < abs(self.u0 - self.u2)
+            self.u1, self.u2 = (self.u0, self.u2) if near_u1 else (self.u1, self.u0)
+        self.speed = mpmath.sqrt(self.a * (self.u3 - self.u2)) / 2
+        self.m = (self.u1 - self.u2) / (self.u3 - self.u2)
+        self.K = mpmath.ellipk(self.m)
+        self.T = 2 * self.K / self.speed
+        self.w0 = self._argument(self.u0, mpmath.sign(mpmath.mpf(top.thetadot0)))
+        self.start = self._halves(mpmath.mpf(0))
+
+    def _argument(self, u: Many, theta_sign: Many) -> Many:
+        """w at t = 0: before the lowest point while the tilt grows."""
+        s2 = (u - self.u2) / (self.u1 - self.u2)
+        c2, d2 = (self.u1 - u) / (self.u1 - self.u2), (self.u3 - u) / (self.u3 - self.u2)
+        w = mpmath.sqrt(s2) * mpmath.elliprf(max(c2, 0), d2, 1)
+        return -w if theta_sign > 0 else w
+
+    def _jacobi(self, t: Many) -> tuple[Many, Many, Many, Many]:
+        """Half periods passed, and sn, cn, dn of the rest."""
+        w = self.w0 + self.speed * t
+        turns = mpmath.nint(w / (2 * self.K))
+        rest = w - 2 * turns * self.K
+        return (turns, *(mpmath.ellipfun(name, rest, m=self.m) for name in ("sn", "cn", "dn")))
+
+    def _halves(self, t: Many) -> tuple[Many, Many]:
+        """(psi + phi)/2 and (psi - phi)/2, but for their start."""
+        turns, sn, cn, dn = self._jacobi(t)
+        drift = (self.r0 - self.b) * t / 2
+        plus = self._third(1 + self.u2, -(self.u1 - self.u2), turns, sn, cn, dn)
+        minus = self._third(1 - self.u2, self.u1 - self.u2, turns, sn, cn, dn)
+        return (
+            drift + (self.beta + self.b) / 2 * plus,
+            -drift + (self.beta - self.b) / 2 * minus,
+        )
+
+    def _third(self, gap: Many, slope: Many, turns: Many, sn: Many, cn: Many, dn: Many) -> Many:
+        """Integral of dw / (gap - slope sn^2) over the speed: Legendre's Pi with n = slope/gap."""
+        n = slope / gap
+        whole = self.K + n / 3 * mpmath.elliprj(0, 1 - self.m, 1, 1 - n)
+        part = sn * mpmath.elliprf(cn**2, dn**2, 1)
+        part += n / 3 * sn**3 * mpmath.elliprj(cn**2, dn**2, 1, 1 - n * sn**2)
+        return (2 * turns * whole + part) / (gap * self.speed)
+
+    def at(self, t: float) -> Exact:
+        """The exact angles and rates at a time."""
+        with mpmath.workdps(self.digits):
+            time = mpmath.mpf(t)
+            _, sn, cn, dn = self._jacobi(time)
+            band = self.u1 - self.u2
+            u = self.u2 + band * sn**2
+            below, above = (1 + self.u2) + band * sn**2, (1 - self.u2) - band * sn**2
+            theta = 2 * mpmath.atan2(mpmath.sqrt(above), mpmath.sqrt(below))
+            plus, minus = (now - then for now, then in zip(self._halves(time), self.start, strict=True))
+            sine2 = below * above
+            psi_rate = (self.beta - self.b * u) / sine2
+            return Exact(
+                theta=theta,
+                phi=plus - minus,
+                psi=plus + minus,
+                theta_rate=-2 * band * sn * cn * dn * self.speed / mpmath.sqrt(sine2),
+                phi_rate=self.r0 - psi_rate * u,
+                psi_rate=psi_rate,
+                tau=time - mpmath.nint(time / self.T) * self.T,
+            )

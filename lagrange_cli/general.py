@@ -1,0 +1,280 @@
+"""Any start: tilt, spin and both rates given.  In an mpmath context; the paper's case included.
+
+The roots come from the cubic (4,9) in enough digits to take the gaps between them as differences;
+everything later needs the gaps only.  Equation numbers in parentheses are Chrapan's; what is
+without number continues him to starts that are not at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
+from .record import Record, Regime, period_of, with_constant_rates
+from .released import complement, modulus, phase_rate, u_quarter
+from .roots import Roots, Start, roots_from_start, start
+from .series import Constants
+from .top import LagtopError, Top
+
+
+class Solution(NamedTuple):
+    """Regime, start and roots, and what follows from the roots alone."""
+
+    regime: Regime
+    start: Start
+    roots: Roots
+    k: Real
+    k_prime: Real
+    speed: Real
+    """dw/dt of (4,30)."""
+    period: Real | None
+    """Of the nutation, or of a small one about a steady precession; None on the separatrix."""
+
+    @property
+    def nutates(self) -> bool:
+        """Whether the tilt changes, periodically."""
+        return self.period is not None and self.roots.u1_u2 > 0
+
+
+def many_digits(digits: int) -> Arithmetic:
+    """An mpmath context of its own: nobody else's precision is touched."""
+    import mpmath
+
+    context = mpmath.mp.clone()
+    context.dps = digits
+    return context
+
+
+def analyse(ar: Arithmetic, top: Top) -> Solution:
+    """Roots, regime and moduli.  Raises LagtopError for a start that describes no motion."""
+    if top.pole and top.psidot0 != 0:
+        raise LagtopError(
+            f"psidot0 must be 0 where the axis is vertical, got {float(top.psidot0)} "
+            "(nothing precesses there; count it as spin)",
+            "psidot0",
+        )
+    high = many_digits(_digits_for_roots(top, ar.dps))
+    precise = start(high, top)
+    roots = Roots(*_converted(ar, roots_from_start(high, precise)))
+    begin = Start(*_converted(ar, precise))
+    regime, free = _classify(top, roots), roots.u3 is None
+    k = ar.mpf(0) if free else modulus(ar, roots)
+    k_prime = ar.mpf(1) if free else complement(ar, roots)
+    speed = ar.sqrt(begin.alpha + begin.b**2) / 2 if free else phase_rate(ar, begin.a, roots)
+    period = 2 * complete_k(ar, k_prime) / speed if speed and k_prime else None
+    return Solution(regime, begin, roots, k, k_prime, speed, period)
+
+
+def _digits_for_roots(top: Top, digits: int) -> int:
+    """Three times the digits wanted, and more for every power of ten in the scene."""
+    tilt = top.tilt(math)
+    sizes = (top.r0, top.thetadot0, top.psidot0, top.m, top.A, top.C, top.s, top.g, *tilt)
+    spread = sum(abs(math.log10(abs(x))) for x in map(float, sizes) if x)
+    return 3 * digits + 60 + 6 * int(spread)
+
+
+def _converted(ar: Arithmetic, values: tuple[Real | None, ...]) -> list[Real | None]:
+    return [None if value is None else +ar.convert(value) for value in values]
+
+
+def _classify(top: Top, roots: Roots) -> Regime:
+    if top.pole and top.thetadot0 == 0:
+        return Regime.SLEEPING if top.pole > 0 else Regime.HANGING
+    if roots.u3 is None:
+        return Regime.TORQUE_FREE
+    if not roots.u3_u1:
+        return Regime.SEPARATRIX
+    if not roots.u1_u2:
+        return Regime.STEADY
+    return Regime.NO_SPIN if top.r0 == 0 else Regime.REGULAR
+
+
+# Parameters and mean rates.
+
+
+def eta_plus(ar: Arithmetic, roots: Roots) -> Real:
+    """F of sn^2 = (1 + u2)/(1 + u1), modulus k': the distance of X from its zero at the bottom."""
+    middle = roots.u1_u2 * (roots.below_u3 / roots.u3_u2)
+    return ar.sqrt(roots.below_u2) * carlson_rf(ar, roots.u1_u2, middle, roots.below_u1)
+
+
+def eta_minus(ar: Arithmetic, roots: Roots) -> Real:
+    """The distance of Y from its zero at the top; alpha (1,6) where the top starts at rest."""
+    size = ar.sqrt(roots.above_u1 * roots.u3_u2)
+    return size * carlson_rf(
+        ar, roots.u3_above * roots.u1_u2, roots.u1_u2 * roots.u3_u1, roots.u3_u1 * roots.above_u2
+    )
+
+
+def advances(ar: Arithmetic, solution: Solution) -> tuple[Real, Real]:
+    """Growth of spin and precession over a period, from those of arg X and arg Y."""
+    begin, roots, T = solution.start, solution.roots, solution.period
+    drift = (begin.r0 - begin.b) * T / 2
+    x = drift + sign_of(begin.beta_plus_b) * _pole_advance(
+        ar, solution, abs(begin.beta_plus_b), roots.below_u1, roots.below_u2
+    )
+    y = -drift + sign_of(begin.beta_minus_b) * _pole_advance(
+        ar, solution, abs(begin.beta_minus_b), roots.above_u1, roots.above_u2
+    )
+    return x - y, x + y
+
+
+def _pole_advance(
+    ar: Arithmetic, solution: Solution, momentum: Real, from_u1: Real, from_u2: Real
+) -> Real:
+    """T/2 times the mean of |beta +- b| / (1 +- u); half a turn where the axis meets the pole."""
+    if not (from_u1 and from_u2):
+        return +ar.pi
+    mc = solution.k_prime**2
+    mean = period_mean(ar, solution.k_prime, mc * from_u2 / from_u1, 1, mc) / from_u1
+    return momentum * mean * solution.period / 2
+
+
+def sign_of(value: Real) -> int:
+    """The sign, and 1 for 0 (the limit is the same from both sides)."""
+    return -1 if value < 0 else 1
+
+
+def rates(begin: Start, below: Real, above: Real) -> tuple[Real | None, Real | None]:
+    """Spin rate (4,8) and precession rate (4,7) from 1 + u and 1 - u; None over a pole."""
+    if not (below and above):
+        return None, None
+    plus, minus = begin.beta_plus_b / (2 * below), begin.beta_minus_b / (2 * above)
+    return begin.r0 - begin.b + plus - minus, plus + minus
+
+
+def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
+    """w/2K for the argument w of (4,22)-(4,24) at t = 0; its sign is that of the nutation rate."""
+    begin, roots = solution.start, solution.roots
+    if not begin.theta_rate:
+        return ar.mpf(0) if _starts_at_u1(solution) else ar.mpf(1) / 2
+    to_u3 = ar.mpf(1) if roots.u3 is None else roots.u3 - begin.u
+    sn2 = (roots.u1 - begin.u) * roots.u3_u2 / (to_u3 * roots.u1_u2)
+    cn2 = roots.u3_u1 * (begin.u - roots.u2) / (to_u3 * roots.u1_u2)
+    w = ar.sqrt(max(sn2, 0)) * carlson_rf(ar, max(cn2, 0 * cn2), roots.u3_u1 / to_u3, ar.mpf(1))
+    return sign_of(begin.theta_rate) * w / (2 * complete_k(ar, solution.k_prime))
+
+
+def _starts_at_u1(solution: Solution) -> bool:
+    begin, roots = solution.start, solution.roots
+    return not begin.theta_rate and abs(roots.u1 - begin.u) < abs(begin.u - roots.u2)
+
+
+def steady_rates(solution: Solution) -> tuple[Real, Real]:
+    """Rates of spin and precession where the tilt does not change; on the vertical, all is spin."""
+    begin = solution.start
+    spin, precession = rates(begin, 1 + begin.u, 1 - begin.u)
+    return (begin.r0, 0 * begin.r0) if spin is None else (spin, precession)
+
+
+def theta_constants(ar: Arithmetic, solution: Solution) -> Constants:
+    """What the theta series need."""
+    begin, roots, T = solution.start, solution.roots, solution.period
+    K = complete_k(ar, solution.k_prime)
+    spin, precession = advances(ar, solution)
+    return Constants(
+        period=T,
+        quarter=K,
+        quarter_prime=complete_k(ar, solution.k) if solution.k else None,
+        eta_plus=eta_plus(ar, roots),
+        eta_minus=eta_minus(ar, roots),
+        x_size=ar.sqrt(roots.below_u1 / 2),
+        y_size=ar.sqrt(solution.k_prime * roots.above_u2 / 2),
+        spin=spin,
+        precession=precession,
+        sign_plus=sign_of(begin.beta_plus_b),
+        sign_minus=sign_of(begin.beta_minus_b),
+        offset=periods_since_top(ar, solution),
+        rises=sign_of(begin.theta_rate),
+        nutation=8 * K**2 * roots.u1_u2 * solution.k_prime**2 / (ar.pi * T),
+    )
+
+
+# The record.
+
+
+def general_record(ar: Arithmetic, top: Top) -> Record:
+    """The record of any start, in an mpmath context."""
+    solution = analyse(ar, top)
+    begin, roots, degree = solution.start, solution.roots, ar.pi / 180
+    upright = ar.sqrt(roots.above_u1), ar.sqrt(roots.below_u1)
+    lowest = ar.sqrt(roots.above_u2), ar.sqrt(roots.below_u2)
+    record = Record(
+        top=top,
+        regime=solution.regime,
+        a=begin.a,
+        b=begin.b,
+        u1=roots.u1,
+        u2=roots.u2,
+        u3=roots.u3,
+        theta_min_deg=2 * ar.atan2(*upright) / degree,
+        theta_max_deg=2 * ar.atan2(*lowest) / degree,
+        path=_path(ar, begin, roots),
+    )
+    spin_rate, precession_rate = rates(begin, 1 + begin.u, 1 - begin.u)
+    if solution.regime is Regime.SEPARATRIX:
+        return record._replace(
+            k=solution.k,
+            k_prime=solution.k_prime,
+            modular_angle_deg=ar.mpf(90),
+            nome=ar.mpf(1),
+            K_prime=ar.pi / 2,
+            E=ar.mpf(1),
+            spin_rate_start=spin_rate,
+            precession_rate_start=precession_rate,
+            remark="rises to the vertical in infinite time",
+        )
+    integrals: dict[str, Any] = _integrals(ar, solution)
+    record = record._replace(T_nutation=solution.period, **integrals)
+    if not solution.nutates:
+        tilt = top.tilt(ar).degrees(ar)
+        return with_constant_rates(record, tilt, spin_rate, precession_rate, 2 * ar.pi)
+    return _with_mean_rates(ar, record, solution)
+
+
+def _integrals(ar: Arithmetic, solution: Solution) -> dict[str, Real | None]:
+    k, k_prime = solution.k, solution.k_prime
+    return {
+        "k": k,
+        "k_prime": k_prime,
+        "modular_angle_deg": ar.atan2(k, k_prime) * 180 / ar.pi,
+        "nome": nome(ar, m=k * k, k_prime=k_prime),
+        "K": complete_k(ar, k_prime),
+        "K_prime": complete_k(ar, k) if k else None,
+        "E": complete_e(ar, k_prime),
+    }
+
+
+def _with_mean_rates(ar: Arithmetic, record: Record, solution: Solution) -> Record:
+    begin, roots = solution.start, solution.roots
+    spin, precession = (advance / solution.period for advance in advances(ar, solution))
+    to_u3 = ar.mpf(1) if roots.u3 is None else roots.u3 - begin.u
+    u_half = roots.u1 - (begin.u - roots.u2) * roots.u3_u1 / to_u3
+    if not begin.theta_rate:  # from one turning point to the other
+        u_half = roots.u2 if _starts_at_u1(solution) else roots.u1
+    spin_half, precession_half = rates(begin, 1 + u_half, 1 - u_half)
+    spin_start, precession_start = rates(begin, 1 + begin.u, 1 - begin.u)
+    return record._replace(
+        T_spin=period_of(spin, 2 * ar.pi),
+        T_precession=period_of(precession, 2 * ar.pi),
+        u_quarter=u_quarter(roots, solution.k_prime) if _starts_at_u1(solution) else None,
+        mean_spin_rate=spin,
+        mean_precession_rate=precession,
+        spin_rate_start=spin_start,
+        spin_rate_half=spin_half,
+        precession_rate_start=precession_start,
+        precession_rate_half=precession_half,
+    )
+
+
+def _path(ar: Arithmetic, begin: Start, roots: Roots) -> str | None:
+    """Where the precession stands still, u = beta/b, lies on u1, between the roots or outside."""
+    if not roots.u1_u2 or not (begin.b or begin.beta):
+        return None
+    if not begin.b:
+        return "wavy"
+    still = begin.beta / begin.b
+    if abs(still - roots.u1) <= ar.mpf(10) ** (-(ar.dps // 2)) * roots.u1_u2:
+        return "cusped"
+    return "looping" if roots.u2 < still < roots.u1 else "wavy"

@@ -1,0 +1,103 @@
+"""The record of one motion: its regime and its numbers, under their keys."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+from typing import NamedTuple
+
+from .elliptic import Real
+from .top import Top
+
+
+class Regime(Enum):
+    """What kind of motion a scene describes; decided once."""
+
+    REGULAR = "regular"
+    STEADY = "steady precession"
+    SEPARATRIX = "separatrix"
+    SLEEPING = "sleeping"
+    HANGING = "hanging"
+    TORQUE_FREE = "torque-free"
+    NO_SPIN = "no spin"
+
+
+class Record(NamedTuple):
+    """The numbers of one motion.  A number that the regime does not have is None."""
+
+    top: Top
+    regime: Regime
+    a: Real
+    b: Real
+    u1: Real | None = None
+    u2: Real | None = None
+    u3: Real | None = None
+    k: Real | None = None
+    k_prime: Real | None = None
+    modular_angle_deg: Real | None = None
+    nome: Real | None = None
+    K: Real | None = None
+    K_prime: Real | None = None
+    E: Real | None = None
+    amplitude_deg: Real | None = None
+    alpha: Real | None = None
+    T_nutation: Real | None = None
+    T_spin: Real | None = None
+    T_precession: Real | None = None
+    u_quarter: Real | None = None
+    theta_min_deg: Real | None = None
+    theta_max_deg: Real | None = None
+    mean_spin_rate: Real | None = None
+    mean_precession_rate: Real | None = None
+    spin_rate_start: Real | None = None
+    spin_rate_half: Real | None = None
+    precession_rate_start: Real | None = None
+    precession_rate_half: Real | None = None
+    path: str | None = None
+    """Of the figure axis: `cusped`, `looping` or `wavy`."""
+    remark: str | None = None
+
+    def numbers(self) -> dict[str, Real | None]:
+        """The numbers by key."""
+        return dict(zip(self._fields[2:-2], self[2:-2], strict=True))
+
+    def record(self, *, radians: bool = False) -> dict[str, Real | str | None]:
+        """Inputs and results by key, in the order of the paper; `radians` renames _deg to _rad."""
+        numbers = self.numbers()
+        if radians:
+            numbers = {_in_radians(key): _radians(key, x) for key, x in numbers.items()}
+        inputs = self.top.inputs(radians=radians)
+        if self.top.is_released:  # it starts at its least tilt, which is the tilt given
+            unit = "rad" if radians else "deg"
+            numbers[f"theta_min_{unit}"] = inputs[f"theta0_{unit}"]
+        texts = {"path": self.path, "remark": self.remark}
+        return inputs | {"regime": self.regime.value} | numbers | texts
+
+
+def _in_radians(key: str) -> str:
+    return key.removesuffix("deg") + "rad" if key.endswith("_deg") else key
+
+
+def _radians(key: str, value: Real | None) -> Real | None:
+    return math.radians(value) if key.endswith("_deg") and value is not None else value
+
+
+def with_constant_rates(
+    record: Record, tilt_deg: Real, spin_rate: Real, precession_rate: Real | None, two_pi: Real
+) -> Record:
+    """Complete the record of a motion whose tilt and rates do not change."""
+    return record._replace(
+        theta_min_deg=tilt_deg,
+        theta_max_deg=tilt_deg,
+        T_spin=period_of(spin_rate, two_pi),
+        T_precession=period_of(precession_rate, two_pi),
+        mean_spin_rate=spin_rate,
+        spin_rate_start=spin_rate,
+        mean_precession_rate=precession_rate,
+        precession_rate_start=precession_rate,
+    )
+
+
+def period_of(rate: Real | None, two_pi: Real) -> Real | None:
+    """2 pi over a mean rate (section 8), None where it stands still."""
+    return two_pi / abs(rate) if rate else None

@@ -1,0 +1,213 @@
+"""The cubic behind the nutation: its coefficients, its roots and the gaps between them.
+
+Everything later is a formula in the gaps, and each gap is computed so that it keeps its relative
+accuracy.  Equation numbers in parentheses are those of Chrapan (1952).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from .elliptic import Arithmetic, Real, where
+from .top import Tilt, Top, number
+
+
+class Invariants(NamedTuple):
+    """Ratios of the inputs, each rounded once from its exact value."""
+
+    a: Real
+    """2mgs/A (4,4)."""
+    b: Real
+    """C r0/A (4,5)."""
+    lam: Real
+    """lambda = b^2/2a = (u3 + u2)/2 (4,11); the upright top sleeps stably where it is >= 1."""
+    lam_minus_1: Real
+    drift: Real
+    """r0 - b/2 = r0 (1 - C/2A), the spin rate less what the nutation does to it (6,1)."""
+    rate_half: Real | None
+    """2mgs/(C r0) = a/b, the precession rate at T/2 after release from rest; None without spin."""
+
+
+class Roots(NamedTuple):
+    """Roots u2 <= u1 <= 1 <= u3 of the cubic (4,9), and the gaps between them and the poles +-1."""
+
+    u1: Real
+    u2: Real
+    u3: Real | None
+    """None without torque, where it is infinite."""
+    u1_u2: Real
+    u3_u1: Real
+    """Without torque, this and every other gap to u3 is 1, so that their ratios are right."""
+    u3_u2: Real
+    below_u1: Real
+    """1 + u1."""
+    below_u2: Real
+    """1 + u2."""
+    below_u3: Real
+    """1 + u3."""
+    above_u1: Real
+    """1 - u1."""
+    above_u2: Real
+    """1 - u2."""
+    u3_above: Real
+    """u3 - 1."""
+
+
+def invariants(ar: Arithmetic, top: Top) -> Invariants:
+    """(4,4), (4,5) and their combinations, formed as exact fractions and rounded once."""
+    m, A, C, s, g, r0 = (Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0))
+    torque = m * g * s
+    lam = C * C * r0 * r0 / (4 * A * torque) if torque else Fraction(0)
+    exact = Invariants(
+        a=2 * torque / A,
+        b=C * r0 / A,
+        lam=lam,
+        lam_minus_1=lam - 1,
+        drift=r0 * (1 - C / (2 * A)),
+        rate_half=2 * torque / (C * r0) if r0 else None,
+    )
+    return Invariants(*(None if x is None else number(ar, x) for x in exact))
+
+
+def roots_from_rest(ar: Arithmetic, lam: Real, lam_minus_1: Real, tilt: Tilt) -> Roots:
+    """Roots of (4,9) for release from rest, from (4,11)-(4,18) without a cancelling difference.
+
+    With S, Q = sin^2, cos^2 of theta0/2:  (u3 - u1)(u1 - u2) = 4 S Q,
+    (u3 - 1)(1 - u2) = 4 lam S,  (u3 + 1)(1 + u2) = 4 lam Q; in each pair the larger factor is a sum
+    of positive terms and the smaller one the quotient.
+    """
+    S, Q = tilt.sin_half * tilt.sin_half, tilt.cos_half * tilt.cos_half
+    x = where(S <= Q, lam_minus_1 + 2 * S, (lam + 1) - 2 * Q)
+    rho = ar.hypot(x, tilt.sin)
+    larger = rho + abs(x)
+    smaller = tilt.sin * (tilt.sin / larger)
+    larger_1 = rho + abs(lam_minus_1)
+    smaller_1 = 4 * lam * S / larger_1
+    fast = lam_minus_1 >= 0
+    above_u2 = where(fast, smaller_1, larger_1)
+    u3_above = where(fast, larger_1, smaller_1)
+    below_u3 = lam + 1 + rho
+    below_u2 = 4 * lam * Q / below_u3
+    return Roots(
+        u1=tilt.cos,
+        u2=where(above_u2 < below_u2, 1 - above_u2, below_u2 - 1),
+        u3=where(fast, lam + rho, 1 + u3_above),
+        u1_u2=where(x >= 0, smaller, larger),
+        u3_u1=where(x >= 0, larger, smaller),
+        u3_u2=2 * rho,
+        below_u1=2 * Q,
+        below_u2=below_u2,
+        below_u3=below_u3,
+        above_u1=2 * S,
+        above_u2=above_u2,
+        u3_above=u3_above,
+    )
+
+
+class Start(NamedTuple):
+    """The state at t = 0 and the constants of the motion, for a general start."""
+
+    a: Real
+    b: Real
+    r0: Real
+    psi_rate: Real
+    theta_rate: Real
+    u: Real
+    """cos(theta0)."""
+    alpha: Real
+    """thetadot0^2 + psidot0^2 sin^2 theta0 + a cos theta0 (4,4): energy without the spin's."""
+    beta: Real
+    """psidot0 sin^2 theta0 + b cos theta0 (4,5): angular momentum about the vertical, over A."""
+    beta_plus_b: Real
+    beta_minus_b: Real
+
+
+def start(ar: Arithmetic, top: Top) -> Start:
+    """The start of a top, whatever its rates (ar: an mpmath context with digits to spare)."""
+    inv, tilt = invariants(ar, top), top.tilt(ar)
+    theta_rate, psi_rate = number(ar, top.thetadot0), number(ar, top.psidot0)
+    around = psi_rate * tilt.sin
+    beta = around * tilt.sin + inv.b * tilt.cos
+    return Start(
+        a=inv.a,
+        b=inv.b,
+        r0=number(ar, top.r0),
+        psi_rate=psi_rate,
+        theta_rate=theta_rate,
+        u=tilt.cos,
+        alpha=theta_rate**2 + around**2 + inv.a * tilt.cos,
+        beta=beta,
+        beta_plus_b=beta + inv.b,
+        beta_minus_b=beta - inv.b,
+    )
+
+
+def roots_from_start(ar: Arithmetic, begin: Start) -> Roots:
+    """Roots of (4,9) for a general start.
+
+    The gaps are differences, and those below a third of the digits are taken for exact zeros (a
+    double root comes out split by half of them): the context must have digits to spare.
+    """
+    if begin.a == 0:
+        u2, u1 = _quadratic_roots(ar, begin)
+        return _gaps(ar, u1, u2, None)
+    u2, u1, u3 = _cubic_roots(ar, begin)
+    return _gaps(ar, u1, u2, u3)
+
+
+def _quadratic_roots(ar: Arithmetic, begin: Start) -> tuple[Real, Real]:
+    """Without torque: (alpha + b^2) u^2 - 2 beta b u + beta^2 - alpha = 0."""
+    alpha, beta, b = begin.alpha, begin.beta, begin.b
+    total = alpha + b * b
+    radical = ar.sqrt(max(alpha * (total - beta * beta), 0 * alpha))
+    return (beta * b - radical) / total, (beta * b + radical) / total
+
+
+def _cubic_roots(ar: Arithmetic, begin: Start) -> list[Real]:
+    """u^3 - c2 u^2 + c1 u - c0 = 0, one root split off, the other two by the quadratic formula."""
+    a, b, alpha, beta = begin.a, begin.b, begin.alpha, begin.beta
+    c2, c1, c0 = (alpha + b * b) / a, 2 * b * beta / a - 1, (beta * beta - alpha) / a
+    root = _lowest_root(ar, c2, c1, c0) if begin.theta_rate else begin.u
+    middle = (c2 - root) / 2
+    radical = ar.sqrt(max(middle * middle - c1 + root * (c2 - root), 0 * root))
+    upper = middle + radical
+    lower = (c1 - root * (c2 - root)) / upper if middle > 0 else middle - radical
+    return sorted([root, lower, upper])
+
+
+def _lowest_root(ar: Arithmetic, c2: Real, c1: Real, c0: Real) -> Real:
+    """Newton's method from u = -1, below all three roots, where it is monotonic."""
+    u = ar.mpf(-1)
+    for _ in range(100 * ar.dps):
+        value = ((u - c2) * u + c1) * u - c0
+        slope = (3 * u - 2 * c2) * u + c1
+        following = u - value / slope if slope > 0 else u
+        if not following > u:
+            return u
+        u = following
+    raise AssertionError("Newton's method did not settle")
+
+
+def _gaps(ar: Arithmetic, u1: Real, u2: Real, u3: Real | None) -> Roots:
+    tiny = ar.mpf(10) ** (-(ar.dps // 3))
+
+    def gap(larger: Real, smaller: Real) -> Real:
+        difference = larger - smaller
+        return difference if difference > tiny * max(abs(larger), 1) else ar.mpf(0)
+
+    one = ar.mpf(1)
+    return Roots(
+        u1=u1,
+        u2=u2,
+        u3=u3,
+        u1_u2=gap(u1, u2),
+        u3_u1=one if u3 is None else gap(u3, u1),
+        u3_u2=one if u3 is None else gap(u3, u2),
+        below_u1=gap(u1, -one),
+        below_u2=gap(u2, -one),
+        below_u3=one if u3 is None else gap(u3, -one),
+        above_u1=gap(one, u1),
+        above_u2=gap(one, u2),
+        u3_above=one if u3 is None else gap(u3, one),
+    )
