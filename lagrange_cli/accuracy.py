@@ -53,13 +53,31 @@ def angle_units(angles: tuple[float, float, float], exact: Exact) -> tuple[float
     return theta, phi, psi
 
 
+class _Jacobi(NamedTuple):
+    """Half periods passed, and sn, cn, dn of the rest."""
+
+    turns: Many
+    sn: Many
+    cn: Many
+    dn: Many
+
+
+def _three_real_roots(c2: Many, c1: Many, c0: Many) -> list[Many]:
+    """Of u^3 + c2 u^2 + c1 u + c0 = 0, in order, by Viete's cosines."""
+    shift, p = c2 / 3, c1 - c2**2 / 3
+    size = 2 * mpmath.sqrt(-p / 3)
+    q = 2 * shift**3 - shift * c1 + c0
+    third = mpmath.acos(max(-1, min(1, 3 * q / (p * size)))) / 3
+    return sorted(size * mpmath.cos(third - k * 2 * mpmath.pi / 3) - shift for k in range(3))
+
+
 class Reference:
     """The exact motion of a nutating top."""
 
     def __init__(self, top: Top, digits: int = 50) -> None:
         """Raise LagtopError for a top that does not nutate."""
         self.digits = digits
-        with mpmath.workdps(digits):
+        with mpmath.workdps(2 * digits):  # a double root takes half of them
             self._constants(top)
 
     def _constants(self, top: Top) -> None:
@@ -73,16 +91,13 @@ class Reference:
         self.beta = around + self.b * self.u0
         energy = mpmath.mpf(top.thetadot0) ** 2 + around * mpmath.mpf(top.psidot0)
         alpha = energy + self.a * self.u0
-        cubic = [
-            self.a,
-            -(alpha + self.b**2),
-            2 * self.b * self.beta - self.a,
-            alpha - self.beta**2,
-        ]
         if not self.a:
             raise LagtopError("the reference needs a torque")
-        found = mpmath.polyroots(cubic, maxsteps=500, extraprec=4 * mpmath.mp.prec)
-        self.u2, self.u1, self.u3 = sorted(mpmath.re(root) for root in found)
+        self.u2, self.u1, self.u3 = _three_real_roots(
+            -(alpha + self.b**2) / self.a,
+            2 * self.b * self.beta / self.a - 1,
+            (alpha - self.beta**2) / self.a,
+        )
         if not top.thetadot0:  # the start is a root, to all digits
             near_u1 = abs(self.u0 - self.u1) < abs(self.u0 - self.u2)
             self.u1, self.u2 = (self.u0, self.u2) if near_u1 else (self.u1, self.u0)
@@ -100,42 +115,40 @@ class Reference:
         w = mpmath.sqrt(s2) * mpmath.elliprf(max(c2, 0), d2, 1)
         return -w if theta_sign > 0 else w
 
-    def _jacobi(self, t: Many) -> tuple[Many, Many, Many, Many]:
-        """Half periods passed, and sn, cn, dn of the rest."""
+    def _jacobi(self, t: Many) -> _Jacobi:
         w = self.w0 + self.speed * t
         turns = mpmath.nint(w / (2 * self.K))
         rest = w - 2 * turns * self.K
-        return (turns, *(mpmath.ellipfun(name, rest, m=self.m) for name in ("sn", "cn", "dn")))
+        return _Jacobi(turns, *(mpmath.ellipfun(f, rest, m=self.m) for f in ("sn", "cn", "dn")))
 
     def _halves(self, t: Many) -> tuple[Many, Many]:
         """(psi + phi)/2 and (psi - phi)/2, but for their start."""
-        turns, sn, cn, dn = self._jacobi(t)
-        drift = (self.r0 - self.b) * t / 2
-        plus = self._third(1 + self.u2, -(self.u1 - self.u2), turns, sn, cn, dn)
-        minus = self._third(1 - self.u2, self.u1 - self.u2, turns, sn, cn, dn)
+        now, drift = self._jacobi(t), (self.r0 - self.b) * t / 2
+        plus = self._third(1 + self.u2, -(self.u1 - self.u2), now)
+        minus = self._third(1 - self.u2, self.u1 - self.u2, now)
         return (
             drift + (self.beta + self.b) / 2 * plus,
             -drift + (self.beta - self.b) / 2 * minus,
         )
 
-    def _third(self, gap: Many, slope: Many, turns: Many, sn: Many, cn: Many, dn: Many) -> Many:
+    def _third(self, gap: Many, slope: Many, now: _Jacobi) -> Many:
         """Integral of dw / (gap - slope sn^2) over the speed: Legendre's Pi with n = slope/gap."""
-        n = slope / gap
+        n, sn2, cn2, dn2 = slope / gap, now.sn**2, now.cn**2, now.dn**2
         whole = self.K + n / 3 * mpmath.elliprj(0, 1 - self.m, 1, 1 - n)
-        part = sn * mpmath.elliprf(cn**2, dn**2, 1)
-        part += n / 3 * sn**3 * mpmath.elliprj(cn**2, dn**2, 1, 1 - n * sn**2)
-        return (2 * turns * whole + part) / (gap * self.speed)
+        part = mpmath.elliprf(cn2, dn2, 1) + n / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, 1 - n * sn2)
+        return (2 * now.turns * whole + now.sn * part) / (gap * self.speed)
 
     def at(self, t: float) -> Exact:
         """The exact angles and rates at a time."""
         with mpmath.workdps(self.digits):
             time = mpmath.mpf(t)
             _, sn, cn, dn = self._jacobi(time)
+            halves = zip(self._halves(time), self.start, strict=True)
             band = self.u1 - self.u2
             u = self.u2 + band * sn**2
             below, above = (1 + self.u2) + band * sn**2, (1 - self.u2) - band * sn**2
             theta = 2 * mpmath.atan2(mpmath.sqrt(above), mpmath.sqrt(below))
-            plus, minus = (now - then for now, then in zip(self._halves(time), self.start, strict=True))
+            plus, minus = (now - then for now, then in halves)
             sine2 = below * above
             psi_rate = (self.beta - self.b * u) / sine2
             return Exact(
@@ -147,3 +160,35 @@ class Reference:
                 psi_rate=psi_rate,
                 tau=time - mpmath.nint(time / self.T) * self.T,
             )
+
+    def record(self) -> dict[str, Many]:
+        """Exact values of the keys that a general start has."""
+        with mpmath.workdps(self.digits):
+            first, last = (self._halves(t) for t in (mpmath.mpf(0), self.T))
+            plus, minus = (last[i] - first[i] for i in range(2))
+            spin, precession = (plus - minus) / self.T, (plus + minus) / self.T
+            K_prime = mpmath.ellipk(1 - self.m)
+            start, half = self.at(mpmath.mpf(0)), self.at(self.T / 2)
+            return {
+                "u1": self.u1,
+                "u2": self.u2,
+                "u3": self.u3,
+                "k": mpmath.sqrt(self.m),
+                "k_prime": mpmath.sqrt((self.u3 - self.u1) / (self.u3 - self.u2)),
+                "modular_angle_deg": mpmath.degrees(mpmath.asin(mpmath.sqrt(self.m))),
+                "nome": mpmath.exp(-mpmath.pi * K_prime / self.K),
+                "K": self.K,
+                "K_prime": K_prime,
+                "E": mpmath.ellipe(self.m),
+                "T_nutation": self.T,
+                "T_spin": 2 * mpmath.pi / abs(spin),
+                "T_precession": 2 * mpmath.pi / abs(precession),
+                "theta_min_deg": mpmath.degrees(mpmath.acos(self.u1)),
+                "theta_max_deg": mpmath.degrees(mpmath.acos(self.u2)),
+                "mean_spin_rate": spin,
+                "mean_precession_rate": precession,
+                "spin_rate_start": start.phi_rate,
+                "spin_rate_half": half.phi_rate,
+                "precession_rate_start": start.psi_rate,
+                "precession_rate_half": half.psi_rate,
+            }

@@ -24,8 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .elliptic import Arithmetic, Real
-from .roots import Roots, Start
-from .series import Component, Constants, Frame, Polynomial, Series, theta_series
+from .series import Component, Constants, Frame, Polynomial, Swing, evaluate, theta_series
 from .top import LagtopError, Tilt
 
 Array = NDArray[np.float64]
@@ -59,28 +58,28 @@ class Angles(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """How an angle grows: per step, in turns per step, with the phase in a step; its start at 0."""
+    """How an angle grows: per step, in turns per step and within a step; its series at t = 0."""
 
     step: Pair
     turns: Pair
     slope: float
     start: float
 
-    def unwrapped(self, step: Array, phase: Array, series: Array) -> Array:
+    def unwrapped(self, step: Array, since: Array, series: Array) -> Array:
         """The angle, counted on from 0 at t = 0; `series` is overwritten."""
-        series += phase * self.slope
-        series += step * self.step.low
         if self.start:
             series -= self.start
+        series += since * self.slope
+        series += step * self.step.low
         series += step * self.step.high
         return series
 
-    def wrapped(self, step: Array, phase: Array, series: Array) -> Array:
+    def wrapped(self, step: Array, since: Array, series: Array) -> Array:
         """The same in (-pi, pi], as exact far away as near; `series` is overwritten."""
         _, turns = reduce_phase(step, self.turns)
-        series += phase * self.slope
         if self.start:
             series -= self.start
+        series += since * self.slope
         series += turns * (2.0 * np.pi)
         series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
         return series
@@ -115,7 +114,8 @@ class Attitude:
     growths: Growths
     t: Array
     step: Array
-    phase: Array
+    since: Array
+    """The part of a step that has passed since the whole ones."""
     spinor: Spinor
 
     def theta(self) -> Array:
@@ -141,7 +141,7 @@ class Attitude:
 
     def _angle(self, growth: Growth, series: Array, wrap: bool) -> Array:
         grow = growth.wrapped if wrap else growth.unwrapped
-        angle = grow(self.step, self.phase, series)
+        angle = grow(self.step, self.since, series)
         if growth.start:
             angle[self.t == 0] = 0.0
         return angle
@@ -192,37 +192,43 @@ class ThetaSampler(Sampler):
 
     steps_per_time: Pair
     offset: Pair
+    """The phase at t = 0."""
     max_time: float
-    scale: float
+    scale: Pair
     hyperbolic: bool
     frames: Sequence[Frame]
+    """About the turning points of the even and of the odd steps; one where all steps are alike."""
     growths: Growths
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
         """See `Sampler.attitude`."""
-        step, phase = reduce_phase(t, self.steps_per_time, self.offset)
-        if len(self.frames) == 1:
-            spinor = self._spinor(self.frames[0], phase, rate)
+        if self.offset.high:
+            step, since = reduce_phase(t, self.steps_per_time, self.offset.high)
+            argument = _Argument(*_scaled(since, self.offset, self.scale))
         else:
-            spinor = self._spinor_by_parity(step, phase, rate)
-        return Attitude(self.growths, t, step, phase, spinor)
+            step, since = reduce_phase(t, self.steps_per_time)
+            argument = _Argument(since * self.scale.high, None)
+        if len(self.frames) == 1:
+            spinor = self._spinor(self.frames[0], argument, rate)
+        else:
+            spinor = self._spinor_by_parity(step, argument, rate)
+        return Attitude(self.growths, t, step, since, spinor)
 
-    def _spinor_by_parity(self, step: Array, phase: Array, rate: bool) -> Spinor:
+    def _spinor_by_parity(self, step: Array, argument: _Argument, rate: bool) -> Spinor:
         half = step * 0.5
         odd = np.rint(half) != half
-        whole = Spinor(
-            *(np.empty_like(phase) for _ in range(4)), np.empty_like(phase) if rate else None
-        )
+        x, y, arg_x, arg_y = (np.empty_like(step) for _ in range(4))
+        whole = Spinor(x, y, arg_x, arg_y, np.empty_like(step) if rate else None)
         for frame, chosen in zip(self.frames, (~odd, odd), strict=True):
             index = np.flatnonzero(chosen)
-            for target, part in zip(whole, self._spinor(frame, phase[index], rate), strict=True):
+            some = self._spinor(frame, argument.at(index), rate)
+            for target, part in zip(whole, some, strict=True):
                 if target is not None:
                     target[index] = part
         return whole
 
-    def _spinor(self, frame: Frame, phase: Array, rate: bool) -> Spinor:
-        argument = phase * self.scale
-        S, C, s = _hyperbolic(argument) if self.hyperbolic else _circular(argument)
+    def _spinor(self, frame: Frame, argument: _Argument, rate: bool) -> Spinor:
+        S, C, s = (_hyperbolic if self.hyperbolic else _circular)(*argument)
         x, arg_x = _polar(*_component(frame.x, S, C, s))
         y, arg_y = _polar(*_component(frame.y, S, C, s))
         return Spinor(x, y, arg_x, arg_y, _rate(frame.rate, S, C, s) if rate else None)
@@ -274,17 +280,21 @@ def theta_sampler(ar: Arithmetic, c: Constants) -> ThetaSampler:
     """The sampler of a nutating top from its constants in an mpmath context `ar`."""
     series = theta_series(ar, c)
     steps = len(series.frames)
-    turn_x, turn_y = (c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)
-    start_x, start_y = _start(ar, series, c, turn_x, turn_y)
+    nearest = int(ar.nint(c.offset * steps))
+    offset = c.offset * steps - nearest
+    frames = [series.frames[(nearest + i) % steps] for i in range(steps)]
     return ThetaSampler(
         steps_per_time=_pair(steps / c.period),
-        offset=_pair(c.offset * steps),
+        offset=_pair(offset),
         max_time=float(MAX_PERIODS * c.period),
-        scale=float(series.scale),
+        scale=_pair(series.scale),
         hyperbolic=series.hyperbolic,
-        frames=[_rounded(frame, series.hyperbolic) for frame in series.frames],
+        frames=[_rounded(frame, series.hyperbolic) for frame in frames],
         growths=_growths(
-            ar, (turn_x, turn_y), (series.slope_x, series.slope_y), (start_x, start_y)
+            ar,
+            steps=((c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)),
+            slopes=(series.slope_x, series.slope_y),
+            starts=evaluate(ar, series, frames[0], offset, c.rises)[1::2],
         ),
     )
 
@@ -303,22 +313,18 @@ def steady_sampler(
 
 
 def separatrix_sampler(
-    ar: Arithmetic, begin: Start, roots: Roots, speed: Real
+    ar: Arithmetic, swing: Swing, speed: Real, spin_rate: Real, b: Real
 ) -> SeparatrixSampler:
-    """The sampler of the separatrix, u1 = u3 = 1, where 1 - u = (1 - u2)/cosh^2 h."""
-    x, y = ar.sqrt(roots.below_u2 / 2), ar.sqrt(roots.above_u2 / 2)
-    offset = ar.asinh(ar.sqrt(max(begin.u - roots.u2, 0) / (1 - begin.u)))
-    if begin.theta_rate > 0:
-        offset = -offset
-    sign = -1 if begin.b < 0 else 1
-    halves = begin.r0 / 2, (begin.b - begin.r0) / 2
+    """The sampler of the separatrix, in an mpmath context `ar`."""
+    halves = spin_rate / 2, (b - spin_rate) / 2
+    start = ar.atan2(swing.sign * swing.y * ar.tanh(swing.offset), swing.x)
     return SeparatrixSampler(
         speed=float(speed),
-        offset=float(offset),
-        x=float(x),
-        y=float(y),
-        sign=sign,
-        growths=_growths(ar, halves, starts=(ar.atan2(sign * y * ar.tanh(offset), x), 0 * offset)),
+        offset=float(swing.offset),
+        x=float(swing.x),
+        y=float(swing.y),
+        sign=swing.sign,
+        growths=_growths(ar, halves, starts=(start, 0 * start)),
         max_time=_reach(abs(halves[0]) + abs(halves[1]) + speed),
     )
 
@@ -340,31 +346,6 @@ def _growths(
         return Growth(_pair(step), _pair(step / (2 * ar.pi)), float(slope), float(start))
 
     return Growths(phi=growth(1, -1), psi=growth(1, 1), arg_x=growth(1, 0), arg_y=growth(0, 1))
-
-
-def _start(
-    ar: Arithmetic, series: Series, c: Constants, turn_x: Real, turn_y: Real
-) -> tuple[Real, Real]:
-    """arg X and arg Y at t = 0 (on a pole: just after, or just before where the tilt falls)."""
-    offset = c.offset * len(series.frames)
-    step = int(ar.nint(offset))
-    phase = offset - step
-    frame = series.frames[step % len(series.frames)]
-    z = phase * series.scale
-    S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
-
-    def argument(component: Component) -> Real:
-        P, Q = (
-            sum(c * (S * S) ** i for i, c in enumerate(p)) for p in (component.real, component.imag)
-        )
-        if P == 0 and S == 0:
-            return ar.atan2(c.rises * Q, 0)
-        return ar.atan2(S * C * Q, P) if component.even else ar.atan2(S * Q, C * P)
-
-    return (
-        step * turn_x + phase * series.slope_x + argument(frame.x),
-        step * turn_y + phase * series.slope_y + argument(frame.y),
-    )
 
 
 def _rounded(frame: Frame, hyperbolic: bool) -> Frame:
@@ -392,20 +373,34 @@ def _pair(value: Real) -> Pair:
 # Evaluation.
 
 
-def reduce_phase(t: Array, rate: Pair, offset: Pair | None = None) -> tuple[Array, Array]:
-    """The nearest integer to t * rate + offset, and what is left, |phase| <= 1/2, not cancelled."""
-    phase, rest = _two_product(t, rate.high)
+def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
+    """The integer nearest to t * rate + offset, and t * rate less it, free of cancellation."""
+    since, rest = _two_product(t, rate.high)
     rest += t * rate.low
-    if offset is None or offset.high == 0:
-        step = np.rint(phase)
-        phase -= step
-    else:
-        step = np.rint(phase + offset.high)
-        phase -= step
-        phase += offset.high
-        rest += offset.low
-    phase += rest
-    return step, phase
+    step = np.rint(since + offset) if offset else np.rint(since)
+    since -= step
+    since += rest
+    return step, since
+
+
+class _Argument(NamedTuple):
+    """The argument of the functions, and what rounding took off it where that matters."""
+
+    high: Array
+    low: Array | None
+
+    def at(self, index: NDArray[np.intp]) -> _Argument:
+        return _Argument(self.high[index], None if self.low is None else self.low[index])
+
+
+def _scaled(since: Array, offset: Pair, scale: Pair) -> tuple[Array, Array]:
+    """(since + offset) * scale to twice the precision, so that small times keep their digits."""
+    phase = since + offset.high
+    back = phase - since
+    rest = (since - (phase - back)) + (offset.high - back) + offset.low
+    high, low = _two_product(phase, scale.high)
+    low += phase * scale.low + rest * scale.high
+    return high, low
 
 
 def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
@@ -427,16 +422,20 @@ def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
     return product, error
 
 
-def _circular(x: Array) -> tuple[Array, None, Array]:
+def _circular(x: Array, rest: Array | None) -> tuple[Array, None, Array]:
     """S, C and s for angles; X and Y share the factor cos x, which is divided out."""
     tangent = np.tan(x)
+    if rest is not None:
+        tangent += (1.0 + tangent * tangent) * rest
     square = tangent * tangent
     square /= square + 1.0
     return tangent, None, square
 
 
-def _hyperbolic(x: Array) -> tuple[Array, Array, Array]:
+def _hyperbolic(x: Array, rest: Array | None) -> tuple[Array, Array, Array]:
     sinh = np.sinh(x)
+    if rest is not None:
+        sinh += np.cosh(x) * rest
     square = sinh * sinh
     return sinh, np.sqrt(square + 1.0), square
 
@@ -459,7 +458,7 @@ def _rate(polynomial: Polynomial, S: Array, C: Array | None, s: Array) -> Array:
 
 
 def _polynomial(coefficients: Polynomial, s: Array) -> Array:
-    value = s * coefficients[-1]
+    value: Array = s * coefficients[-1]
     for coefficient in coefficients[-2:0:-1]:
         value += coefficient
         value *= s
@@ -471,4 +470,5 @@ def _polar(real: Array, imag: Array) -> tuple[Array, Array]:
     """Modulus and argument."""
     square = real * real
     square += imag * imag
-    return np.sqrt(square, out=square), np.arctan2(imag, real, out=imag)
+    modulus: Array = np.sqrt(square, out=square)
+    return modulus, np.arctan2(imag, real, out=imag)

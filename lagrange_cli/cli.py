@@ -5,19 +5,26 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
 from . import __version__
-from .motion import solve
-from .output import MAX_TABLE_ROWS, CannotWriteError, Terminated, write_record, write_rows
+from .motion import Motion, solve
+from .output import (
+    MAX_TABLE_ROWS,
+    CannotWriteError,
+    Terminated,
+    write_record,
+    write_rows,
+    write_texts,
+)
 from .top import (
     LagtopError,
     Number,
     SceneError,
-    Top,
     build_top,
     parse_number,
     read_scene,
@@ -109,9 +116,14 @@ class LagtopGroup(ExamplesFirst, click.Group):
         try:
             sys.exit(run(*args, standalone_mode=False, **extra) or 0)
         except click.ClickException as error:
-            click.echo("Error: " + " ".join(error.format_message().split()), err=True)
+            _complain("Error: " + " ".join(error.format_message().split()))
             sys.exit(error.exit_code)
-        except click.Abort:
+        except BrokenPipeError:
+            _die_by("SIGPIPE")
+        except OSError as error:  # of the help itself; the writers have their own
+            _complain(f"Error: cannot write standard output: {error.strerror}")
+            os._exit(CannotWrite.exit_code)  # the interpreter would try to flush it once more
+        except (click.Abort, KeyboardInterrupt):
             _die_by("SIGINT")
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -128,15 +140,21 @@ class LagtopGroup(ExamplesFirst, click.Group):
             _die_by("SIGPIPE")
         except KeyboardInterrupt:
             _die_by("SIGINT")
-        except Terminated:
-            _die_by("SIGTERM")
+        except Terminated as error:
+            _die_by(error.number)
 
 
-def _die_by(name: str) -> NoReturn:
+def _complain(line: str) -> None:
+    """One line on standard error, if there is one that takes it."""
+    with suppress(OSError):
+        click.echo(line, err=True)
+
+
+def _die_by(which: str | int) -> NoReturn:
     """End by the signal itself: only that stops the shell loop we may be running in."""
     import signal
 
-    number = signal.Signals[name]
+    number = signal.Signals[which] if isinstance(which, str) else signal.Signals(which)
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)
     raise AssertionError("unreachable")
@@ -147,7 +165,7 @@ NUMBER, COUNT = DecimalType(), CountType()
 _SCENE_OPTIONS = [
     ("--m", "Mass."),
     ("--A", "Equatorial moment of inertia about the pivot."),
-    ("--C", "Polar moment of inertia."),
+    ("--C", "Polar moment of inertia, at most 2A."),
     ("--s", "Distance from the pivot to the centre of mass."),
     ("--g", "Gravity."),
     ("--r0", "Spin: angular velocity about the figure axis."),
@@ -165,6 +183,18 @@ def scene_options(command: F) -> F:
     return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
         command
     )
+
+
+def digits_option(most: int) -> Callable[[F], F]:
+    """--digits, up to `most`."""
+
+    def check(_: click.Context, __: click.Parameter, digits: int | None) -> int | None:
+        if digits is not None and not 1 <= digits <= most:
+            raise LagtopError(f"--digits must be in [1, {most}], got {digits}")
+        return digits
+
+    text = f"So many significant digits, 1 to {most}, all of them right; inputs count as decimals."
+    return click.option("--digits", type=COUNT, callback=check, metavar="N", help=text)
 
 
 def output_options(*styles: str) -> Callable[[F], F]:
@@ -186,22 +216,24 @@ def output_options(*styles: str) -> Callable[[F], F]:
     return decorate
 
 
-def read_top(scene: str | None, rad: bool, options: dict[str, Fraction | None]) -> Top:
-    """The top of a scene file, if any, and of the options, which win."""
+def solved(
+    scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
+) -> Motion:
+    """The motion of the top in a scene file, if any, and in the options, which win."""
     from_file = read_scene(scene) if scene is not None else {}
     given: dict[str, Number] = {key: x for key, x in options.items() if x is not None}
     if "theta0" in given:
         given["theta0_rad" if rad else "theta0_deg"] = given.pop("theta0")
         from_file = {key: x for key, x in from_file.items() if not key.startswith("theta0_")}
     try:
-        top = build_top(from_file | given)
+        motion = solve(build_top(from_file | given, exact=exact))
     except LagtopError as error:
-        if scene is not None and error.key in from_file and error.key not in given:
+        if scene is not None and error.key not in given:
             raise scene_error(scene, error) from None
         raise
-    if caveat := top.caveat():
-        click.echo(f"Warning: {caveat}", err=True)
-    return top
+    if caveat := motion.top.caveat():
+        _complain(f"Warning: {caveat}")
+    return motion
 
 
 @click.group(
@@ -223,6 +255,7 @@ def main(ctx: click.Context) -> None:
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
+        sys.stdout.flush()
 
 
 @main.command(
@@ -231,19 +264,29 @@ def main(ctx: click.Context) -> None:
         lagtop solve --theta0 30
         lagtop solve sample_inputs/simo-wong-1991.toml --r0 40
         lagtop solve --r0 -20 --theta0 120 --format json | jq .T_nutation
+        lagtop solve --theta0 60 --psidot0 -3 --digits 50
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
     """,
 )
 @scene_options
+@digits_option(1000)
 @output_options("table", "json", "csv")
-def solve_command(scene: str | None, rad: bool, style: str, output: str, **options: Any) -> None:
+def solve_command(
+    scene: str | None, rad: bool, digits: int | None, style: str, output: str, **options: Any
+) -> None:
     """Roots, moduli, periods and mean rates of one top.
 
-    Every number is the double nearest to its exact value.  JSON and CSV hold the same keys; what a
-    regime does not have is null or empty.
+    Every number is the double nearest to its exact value, or has --digits right digits.  JSON and
+    CSV hold the same keys; what a regime does not have is null or empty.
     """
-    motion = solve(read_top(scene, rad, options))
-    write_record(motion.record(radians=rad), style, output)
+    motion = solved(scene, rad, digits is not None, options)
+    if digits is None:
+        record = motion.record(radians=rad)
+    else:
+        from .digits import settled_record
+
+        record = settled_record(motion.top, digits, radians=rad)
+    write_record(record, style, output)
 
 
 @main.command(
@@ -252,6 +295,7 @@ def solve_command(scene: str | None, rad: bool, style: str, output: str, **optio
         lagtop table --t-max 1 > out.csv
         lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
         lagtop table --t-min -5 --t-max 5 --n 1e6 --rad -o angles.csv
+        lagtop table --t-max 1 --columns t,axis,energy
         seq 0 0.25 2 | lagtop table --times - --format json
     """,
 )
@@ -260,8 +304,20 @@ def solve_command(scene: str | None, rad: bool, style: str, output: str, **optio
 @click.option("--t-min", type=NUMBER, help="First time.  [default: 0]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")
 @click.option("--dt", type=NUMBER, help="Step, instead of --n.")
-@click.option("--times", metavar="FILE|-", help="Times from a file, one a line, instead of a grid.")
+@click.option(
+    "--times",
+    type=click.Path(allow_dash=True),
+    metavar="FILE|-",
+    help="Times from a file, one a line, instead of a grid.",
+)
+@click.option(
+    "--columns",
+    metavar="NAMES",
+    help="Of t theta phi psi u thetadot phidot psidot p q r axis quaternion energy Lz, with commas "
+    "between.  [default: t,theta,phi,psi]",
+)
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
+@digits_option(100)
 @output_options("csv", "json", "table")
 def table_command(  # noqa: PLR0917 - click passes them by name
     scene: str | None,
@@ -271,30 +327,35 @@ def table_command(  # noqa: PLR0917 - click passes them by name
     count: int | None,
     dt: Fraction | None,
     times: str | None,
+    columns: str | None,
     wrap: bool,
+    digits: int | None,
     style: str,
     output: str,
     **options: Any,
 ) -> None:
-    """Tilt theta, spin phi and precession psi over time.
+    """Tilt theta, spin phi and precession psi over time, and more with --columns.
 
-    About one ulp at any time, up to 2^50 nutation periods away.  Spin and precession count on from
-    0 at t = 0 unless --wrap.
+    Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
+    nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
-    from .table import column_names, grid, read_times, rows
+    from .table import DEFAULT_COLUMNS, digit_rows, grid, read_times, rows
 
     _exclude({"--n": count, "--dt": dt})
-    motion = solve(read_top(scene, rad, options))
-    if times is None:
-        chosen: Times = grid(motion, t_min, t_max, n=count, dt=dt)
-    else:
-        for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
-            _exclude({"--times": times, name: value})
-        chosen = read_times(times)
+    _exclude({"--columns": columns, "--digits": digits})
+    for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
+        _exclude({"--times": times, name: value})
+    motion = solved(scene, rad, digits is not None, options)
+    chosen: Times = read_times(times) if times else grid(motion, t_min, t_max, n=count, dt=dt)
     if style == "table" and chosen.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {chosen.count}")
-    blocks = rows(motion, chosen, radians=rad, wrap=wrap)
-    write_rows(column_names(radians=rad), blocks, style, output)
+    names = columns.replace(",", " ").split() if columns is not None else DEFAULT_COLUMNS
+    header, blocks = rows(motion, chosen, names, radians=rad, wrap=wrap)
+    if digits is None:
+        write_rows(header, blocks, style, output)
+    else:
+        texts = digit_rows(motion, chosen, digits, radians=rad, wrap=wrap)
+        write_texts(header, texts, style, output)
 
 
 def _exclude(options: dict[str, Any]) -> None:

@@ -14,7 +14,7 @@ from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome
 from .record import Record, Regime, period_of, with_constant_rates
 from .released import complement, modulus, phase_rate, u_quarter
 from .roots import Roots, Start, roots_from_start, start
-from .series import Constants
+from .series import Constants, Swing
 from .top import LagtopError, Top
 
 
@@ -166,6 +166,18 @@ def steady_rates(solution: Solution) -> tuple[Real, Real]:
     begin = solution.start
     spin, precession = rates(begin, 1 + begin.u, 1 - begin.u)
     return (begin.r0, 0 * begin.r0) if spin is None else (spin, precession)
+
+
+def separatrix_swing(ar: Arithmetic, solution: Solution) -> Swing:
+    """Its constants, with u1 = u3 = 1."""
+    begin, roots = solution.start, solution.roots
+    offset = ar.asinh(ar.sqrt(max(begin.u - roots.u2, 0) / (1 - begin.u)))
+    return Swing(
+        offset=-offset if begin.theta_rate > 0 else offset,
+        x=ar.sqrt(roots.below_u2 / 2),
+        y=ar.sqrt(roots.above_u2 / 2),
+        sign=sign_of(begin.b),
+    )
 
 
 def theta_constants(ar: Arithmetic, solution: Solution) -> Constants:

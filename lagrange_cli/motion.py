@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .angles import Angles, Sampler
+    from .columns import Constants
 
 WORKING_DIGITS = 50
 """Digits of the constants behind the sampled angles; 34 would do, the rest is margin."""
@@ -37,15 +38,29 @@ class Motion(Record):
     def sampler(self) -> Sampler:
         """The series behind `angles`, to be kept where many blocks of times follow."""
         from .angles import separatrix_sampler, steady_sampler, theta_sampler
-        from .general import analyse, many_digits, steady_rates, theta_constants
+        from .general import (
+            analyse,
+            many_digits,
+            separatrix_swing,
+            steady_rates,
+            theta_constants,
+        )
 
         ar = many_digits(WORKING_DIGITS)
         solution = analyse(ar, self.top)
         if solution.regime is Regime.SEPARATRIX:
-            return separatrix_sampler(ar, solution.start, solution.roots, solution.speed)
+            swing, begin = separatrix_swing(ar, solution), solution.start
+            return separatrix_sampler(ar, swing, solution.speed, begin.r0, begin.b)
         if not solution.nutates:
             return steady_sampler(ar, self.top.tilt(ar), *steady_rates(solution))
         return theta_sampler(ar, theta_constants(ar, solution))
+
+    def column_constants(self) -> Constants:
+        """What the columns of `lagtop table` need besides the angles."""
+        from .columns import column_constants
+        from .general import analyse, many_digits
+
+        return column_constants(self.top, analyse(many_digits(WORKING_DIGITS), self.top).start)
 
 
 def solve(top: Top) -> Motion:

@@ -9,6 +9,7 @@ import stat
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 if TYPE_CHECKING:
@@ -25,7 +26,11 @@ class CannotWriteError(Exception):
 
 
 class Terminated(BaseException):
-    """SIGTERM, raised so that a temporary file is removed on the way out."""
+    """A signal to end, raised so that a temporary file is removed on the way out."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
 
 
 @contextmanager
@@ -63,31 +68,46 @@ def _standard_output() -> Iterator[BinaryIO]:
 
 @contextmanager
 def _file(path: str) -> Iterator[BinaryIO]:
-    import signal
-
-    target = os.path.realpath(path)
-    exists = os.path.exists(target)
-    if exists and not stat.S_ISREG(os.stat(target).st_mode):  # a device, a pipe
-        with open(target, "wb") as stream:
+    if os.path.exists(path) and not stat.S_ISREG(os.stat(path).st_mode):  # a device, a pipe
+        with open(path, "wb") as stream:
             yield stream
         return
-    signal.signal(signal.SIGTERM, _terminate)
-    temporary = f"{target}.{os.getpid()}.tmp"
-    with open(temporary, "xb") as stream:
+    from tempfile import mkstemp
+
+    _catch_signals()
+    target = os.path.realpath(path)
+    descriptor, temporary = mkstemp(prefix=".lagtop-", dir=os.path.dirname(target))
+    with open(descriptor, "wb") as stream:
         try:
             yield stream
             stream.flush()
             os.fsync(stream.fileno())
-            if exists:
-                os.chmod(temporary, stat.S_IMODE(os.stat(target).st_mode))
+            os.chmod(temporary, _mode(target))
             os.replace(temporary, target)
         except BaseException:
             os.unlink(temporary)
             raise
 
 
-def _terminate(*_: Any) -> NoReturn:
-    raise Terminated
+def _mode(target: str) -> int:
+    """The mode of the file that is replaced, or of a new one."""
+    if os.path.exists(target):
+        return stat.S_IMODE(os.stat(target).st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _catch_signals() -> None:
+    """Let the signals that end us remove the temporary file first."""
+    import signal
+
+    def end(number: int, _: Any) -> NoReturn:
+        raise Terminated(number)
+
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), end)
 
 
 def write_record(record: Record, style: str, path: str) -> None:
@@ -110,8 +130,9 @@ def _cell(value: Any) -> str:
 
 
 def _json_value(value: Any) -> str:
-    # By hand, because importing json takes 4 % of the run; our only strings are plain words.
-    if isinstance(value, str):
+    # By hand, because importing json takes 4 % of the run; our only strings are plain words, and
+    # subclasses of str are numbers written out.
+    if type(value) is str:
         return f'"{value}"'
     return "null" if value is None else str(value)
 
@@ -126,17 +147,32 @@ def _encoding(path: str) -> str:
 
 def write_rows(names: Sequence[str], blocks: Iterable[Array], style: str, path: str) -> None:
     """Blocks of rows as `csv`, as a `json` array of objects (a row a line) or as a rich `table`."""
+    if style == "table":
+        rows = (map(repr, row) for block in blocks for row in block.tolist())
+        write_texts(names, rows, style, path)
+        return
     with sink(path) as stream:
-        if style == "csv":
-            _csv_rows(stream, names, blocks)
-        elif style == "json":
-            _json_rows(stream, names, blocks)
-        else:
+        (_csv_rows if style == "csv" else _json_rows)(stream, names, blocks)
+
+
+def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str, path: str) -> None:
+    """Rows of numbers written out, in the same three styles."""
+    with sink(path) as stream:
+        if style == "table":
             from .report import rows_table
 
-            rows = (row for block in blocks for row in block.tolist())
             terminal, encoding = _is_terminal(path), _encoding(path)
             stream.write(rows_table(names, rows, terminal=terminal, encoding=encoding))
+        elif style == "csv":
+            for row in chain([names], rows):
+                stream.write(",".join(row).encode() + b"\n")
+        else:
+            separator = b"["
+            for row in rows:
+                members = (f'"{name}": {text}' for name, text in zip(names, row, strict=True))
+                stream.write(separator + f"{{{', '.join(members)}}}".encode())
+                separator = b",\n"
+            stream.write(b"]\n")
 
 
 def _csv_rows(stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array]) -> None:

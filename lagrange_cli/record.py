@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from .elliptic import Real
+from .elliptic import Arithmetic, Real
 from .top import Top
 
 
@@ -61,12 +61,15 @@ class Record(NamedTuple):
         """The numbers by key."""
         return dict(zip(self._fields[2:-2], self[2:-2], strict=True))
 
-    def record(self, *, radians: bool = False) -> dict[str, Real | str | None]:
-        """Inputs and results by key, in the order of the paper; `radians` renames _deg to _rad."""
+    def record(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
+        """Inputs and results by key, in the order of the paper; `radians` renames _deg to _rad.
+
+        `ar` is the arithmetic of the numbers.
+        """
         numbers = self.numbers()
         if radians:
-            numbers = {_in_radians(key): _radians(key, x) for key, x in numbers.items()}
-        inputs = self.top.inputs(radians=radians)
+            numbers = dict(_in_radians(ar, key, value) for key, value in numbers.items())
+        inputs = self.top.inputs(radians=radians, ar=ar)
         if self.top.is_released:  # it starts at its least tilt, which is the tilt given
             unit = "rad" if radians else "deg"
             numbers[f"theta_min_{unit}"] = inputs[f"theta0_{unit}"]
@@ -74,12 +77,10 @@ class Record(NamedTuple):
         return inputs | {"regime": self.regime.value} | numbers | texts
 
 
-def _in_radians(key: str) -> str:
-    return key.removesuffix("deg") + "rad" if key.endswith("_deg") else key
-
-
-def _radians(key: str, value: Real | None) -> Real | None:
-    return math.radians(value) if key.endswith("_deg") and value is not None else value
+def _in_radians(ar: Arithmetic, key: str, value: Real | None) -> tuple[str, Real | None]:
+    if not key.endswith("_deg"):
+        return key, value
+    return key.removesuffix("deg") + "rad", None if value is None else value * (ar.pi / 180)
 
 
 def with_constant_rates(

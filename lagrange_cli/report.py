@@ -78,18 +78,23 @@ _GROUPS: dict[str, list[Row]] = {
 }
 
 _ASCII = str.maketrans(
-    {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "§": "sec. ", "─": "-"}
+    {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "§": "sec. "}
 )
 
 
 def record_table(record: Mapping[str, Any], *, terminal: bool, encoding: str) -> bytes:
     """The record by groups, a line for each key that the regime has."""
     angle = "rad" if "theta0_rad" in record else "deg"
+    spelling = {} if encoding.lower().startswith("utf") else _ASCII
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for heading in ("Symbol", "Name", "Value", "Unit", "Equation"):
         table.add_column(heading, justify="right" if heading == "Value" else "left", no_wrap=True)
     for group, rows in _GROUPS.items():
-        shown = [line for row in rows if (line := _line(record, row, angle))]
+        shown = [
+            [cell.translate(spelling) for cell in line]
+            for row in rows
+            if (line := _line(record, row, angle))
+        ]
         if shown:
             # One row of many lines a group: rich takes its time for every cell.
             symbols, names, *rest = ("\n".join(column) for column in zip(*shown, strict=True))
@@ -107,14 +112,14 @@ def _line(record: Mapping[str, Any], row: Row, angle: str) -> tuple[str, ...] | 
 
 
 def rows_table(
-    names: Sequence[str], rows: Iterable[Sequence[float]], *, terminal: bool, encoding: str
+    names: Sequence[str], rows: Iterable[Iterable[str]], *, terminal: bool, encoding: str
 ) -> bytes:
     """A column for each name, a line for each row."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for name in names:
         table.add_column(name, justify="right", no_wrap=True)
     for row in rows:
-        table.add_row(*map(repr, row))
+        table.add_row(*row)
     return _rendered(table, terminal, encoding)
 
 
@@ -128,4 +133,4 @@ def _rendered(table: Table, terminal: bool, encoding: str) -> bytes:
     text = "\n".join(lines).strip("\n") + "\n"
     if encoding.lower().startswith("utf"):
         return text.encode()
-    return text.translate(_ASCII).encode("ascii", "replace")
+    return text.replace("─", "-").encode("ascii", "replace")

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from .elliptic import Arithmetic, Real
 
 TERMS = 4
+"""Enough for doubles."""
 
 Polynomial = list[Any]
 """Coefficients in s, the lowest power first."""
@@ -38,6 +39,10 @@ class Component(NamedTuple):
     real: Polynomial
     imag: Polynomial
     even: bool = False
+
+
+Components = tuple[Component, Component]
+"""theta2 and theta1 for one of X, Y."""
 
 
 class Frame(NamedTuple):
@@ -78,6 +83,18 @@ class Constants(NamedTuple):
     """-du/dt near a passage of u1 is `nutation` times the phase x."""
 
 
+class Swing(NamedTuple):
+    """The separatrix, 1 - u = (1 - u2)/cosh^2 h with h = speed t + offset."""
+
+    offset: Real
+    x: Real
+    """cos(theta_max/2)."""
+    y: Real
+    """sin(theta_max/2)."""
+    sign: int
+    """Of b."""
+
+
 class Series(NamedTuple):
     """The series about one turning point (circular) or two (hyperbolic), in the caller's digits."""
 
@@ -90,49 +107,59 @@ class Series(NamedTuple):
     slope_y: Real
 
 
-def theta_series(ar: Arithmetic, c: Constants) -> Series:
+def theta_series(ar: Arithmetic, c: Constants, terms: int = TERMS) -> Series:
     """Series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and c.quarter > c.quarter_prime
-    return (_hyperbolic_series if hyperbolic else _circular_series)(ar, c)
+    return (_hyperbolic_series if hyperbolic else _circular_series)(ar, c, terms)
 
 
-def _circular_series(ar: Arithmetic, c: Constants) -> Series:
-    """A step is a period; the series wind by +-pi in it, the rest of the advance is linear."""
+def _circular_series(ar: Arithmetic, c: Constants, terms: int) -> Series:
+    """The series wind by +-pi over a period; the rest of the advance is linear.
+
+    A step is a period where the motion starts at u1, and half a period where it does not: small
+    times then keep their digits, because the argument is never near pi/2.
+    """
     q = ar.exp(-ar.pi * c.quarter_prime / c.quarter) if c.quarter_prime else ar.mpf(0)
-    weights = [q ** (n * (n + 1)) for n in range(TERMS)]
+    weights = _weights(q, terms)
     y_plus, y_minus = (ar.pi * eta / (2 * c.quarter) for eta in (c.eta_plus, c.eta_minus))
-    x, _ = _circular_components(ar, weights, y_plus, c.x_size, c.sign_plus)
-    _, y = _circular_components(ar, weights, y_minus, c.y_size, c.sign_minus)
+    x = _circular_components(ar, weights, y_plus, c.x_size, c.sign_plus)
+    y = _circular_components(ar, weights, y_minus, c.y_size, c.sign_minus)
+    steps = 2 if c.offset else 1
     return Series(
         hyperbolic=False,
-        frames=[Frame(x, y, _rate(weights, 1, c.nutation))],
-        scale=+ar.pi,
-        slope_x=(c.precession + c.spin) / 2 - c.sign_plus * ar.pi,
-        slope_y=(c.precession - c.spin) / 2 - c.sign_minus * ar.pi,
+        frames=_frames(x, y, _rate(weights, 1, c.nutation))[:steps],
+        scale=ar.pi / steps,
+        slope_x=((c.precession + c.spin) / 2 - c.sign_plus * ar.pi) / steps,
+        slope_y=((c.precession - c.spin) / 2 - c.sign_minus * ar.pi) / steps,
     )
 
 
-def _hyperbolic_series(ar: Arithmetic, c: Constants) -> Series:
+def _hyperbolic_series(ar: Arithmetic, c: Constants, terms: int) -> Series:
     """A step is half a period; the transformation adds a linear exponent of its own."""
     ratio: Real = c.quarter / c.quarter_prime
     q = ar.exp(-ar.pi * ratio)
     v_plus, v_minus = (ar.pi * eta / (2 * c.quarter_prime) for eta in (c.eta_plus, c.eta_minus))
-    x = _hyperbolic_components(ar, q, v_plus, c.x_size, c.sign_plus)
-    y = _hyperbolic_components(ar, q, v_minus, c.y_size, c.sign_minus)
-    rate = _rate([q ** (n * (n + 1)) for n in range(TERMS)], -1, c.nutation / ratio)
-    backwards = [-coefficient for coefficient in rate]
+    even, odd = [q ** (n * n) for n in range(terms)], _weights(q, terms)
+    x = _hyperbolic_components(ar, even, odd, v_plus, c.sign_plus, c.x_size)
+    y = _hyperbolic_components(ar, even, odd, v_minus, c.sign_minus, c.y_size)
+    rate = _rate(odd, -1, c.nutation / ratio)
     return Series(
         hyperbolic=True,
-        frames=[Frame(x[0], y[1], rate), Frame(x[1], y[0], backwards)],
+        frames=_frames(x, y, rate),
         scale=ar.pi / 2 * ratio,
         slope_x=(c.precession + c.spin) / 4 + c.sign_plus * (v_plus - ar.pi / 2),
         slope_y=(c.precession - c.spin) / 4 + c.sign_minus * (v_minus - ar.pi / 2),
     )
 
 
+def _frames(x: Components, y: Components, rate: Polynomial) -> list[Frame]:
+    """About u1 and about u2: half a period turns theta2 into theta1 and theta1 into theta2."""
+    return [Frame(x[0], y[1], rate), Frame(x[1], y[0], [-coefficient for coefficient in rate])]
+
+
 def _circular_components(
     ar: Arithmetic, weights: list[Real], y: Real, size: Real, sign: int
-) -> tuple[Component, Component]:
+) -> Components:
     """theta2(x - i sign y) and theta1(x - i sign y), turned so that each is real at x = 0."""
     cosh = [w * ar.cosh((2 * n + 1) * y) for n, w in enumerate(weights)]
     sinh = [w * ar.sinh((2 * n + 1) * y) for n, w in enumerate(weights)]
@@ -146,12 +173,17 @@ def _circular_components(
     )
 
 
-def _hyperbolic_components(
-    ar: Arithmetic, q: Real, v: Real, size: Real, sign: int
-) -> tuple[Component, Component]:
+def _weights(q: Real, terms: int) -> list[Real]:
+    """q^(n(n+1)), the weights of theta1 and theta2 over 2 q^(1/4)."""
+    return [q ** (n * (n + 1)) for n in range(terms)]
+
+
+def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
+    ar: Arithmetic, even: list[Real], odd: list[Real], v: Real, sign: int, size: Real
+) -> Components:
     """The same two functions after Jacobi's transformation: theta4 and theta1 of v + i h."""
-    even = [(2 if n else 1) * q ** (n * n) for n in range(TERMS)]
-    odd = [2 * ar.sqrt(ar.sqrt(q)) * q ** (n * (n + 1)) for n in range(TERMS)]
+    even = [even[0], *(2 * w for w in even[1:])]
+    odd = [2 * ar.sqrt(ar.sqrt(even[1] / 2)) * w for w in odd]
     cos_even = _alternate([w * ar.cos(2 * n * v) for n, w in enumerate(even)])
     sin_even = _alternate([w * ar.sin(2 * n * v) for n, w in enumerate(even)])
     cos_odd = _alternate([w * ar.cos((2 * n + 1) * v) for n, w in enumerate(odd)])
@@ -194,3 +226,21 @@ def _next(previous: list[int], current: list[int]) -> list[int]:
     doubled, shifted = [2 * c for c in current] + [0], [0] + [4 * c for c in current]
     padded = previous + [0] * (len(doubled) - len(previous))
     return [a - b - c for a, b, c in zip(doubled, shifted, padded, strict=True)]
+
+
+def evaluate(
+    ar: Arithmetic, series: Series, frame: Frame, phase: Real, rises: int
+) -> tuple[Real, Real, Real, Real]:
+    """|X|, arg X, |Y| and arg Y about a turning point, in many digits.
+
+    On a pole, the argument just after where the tilt `rises`, else just before.
+    """
+    z = phase * series.scale
+    S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
+
+    def polar(c: Component) -> tuple[Real, Real]:
+        P, Q = (sum(p * (S * S) ** i for i, p in enumerate(poly)) for poly in (c.real, c.imag))
+        real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
+        return ar.hypot(real, imag), ar.atan2(imag if P or S else rises * Q, real)
+
+    return *polar(frame.x), *polar(frame.y)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
+from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from .motion import Motion
@@ -13,10 +16,15 @@ from .top import LagtopError, parse_number
 
 if TYPE_CHECKING:
     from .angles import Array, Sampler
+    from .columns import Column, Sample
+    from .digits import NumberText
 
 MAX_ROWS = 10**9
 BLOCK_ROWS = 1 << 16
 DEFAULT_ROWS = 101
+DIGIT_ROWS = 256
+"""Rows that settle together under --digits."""
+DEFAULT_COLUMNS = ("t", "theta", "phi", "psi")
 
 
 @dataclass(frozen=True)
@@ -26,6 +34,13 @@ class Grid:
     start: float
     step: float
     count: int
+    exact: tuple[Fraction, Fraction]
+    """Start and step as the decimals they were given as."""
+
+    def decimals(self) -> Iterator[Fraction]:
+        """The times in exact arithmetic."""
+        start, step = self.exact
+        return (start + i * step for i in range(self.count))
 
     def blocks(self) -> Iterator[Array]:
         """The times, a block at a time."""
@@ -44,12 +59,21 @@ class Grid:
 class TimeList:
     """Times that were given one by one."""
 
-    times: list[float]
+    exact: list[Fraction]
+
+    @cached_property
+    def times(self) -> list[float]:
+        """The doubles nearest to them."""
+        return [float(time) for time in self.exact]
+
+    def decimals(self) -> Iterator[Fraction]:
+        """The times in exact arithmetic."""
+        return iter(self.exact)
 
     @property
     def count(self) -> int:
         """How many there are."""
-        return len(self.times)
+        return len(self.exact)
 
     def blocks(self) -> Iterator[Array]:
         """The times, a block at a time."""
@@ -88,16 +112,16 @@ def grid(
     if dt is not None:
         if not dt > 0:
             raise LagtopError(f"--dt must be > 0, got {float(dt)}")
-        count, step = int((t_max - t_min) / dt) + 1, float(dt)
+        count, step = int((t_max - t_min) / dt) + 1, dt
     else:
         count = n or (DEFAULT_ROWS if t_max > t_min else 1)
-        step = float((t_max - t_min) / (count - 1)) if count > 1 else 0.0
+        step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
     if count > MAX_ROWS:
         raise LagtopError(
-            f"a grid has at most 1e9 rows, this one would have {count:.4g} "
+            f"a grid has at most 1e9 rows, this one would have {Decimal(count):.4g} "
             "(take a larger --dt, a smaller --n, or --times)"
         )
-    return Grid(float(t_min), step, count)
+    return Grid(float(t_min), float(step), count, (t_min, step))
 
 
 def read_times(path: str) -> TimeList:
@@ -108,7 +132,7 @@ def read_times(path: str) -> TimeList:
     name = "standard input" if path == "-" else path
     try:
         if path == "-":
-            return TimeList(_parse_times(sys.stdin, name))
+            return TimeList(_parse_times(sys.stdin or (), name))
         with open(path, encoding="utf-8-sig") as lines:
             return TimeList(_parse_times(lines, name))
     except OSError as error:
@@ -117,13 +141,13 @@ def read_times(path: str) -> TimeList:
         raise LagtopError(f"--times {name} must be UTF-8 text, a time a line") from None
 
 
-def _parse_times(lines: Iterable[str], name: str) -> list[float]:
+def _parse_times(lines: Iterable[str], name: str) -> list[Fraction]:
     times = []
     for i, line in enumerate(lines, 1):
         text = line.strip()
         if text and not text.startswith("#"):
             try:
-                times.append(float(parse_number(text)))
+                times.append(parse_number(text))
             except LagtopError as error:
                 raise LagtopError(f"{name}, line {i}: the time {error}") from None
     if not times:
@@ -131,29 +155,60 @@ def _parse_times(lines: Iterable[str], name: str) -> list[float]:
     return times
 
 
-def column_names(*, radians: bool) -> list[str]:
-    """The header of the rows."""
-    unit = "rad" if radians else "deg"
-    return ["t", f"theta_{unit}", f"phi_{unit}", f"psi_{unit}"]
-
-
 def rows(
-    motion: Motion, times: Times, *, radians: bool = False, wrap: bool = False
-) -> Iterator[Array]:
-    """Blocks of rows (n, 4): t and the three angles, unwrapped unless `wrap`.
+    motion: Motion,
+    times: Times,
+    columns: Sequence[str] = DEFAULT_COLUMNS,
+    *,
+    radians: bool = False,
+    wrap: bool = False,
+) -> tuple[list[str], Iterator[Array]]:
+    """The header and blocks of rows; the three angles in degrees or radians, wrapped or not.
 
-    Raises LagtopError, before the first block, where any of the times is out of reach.
+    Raises LagtopError for an unknown column and, before the first block, for a time out of reach.
     """
+    from .columns import COLUMNS
+
+    for name in columns:
+        if name not in COLUMNS:
+            known = " ".join(COLUMNS)
+            raise LagtopError(f"--columns must be among {known}, got {name!r}")
+    chosen = [COLUMNS[name] for name in columns]
+    unit = "rad" if radians else "deg"
+    header = [text.replace("*", unit) for column in chosen for text in column.headings]
     sampler = motion.sampler()
     sampler.check(times.bounds())
-    return _rows(sampler, times, radians, wrap)
+    samples = _samples(motion, sampler, times, any(column.needs_rate for column in chosen), wrap)
+    return header, (_block(sample, chosen, header) for sample in samples)
 
 
-def _rows(sampler: Sampler, times: Times, radians: bool, wrap: bool) -> Iterator[Array]:
+def _samples(
+    motion: Motion, sampler: Sampler, times: Times, rate: bool, wrap: bool
+) -> Iterator[Sample]:
+    from .columns import Sample
+
+    constants = motion.column_constants()
+    for t in times.blocks():
+        for part, attitude in sampler.attitudes(t, rate=rate):
+            yield Sample(t[part], attitude, constants, wrap)
+
+
+def _block(sample: Sample, columns: Sequence[Column], header: Sequence[str]) -> Array:
     import numpy as np
 
-    for t in times.blocks():
-        block = np.stack([t, *sampler.angles(t, wrap=wrap)], axis=1)
-        if not radians:
-            np.degrees(block[:, 1:], out=block[:, 1:])
-        yield block
+    block = np.stack([x for column in columns for x in column.compute(sample)], axis=1)
+    for i, heading in enumerate(header):
+        if heading.endswith("_deg"):
+            np.degrees(block[:, i], out=block[:, i])
+    return block
+
+
+def digit_rows(
+    motion: Motion, times: Times, digits: int, *, radians: bool = False, wrap: bool = False
+) -> Iterator[list[NumberText]]:
+    """Rows of t and the three angles to so many significant digits, times read as decimals."""
+    from .digits import settled_rows
+
+    waiting = times.decimals()
+    while some := list(islice(waiting, DIGIT_ROWS)):
+        yield from settled_rows(motion.top, some, digits, radians=radians, wrap=wrap)

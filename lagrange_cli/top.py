@@ -14,6 +14,8 @@ Number = float | Fraction
 
 _DECIMAL = set("0123456789.eE+-")
 _MAX_SCENE_BYTES = 1 << 20
+_MOST_CHARACTERS = 2000
+_LEAST_TILT = 1e-150
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 
 
@@ -35,6 +37,8 @@ def parse_number(text: str) -> Fraction:
     Raises LagtopError, with the remedy, for anything else and for what no double can hold.
     """
     text = text.strip()
+    if len(text) > _MOST_CHARACTERS:
+        raise LagtopError(f"must have at most {_MOST_CHARACTERS} characters, got {len(text)}")
     try:
         nearest = float(text) if set(text) <= _DECIMAL else math.nan
     except ValueError:
@@ -128,20 +132,20 @@ class Top(_Inputs):
         _check_ranges(top)
         return top
 
-    def inputs(self, *, radians: bool = False) -> dict[str, Number]:
+    def inputs(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
         """The nine inputs by record key, the tilt in degrees or in radians."""
         names = ["m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"]
-        values: dict[str, Number] = {name: getattr(self, name) for name in names[:6]}
-        values["theta0_rad" if radians else "theta0_deg"] = self._tilt(radians)
+        values: dict[str, Any] = {name: getattr(self, name) for name in names[:6]}
+        values["theta0_rad" if radians else "theta0_deg"] = self._tilt_in(radians, ar)
         return values | {name: getattr(self, name) for name in names[6:]}
 
-    def _tilt(self, radians: bool) -> Number:
-        given = self.theta0_rad if radians else self.theta0_deg
+    def _tilt_in(self, radians: bool, ar: Arithmetic) -> Real:
+        given, other = self.theta0_deg, self.theta0_rad
+        if radians:
+            given, other = other, given
         if given is not None:
             return given
-        if radians:
-            return math.radians(_known(self.theta0_deg))
-        return math.degrees(_known(self.theta0_rad))
+        return number(ar, _known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
 
     def tilt(self, ar: Arithmetic) -> Tilt:
         """Sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
@@ -178,7 +182,7 @@ class Top(_Inputs):
         offset = Fraction(self.m) * Fraction(self.s) ** 2
         limit = 2 * (Fraction(self.A) - offset)
         if limit <= 0:
-            bound = f"A > m s^2 = {float(offset)}, got {float(self.A)}"
+            bound = f"A > m s^2, got {float(self.A)}"
         elif self.C > limit:
             bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
         else:
@@ -217,10 +221,11 @@ def _check_ranges(top: Top) -> None:
     _require(twice >= top.C, "C", f"<= 2 A = {float(twice)}", top.C, "no rigid body has more")
     if top.theta0_deg is not None and top.theta0_rad is not None:
         raise LagtopError("theta0_deg and theta0_rad are both given: leave one out", "theta0_rad")
-    if top.theta0_deg is not None:
-        _require(0 <= top.theta0_deg <= 180, "theta0_deg", "in [0, 180]", top.theta0_deg)
-    if top.theta0_rad is not None:
-        _require(0 <= top.theta0_rad <= _PI, "theta0_rad", "in [0, pi]", top.theta0_rad)
+    for name, most, shown in (("theta0_deg", 180, "180"), ("theta0_rad", _PI, "pi")):
+        tilt = getattr(top, name)
+        if tilt is not None:
+            _require(0 <= tilt <= most, name, f"in [0, {shown}]", tilt)
+            _require(tilt == 0 or tilt >= _LEAST_TILT, name, f"0 or at least {_LEAST_TILT}", tilt)
 
 
 def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:
@@ -237,12 +242,12 @@ def read_scene(path: str) -> dict[str, Fraction]:
         with open(path, "rb") as file:
             raw = file.read(_MAX_SCENE_BYTES + 1)
         if len(raw) > _MAX_SCENE_BYTES:
-            raise SceneError(f"{path}: a scene file is at most 1 MiB")
+            raise OSError(None, "more than 1 MiB is no scene file")
         text = raw.decode("utf-8-sig")
         table = tomllib.loads(text, parse_float=_toml_float)
     except OSError as error:
         raise SceneError(f"{path}: {error.strerror}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
         raise SceneError(f"{path}: not a TOML file: {error}") from None
     return {key: _scene_value(path, text, key, value) for key, value in table.items()}
 
@@ -267,7 +272,7 @@ def _scene_value(path: str, text: str, key: str, value: Any) -> Fraction:
 
 
 def scene_error(path: str, error: LagtopError) -> SceneError:
-    """The same error, laid at the door of the line of the scene file that it comes from."""
+    """The same error, laid at the door of the scene file, and of its line if it has the key."""
     with open(path, encoding="utf-8-sig") as file:
         return SceneError(f"{_place(path, file.read(), error.key or '')}: {error}", error.key)
 
@@ -276,9 +281,9 @@ def _place(path: str, text: str, key: str) -> str:
     import re
 
     pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(key)}\b""")
-    lines = text.splitlines()
-    line = next((i for i, line in enumerate(lines, 1) if pattern.match(line)), 1)
-    return f"{path}, line {line}"
+    numbered = enumerate(text.splitlines(), 1)
+    line = next((i for i, line in numbered if key and pattern.match(line)), None)
+    return f"{path}, line {line}" if line else path
 
 
 def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:

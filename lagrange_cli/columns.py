@@ -1,0 +1,171 @@
+"""The columns of `lagtop table`: angles, rates, attitude and the conserved quantities.
+
+Each is computed from X and Y (see `angles`) when it is asked for: with N = |X|^2 + |Y|^2,
+1 + u = 2 |X|^2/N and 1 - u = 2 |Y|^2/N keep their digits next to the poles.  Equation numbers are
+Chrapan's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from .angles import Array, Attitude
+from .roots import Start
+from .top import Top
+
+
+class Constants(NamedTuple):
+    """What the columns need of a top, as doubles."""
+
+    A: float
+    C: float
+    torque: float
+    """mgs."""
+    r0: float
+    drift: float
+    """r0 - b."""
+    plus: float
+    """(beta + b)/2."""
+    minus: float
+    """(beta - b)/2."""
+    alpha: float
+    a: float
+
+
+def column_constants(top: Top, begin: Start) -> Constants:
+    """Rounded from the many-digit start of the motion."""
+    return Constants(
+        A=float(top.A),
+        C=float(top.C),
+        torque=float(begin.a) * float(top.A) / 2,
+        r0=float(begin.r0),
+        drift=float(begin.r0 - begin.b),
+        plus=float(begin.beta_plus_b / 2),
+        minus=float(begin.beta_minus_b / 2),
+        alpha=float(begin.alpha),
+        a=float(begin.a),
+    )
+
+
+class Sample:
+    """The motion at a block of times; a quantity is computed once, and only when asked for."""
+
+    def __init__(self, t: Array, attitude: Attitude, constants: Constants, wrap: bool) -> None:
+        self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
+        self.x, self.y = attitude.spinor.x, attitude.spinor.y
+
+    @cached_property
+    def norm(self) -> Array:
+        """N."""
+        return self.x * self.x + self.y * self.y
+
+    @cached_property
+    def u(self) -> Array:
+        """cos(theta) (4,6)."""
+        return (self.x - self.y) * (self.x + self.y) / self.norm
+
+    @cached_property
+    def sine(self) -> Array:
+        """sin(theta)."""
+        return 2.0 * self.x * self.y / self.norm
+
+    @cached_property
+    def poles(self) -> tuple[Array, Array]:
+        """(beta + b)/2/(1 + u) and (beta - b)/2/(1 - u), the two parts of the precession rate."""
+        return (
+            _over(self.constants.plus * self.norm, 2.0 * self.x * self.x),
+            _over(self.constants.minus * self.norm, 2.0 * self.y * self.y),
+        )
+
+    def phi_rate(self) -> Array:
+        """(4,8)."""
+        south, north = self.poles
+        return self.constants.drift + south - north
+
+    def psi_rate(self) -> Array:
+        """(4,7)."""
+        south, north = self.poles
+        return south + north
+
+    @cached_property
+    def theta_rate(self) -> Array:
+        """(5,3), with its sign; over a pole, where the tilt only grows, by the energy (4,2)."""
+        product = 2.0 * self.norm * self.x * self.y
+        rate = self.attitude.spinor.rate
+        assert rate is not None
+        speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
+        return np.divide(rate, product, out=speed, where=product != 0.0)
+
+    @cached_property
+    def across(self) -> Array:
+        """psi' sin(theta), the angular velocity across the line of nodes (4,1)."""
+        south = _over(self.constants.plus * self.y, self.x)
+        return south + _over(self.constants.minus * self.x, self.y)
+
+    def body_rates(self) -> tuple[Array, Array]:
+        """p and q (4,1)."""
+        phi = self.attitude.phi(wrap=True)
+        sin, cos = np.sin(phi), np.cos(phi)
+        return (
+            self.across * sin + self.theta_rate * cos,
+            self.across * cos - self.theta_rate * sin,
+        )
+
+    def axis(self) -> list[Array]:
+        """The figure axis in space: x and y horizontal, the line of nodes along x at psi = 0."""
+        psi = self.attitude.psi(wrap=True)
+        return [self.sine * np.sin(psi), -self.sine * np.cos(psi), self.u]
+
+    def quaternion(self) -> list[Array]:
+        """w, x, y, z of the rotation from body to space: X = w + i z, Y = x + i y, normalised."""
+        arg_x, arg_y = self.attitude.args()
+        size = np.sqrt(self.norm)
+        x, y = self.x / size, self.y / size
+        return [x * np.cos(arg_x), y * np.cos(arg_y), y * np.sin(arg_y), x * np.sin(arg_x)]
+
+    def energy(self) -> Array:
+        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs cos(theta), constant (4,2)."""
+        c = self.constants
+        swing = self.theta_rate**2 + self.across**2
+        return 0.5 * c.A * swing + 0.5 * c.C * c.r0 * c.r0 + c.torque * self.u
+
+    def vertical_momentum(self) -> Array:
+        """A psi' sin^2 theta + C r0 cos(theta), constant (4,3)."""
+        c = self.constants
+        return c.A * self.across * self.sine + c.C * c.r0 * self.u
+
+
+def _over(value: Array, divisor: Array) -> Array:
+    """The quotient, and 0 where both vanish: a top that crosses a pole has no momentum about it."""
+    return np.divide(value, divisor, out=np.zeros_like(divisor), where=divisor != 0.0)
+
+
+class Column(NamedTuple):
+    """A column by name: its headings (a `*` stands for the angle unit) and how to compute it."""
+
+    headings: Sequence[str]
+    compute: Callable[[Sample], Sequence[Array]]
+    needs_rate: bool = False
+
+
+COLUMNS: dict[str, Column] = {
+    "t": Column(["t"], lambda s: [s.t]),
+    "theta": Column(["theta_*"], lambda s: [s.attitude.theta()]),
+    "phi": Column(["phi_*"], lambda s: [s.attitude.phi(wrap=s.wrap)]),
+    "psi": Column(["psi_*"], lambda s: [s.attitude.psi(wrap=s.wrap)]),
+    "u": Column(["u"], lambda s: [s.u]),
+    "thetadot": Column(["thetadot"], lambda s: [s.theta_rate], True),
+    "phidot": Column(["phidot"], lambda s: [s.phi_rate()]),
+    "psidot": Column(["psidot"], lambda s: [s.psi_rate()]),
+    "p": Column(["p"], lambda s: s.body_rates()[:1], True),
+    "q": Column(["q"], lambda s: s.body_rates()[1:], True),
+    "r": Column(["r"], lambda s: [np.full_like(s.t, s.constants.r0)]),
+    "axis": Column(["axis_x", "axis_y", "axis_z"], Sample.axis),
+    "quaternion": Column([f"quaternion_{part}" for part in "wxyz"], Sample.quaternion),
+    "energy": Column(["energy"], lambda s: [s.energy()], True),
+    "Lz": Column(["Lz"], lambda s: [s.vertical_momentum()]),
+}
