@@ -284,7 +284,7 @@ def _path(ar: Arithmetic, begin: Start, roots: Roots) -> str | None:
     """Where the precession stands still, u = beta/b, lies on u1, between the roots or outside."""
     if not roots.u1_u2 or not (begin.b or begin.beta):
         return None
-    if not begin.b:
+    if not begin.b or not roots.above_u1:  # over the upper pole there is no cusp
         return "wavy"
     still = begin.beta / begin.b
     if abs(still - roots.u1) <= ar.mpf(10) ** (-(ar.dps // 2)) * roots.u1_u2:

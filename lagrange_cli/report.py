@@ -66,10 +66,10 @@ _GROUPS: dict[str, list[Row]] = {
         Row("mean_spin_rate", "φ' mean", "spin", "rad/time", "(6,3)"),
         Row("mean_precession_rate", "ψ' mean", "precession", "rad/time", "(7,3)"),
     ],
-    "Values at 0, T/4 and T/2": [
+    "Turning points, values at 0, T/4, T/2": [
         Row("u_quarter", "u(T/4)", "cos ϑ at T/4", "", "(5,2)"),
-        Row("theta_min", "ϑ min", "least tilt, at 0", "angle", "(4,9)"),
-        Row("theta_max", "ϑ max", "greatest tilt, at T/2", "angle", "(4,9)"),
+        Row("theta_min", "ϑ min", "least tilt", "angle", "(4,9)"),
+        Row("theta_max", "ϑ max", "greatest tilt", "angle", "(4,9)"),
         Row("spin_rate_start", "φ'(0)", "spin", "rad/time", "(6,2)"),
         Row("spin_rate_half", "φ'(T/2)", "spin", "rad/time", "(6,2)"),
         Row("precession_rate_start", "ψ'(0)", "precession", "rad/time", "(4,7)"),

@@ -86,9 +86,7 @@ def rewrite() -> None:
     for command, shown in sessions(text):
         text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
     table = "\n".join(errata_table())
-    text = re.sub(
-        r"@@ERRATA@@|\| quantity \| printed .*?\n(?=\n)", lambda _: table, text, flags=re.S
-    )
+    text = re.sub(r"\| quantity \| printed.*(\n\|.*)*", lambda _: table, text)
     README.write_text(text)
 
 
