@@ -23,27 +23,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .elliptic import Arithmetic, Real
-from .series import Component, Constants, Frame, Polynomial, Swing, evaluate, theta_series
-from .top import LagtopError, Tilt
-
-Array = NDArray[np.float64]
+from .phase import Array, Growth, Growths, Pair, reduce_phase, scaled
+from .series import Component, Frame, Polynomial
+from .top import LagtopError
 
 BLOCK = 16384
 """Samples at a time, so that the work arrays stay in the cache."""
 
 MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
-
-_SPLITTER = 2.0**27 + 1
-_NEGLIGIBLE = 2.0**-60
-
-
-class Pair(NamedTuple):
-    """A number to twice the precision: the nearest double and the rest."""
-
-    high: float
-    low: float
 
 
 class Angles(NamedTuple):
@@ -55,43 +43,6 @@ class Angles(NamedTuple):
     """Spin."""
     psi: Array
     """Precession."""
-
-
-class Growth(NamedTuple):
-    """How an angle grows: per step, in turns per step and within a step; its series at t = 0."""
-
-    step: Pair
-    turns: Pair
-    slope: float
-    start: float
-
-    def unwrapped(self, step: Array, since: Array, series: Array) -> Array:
-        """The angle, counted on from 0 at t = 0; `series` is overwritten."""
-        if self.start:
-            series -= self.start
-        series += since * self.slope
-        series += step * self.step.low
-        series += step * self.step.high
-        return series
-
-    def wrapped(self, step: Array, since: Array, series: Array) -> Array:
-        """The same in (-pi, pi], as exact far away as near; `series` is overwritten."""
-        _, turns = reduce_phase(step, self.turns)
-        if self.start:
-            series -= self.start
-        series += since * self.slope
-        series += turns * (2.0 * np.pi)
-        series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
-        return series
-
-
-class Growths(NamedTuple):
-    """Growth of spin and precession and of arg X and arg Y, their half sum and difference."""
-
-    phi: Growth
-    psi: Growth
-    arg_x: Growth
-    arg_y: Growth
 
 
 class Spinor(NamedTuple):
@@ -141,7 +92,7 @@ class Attitude:
 
     def _angle(self, growth: Growth, series: Array, wrap: bool) -> Array:
         grow = growth.wrapped if wrap else growth.unwrapped
-        angle = grow(self.step, self.since, series)
+        angle: Array = grow(self.step, self.since, series)
         if growth.start:
             angle[self.t == 0] = 0.0
         return angle
@@ -204,7 +155,7 @@ class ThetaSampler(Sampler):
         """See `Sampler.attitude`."""
         if self.offset.high:
             step, since = reduce_phase(t, self.steps_per_time, self.offset.high)
-            argument = _Argument(*_scaled(since, self.offset, self.scale))
+            argument = _Argument(*scaled(since, self.offset, self.scale))
         else:
             step, since = reduce_phase(t, self.steps_per_time)
             argument = _Argument(since * self.scale.high, None)
@@ -276,113 +227,6 @@ class SeparatrixSampler(Sampler):
         return Attitude(self.growths, t, t, zero, Spinor(x, y, arg_x, zero, falling))
 
 
-def theta_sampler(ar: Arithmetic, c: Constants) -> ThetaSampler:
-    """The sampler of a nutating top from its constants in an mpmath context `ar`."""
-    series = theta_series(ar, c)
-    steps = len(series.frames)
-    nearest = int(ar.nint(c.offset * steps))
-    offset = c.offset * steps - nearest
-    frames = [series.frames[(nearest + i) % steps] for i in range(steps)]
-    return ThetaSampler(
-        steps_per_time=_pair(steps / c.period),
-        offset=_pair(offset),
-        max_time=float(MAX_PERIODS * c.period),
-        scale=_pair(series.scale),
-        hyperbolic=series.hyperbolic,
-        frames=[_rounded(frame, series.hyperbolic) for frame in frames],
-        growths=_growths(
-            ar,
-            steps=((c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)),
-            slopes=(series.slope_x, series.slope_y),
-            starts=evaluate(ar, series, frames[0], offset, c.rises)[1::2],
-        ),
-    )
-
-
-def steady_sampler(
-    ar: Arithmetic, tilt: Tilt, spin_rate: Real, precession_rate: Real
-) -> SteadySampler:
-    """The sampler of a constant tilt and two constant rates, in an mpmath context `ar`."""
-    half_sum, half_difference = (precession_rate + spin_rate) / 2, (precession_rate - spin_rate) / 2
-    return SteadySampler(
-        x=float(tilt.cos_half),
-        y=float(tilt.sin_half),
-        growths=_growths(ar, (half_sum, half_difference)),
-        max_time=_reach(abs(half_sum) + abs(half_difference)),
-    )
-
-
-def separatrix_sampler(
-    ar: Arithmetic, swing: Swing, speed: Real, spin_rate: Real, b: Real
-) -> SeparatrixSampler:
-    """The sampler of the separatrix, in an mpmath context `ar`."""
-    halves = spin_rate / 2, (b - spin_rate) / 2
-    start = ar.atan2(swing.sign * swing.y * ar.tanh(swing.offset), swing.x)
-    return SeparatrixSampler(
-        speed=float(speed),
-        offset=float(swing.offset),
-        x=float(swing.x),
-        y=float(swing.y),
-        sign=swing.sign,
-        growths=_growths(ar, halves, starts=(start, 0 * start)),
-        max_time=_reach(abs(halves[0]) + abs(halves[1]) + speed),
-    )
-
-
-def _reach(rate: Real) -> float:
-    return float(MAX_PERIODS / rate) if rate else float("inf")
-
-
-def _growths(
-    ar: Arithmetic,
-    steps: tuple[Real, Real],
-    slopes: tuple[Real, Real] = (0, 0),
-    starts: tuple[Real, Real] = (0, 0),
-) -> Growths:
-    """Growth of the four angles from those of arg X and arg Y."""
-
-    def growth(x: int, y: int) -> Growth:
-        step, slope, start = (x * p + y * q for p, q in (steps, slopes, starts))
-        return Growth(_pair(step), _pair(step / (2 * ar.pi)), float(slope), float(start))
-
-    return Growths(phi=growth(1, -1), psi=growth(1, 1), arg_x=growth(1, 0), arg_y=growth(0, 1))
-
-
-def _rounded(frame: Frame, hyperbolic: bool) -> Frame:
-    """The frame in doubles, without the coefficients that are too small to matter."""
-
-    def component(c: Component) -> Component:
-        return Component(_trimmed(c.real, hyperbolic), _trimmed(c.imag, hyperbolic), c.even)
-
-    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, hyperbolic))
-
-
-def _trimmed(polynomial: Polynomial, hyperbolic: bool) -> Polynomial:
-    kept = [float(coefficient) for coefficient in polynomial]
-    smallest = 0.0 if hyperbolic else _NEGLIGIBLE * abs(kept[0])
-    while len(kept) > 2 and abs(kept[-1]) <= smallest:
-        del kept[-1]
-    return kept
-
-
-def _pair(value: Real) -> Pair:
-    high = float(value)
-    return Pair(high, float(value - high))
-
-
-# Evaluation.
-
-
-def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
-    """The integer nearest to t * rate + offset, and t * rate less it, free of cancellation."""
-    since, rest = _two_product(t, rate.high)
-    rest += t * rate.low
-    step = np.rint(since + offset) if offset else np.rint(since)
-    since -= step
-    since += rest
-    return step, since
-
-
 class _Argument(NamedTuple):
     """The argument of the functions, and what rounding took off it where that matters."""
 
@@ -391,35 +235,6 @@ class _Argument(NamedTuple):
 
     def at(self, index: NDArray[np.intp]) -> _Argument:
         return _Argument(self.high[index], None if self.low is None else self.low[index])
-
-
-def _scaled(since: Array, offset: Pair, scale: Pair) -> tuple[Array, Array]:
-    """(since + offset) * scale to twice the precision, so that small times keep their digits."""
-    phase = since + offset.high
-    back = phase - since
-    rest = (since - (phase - back)) + (offset.high - back) + offset.low
-    high, low = _two_product(phase, scale.high)
-    low += phase * scale.low + rest * scale.high
-    return high, low
-
-
-def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
-    """x * factor and its rounding error, exactly (Dekker)."""
-    scaled = factor * _SPLITTER
-    factor_high = scaled - (scaled - factor)
-    factor_low = factor - factor_high
-    high = x * _SPLITTER
-    high -= high - x
-    low = x - high
-    product = x * factor
-    error = high * factor_high
-    error -= product
-    high *= factor_low
-    error += high
-    error += low * factor_high
-    low *= factor_low
-    error += low
-    return product, error
 
 
 def _circular(x: Array, rest: Array | None) -> tuple[Array, None, Array]:

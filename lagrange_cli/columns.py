@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .angles import Array, Attitude
+from .angles import Attitude
+from .phase import Array
 from .roots import Start
 from .top import Top
 

@@ -37,7 +37,6 @@ class Motion(Record):
 
     def sampler(self) -> Sampler:
         """The series behind `angles`, to be kept where many blocks of times follow."""
-        from .angles import separatrix_sampler, steady_sampler, theta_sampler
         from .general import (
             analyse,
             many_digits,
@@ -45,6 +44,7 @@ class Motion(Record):
             steady_rates,
             theta_constants,
         )
+        from .samplers import separatrix_sampler, steady_sampler, theta_sampler
 
         ar = many_digits(WORKING_DIGITS)
         solution = analyse(ar, self.top)

@@ -13,7 +13,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 if TYPE_CHECKING:
-    from .angles import Array
+    from .phase import Array
 
 Record = Mapping[str, Any]
 

@@ -66,7 +66,7 @@ _GROUPS: dict[str, list[Row]] = {
         Row("mean_spin_rate", "φ' mean", "spin", "rad/time", "(6,3)"),
         Row("mean_precession_rate", "ψ' mean", "precession", "rad/time", "(7,3)"),
     ],
-    "Turning points, values at 0, T/4, T/2": [
+    "Turning points and rates": [
         Row("u_quarter", "u(T/4)", "cos ϑ at T/4", "", "(5,2)"),
         Row("theta_min", "ϑ min", "least tilt", "angle", "(4,9)"),
         Row("theta_max", "ϑ max", "greatest tilt", "angle", "(4,9)"),

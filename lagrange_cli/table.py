@@ -15,9 +15,10 @@ from .motion import Motion
 from .top import LagtopError, parse_number
 
 if TYPE_CHECKING:
-    from .angles import Array, Sampler
+    from .angles import Sampler
     from .columns import Column, Sample
     from .digits import NumberText
+    from .phase import Array
 
 MAX_ROWS = 10**9
 BLOCK_ROWS = 1 << 16

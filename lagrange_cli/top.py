@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -273,8 +274,10 @@ def _scene_value(path: str, text: str, key: str, value: Any) -> Fraction:
 
 def scene_error(path: str, error: LagtopError) -> SceneError:
     """The same error, laid at the door of the scene file, and of its line if it has the key."""
-    with open(path, encoding="utf-8-sig") as file:
-        return SceneError(f"{_place(path, file.read(), error.key or '')}: {error}", error.key)
+    text = ""
+    with suppress(OSError), open(path, encoding="utf-8-sig") as file:  # a pipe reads but once
+        text = file.read()
+    return SceneError(f"{_place(path, text, error.key or '')}: {error}", error.key)
 
 
 def _place(path: str, text: str, key: str) -> str:

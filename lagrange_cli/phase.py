@@ -1,0 +1,122 @@
+"""Times reduced to phases without loss, and the angles that grow with them.
+
+A double times a constant held as two doubles gives the whole steps that have passed and the rest,
+exactly (Dekker's product); so an angle is as good at a time 1e12 periods away as at the next one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .elliptic import Arithmetic, Real
+
+Array = NDArray[np.float64]
+
+_SPLITTER = 2.0**27 + 1
+
+
+class Pair(NamedTuple):
+    """A number to twice the precision: the nearest double and the rest."""
+
+    high: float
+    low: float
+
+
+def pair(value: Real) -> Pair:
+    """A many-digit number as two doubles."""
+    high = float(value)
+    return Pair(high, float(value - high))
+
+
+class Growth(NamedTuple):
+    """How an angle grows: per step, in turns per step and within a step; its series at t = 0."""
+
+    step: Pair
+    turns: Pair
+    slope: float
+    start: float
+
+    def unwrapped(self, step: Array, since: Array, series: Array) -> Array:
+        """The angle, counted on from 0 at t = 0; `series` is overwritten."""
+        if self.start:
+            series -= self.start
+        series += since * self.slope
+        series += step * self.step.low
+        series += step * self.step.high
+        return series
+
+    def wrapped(self, step: Array, since: Array, series: Array) -> Array:
+        """The same in (-pi, pi], as exact far away as near; `series` is overwritten."""
+        _, turns = reduce_phase(step, self.turns)
+        if self.start:
+            series -= self.start
+        series += since * self.slope
+        series += turns * (2.0 * np.pi)
+        series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
+        return series
+
+
+class Growths(NamedTuple):
+    """Growth of spin and precession and of arg X and arg Y, their half sum and difference."""
+
+    phi: Growth
+    psi: Growth
+    arg_x: Growth
+    arg_y: Growth
+
+
+def growths(
+    ar: Arithmetic,
+    steps: tuple[Real, Real],
+    slopes: tuple[Real, Real] = (0, 0),
+    starts: tuple[Real, Real] = (0, 0),
+) -> Growths:
+    """Growth of the four angles from those of arg X and arg Y."""
+
+    def growth(x: int, y: int) -> Growth:
+        step, slope, start = (x * p + y * q for p, q in (steps, slopes, starts))
+        return Growth(pair(step), pair(step / (2 * ar.pi)), float(slope), float(start))
+
+    return Growths(phi=growth(1, -1), psi=growth(1, 1), arg_x=growth(1, 0), arg_y=growth(0, 1))
+
+
+def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
+    """The integer nearest to t * rate + offset, and t * rate less it, free of cancellation."""
+    since, rest = _two_product(t, rate.high)
+    rest += t * rate.low
+    step = np.rint(since + offset) if offset else np.rint(since)
+    since -= step
+    since += rest
+    return step, since
+
+
+def scaled(since: Array, offset: Pair, scale: Pair) -> tuple[Array, Array]:
+    """(since + offset) * scale to twice the precision, so that small times keep their digits."""
+    phase = since + offset.high
+    back = phase - since
+    rest = (since - (phase - back)) + (offset.high - back) + offset.low
+    high, low = _two_product(phase, scale.high)
+    low += phase * scale.low + rest * scale.high
+    return high, low
+
+
+def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
+    """x * factor and its rounding error, exactly (Dekker)."""
+    scaled = factor * _SPLITTER
+    factor_high = scaled - (scaled - factor)
+    factor_low = factor - factor_high
+    high = x * _SPLITTER
+    high -= high - x
+    low = x - high
+    product = x * factor
+    error = high * factor_high
+    error -= product
+    high *= factor_low
+    error += high
+    error += low * factor_high
+    low *= factor_low
+    error += low
+    return product, error

@@ -1,0 +1,85 @@
+"""Samplers from the many-digit constants of a motion: everything rounded to doubles, once."""
+
+from __future__ import annotations
+
+from .angles import MAX_PERIODS, SeparatrixSampler, SteadySampler, ThetaSampler
+from .elliptic import Arithmetic, Real
+from .phase import growths, pair
+from .series import Component, Constants, Frame, Polynomial, Swing, evaluate, theta_series
+from .top import Tilt
+
+_NEGLIGIBLE = 2.0**-60
+
+
+def theta_sampler(ar: Arithmetic, c: Constants) -> ThetaSampler:
+    """The sampler of a nutating top from its constants in an mpmath context `ar`."""
+    series = theta_series(ar, c)
+    steps = len(series.frames)
+    nearest = int(ar.nint(c.offset * steps))
+    offset = c.offset * steps - nearest
+    frames = [series.frames[(nearest + i) % steps] for i in range(steps)]
+    return ThetaSampler(
+        steps_per_time=pair(steps / c.period),
+        offset=pair(offset),
+        max_time=float(MAX_PERIODS * c.period),
+        scale=pair(series.scale),
+        hyperbolic=series.hyperbolic,
+        frames=[_rounded(frame, series.hyperbolic) for frame in frames],
+        growths=growths(
+            ar,
+            steps=((c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)),
+            slopes=(series.slope_x, series.slope_y),
+            starts=evaluate(ar, series, frames[0], offset, c.rises)[1::2],
+        ),
+    )
+
+
+def steady_sampler(
+    ar: Arithmetic, tilt: Tilt, spin_rate: Real, precession_rate: Real
+) -> SteadySampler:
+    """The sampler of a constant tilt and two constant rates, in an mpmath context `ar`."""
+    half_sum, half_difference = (precession_rate + spin_rate) / 2, (precession_rate - spin_rate) / 2
+    return SteadySampler(
+        x=float(tilt.cos_half),
+        y=float(tilt.sin_half),
+        growths=growths(ar, (half_sum, half_difference)),
+        max_time=_reach(abs(half_sum) + abs(half_difference)),
+    )
+
+
+def separatrix_sampler(
+    ar: Arithmetic, swing: Swing, speed: Real, spin_rate: Real, b: Real
+) -> SeparatrixSampler:
+    """The sampler of the separatrix, in an mpmath context `ar`."""
+    halves = spin_rate / 2, (b - spin_rate) / 2
+    start = ar.atan2(swing.sign * swing.y * ar.tanh(swing.offset), swing.x)
+    return SeparatrixSampler(
+        speed=float(speed),
+        offset=float(swing.offset),
+        x=float(swing.x),
+        y=float(swing.y),
+        sign=swing.sign,
+        growths=growths(ar, halves, starts=(start, 0 * start)),
+        max_time=_reach(abs(halves[0]) + abs(halves[1]) + speed),
+    )
+
+
+def _reach(rate: Real) -> float:
+    return float(MAX_PERIODS / rate) if rate else float("inf")
+
+
+def _rounded(frame: Frame, hyperbolic: bool) -> Frame:
+    """The frame in doubles, without the coefficients that are too small to matter."""
+
+    def component(c: Component) -> Component:
+        return Component(_trimmed(c.real, hyperbolic), _trimmed(c.imag, hyperbolic), c.even)
+
+    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, hyperbolic))
+
+
+def _trimmed(polynomial: Polynomial, hyperbolic: bool) -> Polynomial:
+    kept = [float(coefficient) for coefficient in polynomial]
+    smallest = 0.0 if hyperbolic else _NEGLIGIBLE * abs(kept[0])
+    while len(kept) > 2 and abs(kept[-1]) <= smallest:
+        del kept[-1]
+    return kept
