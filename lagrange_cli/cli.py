@@ -64,7 +64,6 @@ def main(ctx: click.Context) -> None:
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
-        click.get_text_stream("stdout").flush()
 
 
 @main.command(

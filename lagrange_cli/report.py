@@ -126,9 +126,9 @@ def rows_table(
 def _rendered(table: Table, terminal: bool, encoding: str) -> bytes:
     """The table at its natural width, whatever the terminal's; colour only on a terminal."""
     file = io.StringIO()
-    Console(file=file, force_terminal=terminal, width=10_000, highlight=False, markup=False).print(
-        table
-    )
+    Console(
+        file=file, force_terminal=terminal, width=10_000, highlight=False, markup=False, emoji=False
+    ).print(table)
     lines = [line.rstrip() for line in file.getvalue().splitlines()]
     text = "\n".join(lines).strip("\n") + "\n"
     if encoding.lower().startswith("utf"):

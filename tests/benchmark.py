@@ -1,0 +1,95 @@
+"""`python tests/benchmark.py`: cost of a sample as ratios, all in one run on one thread.
+
+Peers: the floor sin + cos + 3 arctan2, scipy.special's ellipj + 2 elliprj, heyoka's dense output.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+
+import heyoka as hy
+import numpy as np
+from scipy import special
+
+from lagrange_cli import Top, solve
+from lagrange_cli.angles import BLOCK
+from lagrange_cli.phase import Array
+
+COUNT = 1_000_000
+STARTS: dict[str, dict[str, float]] = {
+    "worked example": {},
+    "fast (trigonometric series)": {"r0": 200},
+    "general start": {"psidot0": 3, "thetadot0": 2},
+}
+
+
+def nanoseconds(work: Callable[[], object], count: int = COUNT) -> float:
+    """Least of seven runs after a warm-up, per sample."""
+    work()
+    best = float("inf")
+    for _ in range(7):
+        begun = time.perf_counter()
+        work()
+        best = min(best, time.perf_counter() - begun)
+    return best / count * 1e9
+
+
+def floor(t: Array) -> None:
+    for first in range(0, t.size, BLOCK):
+        x = t[first : first + BLOCK]
+        np.sin(x), np.cos(x)
+        for _ in range(3):
+            np.arctan2(x, 1.5)
+
+
+def legendre(t: Array) -> None:
+    """The least that a closed form by scipy.special needs."""
+    sn, cn, dn, _ = special.ellipj(t, 0.58)
+    for n in (0.3, -2.0):
+        special.elliprj(cn * cn, dn * dn, 1.0, 1.0 - n * sn * sn)
+
+
+def heyoka_dense(top: Top, t: Array) -> Callable[[], object]:
+    """Taylor's method on the Euler angles of the worked example, on a sorted grid."""
+    theta, speed, phi, psi = hy.make_vars("theta", "speed", "phi", "psi")
+    a, b, r0 = float(2 * top.m * top.g * top.s / top.A), float(top.C * top.r0 / top.A), top.r0
+    rate = b * (np.cos(np.radians(30)) - hy.cos(theta)) / hy.sin(theta) ** 2
+    system = [
+        (theta, speed),
+        (speed, hy.sin(theta) * (rate * rate * hy.cos(theta) - b * rate + a / 2)),
+        (phi, r0 - rate * hy.cos(theta)),
+        (psi, rate),
+    ]
+    start = [np.radians(30), 0.0, 0.0, 0.0]
+    integrator = hy.taylor_adaptive(system, start, tol=1e-16)
+
+    def run() -> object:
+        integrator.time, integrator.state[:] = 0.0, start
+        return integrator.propagate_grid(t)
+
+    return run
+
+
+def main() -> None:
+    rng = np.random.default_rng(0)
+    t = np.sort(rng.uniform(0, 100, COUNT))
+    t[0] = 0.0
+    least = nanoseconds(lambda: floor(t))
+    rows = {
+        "sin + cos + 3 arctan2": least,
+        "scipy.special, ellipj + 2 elliprj": nanoseconds(lambda: legendre(t)),
+        "heyoka, dense output over 233 periods": nanoseconds(heyoka_dense(Top(), t)),
+    }
+    for name, start in STARTS.items():
+        sampler = solve(Top(**start)).sampler()
+        rows[f"lagtop, {name}"] = nanoseconds(partial(sampler.angles, t))
+        rows[f"lagtop, {name}, 1e9 s away"] = nanoseconds(partial(sampler.angles, t + 1e9))
+        rows[f"lagtop, {name}, wrapped"] = nanoseconds(partial(sampler.angles, t, wrap=True))
+    for name, cost in rows.items():
+        print(f"{name:55} {cost:8.1f} ns  {cost / least:6.2f} x floor")
+
+
+if __name__ == "__main__":
+    main()
