@@ -58,7 +58,7 @@ def battery(stratum: str, count: int) -> tuple[Worst, Worst]:
 @pytest.mark.parametrize("stratum", STRATA)
 def test_stratum(stratum: str) -> None:
     angles, keys = battery(stratum, 5)
-    assert angles[0] <= 2.5, angles
+    assert angles[0] <= 2.7, angles
     assert keys[0] <= 0.5, keys
 
 
