@@ -19,7 +19,7 @@ from .options import (
     scene_options,
 )
 from .output import MAX_TABLE_ROWS, write_record, write_rows, write_texts
-from .top import LagtopError, Number, build_top, read_scene, scene_error
+from .top import LagtopError, Number, build_top
 
 if TYPE_CHECKING:
     from .table import Times
@@ -29,20 +29,25 @@ def solved(
     scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
 ) -> Motion:
     """The motion of the top in a scene file, if any, and in the options, which win."""
-    from_file = read_scene(scene) if scene is not None else {}
     given: dict[str, Number] = {key: x for key, x in options.items() if x is not None}
     if "theta0" in given:
         given["theta0_rad" if rad else "theta0_deg"] = given.pop("theta0")
-        from_file = {key: x for key, x in from_file.items() if not key.startswith("theta0_")}
-    try:
-        motion = solve(build_top(from_file | given, exact=exact))
-    except LagtopError as error:
-        if scene is not None and error.key not in given:
-            raise scene_error(scene, error) from None
-        raise
+    motion = solve(build_top(given, exact=exact)) if scene is None else _of(scene, given, exact)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
+
+
+def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
+    from .scene import SceneFile
+
+    file = SceneFile(scene)
+    tilt_given = any(key.startswith("theta0_") for key in given)
+    inputs = {x: y for x, y in file.inputs.items() if not (tilt_given and x.startswith("theta0_"))}
+    try:
+        return solve(build_top(inputs | given, exact=exact))
+    except LagtopError as error:
+        raise error if error.key in given else file.error(error) from None
 
 
 @click.group(
@@ -154,10 +159,12 @@ def table_command(  # noqa: PLR0917 - click passes them by name
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         _exclude({"--times": times, name: value})
     motion = solved(scene, rad, digits is not None, options)
-    chosen: Times = read_times(times) if times else grid(motion, t_min, t_max, n=count, dt=dt)
+    chosen: Times = (
+        read_times(times) if times is not None else grid(motion, t_min, t_max, n=count, dt=dt)
+    )
     if style == "table" and chosen.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {chosen.count}")
-    names = columns.replace(",", " ").split() if columns is not None else DEFAULT_COLUMNS
+    names = DEFAULT_COLUMNS if columns is None else columns.replace(",", " ").split()
     header, blocks = rows(motion, chosen, names, radians=rad, wrap=wrap)
     if digits is None:
         write_rows(header, blocks, style, output)

@@ -11,28 +11,13 @@ from typing import Any, NoReturn, TypeVar
 
 import click
 
+from . import __version__
 from .output import CannotWriteError, Terminated
-from .top import LagtopError, SceneError, parse_number
+from .top import LagtopError, parse_number
+
+EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-class BadValue(click.ClickException):
-    """A bad option or input."""
-
-    exit_code = 2
-
-
-class BadScene(click.ClickException):
-    """A bad scene file."""
-
-    exit_code = 65
-
-
-class CannotWrite(click.ClickException):
-    """The output could not be written."""
-
-    exit_code = 74
 
 
 class DecimalType(click.ParamType):  # type: ignore[type-arg]
@@ -89,33 +74,32 @@ class LagtopGroup(ExamplesFirst, click.Group):
     command_class = ExamplesFirst
 
     def main(self, *args: Any, **extra: Any) -> Any:
-        """As click's; errors are one line on standard error."""
+        """As click's; errors are one line on standard error and an exit code."""
         run: Any = super().main
         if not extra.pop("standalone_mode", True):
             return run(*args, standalone_mode=False, **extra)
         try:
             sys.exit(run(*args, standalone_mode=False, **extra) or 0)
         except click.ClickException as error:
-            complain("Error: " + " ".join(error.format_message().split()))
+            complain(f"Error: {error.format_message()}")
             sys.exit(error.exit_code)
-        except BrokenPipeError:
-            _die_by("SIGPIPE")
-        except OSError as error:  # of the help itself; the writers have their own
+        except LagtopError as error:
+            complain(f"Error: {error}")
+            sys.exit(getattr(error, "exit_code", EXIT_USAGE))
+        except CannotWriteError as error:
+            complain(f"Error: {error}")
+            sys.exit(EXIT_CANNOT_WRITE)
+        except OSError as error:  # of the help itself; the writers raise CannotWriteError
             complain(f"Error: cannot write standard output: {error.strerror}")
-            os._exit(CannotWrite.exit_code)  # the interpreter would try to flush it once more
-        except (click.Abort, KeyboardInterrupt):
+            os._exit(EXIT_CANNOT_WRITE)  # the interpreter would try to flush it once more
+        except click.Abort:
             _die_by("SIGINT")
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; its failures become exit codes or the signal they came from."""
+        """Run the command.  What ends it from outside is caught here, before click turns it into
+        an exit code: a signal must kill as a signal."""
         try:
             return super().invoke(ctx)
-        except SceneError as error:
-            raise BadScene(str(error)) from None
-        except LagtopError as error:
-            raise BadValue(str(error)) from None
-        except CannotWriteError as error:
-            raise CannotWrite(str(error)) from None
         except BrokenPipeError:
             _die_by("SIGPIPE")
         except KeyboardInterrupt:
@@ -127,7 +111,7 @@ class LagtopGroup(ExamplesFirst, click.Group):
 def complain(line: str) -> None:
     """One line on standard error, if there is one that takes it."""
     with suppress(OSError):
-        click.echo(line, err=True)
+        click.echo(" ".join(line.split()), err=True)
 
 
 def _die_by(which: str | int) -> NoReturn:
@@ -159,6 +143,7 @@ def scene_options(command: F) -> F:
     """The scene file and the inputs that override it."""
     for name, text in reversed(_SCENE_OPTIONS):
         command = click.option(name, name[2:], type=NUMBER, help=text)(command)
+    command = click.version_option(__version__, prog_name="lagtop")(command)
     command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(command)
     return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
         command

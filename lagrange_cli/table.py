@@ -170,10 +170,11 @@ def rows(
     """
     from .columns import COLUMNS
 
-    for name in columns:
+    for name in columns or [""]:
         if name not in COLUMNS:
-            known = " ".join(COLUMNS)
-            raise LagtopError(f"--columns must be among {known}, got {name!r}")
+            raise LagtopError(f"--columns must be among {' '.join(COLUMNS)}, got {name!r}")
+    if len(set(columns)) < len(columns):
+        raise LagtopError(f"--columns must name each column once, got {' '.join(columns)}")
     chosen = [COLUMNS[name] for name in columns]
     unit = "rad" if radians else "deg"
     header = [text.replace("*", unit) for column in chosen for text in column.headings]

@@ -1,10 +1,11 @@
-"""One scene: the top, how it starts, the guards on both, and the scene file (TOML)."""
+"""One scene: the top, how it starts, and the guards on both."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -14,7 +15,6 @@ Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
 
 _DECIMAL = set("0123456789.eE+-")
-_MAX_SCENE_BYTES = 1 << 20
 _MOST_CHARACTERS = 2000
 _LEAST_TILT = 1e-150
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
@@ -26,10 +26,6 @@ class LagtopError(ValueError):
     def __init__(self, message: str, key: str | None = None) -> None:
         super().__init__(message)
         self.key = key
-
-
-class SceneError(LagtopError):
-    """A scene file that is missing, broken, or holds something it should not."""
 
 
 def parse_number(text: str) -> Fraction:
@@ -76,62 +72,43 @@ class Tilt(NamedTuple):
         return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
 
 
-class _Inputs(NamedTuple):
-    m: Number
-    A: Number
-    C: Number
-    s: Number
-    g: Number
-    r0: Number
-    theta0_deg: Number | None
-    thetadot0: Number
-    psidot0: Number
-    theta0_rad: Number | None
-
-
-class Top(_Inputs):
+@dataclass(frozen=True, kw_only=True)
+class Top:
     """A heavy symmetric top with a fixed point, and its state at t = 0 (phi = psi = 0 there).
 
     Any consistent units; the defaults are the worked example of Chrapan (1952), section 8, in CGS.
-
-    m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
-    s, g        distance from the pivot to the centre of mass, and gravity, >= 0
-    r0          spin: the angular velocity about the figure axis, which is constant (any sign)
-    theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
-    theta0_rad  or the same in radians, 0 to pi; not both
-    thetadot0   nutation rate at t = 0
-    psidot0     precession rate at t = 0
-
-    Raises LagtopError for a body or a start that cannot be.
+    Give the tilt in degrees (default 30) or in radians, not both.  Raises LagtopError for a body or
+    a start that cannot be.
     """
 
-    __slots__ = ()
+    m: Number = 1587.0
+    """Mass, > 0."""
+    A: Number = 39032.0
+    """Equatorial moment of inertia about the pivot, > 0."""
+    C: Number = 17458.0
+    """Polar moment of inertia, 0 < C <= 2A."""
+    s: Number = 4.0
+    """Distance from the pivot to the centre of mass, >= 0."""
+    g: Number = 981.0
+    """Gravity, >= 0."""
+    r0: Number = 50.0
+    """Spin: the angular velocity about the figure axis, which is constant (any sign)."""
+    theta0_deg: Number | None = None
+    """Tilt of the figure axis from the upward vertical, 0 to 180."""
+    thetadot0: Number = 0.0
+    """Nutation rate at t = 0."""
+    psidot0: Number = 0.0
+    """Precession rate at t = 0."""
+    theta0_rad: Number | None = None
+    """The tilt in radians, 0 to pi."""
 
-    def __new__(
-        cls,
-        *,
-        m: Number = 1587.0,
-        A: Number = 39032.0,
-        C: Number = 17458.0,
-        s: Number = 4.0,
-        g: Number = 981.0,
-        r0: Number = 50.0,
-        theta0_deg: Number | None = None,
-        thetadot0: Number = 0.0,
-        psidot0: Number = 0.0,
-        theta0_rad: Number | None = None,
-    ) -> Top:
-        """Check the inputs and keep them."""
-        if theta0_deg is None and theta0_rad is None:
-            theta0_deg = 30.0
-        given = _Inputs(m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad)
-        numbers: Iterator[Any] = (
-            None if value is None else _finite(name, value)
-            for name, value in zip(given._fields, given, strict=True)
-        )
-        top = super().__new__(cls, *numbers)
-        _check_ranges(top)
-        return top
+    def __post_init__(self) -> None:
+        if self.theta0_deg is None and self.theta0_rad is None:
+            object.__setattr__(self, "theta0_deg", 30.0)
+        for name, value in vars(self).copy().items():
+            if value is not None:
+                object.__setattr__(self, name, _finite(name, value))
+        _check_ranges(self)
 
     def inputs(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
         """The nine inputs by record key, the tilt in degrees or in radians."""
@@ -175,7 +152,7 @@ class Top(_Inputs):
 
     def sleeps_stably(self) -> bool:
         """Whether lambda = C^2 r0^2 / 4Amgs >= 1, so that the upright top stays up."""
-        m, A, C, s, g, r0 = (Fraction(x) for x in self[:6] if x is not None)
+        m, A, C, s, g, r0 = (Fraction(x) for x in (self.m, self.A, self.C, self.s, self.g, self.r0))
         return (C * r0) ** 2 >= 4 * A * m * g * s
 
     def caveat(self) -> str | None:
@@ -232,61 +209,14 @@ def _check_ranges(top: Top) -> None:
 def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:
     if not fine:
         hint = f" ({remedy})" if remedy else ""
-        raise LagtopError(f"{name} must be {wanted}, got {float(value)}{hint}", name)
+        raise LagtopError(f"{name} must be {wanted}, got {_shown(value)}{hint}", name)
 
 
-def read_scene(path: str) -> dict[str, Fraction]:
-    """The inputs in a TOML scene file, as exact decimals.  Raises SceneError."""
-    import tomllib
-
-    try:
-        with open(path, "rb") as file:
-            raw = file.read(_MAX_SCENE_BYTES + 1)
-        if len(raw) > _MAX_SCENE_BYTES:
-            raise OSError(None, "more than 1 MiB is no scene file")
-        text = raw.decode("utf-8-sig")
-        table = tomllib.loads(text, parse_float=_toml_float)
-    except OSError as error:
-        raise SceneError(f"{path}: {error.strerror}") from None
-    except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
-        raise SceneError(f"{path}: not a TOML file: {error}") from None
-    return {key: _scene_value(path, text, key, value) for key, value in table.items()}
-
-
-def _toml_float(text: str) -> Fraction | str:
-    try:
-        return parse_number(text.replace("_", ""))
-    except LagtopError:
-        return text
-
-
-def _scene_value(path: str, text: str, key: str, value: Any) -> Fraction:
-    if key not in Top._fields:
-        known = " ".join(Top._fields)
-        raise SceneError(f"{_place(path, text, key)}: unknown key {key!r} (known: {known})", key)
-    if isinstance(value, int) and not isinstance(value, bool):
-        value = Fraction(value)
-    if not isinstance(value, Fraction):
-        message = f"{key} must be a finite number, got {value!r}"
-        raise SceneError(f"{_place(path, text, key)}: {message}", key)
-    return value
-
-
-def scene_error(path: str, error: LagtopError) -> SceneError:
-    """The same error, laid at the door of the scene file, and of its line if it has the key."""
-    text = ""
-    with suppress(OSError), open(path, encoding="utf-8-sig") as file:  # a pipe reads but once
-        text = file.read()
-    return SceneError(f"{_place(path, text, error.key or '')}: {error}", error.key)
-
-
-def _place(path: str, text: str, key: str) -> str:
-    import re
-
-    pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(key)}\b""")
-    numbered = enumerate(text.splitlines(), 1)
-    line = next((i for i, line in numbered if key and pattern.match(line)), None)
-    return f"{path}, line {line}" if line else path
+def _shown(value: Number) -> str:
+    """As it was given, so that 180.00000000000000000001 is not shown as 180."""
+    if isinstance(value, float):
+        return str(value)
+    return str(Decimal(value.numerator) / Decimal(value.denominator))
 
 
 def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:
