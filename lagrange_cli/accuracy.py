@@ -81,7 +81,8 @@ class Reference:
             self._constants(top)
 
     def _constants(self, top: Top) -> None:
-        m, A, C, s, g, r0 = (mpmath.mpf(x) for x in top[:6])
+        body = (top.m, top.A, top.C, top.s, top.g, top.r0)
+        m, A, C, s, g, r0 = (mpmath.mpf(x) for x in body)
         self.r0, self.a, self.b = r0, 2 * m * g * s / A, C * r0 / A
         tilt = mpmath.mpf(top.theta0_rad or 0)
         if top.theta0_deg is not None:

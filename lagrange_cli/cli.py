@@ -11,6 +11,8 @@ from . import __version__
 from .motion import Motion, solve
 from .options import (
     COUNT,
+    MOST_RECORD_DIGITS,
+    MOST_TABLE_DIGITS,
     NUMBER,
     LagtopGroup,
     complain,
@@ -82,7 +84,7 @@ def main(ctx: click.Context) -> None:
     """,
 )
 @scene_options
-@digits_option(1000)
+@digits_option(MOST_RECORD_DIGITS)
 @output_options("table", "json", "csv")
 def solve_command(
     scene: str | None, rad: bool, digits: int | None, style: str, output: str, **options: Any
@@ -130,7 +132,7 @@ def solve_command(
     "between.  [default: t,theta,phi,psi]",
 )
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
-@digits_option(100)
+@digits_option(MOST_TABLE_DIGITS)
 @output_options("csv", "json", "table")
 def table_command(  # noqa: PLR0917 - click passes them by name
     scene: str | None,

@@ -19,7 +19,7 @@ from .roots import Start
 from .top import Top
 
 
-class Constants(NamedTuple):
+class ColumnConstants(NamedTuple):
     """What the columns need of a top, as doubles."""
 
     A: float
@@ -37,9 +37,9 @@ class Constants(NamedTuple):
     a: float
 
 
-def column_constants(top: Top, begin: Start) -> Constants:
+def column_constants(top: Top, begin: Start) -> ColumnConstants:
     """Rounded from the many-digit start of the motion."""
-    return Constants(
+    return ColumnConstants(
         A=float(top.A),
         C=float(top.C),
         torque=float(begin.a) * float(top.A) / 2,
@@ -55,7 +55,9 @@ def column_constants(top: Top, begin: Start) -> Constants:
 class Sample:
     """The motion at a block of times; a quantity is computed once, and only when asked for."""
 
-    def __init__(self, t: Array, attitude: Attitude, constants: Constants, wrap: bool) -> None:
+    def __init__(
+        self, t: Array, attitude: Attitude, constants: ColumnConstants, wrap: bool
+    ) -> None:
         self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
         self.x, self.y = attitude.spinor.x, attitude.spinor.y
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from .elliptic import Arithmetic, Real
@@ -18,10 +18,8 @@ from .general import (
 )
 from .record import Regime
 from .released import released_record
-from .series import Constants, evaluate, theta_series
+from .series import ThetaConstants, evaluate, theta_series
 from .top import LagtopError, Number, Top, number
-
-MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 
 class NumberText(str):
@@ -42,16 +40,14 @@ def settled_rows(
     """Rows of t, tilt, spin and precession to so many significant digits."""
 
     def compute(ar: Arithmetic) -> dict[tuple[int, int], Real]:
-        angles_at = _angles(ar, top)
+        angles_at = _angles(ar, top, digits)
         unit = 1 if radians else 180 / ar.pi
         values: dict[tuple[int, int], Real] = {}
         for i, time in enumerate(times):
             t = number(ar, time)
             theta, phi, psi = angles_at(t)
             if wrap:
-                phi, psi = (
-                    x - 2 * ar.pi * ar.ceil(x / (2 * ar.pi) - ar.mpf(0.5)) for x in (phi, psi)
-                )
+                phi, psi = _wrapped(ar, phi), _wrapped(ar, psi)
             values |= {(i, j): x for j, x in enumerate((t, theta * unit, phi * unit, psi * unit))}
         return values
 
@@ -64,9 +60,10 @@ def _wrapped(ar: Arithmetic, angle: Real) -> Real:
     return angle - 2 * ar.pi * ar.ceil(angle / (2 * ar.pi) - ar.mpf(0.5))
 
 
-def _angles(ar: Arithmetic, top: Top) -> Callable[[Real], tuple[Real, Real, Real]]:
-    """The angles as a function of time."""
+def _angles(ar: Arithmetic, top: Top, digits: int) -> Callable[[Real], tuple[Real, Real, Real]]:
+    """The angles as a function of time.  Raises _TooFewDigitsError where they cancel too far."""
     solution = analyse(ar, top)
+    plane = not (solution.start.beta_plus_b or solution.start.beta_minus_b)
     if solution.regime is Regime.SEPARATRIX:
         args = _separatrix_args(ar, solution)
     elif solution.nutates:
@@ -77,10 +74,14 @@ def _angles(ar: Arithmetic, top: Top) -> Callable[[Real], tuple[Real, Real, Real
 
     def angles_at(t: Real) -> tuple[Real, Real, Real]:
         x, arg_x, y, arg_y = args(t)
+        theta, plus, minus = 2 * ar.atan2(y, x), arg_x - start_x, arg_y - start_y
+        phi, psi = plus - minus, plus + minus
+        if plane:  # over the poles in half turns
+            return theta, ar.pi * ar.nint(phi / ar.pi), ar.pi * ar.nint(psi / ar.pi)
         noise = ar.mpf(10) ** (8 - ar.dps) * (1 + abs(arg_x) + abs(arg_y))
-        plus, minus = arg_x - start_x, arg_y - start_y
-        phi, psi = (0 * t if abs(z) < noise or not t else z for z in (plus - minus, plus + minus))
-        return 2 * ar.atan2(y, x), phi, psi
+        if t and solution.nutates and min(theta, abs(phi), abs(psi)) < noise * 10**digits:
+            raise _TooFewDigitsError
+        return theta, phi, psi
 
     return angles_at
 
@@ -89,7 +90,7 @@ Args = Callable[[Real], tuple[Real, Real, Real, Real]]
 """|X|, arg X, |Y| and arg Y, the arguments counted on, at a time."""
 
 
-def _theta_args(ar: Arithmetic, c: Constants) -> Args:
+def _theta_args(ar: Arithmetic, c: ThetaConstants) -> Args:
     terms = 4 + math.isqrt(int(ar.dps * math.log(10) / math.pi))  # the nome is at most exp(-pi)
     series = theta_series(ar, c, terms)
     steps = len(series.frames)
@@ -133,19 +134,34 @@ def _separatrix_args(ar: Arithmetic, solution: Solution) -> Args:
     return args
 
 
+class _TooFewDigitsError(Exception):
+    """A number has not the digits that are asked for."""
+
+
 def _settle(compute: Callable[[Arithmetic], Mapping[Any, Any]], digits: int) -> dict[Any, Any]:
     """Ziv's strategy: raise the precision until two in a row print alike.
 
     Raises LagtopError where none do, which takes a number that is zero without our knowing it.
     """
-    previous, working = None, digits + 15
-    while working <= 20 * digits + 4000:
+    previous: dict[Any, Any] | None = None
+    for working in _precisions(digits):
         ar = many_digits(working)
-        texts = {key: _text(ar, value, digits) for key, value in compute(ar).items()}
+        try:
+            texts = {key: _text(ar, value, digits) for key, value in compute(ar).items()}
+        except _TooFewDigitsError:
+            continue
         if texts == previous:
             return texts
-        previous, working = texts, working * 3 // 2
+        previous = texts
     raise LagtopError(f"{digits} digits did not settle with {working} to work with")
+
+
+def _precisions(digits: int) -> Iterator[int]:
+    """By half as much again each time."""
+    working = digits + 15
+    while working <= 20 * digits + 4000:
+        yield working
+        working = working * 3 // 2
 
 
 def _text(ar: Arithmetic, value: Any, digits: int) -> Any:

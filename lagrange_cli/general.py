@@ -8,14 +8,15 @@ without number continues him to starts that are not at rest.
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
 from .record import Record, Regime, period_of, with_constant_rates
 from .released import complement, modulus, phase_rate, u_quarter
 from .roots import Roots, Start, roots_from_start, start
-from .series import Constants, Swing
-from .top import LagtopError, Top
+from .series import Swing, ThetaConstants
+from .top import LagtopError, Number, Top
 
 
 class Solution(NamedTuple):
@@ -67,11 +68,24 @@ def analyse(ar: Arithmetic, top: Top) -> Solution:
 
 
 def _digits_for_roots(top: Top, digits: int) -> int:
-    """Three times the digits wanted, and more for every power of ten in the scene."""
-    tilt = top.tilt(math)
-    sizes = (top.r0, top.thetadot0, top.psidot0, top.m, top.A, top.C, top.s, top.g, *tilt)
-    spread = sum(abs(math.log10(abs(x))) for x in map(float, sizes) if x)
-    return 3 * digits + 60 + 6 * int(spread)
+    """Three times the digits wanted, and more for what may lie next to a boundary."""
+    longest = max(len(str(Fraction(size))) for size in _sizes(top))
+    return 3 * digits + 60 + 6 * _spread(top) + 4 * longest
+
+
+def digits_for_record(top: Top) -> int:
+    """Digits that leave a double right, however its scene cancels."""
+    return 40 + 2 * _spread(top)
+
+
+def _spread(top: Top) -> int:
+    """Powers of ten in the numbers of the scene."""
+    sizes = (*_sizes(top), *top.tilt(math))
+    return int(sum(abs(math.log10(abs(x))) for x in map(float, sizes) if x))
+
+
+def _sizes(top: Top) -> tuple[Number, ...]:
+    return (top.r0, top.thetadot0, top.psidot0, top.m, top.A, top.C, top.s, top.g)
 
 
 def _converted(ar: Arithmetic, values: tuple[Real | None, ...]) -> list[Real | None]:
@@ -123,8 +137,11 @@ def advances(ar: Arithmetic, solution: Solution) -> tuple[Real, Real]:
 def _pole_advance(
     ar: Arithmetic, solution: Solution, momentum: Real, from_u1: Real, from_u2: Real
 ) -> Real:
-    """T/2 times the mean of |beta +- b| / (1 +- u); half a turn where the axis meets the pole."""
-    if not (from_u1 and from_u2):
+    """T/2 times the mean of |beta +- b| / (1 +- u).
+
+    Half a turn where the axis meets the pole, and where there is no torque (k = 0).
+    """
+    if not (from_u1 and from_u2) or solution.roots.u3 is None:
         return +ar.pi
     mc = solution.k_prime**2
     mean = period_mean(ar, solution.k_prime, mc * from_u2 / from_u1, 1, mc) / from_u1
@@ -156,6 +173,13 @@ def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
     return sign_of(begin.theta_rate) * w / (2 * complete_k(ar, solution.k_prime))
 
 
+def start_rates(top: Top, begin: Start) -> tuple[Real | None, Real | None]:
+    """Rates of spin and precession at t = 0; none on the vertical."""
+    if top.pole:
+        return None, None
+    return begin.r0 - begin.psi_rate * begin.u, begin.psi_rate
+
+
 def _starts_at_u1(solution: Solution) -> bool:
     begin, roots = solution.start, solution.roots
     return not begin.theta_rate and abs(roots.u1 - begin.u) < abs(begin.u - roots.u2)
@@ -164,8 +188,7 @@ def _starts_at_u1(solution: Solution) -> bool:
 def steady_rates(solution: Solution) -> tuple[Real, Real]:
     """Rates of spin and precession where the tilt does not change; on the vertical, all is spin."""
     begin = solution.start
-    spin, precession = rates(begin, 1 + begin.u, 1 - begin.u)
-    return (begin.r0, 0 * begin.r0) if spin is None else (spin, precession)
+    return begin.r0 - begin.psi_rate * begin.u, begin.psi_rate
 
 
 def separatrix_swing(ar: Arithmetic, solution: Solution) -> Swing:
@@ -180,12 +203,12 @@ def separatrix_swing(ar: Arithmetic, solution: Solution) -> Swing:
     )
 
 
-def theta_constants(ar: Arithmetic, solution: Solution) -> Constants:
+def theta_constants(ar: Arithmetic, solution: Solution) -> ThetaConstants:
     """What the theta series need."""
     begin, roots, T = solution.start, solution.roots, solution.period
     K = complete_k(ar, solution.k_prime)
     spin, precession = advances(ar, solution)
-    return Constants(
+    return ThetaConstants(
         period=T,
         quarter=K,
         quarter_prime=complete_k(ar, solution.k) if solution.k else None,
@@ -224,7 +247,7 @@ def general_record(ar: Arithmetic, top: Top) -> Record:
         theta_max_deg=2 * ar.atan2(*lowest) / degree,
         path=_path(ar, begin, roots),
     )
-    spin_rate, precession_rate = rates(begin, 1 + begin.u, 1 - begin.u)
+    spin_rate, precession_rate = start_rates(top, begin)
     if solution.regime is Regime.SEPARATRIX:
         return record._replace(
             k=solution.k,
@@ -242,6 +265,7 @@ def general_record(ar: Arithmetic, top: Top) -> Record:
     if not solution.nutates:
         tilt = top.tilt(ar).degrees(ar)
         return with_constant_rates(record, tilt, spin_rate, precession_rate, 2 * ar.pi)
+    record = record._replace(spin_rate_start=spin_rate, precession_rate_start=precession_rate)
     return _with_mean_rates(ar, record, solution)
 
 
@@ -266,16 +290,13 @@ def _with_mean_rates(ar: Arithmetic, record: Record, solution: Solution) -> Reco
     if not begin.theta_rate:  # from one turning point to the other
         u_half = roots.u2 if _starts_at_u1(solution) else roots.u1
     spin_half, precession_half = rates(begin, 1 + u_half, 1 - u_half)
-    spin_start, precession_start = rates(begin, 1 + begin.u, 1 - begin.u)
     return record._replace(
         T_spin=period_of(spin, 2 * ar.pi),
         T_precession=period_of(precession, 2 * ar.pi),
         u_quarter=u_quarter(roots, solution.k_prime) if _starts_at_u1(solution) else None,
         mean_spin_rate=spin,
         mean_precession_rate=precession,
-        spin_rate_start=spin_start,
         spin_rate_half=spin_half,
-        precession_rate_start=precession_start,
         precession_rate_half=precession_half,
     )
 

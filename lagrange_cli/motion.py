@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import decimals
 from .elliptic import Real
-from .record import Record, Regime
+from .record import Record
 from .released import released_record
 from .top import LagtopError, Top
 
@@ -16,10 +16,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .angles import Angles, Sampler
-    from .columns import Constants
-
-WORKING_DIGITS = 50
-"""Digits of the constants behind the sampled angles; 34 would do, the rest is margin."""
 
 
 class Motion(Record):
@@ -36,31 +32,10 @@ class Motion(Record):
         return self.sampler().angles(t, wrap=wrap)
 
     def sampler(self) -> Sampler:
-        """The series behind `angles`, to be kept where many blocks of times follow."""
-        from .general import (
-            analyse,
-            many_digits,
-            separatrix_swing,
-            steady_rates,
-            theta_constants,
-        )
-        from .samplers import separatrix_sampler, steady_sampler, theta_sampler
+        """The series behind `angles`."""
+        from .samplers import sampler_of
 
-        ar = many_digits(WORKING_DIGITS)
-        solution = analyse(ar, self.top)
-        if solution.regime is Regime.SEPARATRIX:
-            swing, begin = separatrix_swing(ar, solution), solution.start
-            return separatrix_sampler(ar, swing, solution.speed, begin.r0, begin.b)
-        if not solution.nutates:
-            return steady_sampler(ar, self.top.tilt(ar), *steady_rates(solution))
-        return theta_sampler(ar, theta_constants(ar, solution))
-
-    def column_constants(self) -> Constants:
-        """What the columns of `lagtop table` need besides the angles."""
-        from .columns import column_constants
-        from .general import analyse, many_digits
-
-        return column_constants(self.top, analyse(many_digits(WORKING_DIGITS), self.top).start)
+        return sampler_of(self.top)
 
 
 def solve(top: Top) -> Motion:
@@ -72,9 +47,9 @@ def solve(top: Top) -> Motion:
     if top.is_released:
         with localcontext(decimals.context()):
             return _rounded(released_record(decimals, top))
-    from .general import general_record, many_digits
+    from .general import digits_for_record, general_record, many_digits
 
-    return _rounded(general_record(many_digits(WORKING_DIGITS), top))
+    return _rounded(general_record(many_digits(digits_for_record(top)), top))
 
 
 def _rounded(exact: Record) -> Motion:

@@ -16,6 +16,7 @@ from .output import CannotWriteError, Terminated
 from .top import LagtopError, parse_number
 
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
+MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -22,10 +22,10 @@ def released_record(ar: Arithmetic, top: Top) -> Record:
 
 
 def _classify(top: Top) -> Regime:
-    if top.s == 0 or top.g == 0:
-        return Regime.TORQUE_FREE
     if top.pole:
         return Regime.SLEEPING if top.pole > 0 else Regime.HANGING
+    if top.s == 0 or top.g == 0:
+        return Regime.TORQUE_FREE
     return Regime.NO_SPIN if top.r0 == 0 else Regime.REGULAR
 
 
@@ -119,7 +119,8 @@ def _unmoved(ar: Arithmetic, top: Top, regime: Regime) -> Record:
     """No torque, or upright, or hanging: the top turns about its own axis and does nothing else.
 
     On the vertical only the sum (upright) or the difference (hanging) of the two angles has a
-    meaning; all of it is counted as spin.
+    meaning; all of it is counted as spin.  Without torque the nutation period is that of a small
+    disturbance.
     """
     inv, tilt = invariants(ar, top), top.tilt(ar)
     record = Record(
@@ -131,9 +132,20 @@ def _unmoved(ar: Arithmetic, top: Top, regime: Regime) -> Record:
         u2=tilt.cos,
         remark=_remark(top, regime),
     )
-    spin = number(ar, top.r0)
-    precession = 0 * spin if regime is Regime.TORQUE_FREE else None
-    return with_constant_rates(record, tilt.degrees(ar), spin, precession, 2 * ar.pi)
+    spin, zero = number(ar, top.r0), number(ar, 0)
+    if regime is not Regime.TORQUE_FREE:
+        return with_constant_rates(record, tilt.degrees(ar), spin, None, 2 * ar.pi)
+    quarter = ar.pi / 2 + zero
+    record = record._replace(
+        k=zero,
+        k_prime=zero + 1,
+        modular_angle_deg=zero,
+        nome=zero,
+        K=quarter,
+        E=quarter,
+        T_nutation=period_of(inv.b, 2 * ar.pi),
+    )
+    return with_constant_rates(record, tilt.degrees(ar), spin, zero, 2 * ar.pi)
 
 
 def _remark(top: Top, regime: Regime) -> str | None:

@@ -1,17 +1,50 @@
-"""Samplers from the many-digit constants of a motion: everything rounded to doubles, once."""
+"""From a top to what evaluates it: the many-digit constants, rounded to doubles once and kept."""
 
 from __future__ import annotations
 
-from .angles import MAX_PERIODS, SeparatrixSampler, SteadySampler, ThetaSampler
+from functools import lru_cache
+
+from .angles import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
 from .elliptic import Arithmetic, Real
+from .general import (
+    Solution,
+    analyse,
+    many_digits,
+    separatrix_swing,
+    steady_rates,
+    theta_constants,
+)
 from .phase import growths, pair
-from .series import Component, Constants, Frame, Polynomial, Swing, evaluate, theta_series
-from .top import Tilt
+from .record import Regime
+from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
+from .top import Tilt, Top
+
+WORKING_DIGITS = 50
+"""Digits of the constants; 34 would do, the rest is margin."""
 
 _NEGLIGIBLE = 2.0**-60
 
 
-def theta_sampler(ar: Arithmetic, c: Constants) -> ThetaSampler:
+@lru_cache(maxsize=128)
+def sampler_of(top: Top) -> Sampler:
+    """What gives the angles of a top at any time.  Raises LagtopError as `solve` does."""
+    ar, solution = many_digits(WORKING_DIGITS), solution_of(top)
+    if solution.regime is Regime.SEPARATRIX:
+        begin = solution.start
+        swing = separatrix_swing(ar, solution)
+        return separatrix_sampler(ar, swing, solution.speed, begin.r0, begin.b)
+    if not solution.nutates:
+        return steady_sampler(ar, top.tilt(ar), *steady_rates(solution))
+    return theta_sampler(ar, theta_constants(ar, solution))
+
+
+@lru_cache(maxsize=128)
+def solution_of(top: Top) -> Solution:
+    """The motion in many digits."""
+    return analyse(many_digits(WORKING_DIGITS), top)
+
+
+def theta_sampler(ar: Arithmetic, c: ThetaConstants) -> ThetaSampler:
     """The sampler of a nutating top from its constants in an mpmath context `ar`."""
     series = theta_series(ar, c)
     steps = len(series.frames)

@@ -53,7 +53,7 @@ class Frame(NamedTuple):
     rate: Polynomial
 
 
-class Constants(NamedTuple):
+class ThetaConstants(NamedTuple):
     """What the series need to know of a nutating top, in an mpmath context."""
 
     period: Real
@@ -107,13 +107,13 @@ class Series(NamedTuple):
     slope_y: Real
 
 
-def theta_series(ar: Arithmetic, c: Constants, terms: int = TERMS) -> Series:
+def theta_series(ar: Arithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
     """Series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and c.quarter > c.quarter_prime
     return (_hyperbolic_series if hyperbolic else _circular_series)(ar, c, terms)
 
 
-def _circular_series(ar: Arithmetic, c: Constants, terms: int) -> Series:
+def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
     """The series wind by +-pi over a period; the rest of the advance is linear.
 
     A step is a period where the motion starts at u1, and half a period where it does not: small
@@ -134,7 +134,7 @@ def _circular_series(ar: Arithmetic, c: Constants, terms: int) -> Series:
     )
 
 
-def _hyperbolic_series(ar: Arithmetic, c: Constants, terms: int) -> Series:
+def _hyperbolic_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
     """A step is half a period; the transformation adds a linear exponent of its own."""
     ratio: Real = c.quarter / c.quarter_prime
     q = ar.exp(-ar.pi * ratio)

@@ -187,9 +187,10 @@ def rows(
 def _samples(
     motion: Motion, sampler: Sampler, times: Times, rate: bool, wrap: bool
 ) -> Iterator[Sample]:
-    from .columns import Sample
+    from .columns import Sample, column_constants
+    from .samplers import solution_of
 
-    constants = motion.column_constants()
+    constants = column_constants(motion.top, solution_of(motion.top).start)
     for t in times.blocks():
         for part, attitude in sampler.attitudes(t, rate=rate):
             yield Sample(t[part], attitude, constants, wrap)

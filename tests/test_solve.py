@@ -139,7 +139,7 @@ def test_no_spin_is_the_plane_pendulum() -> None:
         amplitude = mpmath.radians(150)
         period = 4 * mpmath.ellipk(mpmath.sin(amplitude / 2) ** 2)
         period *= mpmath.sqrt(mpmath.mpf(39032) / (1587 * 981 * 4))
-    assert motion.T_nutation == float(period / 2) or motion.T_nutation == float(period)
+    assert motion.T_nutation == float(period / 2)  # from 150 to 150 on the other side
 
 
 @pytest.mark.parametrize("inputs", [{"theta0_deg": 0}, {"theta0_deg": 180, "thetadot0": 1}])
@@ -188,4 +188,4 @@ def test_decimal_functions_against_mpmath() -> None:
             exact = mpmath.sin(X), mpmath.cos(X), mpmath.atan2(Y, X)
             for mine, true in zip(ours, exact, strict=True):
                 assert abs(mpmath.mpf(str(mine)) - true) <= 1e-38
-        assert mpmath.mpf(str(decimals.pi)) - mpmath.pi < 1e-55
+        assert abs(mpmath.mpf(str(decimals.pi)) - mpmath.pi) < 1e-55

@@ -40,7 +40,7 @@ def record_error(scene: Scene) -> Worst:
     with mpmath.workdps(80):
         for key, exact in Reference(Top(**scene), 80).record().items():
             scale = 1 if key in ("u1", "u2") else abs(exact)
-            error = float(abs(mpmath.mpf(getattr(motion, key)) - exact) / (EPS * scale or 1))
+            error = float(abs(mpmath.mpf(getattr(motion, key)) - exact) / (EPS * (scale or 1e-99)))
             worst = max(worst, (error, key, scene), key=lambda case: case[0])
     return worst
 

@@ -1,0 +1,121 @@
+"""Any number of digits, against the paper's formulas and the many-digit reference."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import oracle
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli import LagtopError, Top
+from lagrange_cli.accuracy import Reference
+from lagrange_cli.digits import settled_record, settled_rows
+
+UNIT: dict[str, Any] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
+
+
+def same(text: Any, true: Any, digits: int) -> bool:
+    """All digits right: within half a unit of the last one."""
+    with mpmath.workdps(2 * digits + 50):
+        if not true:
+            return float(text) == 0
+        return bool(abs(mpmath.mpf(text) / true - 1) <= mpmath.mpf(10) ** (1 - digits) / 2 * 1.0001)
+
+
+@pytest.mark.parametrize("digits", [1, 20, 50, 200])
+def test_the_worked_example(digits: int) -> None:
+    record = settled_record(Top(), digits)
+    for key, true in oracle.constants(oracle.Scene(), dps=digits + 30).items():
+        assert same(record[key], true, digits) or abs(true) < 1e-60, key
+
+
+def test_fifty_digits_on_the_command_line(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--digits", "50", "--format", "json").stdout
+    assert '"T_nutation": 0.42925012447854773737540375001558009361' in shown
+    assert json.loads(shown)["regime"] == "regular"
+    table = lagtop("solve", "--digits", "50").stdout
+    assert "0.42925012447854773737540375001558009361" in table
+    assert "…" not in table
+
+
+def test_inputs_are_decimals() -> None:
+    """50.1 is no double."""
+    record = settled_record(Top(r0=Fraction("50.1"), theta0_deg=Fraction("30.1")), 40)
+    exact = oracle.constants(oracle.Scene(r0="50.1", theta0_deg="30.1"), dps=60)
+    assert same(record["T_nutation"], exact["T_nutation"], 40)
+    assert record["r0"] == "50.1"
+
+
+def test_a_general_start() -> None:
+    start = {"psidot0": -3.0, "thetadot0": 0.5}
+    record, reference = settled_record(Top(**start), 60), Reference(Top(**start), 100)
+    for key, true in reference.record().items():
+        assert same(record[key], true, 60), key
+
+
+@pytest.mark.parametrize("start", [{}, {"psidot0": 3.0}, {"r0": 20.0, "thetadot0": -2.0}])
+def test_angles(start: dict[str, float]) -> None:
+    times = [-7.25, 0.0, 2.0**-40, 0.125, 1e6]
+    rows = settled_rows(Top(**start), times, 40, radians=True)
+    reference = Reference(Top(**start), 100)
+    for t, row in zip(times, rows, strict=True):
+        assert float(row[0]) == t
+        for text, true in zip(row[1:], reference.at(t)[:3], strict=True):
+            assert same(text, true, 40) or not t
+
+
+def test_tiny_times_have_all_their_digits() -> None:
+    (row,) = settled_rows(Top(), [1e-60], 10, radians=True)
+    assert same(row[2], mpmath.mpf(1e-60) * 50, 10)  # it starts as r0 t
+
+
+def test_a_neighbour_of_the_separatrix_is_not_taken_for_it() -> None:
+    body = UNIT | {"A": 2, "r0": 0, "theta0_deg": 90}
+    for beside in ("1." + "0" * 60 + "1", "0." + "9" * 61):
+        top = Top(**body, thetadot0=Fraction(beside))
+        assert settled_record(top, 5)["regime"] == "no spin"
+    assert settled_record(Top(**body, thetadot0=Fraction(1)), 5)["regime"] == "separatrix"
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        {"theta0_deg": 0, "r0": 1},
+        {"theta0_deg": 180, "r0": 1},
+        {"g": 0, "r0": 1, "theta0_deg": 20, "psidot0": 1},
+        {"r0": 0, "theta0_deg": 20},
+        {"r0": 2, "theta0_deg": 90, "psidot0": 0.5},
+        {"r0": 0, "A": 2, "theta0_deg": 90, "thetadot0": 1},
+        {"r0": 1, "theta0_deg": 0, "thetadot0": 1},
+        {"r0": 1, "theta0_deg": 50, "thetadot0": 1},
+    ],
+)
+def test_regimes_settle(start: dict[str, float]) -> None:
+    top = Top(**(UNIT | start))
+    assert settled_record(top, 30)["theta_max_deg"]
+    assert len(settled_rows(top, [0.0, 0.5, 2.0], 20)) == 3
+
+
+def test_wrapped_far_away() -> None:
+    (row,) = settled_rows(Top(), [1e12], 30, wrap=True)
+    assert -180 < float(row[2]) <= 180
+    exact = Reference(Top(), 100).at(1e12)
+    with mpmath.workdps(100):
+        turns = (mpmath.mpf(row[3]) - mpmath.degrees(exact.psi)) / 360
+        assert abs(turns - mpmath.nint(turns)) < mpmath.mpf(10) ** -28
+
+
+@pytest.mark.parametrize("digits", ["0", "1001", "2.5", "many"])
+def test_bad_numbers_of_digits(digits: str, lagtop: Lagtop) -> None:
+    result = lagtop("solve", "--digits", digits)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("Error: --digits must be ")
+
+
+def test_a_vertical_start_is_refused_here_too() -> None:
+    with pytest.raises(LagtopError, match="psidot0 must be 0"):
+        settled_record(Top(theta0_deg=0, psidot0=1.0), 20)
