@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
 from .record import Record, Regime, period_of, with_constant_rates
 from .released import complement, modulus, phase_rate, u_quarter
-from .roots import Roots, Start, roots_from_start, start
+from .roots import Place, Roots, Start, roots_from_start, start
 from .series import Swing, ThetaConstants
 from .top import LagtopError, Number, Top
 
@@ -25,6 +25,7 @@ class Solution(NamedTuple):
     regime: Regime
     start: Start
     roots: Roots
+    place: Place
     k: Real
     k_prime: Real
     speed: Real
@@ -57,14 +58,15 @@ def analyse(ar: Arithmetic, top: Top) -> Solution:
         )
     high = many_digits(_digits_for_roots(top, ar.dps))
     precise = start(high, top)
-    roots = Roots(*_converted(ar, roots_from_start(high, precise)))
+    roots, place = roots_from_start(high, precise)
+    roots, place = Roots(*_converted(ar, roots)), Place(*_converted(ar, place))
     begin = Start(*_converted(ar, precise))
     regime, free = _classify(top, roots), roots.u3 is None
     k = ar.mpf(0) if free else modulus(ar, roots)
     k_prime = ar.mpf(1) if free else complement(ar, roots)
     speed = ar.sqrt(begin.alpha + begin.b**2) / 2 if free else phase_rate(ar, begin.a, roots)
     period = 2 * complete_k(ar, k_prime) / speed if speed and k_prime else None
-    return Solution(regime, begin, roots, k, k_prime, speed, period)
+    return Solution(regime, begin, roots, place, k, k_prime, speed, period)
 
 
 def _digits_for_roots(top: Top, digits: int) -> int:
@@ -163,13 +165,12 @@ def rates(begin: Start, below: Real, above: Real) -> tuple[Real | None, Real | N
 
 def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
     """w/2K for the argument w of (4,22)-(4,24) at t = 0; its sign is that of the nutation rate."""
-    begin, roots = solution.start, solution.roots
+    begin, roots, place = solution.start, solution.roots, solution.place
     if not begin.theta_rate:
         return ar.mpf(0) if _starts_at_u1(solution) else ar.mpf(1) / 2
-    to_u3 = ar.mpf(1) if roots.u3 is None else roots.u3 - begin.u
-    sn2 = (roots.u1 - begin.u) * roots.u3_u2 / (to_u3 * roots.u1_u2)
-    cn2 = roots.u3_u1 * (begin.u - roots.u2) / (to_u3 * roots.u1_u2)
-    w = ar.sqrt(max(sn2, 0)) * carlson_rf(ar, max(cn2, 0 * cn2), roots.u3_u1 / to_u3, ar.mpf(1))
+    sn2 = place.u1_u * roots.u3_u2 / (place.u3_u * roots.u1_u2)
+    cn2 = roots.u3_u1 * place.u_u2 / (place.u3_u * roots.u1_u2)
+    w = ar.sqrt(sn2) * carlson_rf(ar, cn2, roots.u3_u1 / place.u3_u, ar.mpf(1))
     return sign_of(begin.theta_rate) * w / (2 * complete_k(ar, solution.k_prime))
 
 
@@ -181,8 +182,7 @@ def start_rates(top: Top, begin: Start) -> tuple[Real | None, Real | None]:
 
 
 def _starts_at_u1(solution: Solution) -> bool:
-    begin, roots = solution.start, solution.roots
-    return not begin.theta_rate and abs(roots.u1 - begin.u) < abs(begin.u - roots.u2)
+    return not solution.start.theta_rate and solution.place.u1_u < solution.place.u_u2
 
 
 def steady_rates(solution: Solution) -> tuple[Real, Real]:
@@ -194,7 +194,7 @@ def steady_rates(solution: Solution) -> tuple[Real, Real]:
 def separatrix_swing(ar: Arithmetic, solution: Solution) -> Swing:
     """Its constants, with u1 = u3 = 1."""
     begin, roots = solution.start, solution.roots
-    offset = ar.asinh(ar.sqrt(max(begin.u - roots.u2, 0) / (1 - begin.u)))
+    offset = ar.asinh(ar.sqrt(solution.place.u_u2 / solution.place.u1_u))
     return Swing(
         offset=-offset if begin.theta_rate > 0 else offset,
         x=ar.sqrt(roots.below_u2 / 2),
@@ -285,11 +285,10 @@ def _integrals(ar: Arithmetic, solution: Solution) -> dict[str, Real | None]:
 def _with_mean_rates(ar: Arithmetic, record: Record, solution: Solution) -> Record:
     begin, roots = solution.start, solution.roots
     spin, precession = (advance / solution.period for advance in advances(ar, solution))
-    to_u3 = ar.mpf(1) if roots.u3 is None else roots.u3 - begin.u
-    u_half = roots.u1 - (begin.u - roots.u2) * roots.u3_u1 / to_u3
-    if not begin.theta_rate:  # from one turning point to the other
-        u_half = roots.u2 if _starts_at_u1(solution) else roots.u1
-    spin_half, precession_half = rates(begin, 1 + u_half, 1 - u_half)
+    place = solution.place
+    above_half = roots.above_u1 + place.u_u2 * roots.u3_u1 / place.u3_u
+    below_half = roots.below_u2 + place.u1_u * roots.u3_u2 / place.u3_u
+    spin_half, precession_half = rates(begin, below_half, above_half)
     return record._replace(
         T_spin=period_of(spin, 2 * ar.pi),
         T_precession=period_of(precession, 2 * ar.pi),

@@ -7,6 +7,7 @@ accuracy.  Equation numbers in parentheses are those of Chrapan (1952).
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from typing import NamedTuple
 
 from .elliptic import Arithmetic, Real, where
@@ -143,17 +144,29 @@ def start(ar: Arithmetic, top: Top) -> Start:
     )
 
 
-def roots_from_start(ar: Arithmetic, begin: Start) -> Roots:
-    """Roots of (4,9) for a general start.
+class Place(NamedTuple):
+    """Gaps between u at t = 0 and the roots."""
+
+    u1_u: Real
+    u_u2: Real
+    u3_u: Real
+    """1 without torque, as in `Roots`."""
+
+
+def roots_from_start(ar: Arithmetic, begin: Start) -> tuple[Roots, Place]:
+    """Roots of (4,9) for a general start, and where among them it lies.
 
     The gaps are differences, and those below a third of the digits are taken for exact zeros (a
     double root comes out split by half of them): the context must have digits to spare.
     """
+    u3 = None
     if begin.a == 0:
         u2, u1 = _quadratic_roots(ar, begin)
-        return _gaps(ar, u1, u2, None)
-    u2, u1, u3 = _cubic_roots(ar, begin)
-    return _gaps(ar, u1, u2, u3)
+    else:
+        u2, u1, u3 = _cubic_roots(ar, begin)
+    to_u3 = ar.mpf(1) if u3 is None else _gap(ar, u3, begin.u)
+    place = Place(_gap(ar, u1, begin.u), _gap(ar, begin.u, u2), to_u3)
+    return _gaps(ar, u1, u2, u3), place
 
 
 def _quadratic_roots(ar: Arithmetic, begin: Start) -> tuple[Real, Real]:
@@ -189,14 +202,14 @@ def _lowest_root(ar: Arithmetic, c2: Real, c1: Real, c0: Real) -> Real:
     raise AssertionError("Newton's method did not settle")
 
 
+def _gap(ar: Arithmetic, larger: Real, smaller: Real) -> Real:
+    difference = larger - smaller
+    tiny = ar.mpf(10) ** (-(ar.dps // 3)) * max(abs(larger), 1)
+    return difference if difference > tiny else ar.mpf(0)
+
+
 def _gaps(ar: Arithmetic, u1: Real, u2: Real, u3: Real | None) -> Roots:
-    tiny = ar.mpf(10) ** (-(ar.dps // 3))
-
-    def gap(larger: Real, smaller: Real) -> Real:
-        difference = larger - smaller
-        return difference if difference > tiny * max(abs(larger), 1) else ar.mpf(0)
-
-    one = ar.mpf(1)
+    gap, one = partial(_gap, ar), ar.mpf(1)
     return Roots(
         u1=u1,
         u2=u2,
