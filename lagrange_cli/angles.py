@@ -34,6 +34,10 @@ MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
 
 
+MAX_TIME = 1e290
+"""Room for the exact product of a time and a rate."""
+
+
 class Angles(NamedTuple):
     """Euler angles in radians, each a float64 array in the shape of the times."""
 
@@ -128,10 +132,10 @@ class Sampler:
     def check(self, t: ArrayLike) -> None:
         """Raise LagtopError where a time is not finite or names no phase."""
         times = np.asarray(t, dtype=np.float64)
-        bad = ~(np.isfinite(times) & (np.abs(times) <= self.max_time))
+        bad = ~(np.abs(times) <= min(self.max_time, MAX_TIME))
         if bad.any():
             raise LagtopError(
-                f"t must be finite and within 2^50 periods = {self.max_time:.3g}, "
+                f"t must be finite and within 2^50 periods = {min(self.max_time, MAX_TIME):.3g}, "
                 f"got {times[bad].flat[0]}",
                 "t",
             )

@@ -35,6 +35,8 @@ class ColumnConstants(NamedTuple):
     """(beta - b)/2."""
     alpha: float
     a: float
+    rises: int
+    """Sign of the nutation rate at the start."""
 
 
 def column_constants(top: Top, begin: Start) -> ColumnConstants:
@@ -49,6 +51,7 @@ def column_constants(top: Top, begin: Start) -> ColumnConstants:
         minus=float(begin.beta_minus_b / 2),
         alpha=float(begin.alpha),
         a=float(begin.a),
+        rises=-1 if begin.theta_rate < 0 else 1,
     )
 
 
@@ -96,11 +99,12 @@ class Sample:
 
     @cached_property
     def theta_rate(self) -> Array:
-        """(5,3), with its sign; over a pole, where the tilt only grows, by the energy (4,2)."""
+        """(5,3), with its sign; on a pole by the energy (4,2), with the sign of the start."""
         product = 2.0 * self.norm * self.x * self.y
         rate = self.attitude.spinor.rate
         assert rate is not None
         speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
+        speed *= self.constants.rises
         return np.divide(rate, product, out=speed, where=product != 0.0)
 
     @cached_property

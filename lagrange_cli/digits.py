@@ -40,14 +40,16 @@ def settled_rows(
     """Rows of t, tilt, spin and precession to so many significant digits."""
 
     def compute(ar: Arithmetic) -> dict[tuple[int, int], Real]:
-        angles_at = _angles(ar, top, digits)
+        angles_at = _angles(ar, top)
         unit = 1 if radians else 180 / ar.pi
         values: dict[tuple[int, int], Real] = {}
         for i, time in enumerate(times):
             t = number(ar, time)
-            theta, phi, psi = angles_at(t)
+            theta, phi, psi, noise = angles_at(t)
             if wrap:
                 phi, psi = _wrapped(ar, phi), _wrapped(ar, psi)
+            if any(0 < abs(angle) < noise * 10**digits for angle in (theta, phi, psi)):
+                raise _TooFewDigitsError
             values |= {(i, j): x for j, x in enumerate((t, theta * unit, phi * unit, psi * unit))}
         return values
 
@@ -60,8 +62,8 @@ def _wrapped(ar: Arithmetic, angle: Real) -> Real:
     return angle - 2 * ar.pi * ar.ceil(angle / (2 * ar.pi) - ar.mpf(0.5))
 
 
-def _angles(ar: Arithmetic, top: Top, digits: int) -> Callable[[Real], tuple[Real, Real, Real]]:
-    """The angles as a function of time.  Raises _TooFewDigitsError where they cancel too far."""
+def _angles(ar: Arithmetic, top: Top) -> Callable[[Real], tuple[Real, Real, Real, Real]]:
+    """The angles as a function of time, and how far they may be off."""
     solution = analyse(ar, top)
     plane = not (solution.start.beta_plus_b or solution.start.beta_minus_b)
     if solution.regime is Regime.SEPARATRIX:
@@ -72,16 +74,16 @@ def _angles(ar: Arithmetic, top: Top, digits: int) -> Callable[[Real], tuple[Rea
         args = _steady_args(ar, top, solution)
     start_x, start_y = args(ar.mpf(0))[1::2]
 
-    def angles_at(t: Real) -> tuple[Real, Real, Real]:
+    def angles_at(t: Real) -> tuple[Real, Real, Real, Real]:
+        if not t:
+            return 2 * ar.atan2(top.tilt(ar).sin_half, top.tilt(ar).cos_half), t, t, t
         x, arg_x, y, arg_y = args(t)
-        theta, plus, minus = 2 * ar.atan2(y, x), arg_x - start_x, arg_y - start_y
-        phi, psi = plus - minus, plus + minus
+        plus, minus = arg_x - start_x, arg_y - start_y
+        theta, phi, psi = 2 * ar.atan2(y, x), plus - minus, plus + minus
         if plane:  # over the poles in half turns
-            return theta, ar.pi * ar.nint(phi / ar.pi), ar.pi * ar.nint(psi / ar.pi)
-        noise = ar.mpf(10) ** (8 - ar.dps) * (1 + abs(arg_x) + abs(arg_y))
-        if t and solution.nutates and min(theta, abs(phi), abs(psi)) < noise * 10**digits:
-            raise _TooFewDigitsError
-        return theta, phi, psi
+            phi, psi = (ar.pi * ar.nint(angle / ar.pi) for angle in (phi, psi))
+        size = 1 + abs(arg_x) + abs(arg_y) + abs(t * solution.speed)
+        return theta, phi, psi, size * ar.mpf(10) ** (8 - ar.dps) if solution.speed else 0 * t
 
     return angles_at
 
@@ -128,7 +130,7 @@ def _separatrix_args(ar: Arithmetic, solution: Solution) -> Args:
     def args(t: Real) -> tuple[Real, Real, Real, Real]:
         h = solution.speed * t + swing.offset
         real, imag = swing.x, swing.sign * swing.y * ar.tanh(h)
-        arg_x = begin.r0 * t / 2 + ar.atan2(imag, real)
+        arg_x = begin.r0 * t / 2 + (ar.atan2(imag, real) if t else swing.start)
         return ar.hypot(real, imag), arg_x, swing.y / ar.cosh(h), (begin.b - begin.r0) * t / 2
 
     return args

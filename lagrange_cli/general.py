@@ -62,8 +62,9 @@ def analyse(ar: Arithmetic, top: Top) -> Solution:
     roots, place = Roots(*_converted(ar, roots)), Place(*_converted(ar, place))
     begin = Start(*_converted(ar, precise))
     regime, free = _classify(top, roots), roots.u3 is None
-    k = ar.mpf(0) if free else modulus(ar, roots)
-    k_prime = ar.mpf(1) if free else complement(ar, roots)
+    still = free or not roots.u3_u2  # without torque; upright at the sleeping threshold
+    k = ar.mpf(0) if still else modulus(ar, roots)
+    k_prime = ar.mpf(1) if still else complement(ar, roots)
     speed = ar.sqrt(begin.alpha + begin.b**2) / 2 if free else phase_rate(ar, begin.a, roots)
     period = 2 * complete_k(ar, k_prime) / speed if speed and k_prime else None
     return Solution(regime, begin, roots, place, k, k_prime, speed, period)
@@ -124,16 +125,15 @@ def eta_minus(ar: Arithmetic, roots: Roots) -> Real:
 
 
 def advances(ar: Arithmetic, solution: Solution) -> tuple[Real, Real]:
-    """Growth of spin and precession over a period, from those of arg X and arg Y."""
+    """Growth of spin and precession over a period: a drift, and what the two poles add."""
     begin, roots, T = solution.start, solution.roots, solution.period
-    drift = (begin.r0 - begin.b) * T / 2
-    x = drift + sign_of(begin.beta_plus_b) * _pole_advance(
+    south = sign_of(begin.beta_plus_b) * _pole_advance(
         ar, solution, abs(begin.beta_plus_b), roots.below_u1, roots.below_u2
     )
-    y = -drift + sign_of(begin.beta_minus_b) * _pole_advance(
+    north = sign_of(begin.beta_minus_b) * _pole_advance(
         ar, solution, abs(begin.beta_minus_b), roots.above_u1, roots.above_u2
     )
-    return x - y, x + y
+    return (begin.r0 - begin.b) * T + south - north, south + north
 
 
 def _pole_advance(
@@ -166,7 +166,7 @@ def rates(begin: Start, below: Real, above: Real) -> tuple[Real | None, Real | N
 def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
     """w/2K for the argument w of (4,22)-(4,24) at t = 0; its sign is that of the nutation rate."""
     begin, roots, place = solution.start, solution.roots, solution.place
-    if not begin.theta_rate:
+    if not (place.u1_u and place.u_u2):  # on a turning point, exactly
         return ar.mpf(0) if _starts_at_u1(solution) else ar.mpf(1) / 2
     sn2 = place.u1_u * roots.u3_u2 / (place.u3_u * roots.u1_u2)
     cn2 = roots.u3_u1 * place.u_u2 / (place.u3_u * roots.u1_u2)
@@ -182,7 +182,7 @@ def start_rates(top: Top, begin: Start) -> tuple[Real | None, Real | None]:
 
 
 def _starts_at_u1(solution: Solution) -> bool:
-    return not solution.start.theta_rate and solution.place.u1_u < solution.place.u_u2
+    return bool(solution.place.u1_u < solution.place.u_u2)
 
 
 def steady_rates(solution: Solution) -> tuple[Real, Real]:
@@ -194,13 +194,11 @@ def steady_rates(solution: Solution) -> tuple[Real, Real]:
 def separatrix_swing(ar: Arithmetic, solution: Solution) -> Swing:
     """Its constants, with u1 = u3 = 1."""
     begin, roots = solution.start, solution.roots
-    offset = ar.asinh(ar.sqrt(solution.place.u_u2 / solution.place.u1_u))
-    return Swing(
-        offset=-offset if begin.theta_rate > 0 else offset,
-        x=ar.sqrt(roots.below_u2 / 2),
-        y=ar.sqrt(roots.above_u2 / 2),
-        sign=sign_of(begin.b),
-    )
+    falls, sign = sign_of(begin.theta_rate), sign_of(begin.b)
+    offset = -falls * ar.asinh(ar.sqrt(solution.place.u_u2 / solution.place.u1_u))
+    x, y = ar.sqrt(roots.below_u2 / 2), ar.sqrt(roots.above_u2 / 2)
+    side = ar.tanh(offset) if offset or x else -falls  # on the lower pole: see `evaluate`
+    return Swing(offset, x, y, sign, start=ar.atan2(sign * y * side, x))
 
 
 def theta_constants(ar: Arithmetic, solution: Solution) -> ThetaConstants:
@@ -285,14 +283,14 @@ def _integrals(ar: Arithmetic, solution: Solution) -> dict[str, Real | None]:
 def _with_mean_rates(ar: Arithmetic, record: Record, solution: Solution) -> Record:
     begin, roots = solution.start, solution.roots
     spin, precession = (advance / solution.period for advance in advances(ar, solution))
-    place = solution.place
+    place, at_u1 = solution.place, not solution.place.u1_u
     above_half = roots.above_u1 + place.u_u2 * roots.u3_u1 / place.u3_u
     below_half = roots.below_u2 + place.u1_u * roots.u3_u2 / place.u3_u
     spin_half, precession_half = rates(begin, below_half, above_half)
     return record._replace(
         T_spin=period_of(spin, 2 * ar.pi),
         T_precession=period_of(precession, 2 * ar.pi),
-        u_quarter=u_quarter(roots, solution.k_prime) if _starts_at_u1(solution) else None,
+        u_quarter=u_quarter(roots, solution.k_prime) if at_u1 else None,
         mean_spin_rate=spin,
         mean_precession_rate=precession,
         spin_rate_half=spin_half,

@@ -56,7 +56,8 @@ class Growth(NamedTuple):
         series += since * self.slope
         series += turns * (2.0 * np.pi)
         series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
-        return series
+        series[series <= -np.pi] = np.pi
+        return np.minimum(series, np.pi, out=series)
 
 
 class Growths(NamedTuple):

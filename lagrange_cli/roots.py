@@ -173,6 +173,8 @@ def _quadratic_roots(ar: Arithmetic, begin: Start) -> tuple[Real, Real]:
     """Without torque: (alpha + b^2) u^2 - 2 beta b u + beta^2 - alpha = 0."""
     alpha, beta, b = begin.alpha, begin.beta, begin.b
     total = alpha + b * b
+    if not total:  # nothing moves
+        return begin.u, begin.u
     radical = ar.sqrt(max(alpha * (total - beta * beta), 0 * alpha))
     return (beta * b - radical) / total, (beta * b + radical) / total
 

@@ -85,14 +85,13 @@ def separatrix_sampler(
 ) -> SeparatrixSampler:
     """The sampler of the separatrix, in an mpmath context `ar`."""
     halves = spin_rate / 2, (b - spin_rate) / 2
-    start = ar.atan2(swing.sign * swing.y * ar.tanh(swing.offset), swing.x)
     return SeparatrixSampler(
         speed=float(speed),
         offset=float(swing.offset),
         x=float(swing.x),
         y=float(swing.y),
         sign=swing.sign,
-        growths=growths(ar, halves, starts=(start, 0 * start)),
+        growths=growths(ar, halves, starts=(swing.start, 0 * swing.start)),
         max_time=_reach(abs(halves[0]) + abs(halves[1]) + speed),
     )
 

@@ -93,6 +93,8 @@ class Swing(NamedTuple):
     """sin(theta_max/2)."""
     sign: int
     """Of b."""
+    start: Real
+    """arg X at t = 0."""
 
 
 class Series(NamedTuple):
@@ -233,14 +235,15 @@ def evaluate(
 ) -> tuple[Real, Real, Real, Real]:
     """|X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
-    On a pole, the argument just after where the tilt `rises`, else just before.
+    On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
+    that just before; on the lower pole, where X = 0, the other way round.
     """
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
 
-    def polar(c: Component) -> tuple[Real, Real]:
+    def polar(c: Component, side: int) -> tuple[Real, Real]:
         P, Q = (sum(p * (S * S) ** i for i, p in enumerate(poly)) for poly in (c.real, c.imag))
         real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
-        return ar.hypot(real, imag), ar.atan2(imag if P or S else rises * Q, real)
+        return ar.hypot(real, imag), ar.atan2(imag if P or S else side * Q, real)
 
-    return *polar(frame.x), *polar(frame.y)
+    return *polar(frame.x, -rises), *polar(frame.y, rises)

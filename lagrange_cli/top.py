@@ -17,6 +17,8 @@ Number = float | Fraction
 _DECIMAL = set("0123456789.eE+-")
 _MOST_CHARACTERS = 2000
 _LEAST_TILT = 1e-150
+_LARGEST = 1e100
+_UNITS = "choose other units"
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 
 
@@ -193,10 +195,14 @@ def _finite(name: str, value: Any) -> Number:
 def _check_ranges(top: Top) -> None:
     for name in ("m", "A", "C"):
         _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
+        _require(getattr(top, name) >= 1 / _LARGEST, name, ">= 1e-100", getattr(top, name), _UNITS)
+    for name in ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"):
+        size = abs(getattr(top, name))
+        _require(size <= _LARGEST, name, "within 1e100 in size", getattr(top, name), _UNITS)
     _require(top.s >= 0, "s", ">= 0", top.s, "for a low centre of mass use 180 - theta0 and -r0")
     _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
     twice = 2 * Fraction(top.A)
-    _require(twice >= top.C, "C", f"<= 2 A = {float(twice)}", top.C, "no rigid body has more")
+    _require(twice >= top.C, "C", f"<= 2 A = {_shown(twice)}", top.C, "no rigid body has more")
     if top.theta0_deg is not None and top.theta0_rad is not None:
         raise LagtopError("theta0_deg and theta0_rad are both given: leave one out", "theta0_rad")
     for name, most, shown in (("theta0_deg", 180, "180"), ("theta0_rad", _PI, "pi")):
@@ -214,8 +220,8 @@ def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = ""
 
 def _shown(value: Number) -> str:
     """As it was given, so that 180.00000000000000000001 is not shown as 180."""
-    if isinstance(value, float):
-        return str(value)
+    if isinstance(value, float) or float(value) == value:
+        return str(float(value))
     return str(Decimal(value.numerator) / Decimal(value.denominator))
 
 

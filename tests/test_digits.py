@@ -119,3 +119,35 @@ def test_bad_numbers_of_digits(digits: str, lagtop: Lagtop) -> None:
 def test_a_vertical_start_is_refused_here_too() -> None:
     with pytest.raises(LagtopError, match="psidot0 must be 0"):
         settled_record(Top(theta0_deg=0, psidot0=1.0), 20)
+
+
+@pytest.mark.parametrize(
+    ("start", "t", "digits", "psi"),
+    [
+        ({"r0": 1e12, "theta0_deg": 40}, 1.0, 1, 1e-12),
+        ({"r0": 5, "theta0_deg": 30}, 1e-8, 5, 8.3333333e-25),
+        ({"r0": 5, "theta0_deg": 30}, 1e-40, 5, 8.3333333e-121),
+    ],
+)
+def test_small_angles_are_not_taken_for_zero(
+    start: dict[str, float], t: float, digits: int, psi: float
+) -> None:
+    (row,) = settled_rows(Top(**(UNIT | start)), [t], digits, radians=True)
+    assert float(row[3]) == pytest.approx(psi, rel=10.0 ** (1 - digits))
+
+
+def test_far_times_do_not_lose_their_phase() -> None:
+    top = Top(**UNIT, r0=5, theta0_deg=30)
+    exact = Reference(top, 160).at(1e63)
+    (row,) = settled_rows(top, [1e63], 10, radians=True, wrap=True)
+    assert same(row[1], exact.theta, 10)
+
+
+def test_the_separatrix() -> None:
+    top = Top(**(UNIT | {"A": 2}), r0=0, theta0_deg=90, thetadot0=1)
+    (row,) = settled_rows(top, [0.25], 30, radians=True)
+    with mpmath.workdps(50):
+        h = mpmath.mpf(0.25) * mpmath.sqrt(0.5) - mpmath.asinh(1)
+        assert same(row[1], 2 * mpmath.atan(1 / mpmath.sinh(-h)), 30)
+    spinning = Top(**UNIT, r0=1, theta0_deg=180, thetadot0=1)
+    assert len(settled_rows(spinning, [0.0, 1.0], 20)) == 2

@@ -474,3 +474,96 @@ def test_the_looping_sample_changes_the_sign_of_its_precession() -> None:
     assert motion.path == "looping"
     (rate,) = columns(motion, "psidot", np.linspace(0, 1, 101) * period(motion))
     assert rate.min() < 0 < rate.max()
+
+
+# Poles
+
+
+@pytest.mark.parametrize("theta0", [0, 180])
+@pytest.mark.parametrize("kick", [2.78, -0.5])
+@pytest.mark.parametrize("r0", [-2.93, 0.0, 0.33, 2.0])
+@pytest.mark.parametrize("g", [0.0, 1.0])
+def test_a_kick_off_either_pole(theta0: float, kick: float, r0: float, g: float) -> None:
+    """phi = psi = 0 at t = 0, so p is thetadot0, and it is continuous."""
+    motion = solve(Top(**(UNIT | {"g": g}), r0=r0, theta0_deg=theta0, thetadot0=kick))
+    p, q, axis_x = columns(motion, "p q axis", 1e-7 * np.array([-1.0, 0.0, 1.0]))[:3]
+    np.testing.assert_allclose(p, kick, atol=1e-5)
+    np.testing.assert_allclose(q, 0, atol=1e-5)
+    np.testing.assert_allclose(axis_x, 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("kick", [2.0, -2.0])
+def test_the_separatrix_from_the_bottom(kick: float) -> None:
+    motion = solve(Top(**UNIT, r0=0, theta0_deg=180, thetadot0=kick))
+    assert motion.regime is Regime.SEPARATRIX
+    p, axis_x = columns(motion, "p axis", np.linspace(-1, 1, 5))[:2]
+    assert np.sign(p).tolist() == [math.copysign(1, kick)] * 5
+    np.testing.assert_allclose(axis_x, 0, atol=1e-15)
+
+
+@pytest.mark.parametrize("r0", [1.0, -1.0])
+@pytest.mark.parametrize("falls", [1, -1])
+def test_the_separatrix_against_an_integrator(r0: float, falls: int) -> None:
+    """cos(theta0) = 1/2, lambda = 1/4, beta = b and alpha = a as nearly as doubles can."""
+    theta_rate = falls * math.sqrt(2 * 0.5 - (r0 / 1.5) ** 2 * 0.75)
+    scene = UNIT | {"r0": r0, "theta0_deg": 60, "psidot0": r0 / 1.5, "thetadot0": theta_rate}
+    t = np.linspace(0, 3, 31)
+    theta, phi, psi, p, q, theta_dot = columns(solve(Top(**scene)), "theta phi psi p q thetadot", t)
+    found = by_dop853(scene, t)
+    sine = np.sin(theta)
+    mine = np.stack([sine * np.sin(phi), sine * np.cos(phi), np.cos(theta), p, q], axis=1)
+    assert np.abs(mine - found).max() < 1e-12
+    assert np.abs(np.gradient(theta, t, edge_order=2) - theta_dot).max() < 0.02
+    assert np.sign(psi[-1]) == np.sign(r0)
+
+
+def test_sleeping_exactly_at_the_threshold_and_nothing_at_all() -> None:
+    np.testing.assert_array_equal(solve(Top(**UNIT, r0=2, theta0_deg=0)).angles([1.0]).phi, [2.0])
+    still = solve(Top(**(UNIT | {"g": 0}), r0=0, theta0_deg=30)).angles([1.0])
+    assert (still.phi[0], still.psi[0]) == (0, 0)
+
+
+def test_rates_keep_their_digits_next_to_the_pole_and_for_tiny_starts() -> None:
+    for theta0 in (1e-15, 1e-22, 1e-30, 1e-150):
+        motion = solve(Top(**UNIT, r0=3, theta0_deg=theta0, psidot0=1))
+        assert (motion.precession_rate_start, motion.path) == (1, "looping")
+    for psidot0 in (1e-25, -1e-40):
+        motion = solve(Top(**UNIT, r0=1e12, theta0_deg=40, psidot0=psidot0))
+        assert motion.precession_rate_start == psidot0
+        assert motion.path == ("wavy" if psidot0 > 0 else "looping")
+    for kick in (1e-18, 1e-22, 1e-200):
+        motion = solve(Top(**UNIT, r0=1, theta0_deg=0, thetadot0=kick))
+        assert motion.precession_rate_half == pytest.approx(2, rel=4e-16)
+
+
+def test_torque_free_means_are_exact() -> None:
+    """The cone of the axis does not enclose the vertical, so there is no mean precession."""
+    motion = solve(Top(**(UNIT | {"g": 0}), r0=5, theta0_deg=60, thetadot0=0.5, psidot0=0.5))
+    assert (motion.mean_precession_rate, motion.T_precession) == (0, None)
+
+
+def test_small_times_keep_their_digits_for_any_start() -> None:
+    """Worst seen: 2.6 units; without the second half of the phase it is 6 to 16."""
+    rng = random.Random(8)
+    for scene, motion in generic_motions(25):
+        reference = Reference(Top(**scene))
+        t = [period(motion) * 10 ** rng.uniform(-10, -2) for _ in range(8)]
+        for now, theta, phi, psi in zip(t, *motion.angles(t), strict=True):
+            angles = float(theta), float(phi), float(psi)
+            assert max(angle_units(angles, reference.at(now))) <= 2.7
+
+
+def test_wrapped_angles_stay_in_their_interval() -> None:
+    motion = solve(Top(**(UNIT | {"g": 0}), r0=1, theta0_deg=40))
+    around = [math.nextafter(math.pi, up) for up in (0, 9)] + [math.pi, -math.pi, 3 * math.pi]
+    around += [-x for x in around]
+    phi = motion.angles(around, wrap=True).phi
+    assert (phi > -math.pi).all()
+    assert (phi <= math.pi).all()
+    assert motion.angles([3.0], wrap=True).phi[0] == 3.0
+
+
+def test_a_quarter_value_only_for_starts_at_the_top() -> None:
+    assert solve(Top(psidot0=20)).u_quarter is None  # it starts at the bottom of a nutation
+    assert solve(Top(thetadot0=1)).u_quarter is None
+    assert solve(Top(psidot0=4)).u_quarter is not None

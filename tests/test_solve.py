@@ -139,7 +139,9 @@ def test_no_spin_is_the_plane_pendulum() -> None:
         amplitude = mpmath.radians(150)
         period = 4 * mpmath.ellipk(mpmath.sin(amplitude / 2) ** 2)
         period *= mpmath.sqrt(mpmath.mpf(39032) / (1587 * 981 * 4))
+        rate = float(2 * mpmath.pi / period)
     assert motion.T_nutation == float(period / 2)  # from 150 to 150 on the other side
+    assert motion.mean_spin_rate == motion.mean_precession_rate == rate
 
 
 @pytest.mark.parametrize("inputs", [{"theta0_deg": 0}, {"theta0_deg": 180, "thetadot0": 1}])
@@ -171,8 +173,12 @@ def test_guards(inputs: dict[str, Any], message: str) -> None:
 
 
 def test_numbers_out_of_range() -> None:
-    with pytest.raises(LagtopError, match=r"a must be within 1\.8e308 in size"):
-        solve(Top(m=1e300, g=1e300))
+    with pytest.raises(LagtopError, match=r"m must be within 1e100 in size, got 1e\+300"):
+        solve(Top(m=1e300))
+    with pytest.raises(LagtopError, match="A must be >= 1e-100, got 1e-200"):
+        solve(Top(A=1e-200, C=1e-200))
+    with pytest.raises(LagtopError, match=r"T_nutation must be within 1\.8e308 in size"):
+        solve(Top(g=5e-324, s=1e-320, r0=0))
 
 
 def test_decimal_functions_against_mpmath() -> None:
