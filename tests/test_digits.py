@@ -11,7 +11,7 @@ import oracle
 import pytest
 from conftest import Lagtop
 
-from lagrange_cli import LagtopError, Top
+from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.accuracy import Reference
 from lagrange_cli.digits import settled_record, settled_rows
 
@@ -149,5 +149,7 @@ def test_the_separatrix() -> None:
     with mpmath.workdps(50):
         h = mpmath.mpf(0.25) * mpmath.sqrt(0.5) - mpmath.asinh(1)
         assert same(row[1], 2 * mpmath.atan(1 / mpmath.sinh(-h)), 30)
-    spinning = Top(**UNIT, r0=1, theta0_deg=180, thetadot0=1)
-    assert len(settled_rows(spinning, [0.0, 1.0], 20)) == 2
+    spinning = Top(**UNIT, r0=-1, theta0_deg=90, thetadot0=1, psidot0=-1)
+    (row,) = settled_rows(spinning, [0.7], 20, radians=True)
+    angles = solve(spinning).angles(0.7)
+    assert list(map(float, row[1:])) == pytest.approx(list(map(float, angles)), rel=1e-15)
