@@ -21,9 +21,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .phase import Array, Growth, Growths, Pair, reduce_phase, scaled
+from .phase import Array, Growth, Growths, Pair, reduce_phase
 from .series import Component, Frame, Polynomial
 from .top import LagtopError
 
@@ -146,10 +146,10 @@ class ThetaSampler(Sampler):
     """A nutating top, by its theta series."""
 
     steps_per_time: Pair
-    offset: Pair
+    offset: float
     """The phase at t = 0."""
     max_time: float
-    scale: Pair
+    scale: float
     hyperbolic: bool
     frames: Sequence[Frame]
     """About the turning points of the even and of the odd steps; one where all steps are alike."""
@@ -157,33 +157,29 @@ class ThetaSampler(Sampler):
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
         """See `Sampler.attitude`."""
-        if self.offset.high:
-            step, since = reduce_phase(t, self.steps_per_time, self.offset.high)
-            argument = _Argument(*scaled(since, self.offset, self.scale))
-        else:
-            step, since = reduce_phase(t, self.steps_per_time)
-            argument = _Argument(since * self.scale.high, None)
+        step, since = reduce_phase(t, self.steps_per_time, self.offset)
+        argument = (since + self.offset if self.offset else since) * self.scale
         if len(self.frames) == 1:
             spinor = self._spinor(self.frames[0], argument, rate)
         else:
             spinor = self._spinor_by_parity(step, argument, rate)
         return Attitude(self.growths, t, step, since, spinor)
 
-    def _spinor_by_parity(self, step: Array, argument: _Argument, rate: bool) -> Spinor:
+    def _spinor_by_parity(self, step: Array, argument: Array, rate: bool) -> Spinor:
         half = step * 0.5
         odd = np.rint(half) != half
         x, y, arg_x, arg_y = (np.empty_like(step) for _ in range(4))
         whole = Spinor(x, y, arg_x, arg_y, np.empty_like(step) if rate else None)
         for frame, chosen in zip(self.frames, (~odd, odd), strict=True):
             index = np.flatnonzero(chosen)
-            some = self._spinor(frame, argument.at(index), rate)
+            some = self._spinor(frame, argument[index], rate)
             for target, part in zip(whole, some, strict=True):
                 if target is not None:
                     target[index] = part
         return whole
 
-    def _spinor(self, frame: Frame, argument: _Argument, rate: bool) -> Spinor:
-        S, C, s = (_hyperbolic if self.hyperbolic else _circular)(*argument)
+    def _spinor(self, frame: Frame, argument: Array, rate: bool) -> Spinor:
+        S, C, s = (_hyperbolic if self.hyperbolic else _circular)(argument)
         x, arg_x = _polar(*_component(frame.x, S, C, s))
         y, arg_y = _polar(*_component(frame.y, S, C, s))
         return Spinor(x, y, arg_x, arg_y, _rate(frame.rate, S, C, s) if rate else None)
@@ -231,30 +227,16 @@ class SeparatrixSampler(Sampler):
         return Attitude(self.growths, t, t, zero, Spinor(x, y, arg_x, zero, falling))
 
 
-class _Argument(NamedTuple):
-    """The argument of the functions, and what rounding took off it where that matters."""
-
-    high: Array
-    low: Array | None
-
-    def at(self, index: NDArray[np.intp]) -> _Argument:
-        return _Argument(self.high[index], None if self.low is None else self.low[index])
-
-
-def _circular(x: Array, rest: Array | None) -> tuple[Array, None, Array]:
+def _circular(x: Array) -> tuple[Array, None, Array]:
     """S, C and s for angles; X and Y share the factor cos x, which is divided out."""
     tangent = np.tan(x)
-    if rest is not None:
-        tangent += (1.0 + tangent * tangent) * rest
     square = tangent * tangent
     square /= square + 1.0
     return tangent, None, square
 
 
-def _hyperbolic(x: Array, rest: Array | None) -> tuple[Array, Array, Array]:
+def _hyperbolic(x: Array) -> tuple[Array, Array, Array]:
     sinh = np.sinh(x)
-    if rest is not None:
-        sinh += np.cosh(x) * rest
     square = sinh * sinh
     return sinh, np.sqrt(square + 1.0), square
 

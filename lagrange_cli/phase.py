@@ -94,16 +94,6 @@ def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Arra
     return step, since
 
 
-def scaled(since: Array, offset: Pair, scale: Pair) -> tuple[Array, Array]:
-    """(since + offset) * scale to twice the precision, so that small times keep their digits."""
-    phase = since + offset.high
-    back = phase - since
-    rest = (since - (phase - back)) + (offset.high - back) + offset.low
-    high, low = _two_product(phase, scale.high)
-    low += phase * scale.low + rest * scale.high
-    return high, low
-
-
 def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
     """x * factor and its rounding error, exactly (Dekker)."""
     scaled = factor * _SPLITTER

@@ -53,9 +53,9 @@ def theta_sampler(ar: Arithmetic, c: ThetaConstants) -> ThetaSampler:
     frames = [series.frames[(nearest + i) % steps] for i in range(steps)]
     return ThetaSampler(
         steps_per_time=pair(steps / c.period),
-        offset=pair(offset),
+        offset=float(offset),
         max_time=float(MAX_PERIODS * c.period),
-        scale=pair(series.scale),
+        scale=float(series.scale),
         hyperbolic=series.hyperbolic,
         frames=[_rounded(frame, series.hyperbolic) for frame in frames],
         growths=growths(
