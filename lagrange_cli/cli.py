@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -19,6 +20,7 @@ from .options import (
     digits_option,
     output_options,
     scene_options,
+    with_progress,
 )
 from .output import MAX_TABLE_ROWS, write_record, write_rows, write_texts
 from .top import LagtopError, Number, build_top
@@ -169,9 +171,10 @@ def table_command(  # noqa: PLR0917 - click passes them by name
     names = DEFAULT_COLUMNS if columns is None else columns.replace(",", " ").split()
     header, blocks = rows(motion, chosen, names, radians=rad, wrap=wrap)
     if digits is None:
-        write_rows(header, blocks, style, output)
+        write_rows(header, with_progress(blocks, chosen.count, 3_000_000), style, output)
     else:
-        texts = digit_rows(motion, chosen, digits, radians=rad, wrap=wrap)
+        parts = digit_rows(motion, chosen, digits, radians=rad, wrap=wrap)
+        texts = chain.from_iterable(with_progress(parts, chosen.count, 1000))
         write_texts(header, texts, style, output)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sized
 from contextlib import suppress
 from fractions import Fraction
 from typing import Any, NoReturn, TypeVar
@@ -19,6 +19,7 @@ EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
+P = TypeVar("P", bound=Sized)
 
 
 class DecimalType(click.ParamType):  # type: ignore[type-arg]
@@ -107,6 +108,17 @@ class LagtopGroup(ExamplesFirst, click.Group):
             _die_by("SIGINT")
         except Terminated as error:
             _die_by(error.number)
+
+
+def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
+    """The parts as they come; a bar on the terminal where `count` rows are `long` work."""
+    if count < long or not sys.stderr.isatty():
+        yield from parts
+        return
+    with click.progressbar(length=count, label="rows", file=sys.stderr) as bar:
+        for part in parts:
+            yield part
+            bar.update(len(part))
 
 
 def complain(line: str) -> None:

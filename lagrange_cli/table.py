@@ -208,10 +208,10 @@ def _block(sample: Sample, columns: Sequence[Column], header: Sequence[str]) -> 
 
 def digit_rows(
     motion: Motion, times: Times, digits: int, *, radians: bool = False, wrap: bool = False
-) -> Iterator[list[NumberText]]:
-    """Rows of t and the three angles to so many significant digits, times read as decimals."""
+) -> Iterator[list[list[NumberText]]]:
+    """Lists of rows, t and the three angles to so many digits; times read as decimals."""
     from .digits import settled_rows
 
     waiting = times.decimals()
     while some := list(islice(waiting, DIGIT_ROWS)):
-        yield from settled_rows(motion.top, some, digits, radians=radians, wrap=wrap)
+        yield settled_rows(motion.top, some, digits, radians=radians, wrap=wrap)
