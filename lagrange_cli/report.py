@@ -37,7 +37,6 @@ _GROUPS: dict[str, list[Row]] = {
     "Constants": [
         Row("regime", "", "regime"),
         Row("path", "", "path of the axis"),
-        Row("remark", "", "remark"),
         Row("a", "a", "2mgs/A", "1/time²", "(4,4)"),
         Row("b", "b", "C r0/A", "1/time", "(4,5)"),
     ],
@@ -83,7 +82,7 @@ _ASCII = str.maketrans(
 
 
 def record_table(record: Mapping[str, Any], *, terminal: bool, encoding: str) -> bytes:
-    """The record by groups, a line for each key that the regime has."""
+    """The record by groups, a line for each key that the regime has; its remark last."""
     angle = "rad" if "theta0_rad" in record else "deg"
     spelling = {} if encoding.lower().startswith("utf") else _ASCII
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
@@ -100,7 +99,8 @@ def record_table(record: Mapping[str, Any], *, terminal: bool, encoding: str) ->
             symbols, names, *rest = ("\n".join(column) for column in zip(*shown, strict=True))
             name_cell = Text.assemble((f"{group}\n", "bold"), names)
             table.add_row(f"\n{symbols}", name_cell, *(f"\n{column}" for column in rest))
-    return _rendered(table, terminal, encoding)
+    remark = f"\n{record['remark']}\n" if record["remark"] else ""
+    return _rendered(table, terminal, encoding) + remark.encode()
 
 
 def _line(record: Mapping[str, Any], row: Row, angle: str) -> tuple[str, ...] | None:

@@ -68,7 +68,14 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
 def test_table_explains_every_key() -> None:
     angles = {"theta0", "modular_angle", "amplitude", "theta_min", "theta_max"}
     keys = [row.key for group in _GROUPS.values() for row in group]
-    assert sorted(f"{key}_deg" if key in angles else key for key in keys) == sorted(KEYS)
+    shown = [f"{key}_deg" if key in angles else key for key in keys]
+    assert sorted([*shown, "remark"]) == sorted(KEYS)
+
+
+def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--theta0", "0").stdout
+    assert shown.endswith("\n\nonly phi + psi is defined; unstable (lambda = b^2/2a < 1)\n")
+    assert max(map(len, shown.splitlines())) <= 80
 
 
 def test_table_in_ascii(lagtop: Lagtop) -> None:
