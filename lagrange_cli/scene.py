@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 import tomllib
-from dataclasses import fields
 from fractions import Fraction
 from typing import Any
 
 from .top import LagtopError, Top, parse_number
 
 _MOST_BYTES = 1 << 20
-KEYS = [field.name for field in fields(Top)]
+KEYS = Top._fields
 
 
 class SceneError(LagtopError):

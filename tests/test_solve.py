@@ -195,3 +195,13 @@ def test_decimal_functions_against_mpmath() -> None:
             for mine, true in zip(ours, exact, strict=True):
                 assert abs(mpmath.mpf(str(mine)) - true) <= 1e-38
         assert abs(mpmath.mpf(str(decimals.pi)) - mpmath.pi) < 1e-55
+
+
+def test_tops_can_be_copied_pickled_and_compared() -> None:
+    import copy
+    import pickle
+
+    top = Top(theta0_rad=1.0, r0=3)
+    assert copy.deepcopy(top) == pickle.loads(pickle.dumps(top)) == top
+    assert pickle.loads(pickle.dumps(solve(top))) == solve(top)
+    assert len({top, Top(theta0_rad=1.0, r0=3), Top()}) == 2

@@ -1,7 +1,7 @@
 """Twelve strata of hard scenes against the many-digit reference; a fixed subset of the battery.
 
-The whole battery (250 scenes a stratum, four times each from 1e-9 to 1e12 periods) was run by
-`python tests/test_strata.py 250`; its worst cases are the bounds here.
+The whole battery (200 scenes a stratum, four times each from 1e-9 to 1e12 periods) was run by
+`python tests/test_strata.py 200`; its worst cases are the bounds here.
 """
 
 from __future__ import annotations
