@@ -1,7 +1,7 @@
 """The one definition of error, and a many-digit reference that shares no formula with the program.
 
 Where the program uses theta functions about the highest point, the reference uses Legendre's third
-integral about the lowest, by mpmath's sn, R_F and R_J, from roots that mpmath finds:
+integral about the lowest, by mpmath's sn, R_F and R_J, from roots by Viete's cosines:
 
     u = u2 + (u1 - u2) sn^2 w,  w = sqrt(a (u3 - u2)) (t - t2)/2,
     (psi +- phi)/2 = +-(r0 - b) t/2 + (beta +- b)/2 * integral of dt / (1 +- u).

@@ -33,7 +33,6 @@ BLOCK = 16384
 MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
 
-
 MAX_TIME = 1e290
 """Room for the exact product of a time and a rate."""
 

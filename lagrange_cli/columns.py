@@ -113,6 +113,7 @@ class Sample:
         south = _over(self.constants.plus * self.y, self.x)
         return south + _over(self.constants.minus * self.x, self.y)
 
+    @cached_property
     def body_rates(self) -> tuple[Array, Array]:
         """p and q (4,1)."""
         phi = self.attitude.phi(wrap=True)
@@ -168,8 +169,8 @@ COLUMNS: dict[str, Column] = {
     "thetadot": Column(["thetadot"], lambda s: [s.theta_rate], True),
     "phidot": Column(["phidot"], lambda s: [s.phi_rate()]),
     "psidot": Column(["psidot"], lambda s: [s.psi_rate()]),
-    "p": Column(["p"], lambda s: s.body_rates()[:1], True),
-    "q": Column(["q"], lambda s: s.body_rates()[1:], True),
+    "p": Column(["p"], lambda s: s.body_rates[:1], True),
+    "q": Column(["q"], lambda s: s.body_rates[1:], True),
     "r": Column(["r"], lambda s: [np.full_like(s.t, s.constants.r0)]),
     "axis": Column(["axis_x", "axis_y", "axis_z"], Sample.axis),
     "quaternion": Column([f"quaternion_{part}" for part in "wxyz"], Sample.quaternion),

@@ -96,22 +96,21 @@ def _theta_args(ar: Arithmetic, c: ThetaConstants) -> Args:
     terms = 4 + math.isqrt(int(ar.dps * math.log(10) / math.pi))  # the nome is at most exp(-pi)
     series = theta_series(ar, c, terms)
     steps = len(series.frames)
-    turn_x, turn_y = ((c.precession + z * c.spin) / (2 * steps) for z in (1, -1))
 
     def args(t: Real) -> tuple[Real, Real, Real, Real]:
         passed = (t / c.period + c.offset) * steps
         step = int(ar.nint(passed))
         phase = passed - step
         x, arg_x, y, arg_y = evaluate(ar, series, series.frames[step % steps], phase, c.rises)
-        arg_x += step * turn_x + phase * series.slope_x
-        arg_y += step * turn_y + phase * series.slope_y
+        arg_x += step * series.turn_x + phase * series.slope_x
+        arg_y += step * series.turn_y + phase * series.slope_y
         return x, arg_x, y, arg_y
 
     return args
 
 
 def _steady_args(ar: Arithmetic, top: Top, solution: Solution) -> Args:
-    tilt, (spin, precession) = top.tilt(ar), steady_rates(solution)
+    tilt, (spin, precession) = top.tilt(ar), steady_rates(solution.start)
 
     def args(t: Real) -> tuple[Real, Real, Real, Real]:
         return (

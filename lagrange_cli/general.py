@@ -176,18 +176,15 @@ def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
 
 def start_rates(top: Top, begin: Start) -> tuple[Real | None, Real | None]:
     """Rates of spin and precession at t = 0; none on the vertical."""
-    if top.pole:
-        return None, None
-    return begin.r0 - begin.psi_rate * begin.u, begin.psi_rate
+    return (None, None) if top.pole else steady_rates(begin)
 
 
 def _starts_at_u1(solution: Solution) -> bool:
     return bool(solution.place.u1_u < solution.place.u_u2)
 
 
-def steady_rates(solution: Solution) -> tuple[Real, Real]:
-    """Rates of spin and precession where the tilt does not change; on the vertical, all is spin."""
-    begin = solution.start
+def steady_rates(begin: Start) -> tuple[Real, Real]:
+    """Rates of spin and precession as they are given; on the vertical, all counts as spin."""
     return begin.r0 - begin.psi_rate * begin.u, begin.psi_rate
 
 

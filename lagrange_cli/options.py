@@ -182,9 +182,10 @@ def output_options(*styles: str) -> Callable[[F], F]:
         command = click.option(
             "-o",
             "--output",
+            type=click.Path(allow_dash=True),
             default="-",
             metavar="FILE|-",
-            help="Replace FILE when all is written.",
+            help="Where to write; FILE is replaced when all is written.",
         )(command)
         choice = click.Choice(styles)
         return click.option(

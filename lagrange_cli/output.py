@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 if TYPE_CHECKING:
     from .phase import Array
 
-Record = Mapping[str, Any]
-
 MAX_TABLE_ROWS = 10_000
 """A rich table of more rows is neither read nor quickly made."""
 
@@ -110,7 +108,7 @@ def _catch_signals() -> None:
             signal.signal(getattr(signal, name), end)
 
 
-def write_record(record: Record, style: str, path: str) -> None:
+def write_record(record: Mapping[str, Any], style: str, path: str) -> None:
     """One record as a rich `table`, as `csv` (header and row) or as `json` (one line)."""
     if style == "table":
         from .report import record_table

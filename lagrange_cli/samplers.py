@@ -34,7 +34,7 @@ def sampler_of(top: Top) -> Sampler:
         swing = separatrix_swing(ar, solution)
         return separatrix_sampler(ar, swing, solution.speed, begin.r0, begin.b)
     if not solution.nutates:
-        return steady_sampler(ar, top.tilt(ar), *steady_rates(solution))
+        return steady_sampler(ar, top.tilt(ar), *steady_rates(solution.start))
     return theta_sampler(ar, theta_constants(ar, solution))
 
 
@@ -60,7 +60,7 @@ def theta_sampler(ar: Arithmetic, c: ThetaConstants) -> ThetaSampler:
         frames=[_rounded(frame, series.hyperbolic) for frame in frames],
         growths=growths(
             ar,
-            steps=((c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)),
+            steps=(series.turn_x, series.turn_y),
             slopes=(series.slope_x, series.slope_y),
             starts=evaluate(ar, series, frames[0], offset, c.rises)[1::2],
         ),

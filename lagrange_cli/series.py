@@ -2,9 +2,9 @@
 
 X = cos(theta/2) exp(i (psi + phi)/2) goes as theta2(x - i s+ y+) and
 Y = sin(theta/2) exp(i (psi - phi)/2) as theta1(x - i s- y-), with x = pi t/T counted from a passage
-of u1.  While K <= K' the series run in the nome q, about u1 only; beyond, Jacobi's imaginary
-transformation gives series in q' = exp(-pi K/K'), about u1 and about u2.  The nome in use is at
-most exp(-pi), so four terms are enough for doubles.
+of u1.  While K <= K' the series run in the nome q; beyond, Jacobi's imaginary transformation gives
+series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so four terms are enough for
+doubles.  About u1 alone they serve a start at u1 in q; everything else takes the nearer of u1, u2.
 
 sin and cos of multiples of x are polynomials in s = sin^2 x (times S = sin x, C = cos x or S C),
 all four families by one recurrence; sinh and cosh are the same with s -> -sinh^2.
@@ -98,14 +98,17 @@ class Swing(NamedTuple):
 
 
 class Series(NamedTuple):
-    """The series about one turning point (circular) or two (hyperbolic), in the caller's digits."""
+    """The series about each turning point that a step may be near, in the caller's digits."""
 
     hyperbolic: bool
     frames: list[Frame]
     scale: Real
     """Argument of the functions per step of the phase."""
+    turn_x: Real
+    """Growth of arg X over a step."""
+    turn_y: Real
     slope_x: Real
-    """Linear growth of arg X within a step."""
+    """The part of it that is linear within the step; the rest is in the series."""
     slope_y: Real
 
 
@@ -127,12 +130,15 @@ def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
     x = _circular_components(ar, weights, y_plus, c.x_size, c.sign_plus)
     y = _circular_components(ar, weights, y_minus, c.y_size, c.sign_minus)
     steps = 2 if c.offset else 1
+    turn_x, turn_y = (c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)
     return Series(
         hyperbolic=False,
         frames=_frames(x, y, _rate(weights, 1, c.nutation))[:steps],
         scale=ar.pi / steps,
-        slope_x=((c.precession + c.spin) / 2 - c.sign_plus * ar.pi) / steps,
-        slope_y=((c.precession - c.spin) / 2 - c.sign_minus * ar.pi) / steps,
+        turn_x=turn_x,
+        turn_y=turn_y,
+        slope_x=turn_x - c.sign_plus * ar.pi / steps,
+        slope_y=turn_y - c.sign_minus * ar.pi / steps,
     )
 
 
@@ -141,16 +147,20 @@ def _hyperbolic_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
     ratio: Real = c.quarter / c.quarter_prime
     q = ar.exp(-ar.pi * ratio)
     v_plus, v_minus = (ar.pi * eta / (2 * c.quarter_prime) for eta in (c.eta_plus, c.eta_minus))
-    even, odd = [q ** (n * n) for n in range(terms)], _weights(q, terms)
+    even = [(2 if n else 1) * q ** (n * n) for n in range(terms)]
+    odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(q, terms)]
     x = _hyperbolic_components(ar, even, odd, v_plus, c.sign_plus, c.x_size)
     y = _hyperbolic_components(ar, even, odd, v_minus, c.sign_minus, c.y_size)
     rate = _rate(odd, -1, c.nutation / ratio)
+    turn_x, turn_y = (c.precession + c.spin) / 4, (c.precession - c.spin) / 4
     return Series(
         hyperbolic=True,
         frames=_frames(x, y, rate),
         scale=ar.pi / 2 * ratio,
-        slope_x=(c.precession + c.spin) / 4 + c.sign_plus * (v_plus - ar.pi / 2),
-        slope_y=(c.precession - c.spin) / 4 + c.sign_minus * (v_minus - ar.pi / 2),
+        turn_x=turn_x,
+        turn_y=turn_y,
+        slope_x=turn_x + c.sign_plus * (v_plus - ar.pi / 2),
+        slope_y=turn_y + c.sign_minus * (v_minus - ar.pi / 2),
     )
 
 
@@ -184,8 +194,6 @@ def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
     ar: Arithmetic, even: list[Real], odd: list[Real], v: Real, sign: int, size: Real
 ) -> Components:
     """The same two functions after Jacobi's transformation: theta4 and theta1 of v + i h."""
-    even = [even[0], *(2 * w for w in even[1:])]
-    odd = [2 * ar.sqrt(ar.sqrt(even[1] / 2)) * w for w in odd]
     cos_even = _alternate([w * ar.cos(2 * n * v) for n, w in enumerate(even)])
     sin_even = _alternate([w * ar.sin(2 * n * v) for n, w in enumerate(even)])
     cos_odd = _alternate([w * ar.cos((2 * n + 1) * v) for n, w in enumerate(odd)])
