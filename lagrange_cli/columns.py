@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .angles import Attitude
+from .cubic import Start
 from .phase import Array
-from .roots import Start
 from .top import Top
 
 

@@ -11,10 +11,11 @@ import math
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from .cubic import Place, Start, roots_from_start, start
 from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
 from .record import Record, Regime, period_of, with_constant_rates
 from .released import complement, modulus, phase_rate, u_quarter
-from .roots import Place, Roots, Start, roots_from_start, start
+from .roots import Roots
 from .series import Swing, ThetaConstants
 from .top import LagtopError, Number, Top
 
