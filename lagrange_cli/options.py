@@ -1,21 +1,19 @@
-"""What the commands share: parameter types, options, help, errors and exit codes."""
+"""What the commands share: parameter types, options, help, and the way to a motion."""
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sized
 from contextlib import suppress
 from fractions import Fraction
-from typing import Any, NoReturn, TypeVar
+from typing import Any, TypeVar
 
 import click
 
 from . import __version__
-from .output import CannotWriteError, Terminated
-from .top import LagtopError, parse_number
+from .motion import Motion, solve
+from .top import LagtopError, Number, build_top, parse_number
 
-EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -70,44 +68,36 @@ class ExamplesFirst(click.Command):
         super().format_help(ctx, formatter)
 
 
-class LagtopGroup(ExamplesFirst, click.Group):
-    """The group of commands, with our errors (one line), exit codes and deaths by signal."""
+def solved(
+    scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
+) -> Motion:
+    """The motion of the top in a scene file, if any, and in the options, which win."""
+    given: dict[str, Number] = {key: x for key, x in options.items() if x is not None}
+    if "theta0" in given:
+        given["theta0_rad" if rad else "theta0_deg"] = given.pop("theta0")
+    motion = solve(build_top(given, exact=exact)) if scene is None else _of(scene, given, exact)
+    if caveat := motion.top.caveat():
+        complain(f"Warning: {caveat}")
+    return motion
 
-    command_class = ExamplesFirst
 
-    def main(self, *args: Any, **extra: Any) -> Any:
-        """As click's; errors are one line on standard error and an exit code."""
-        run: Any = super().main
-        if not extra.pop("standalone_mode", True):
-            return run(*args, standalone_mode=False, **extra)
-        try:
-            sys.exit(run(*args, standalone_mode=False, **extra) or 0)
-        except click.ClickException as error:
-            complain(f"Error: {error.format_message()}")
-            sys.exit(error.exit_code)
-        except LagtopError as error:
-            complain(f"Error: {error}")
-            sys.exit(getattr(error, "exit_code", EXIT_USAGE))
-        except CannotWriteError as error:
-            complain(f"Error: {error}")
-            sys.exit(EXIT_CANNOT_WRITE)
-        except OSError as error:  # of the help itself; the writers raise CannotWriteError
-            complain(f"Error: cannot write standard output: {error.strerror}")
-            os._exit(EXIT_CANNOT_WRITE)  # the interpreter would try to flush it once more
-        except click.Abort:
-            _die_by("SIGINT")
+def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
+    from .scene import SceneFile
 
-    def invoke(self, ctx: click.Context) -> Any:
-        """Run the command.  What ends it from outside is caught here, before click turns it into
-        an exit code: a signal must kill as a signal."""
-        try:
-            return super().invoke(ctx)
-        except BrokenPipeError:
-            _die_by("SIGPIPE")
-        except KeyboardInterrupt:
-            _die_by("SIGINT")
-        except Terminated as error:
-            _die_by(error.number)
+    file = SceneFile(scene)
+    tilt_given = any(key.startswith("theta0_") for key in given)
+    inputs = {x: y for x, y in file.inputs.items() if not (tilt_given and x.startswith("theta0_"))}
+    try:
+        return solve(build_top(inputs | given, exact=exact))
+    except LagtopError as error:
+        raise error if error.key in given else file.error(error) from None
+
+
+def exclude(options: dict[str, Any]) -> None:
+    """Raise LagtopError where more than one of these options was given."""
+    given = [name for name, value in options.items() if value is not None]
+    if len(given) > 1:
+        raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
 
 
 def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
@@ -125,16 +115,6 @@ def complain(line: str) -> None:
     """One line on standard error, if there is one that takes it."""
     with suppress(OSError):
         click.echo(" ".join(line.split()), err=True)
-
-
-def _die_by(which: str | int) -> NoReturn:
-    """End by the signal itself: only that stops the shell loop we may be running in."""
-    import signal
-
-    number = signal.Signals[which] if isinstance(which, str) else signal.Signals(which)
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
-    raise AssertionError("unreachable")
 
 
 NUMBER, COUNT = DecimalType(), CountType()
