@@ -10,9 +10,9 @@ from typing import Any, NoReturn
 import click
 
 from . import __version__
+from .errors import LagtopError
 from .options import ExamplesFirst, complain
 from .output import CannotWriteError, Terminated
-from .top import LagtopError
 
 COMMANDS = ["solve", "table"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74

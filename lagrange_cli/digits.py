@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from .elliptic import Arithmetic, Real
+from .elliptic import Arithmetic, Real, many_digits
+from .errors import LagtopError
 from .general import (
     Solution,
     analyse,
     general_record,
-    many_digits,
     separatrix_swing,
     steady_rates,
     theta_constants,
@@ -19,7 +19,7 @@ from .general import (
 from .record import Regime
 from .released import released_record
 from .series import ThetaConstants, evaluate, theta_series
-from .top import LagtopError, Number, Top, number
+from .top import Number, Top, number
 
 
 class NumberText(str):

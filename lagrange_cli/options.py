@@ -11,8 +11,9 @@ from typing import Any, TypeVar
 import click
 
 from . import __version__
+from .errors import LagtopError
 from .motion import Motion, solve
-from .top import LagtopError, Number, build_top, parse_number
+from .top import Number, build_top, parse_number
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 

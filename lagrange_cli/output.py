@@ -13,7 +13,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 if TYPE_CHECKING:
-    from .phase import Array
+    from .elliptic.twofold import Array
 
 MAX_TABLE_ROWS = 10_000
 """A rich table of more rows is neither read nor quickly made."""

@@ -11,14 +11,15 @@ from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from .errors import LagtopError
 from .motion import Motion
-from .top import LagtopError, parse_number
+from .top import parse_number
 
 if TYPE_CHECKING:
     from .angles import Sampler
     from .columns import Column, Sample
     from .digits import NumberText
-    from .phase import Array
+    from .elliptic.twofold import Array
 
 MAX_ROWS = 10**9
 BLOCK_ROWS = 1 << 16

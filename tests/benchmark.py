@@ -15,7 +15,7 @@ from scipy import special
 
 from lagrange_cli import Top, solve
 from lagrange_cli.angles import BLOCK
-from lagrange_cli.phase import Array
+from lagrange_cli.elliptic.twofold import Array
 
 COUNT = 1_000_000
 STARTS: dict[str, dict[str, float]] = {

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..errors import LagtopError
 from ..options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -21,7 +22,6 @@ from ..options import (
     with_progress,
 )
 from ..output import MAX_TABLE_ROWS, write_rows, write_texts
-from ..top import LagtopError
 
 if TYPE_CHECKING:
     from ..table import Times
