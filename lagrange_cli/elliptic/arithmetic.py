@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator
+from functools import wraps
 from typing import Any
 
 Arithmetic = Any
@@ -43,3 +45,27 @@ def many_digits(digits: int) -> Arithmetic:
 def has_arrays(ar: Arithmetic) -> bool:
     """Whether the arithmetic is numpy, rather than one of scalars."""
     return hasattr(ar, "asarray")
+
+
+BLOCK = 16384
+"""So many elements of arrays at a time: what is computed in between stays in the cache."""
+
+
+def blocks(size: int) -> Iterator[slice]:
+    """Slices that cover an array of so many elements; one of them where it is empty."""
+    return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
+
+
+def blockwise(function: Callable[..., Real]) -> Callable[..., Real]:
+    """A formula f(ar, *arguments), evaluated block by block where the arguments are long arrays."""
+
+    @wraps(function)
+    def evaluate(ar: Arithmetic, *arguments: Real) -> Real:
+        if not has_arrays(ar) or max(map(ar.size, arguments)) <= BLOCK:
+            return function(ar, *arguments)
+        arrays = ar.broadcast_arrays(*arguments)
+        flat = [array.ravel() for array in arrays]
+        parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
+        return ar.concatenate(parts).reshape(arrays[0].shape)
+
+    return evaluate

@@ -8,20 +8,16 @@ nome in use is at most exp(-pi) and four terms are enough, however close k is to
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .arithmetic import Arithmetic, Real, has_arrays
-from .complete import agm, complete_k, nome
+from .arithmetic import Arithmetic, Real, blocks, has_arrays
+from .complete import complete_k, nome
 from .modulus import Modulus
 from .theta import theta
 from .twofold import Array, Pair, agm_over_pi, reduce_phase
-
-BLOCK = 16384
-"""So many elements at a time: what is in between stays in the cache."""
 
 _LARGEST_ARGUMENT = 350.0
 """Of sinh.  Beyond it, which is for k' = 0 alone, sn is 1 and cn is 0 to doubles."""
@@ -53,23 +49,18 @@ def jacobi(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in given):
         series = _series(given)
-        parts = [_evaluate(u.ravel()[block], series) for block in _blocks(u.size)]
+        parts = [_evaluate(u.ravel()[block], series) for block in blocks(u.size)]
         return Jacobi(*(np.concatenate(f).reshape(u.shape) for f in zip(*parts, strict=True)))
     u, *moduli = np.broadcast_arrays(u, *given)
     flat = [np.ravel(part) for part in (u, *moduli)]
     results = np.empty((4, u.size))
     circular = flat[1] <= flat[2]
     for family in (np.flatnonzero(circular), np.flatnonzero(~circular)):
-        for block in _blocks(family.size):
+        for block in blocks(family.size):
             index = family[block]
             series = _series(Modulus(*(part[index] for part in flat[1:])))
             results[:, index] = _evaluate(flat[0][index], series)
     return Jacobi(*results.reshape(4, *u.shape))
-
-
-def _blocks(size: int) -> Iterator[slice]:
-    """Slices that cover an array; one of them where it is empty."""
-    return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
 
 
 class _Series(NamedTuple):
@@ -97,13 +88,14 @@ def _series(given: Modulus) -> _Series:
         q = nome(np, m=k * k, k_prime=k_prime)
         return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)
     q = nome(np, m=k_prime * k_prime, k_prime=k)
-    stretch = np.pi * agm(np, np.ones_like(k), k) / agm(np, np.ones_like(k), finite)
+    stretch = -np.where(q > 0, np.log(np.where(q > 0, q, 1.0)), 2 * np.log(finite / 4))  # pi K/K'
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
 def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
     """theta1 : theta2 in powers of sin^2; `root` is sqrt(k') = theta4/theta3."""
-    q2, q6 = q**2, q**6
+    q2 = q * q
+    q6 = q2 * q2 * q2
     above = 1 - 3 * q2 + 5 * q6, 4 * q2 - 20 * q6, 16 * q6
     below = 1 + q2 + q6, -4 * q2 - 12 * q6, 16 * q6
     return above, tuple(root * c for c in below)
@@ -111,7 +103,9 @@ def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
 
 def _hyperbolic(q: Real) -> tuple[Polynomial, Polynomial]:
     """theta1 : theta4 of an imaginary argument in powers of q sinh^2, which stays small."""
-    q2, q4, q8 = q**2, q**4, q**8
+    q2 = q * q
+    q4 = q2 * q2
+    q8 = q4 * q4
     above = (
         1 - 3 * q2 + 5 * q2 * q4 - 7 * q4 * q8,
         -4 * q + 20 * q * q4 - 56 * q * q2 * q8,
@@ -133,22 +127,23 @@ def _evaluate(u: Array, series: _Series) -> Jacobi:
     k_prime = series.k_prime
     halves, since = reduce_phase(u, series.rate)
     far = abs(since) > 0.25
-    y = np.where(far, np.copysign(0.5, since) - since, since) * series.stretch
+    side = np.copysign(1.0, since)
+    y = np.where(far, 0.5 * side - since, since) * series.stretch
     if np.any(k_prime == 0):  # without a period
         endless = np.broadcast_to(k_prime == 0, u.shape)
         halves, far = np.where(endless, 0.0, halves), far & ~endless
         y = np.where(endless, u, y)
     above, below = _tangent(y, series)
-    sine = np.where(far, np.copysign(below, y), above)
-    cosine = np.where(far, k_prime * abs(above), below)
-    size = np.hypot(sine, cosine)
-    sign = 1.0 - 2.0 * (halves % 2.0)
-    return Jacobi(
-        am=halves * np.pi + np.arctan2(sine, cosine),
-        sn=sign * sine / size,
-        cn=sign * cosine / size,
-        dn=np.hypot(cosine, k_prime * sine) / size,
-    )
+    sine = np.where(far, side * below, above)
+    cosine = np.where(far, side * (k_prime * above), below)
+    am = halves * np.pi + np.arctan2(sine, cosine)
+    size = np.sqrt(sine * sine + cosine * cosine)
+    sine /= size
+    cosine /= size
+    dn = np.sqrt(cosine * cosine + (k_prime * sine) ** 2)
+    pairs = halves / 2
+    sign = 1.0 - 4.0 * abs(pairs - np.rint(pairs))  # (-1)^halves
+    return Jacobi(am, sign * sine, sign * cosine, dn)
 
 
 def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
