@@ -14,7 +14,7 @@ from .errors import LagtopError
 from .options import ExamplesFirst, complain
 from .output import CannotWriteError, Terminated
 
-COMMANDS = ["solve", "table"]
+COMMANDS = ["solve", "table", "jacobi", "eta"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 

@@ -51,6 +51,21 @@ class CountType(DecimalType):
         return int(exact)
 
 
+class RangeType(click.ParamType):  # type: ignore[type-arg]
+    """A:B:N, so many numbers from A to B."""
+
+    name = "A:B:N"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The grid."""
+        from .grids import parse_range
+
+        try:
+            return parse_range(value) if isinstance(value, str) else value
+        except LagtopError as error:
+            raise click.UsageError(f"{_option(param)} {error}", ctx) from None
+
+
 def _option(param: click.Parameter | None) -> str:
     return param.opts[0] if param else "value"
 
@@ -118,7 +133,7 @@ def complain(line: str) -> None:
         click.echo(" ".join(line.split()), err=True)
 
 
-NUMBER, COUNT = DecimalType(), CountType()
+NUMBER, COUNT, RANGE = DecimalType(), CountType(), RangeType()
 
 _SCENE_OPTIONS = [
     ("--m", "Mass."),

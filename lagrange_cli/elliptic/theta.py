@@ -32,15 +32,23 @@ class Place(NamedTuple):
 
 
 def theta(ar: Arithmetic, ij: str, x: Complex, given: Modulus) -> Complex:
-    """theta_ij(x, iK'/K) of section 1, `ij` one of 01, 00, 11, 10; Theta_ij(v) is that of v/2K."""
+    """theta_ij(x, iK'/K) of section 1, `ij` one of 01, 00, 11, 10."""
     _check(ij, given)
     return _with_slope(ar, ij, _place(ar, x), given)[0]
+
+
+def theta_of(ar: Arithmetic, ij: str, v: Complex, given: Modulus) -> Complex:
+    """Theta_ij(v) = theta_ij(v/2K), which keeps its digits at large real v."""
+    _check(ij, given)
+    return _with_slope(ar, ij, _in_periods(ar, v, given), given)[0]
 
 
 def zeta(ar: Arithmetic, ij: str, v: Complex, given: Modulus) -> Complex:
     """Z_ij(v) = d log theta_ij(v/2K)/dv of section 1; Z_01 is Jacobi's Zeta function."""
     _check(ij, given)
     value, slope = _with_slope(ar, ij, _in_periods(ar, v, given), given)
+    if not has_arrays(ar) and not value:
+        return ar.inf
     return slope / value / (2 * complete_k(ar, given.k_prime))
 
 
@@ -57,7 +65,7 @@ def omega(ar: Arithmetic, ij: str, eta: Real, v: Complex, given: Modulus) -> Com
         y = _in_periods(ar, _real(ar, v), given)
         less = _with_slope(ar, ij, Place(x.turns - y.turns, x.rest - y.rest), given)[0]
         more = _with_slope(ar, ij, Place(x.turns + y.turns, x.rest + y.rest), given)[0]
-        return ar.log(abs(less / more)) / 2
+        return (ar.log(abs(less)) - ar.log(abs(more))) / 2
     if not everywhere(_real(ar, v) == 0):
         raise LagtopError("the parameter must be real or imaginary")
     if not everywhere((given.k == 0) | (abs(alpha) < _quarter_period(ar, given.k))):
