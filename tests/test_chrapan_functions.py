@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import pytest
@@ -23,7 +24,7 @@ K, K_PRIME, E = ar.ellipk(k**2), ar.ellipk(1 - k**2), ar.ellipe(k**2)
 Q = ar.exp(-ar.pi * K_PRIME / K)
 K_BAR = k / M.k_prime
 STRETCH = ar.sqrt(1 + K_BAR**2)
-ALPHA, V, W, I = ar.mpf("0.7543"), ar.mpf("0.41"), ar.mpf("1.13"), ar.mpc(0, 1)
+ALPHA, V, W, J = ar.mpf("0.7543"), ar.mpf("0.41"), ar.mpf("1.13"), ar.mpc(0, 1)
 NUMBER = {"01": 4, "00": 3, "11": 1, "10": 2}
 S, C, D = (ar.ellipfun(f, ALPHA, m=1 - k**2) for f in ("sn", "cn", "dn"))
 
@@ -77,31 +78,31 @@ def _() -> Sides:
 def _() -> Sides:
     line = ar.pi * ALPHA / (2 * K * K_PRIME)
     z = zeta_there("01", ALPHA, ar.exp(-ar.pi * K / K_PRIME), K_PRIME)
-    yield zeta(ar, "01", I * ALPHA, M), I * (S * D / C - line - z)
-    yield zeta(ar, "00", I * ALPHA, M), I * (M.k_prime**2 * S * C / D - line - z)
-    yield zeta(ar, "11", I * ALPHA, M), -I * (C * D / S + line + z)
-    yield zeta(ar, "10", I * ALPHA, M), -I * (line + z)
+    yield zeta(ar, "01", J * ALPHA, M), J * (S * D / C - line - z)
+    yield zeta(ar, "00", J * ALPHA, M), J * (M.k_prime**2 * S * C / D - line - z)
+    yield zeta(ar, "11", J * ALPHA, M), -J * (C * D / S + line + z)
+    yield zeta(ar, "10", J * ALPHA, M), -J * (line + z)
 
 
 @equation("(1,3)")
 def _() -> Sides:
-    yield zeta(ar, "00", I * ALPHA, M) - zeta(ar, "11", I * ALPHA, M), I * C / (S * D)
+    yield zeta(ar, "00", J * ALPHA, M) - zeta(ar, "11", J * ALPHA, M), J * C / (S * D)
 
 
 @equation("(1,4)")
 def _() -> Sides:
-    yield zeta(ar, "00", I * ALPHA, M) - zeta(ar, "01", I * ALPHA, M), -I * k**2 * S / (C * D)
+    yield zeta(ar, "00", J * ALPHA, M) - zeta(ar, "01", J * ALPHA, M), -J * k**2 * S / (C * D)
 
 
 @as_printed("(1,4)")
 def _() -> Sides:
-    right = -I * M.k_prime**2 * S / (C * D)
-    yield zeta(ar, "00", I * ALPHA, M) - zeta(ar, "01", I * ALPHA, M), right
+    right = -J * M.k_prime**2 * S / (C * D)
+    yield zeta(ar, "00", J * ALPHA, M) - zeta(ar, "01", J * ALPHA, M), right
 
 
 @equation("(1,5)")
 def _() -> Sides:
-    yield zeta(ar, "11", I * ALPHA, M) - zeta(ar, "10", I * ALPHA, M), -I * C * D / S
+    yield zeta(ar, "11", J * ALPHA, M) - zeta(ar, "10", J * ALPHA, M), -J * C * D / S
 
 
 @equation("Z(alpha) = E(alpha, k') - E' alpha/K'")
@@ -134,8 +135,8 @@ def _() -> Sides:
 def _sum_1_8(sign: int) -> tuple[Any, Any]:
     phi = jacobi(ar, ALPHA, COMPLEMENT).am
     curve = incomplete_e(ar, phi, COMPLEMENT) - incomplete_f(ar, phi, COMPLEMENT) * (1 - E / K)
-    right = I * M.k_prime**2 * S * C / D - I * C * D / S + sign * 2 * I * curve
-    return zeta_there("00", I * ALPHA) + zeta_there("11", I * ALPHA), right
+    right = J * M.k_prime**2 * S * C / D - J * C * D / S + sign * 2 * J * curve
+    return zeta_there("00", J * ALPHA) + zeta_there("11", J * ALPHA), right
 
 
 @equation("(1,8)")
@@ -150,20 +151,20 @@ def _() -> Sides:
 
 @equation("(2,1)")
 def _() -> Sides:
-    right = omega(ar, "11", W, V, M) + I * ar.pi * W / (2 * K) + I * ar.pi / 2
-    yield ratio_there("01", W, V + I * K_PRIME), ratio(right)
+    right = omega(ar, "11", W, V, M) + J * ar.pi * W / (2 * K) + J * ar.pi / 2
+    yield ratio_there("01", W, V + J * K_PRIME), ratio(right)
 
 
 @equation("(2,2)")
 def _() -> Sides:
-    for v in (V, I * V):
+    for v in (V, J * V):
         right = ratio(omega(ar, "00", W * STRETCH, v * STRETCH, M))
         yield ratio_there("01", W, v, **IMAGINARY), right
 
 
 @equation("(2,3)")
 def _() -> Sides:
-    for v in (V, I * V):
+    for v in (V, J * V):
         right = ratio(omega(ar, "11", W * STRETCH, v * STRETCH, M))
         yield ratio_there("11", W, v, **IMAGINARY), right
 
@@ -186,16 +187,16 @@ def _arctangents(w: Any) -> tuple[Any, Any]:
 
     first = sum(term(2 * h - 1, 1) for h in range(1, 60))
     second = sum(term(2 * h, -1) for h in range(1, 60))
-    return I * first, I * second - I * ar.atan(ar.cot(X / 2) * ar.tanh(Y / 2))
+    return J * first, J * second - J * ar.atan(ar.cot(X / 2) * ar.tanh(Y / 2))
 
 
 @equation("(2,5)")
 def _() -> Sides:
     for w in (V, W):
         even, odd = _arctangents(w)
-        yield omega(ar, "00", w, I * ALPHA, M), even
-        yield omega(ar, "11", w, I * ALPHA, M), odd
-        both = omega(ar, "00", w, I * ALPHA, M) + omega(ar, "11", w, I * ALPHA, M)
+        yield omega(ar, "00", w, J * ALPHA, M), even
+        yield omega(ar, "11", w, J * ALPHA, M), odd
+        both = omega(ar, "00", w, J * ALPHA, M) + omega(ar, "11", w, J * ALPHA, M)
         yield both, even + odd
 
 
@@ -207,15 +208,15 @@ def _() -> Sides:
         _, odd = _arctangents(w)
         arctangent = ar.atan(ar.cot(x) * ar.tanh(ar.pi * ALPHA / (2 * K)))
         wave = ar.atan(z * ar.sin(2 * x) / (1 - z * ar.cos(2 * x)))
-        right = odd + I * arctangent - I * (ar.pi / 2 - x - wave)
-        yield omega(ar, "11", w, I * ALPHA, M), right
+        right = odd + J * arctangent - J * (ar.pi / 2 - x - wave)
+        yield omega(ar, "11", w, J * ALPHA, M), right
 
 
 @equation("(2,6)")
 def _() -> Sides:
     sn, cn, dn = (ar.ellipfun(f, W, m=k**2) for f in ("sn", "cn", "dn"))
-    right = I * ar.atan(S * D * cn / (C * sn * dn))
-    left = omega(ar, "00", W, I * ALPHA, M) - omega(ar, "11", W, I * ALPHA, M)
+    right = J * ar.atan(S * D * cn / (C * sn * dn))
+    left = omega(ar, "00", W, J * ALPHA, M) - omega(ar, "11", W, J * ALPHA, M)
     yield ratio(left), ratio(right)
 
 
@@ -230,26 +231,26 @@ for _index, _kind in enumerate(("01", "00", "11"), 7):
 
     @equation(f"(2,{_index})")
     def _(ij: str = _kind) -> Sides:
-        right = (zeta_there(ij, W - I * ALPHA) - zeta_there(ij, W + I * ALPHA)) / 2
-        yield slope(lambda w: omega(ar, ij, w, I * ALPHA, M), W), right
+        right = (zeta_there(ij, W - J * ALPHA) - zeta_there(ij, W + J * ALPHA)) / 2
+        yield slope(lambda w: omega(ar, ij, w, J * ALPHA, M), W), right
 
 
 @equation("(2,10)")
 def _() -> Sides:
     for sign in (1, -1):
-        left = slope(lambda w: _sum(omega, w, sign), ar.mpf(0))
-        yield left, -(zeta_there("00", I * ALPHA) + sign * zeta_there("11", I * ALPHA))
+        left = slope(partial(_sum, omega, sign), ar.mpf(0))
+        yield left, -(zeta_there("00", J * ALPHA) + sign * zeta_there("11", J * ALPHA))
 
 
 @equation("(2,11)")
 def _() -> Sides:
     for sign in (1, -1):
-        left = slope(lambda w: _sum(omega, w, sign), K)
-        yield left, -(zeta_there("01", I * ALPHA) + sign * zeta_there("10", I * ALPHA))
+        left = slope(partial(_sum, omega, sign), K)
+        yield left, -(zeta_there("01", J * ALPHA) + sign * zeta_there("10", J * ALPHA))
 
 
-def _sum(function: Any, w: Any, sign: int) -> Any:
-    return function(ar, "00", w, I * ALPHA, M) + sign * function(ar, "11", w, I * ALPHA, M)
+def _sum(function: Any, sign: int, w: Any) -> Any:
+    return function(ar, "00", w, J * ALPHA, M) + sign * function(ar, "11", w, J * ALPHA, M)
 
 
 @equation("(3,1)")
@@ -261,8 +262,8 @@ def _() -> Sides:
 @equation("(3,2)")
 def _() -> Sides:
     for ij in ("00", "11"):
-        left = pi_function(ar, ij, W, I * ALPHA, M)
-        right = ar.exp(2 * W * zeta_there(ij, I * ALPHA)) * ratio_there(ij, W, I * ALPHA)
+        left = pi_function(ar, ij, W, J * ALPHA, M)
+        right = ar.exp(2 * W * zeta_there(ij, J * ALPHA)) * ratio_there(ij, W, J * ALPHA)
         yield ratio(left), right
 
 
@@ -273,32 +274,32 @@ def pi_there(ij: str, eta: Any, v: Any, **of: Any) -> Any:
 
 @equation("(3,3)")
 def _() -> Sides:
-    yield pi_there("01", W, V + I * K_PRIME), -ratio(pi_function(ar, "11", W, V, M))
+    yield pi_there("01", W, V + J * K_PRIME), -ratio(pi_function(ar, "11", W, V, M))
 
 
 @equation("(3,4)")
 def _() -> Sides:
-    right = ratio(pi_function(ar, "00", W * STRETCH, I * V * STRETCH, M))
-    yield pi_there("01", W, I * V, **IMAGINARY), right
+    right = ratio(pi_function(ar, "00", W * STRETCH, J * V * STRETCH, M))
+    yield pi_there("01", W, J * V, **IMAGINARY), right
 
 
 @equation("(3,5)")
 def _() -> Sides:
-    right = ratio(pi_function(ar, "11", W * STRETCH, I * V * STRETCH, M))
-    yield pi_there("11", W, I * V, **IMAGINARY), right
+    right = ratio(pi_function(ar, "11", W * STRETCH, J * V * STRETCH, M))
+    yield pi_there("11", W, J * V, **IMAGINARY), right
 
 
 @equation("(3,6)")
 def _() -> Sides:
     for sign in (1, -1):
-        yield slope(lambda w: _sum(pi_function, w, sign), ar.mpf(0)), ar.mpf(0)
+        yield slope(partial(_sum, pi_function, sign), ar.mpf(0)), ar.mpf(0)
 
 
 @equation("(3,7)")
 def _() -> Sides:
     for sign in (1, -1):
-        right = -I * k**2 * S / (C * D) - sign * I * C * D / S
-        yield slope(lambda w: _sum(pi_function, w, sign), K), right
+        right = -J * k**2 * S / (C * D) - sign * J * C * D / S
+        yield slope(partial(_sum, pi_function, sign), K), right
 
 
 @equation("(3,8)")

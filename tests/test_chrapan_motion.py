@@ -7,6 +7,7 @@ matrix, Euler's equations with slopes of our angles, mpmath's elliptic functions
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import pytest
@@ -24,7 +25,7 @@ equation, as_printed = chrapan.equation, chrapan.as_printed
 
 ar = many_digits(150)
 """Slopes over 1e-45 leave 80 digits of these."""
-I, STEP = ar.mpc(0, 1), ar.mpf(10) ** -45
+J, STEP = ar.mpc(0, 1), ar.mpf(10) ** -45
 
 
 class Motion:
@@ -35,14 +36,14 @@ class Motion:
         inputs_in_order = (top.m, top.A, top.C, top.s, top.g, top.r0)
         self.m, self.A, self.C, self.s, self.g, self.r0 = map(ar.mpf, inputs_in_order)
         self.mgs, self.sigma = self.m * self.g * self.s, ar.sign(self.r0)
-        self.of = released_record(ar, top)
+        self.of: Any = released_record(ar, top)
         self.angles = angles_in(ar, top)
-        self.T = self.of.T_nutation
-        self.y = ar.pi * self.of.alpha / (2 * self.of.K)
+        self.T: Any = self.of.T_nutation
+        self.y: Any = ar.pi * self.of.alpha / self.of.K / 2
 
     def rates(self, t: Any) -> list[Any]:
         """Slopes of theta, phi, psi."""
-        return [slope(lambda x, i=i: self.angles(x)[i], t) for i in range(3)]
+        return [slope(partial(_part, self.angles, i), t) for i in range(3)]
 
     def u(self, t: Any) -> Any:
         return ar.cos(self.angles(t)[0])
@@ -80,13 +81,20 @@ class Motion:
         sine, cosine = ar.sin(x2) * ar.sinh(y2), ar.cos(x2) * ar.cosh(y2)
         signs = [(-1) ** (h - 1) * 2 * q**h for h in range(1, 400)]
         squares = [1 + q ** (2 * h) for h in range(1, 400)]
-        return sum(ar.atan(s * sine / (p + s * cosine)) for s, p in zip(signs, squares, strict=True))
+        return sum(
+            ar.atan(s * sine / (p + s * cosine)) for s, p in zip(signs, squares, strict=True)
+        )
 
     def growth(self) -> Any:
-        """E(phi, k') - F(phi, k')(1 - E/K) of (7,1), and the bracket as printed."""
+        """E(phi, k'), F(phi, k') and 1 - E/K of (7,1)."""
         phi = ar.asin(ar.sqrt((self.of.u3 - self.of.u2) / (self.of.u3 + 1)))
         m = 1 - self.of.k**2
         return ar.ellipe(phi, m), ar.ellipf(phi, m), 1 - self.of.E / self.of.K
+
+
+def _part(function: Callable[[Any], Any], i: int, t: Any) -> Any:
+    """One of several values."""
+    return function(t)[i]
 
 
 def slope(function: Callable[[Any], Any], x: Any) -> Any:
@@ -145,7 +153,7 @@ def _() -> Sides:
     for motion, t in moments(*PARTS[:2]):
         theta, phi, *_ = motion.angles(t)
         p, q = motion.body_rates(t)
-        p_rate, q_rate = (slope(lambda x, i=i: motion.body_rates(x)[i], t) for i in (0, 1))
+        p_rate, q_rate = (slope(partial(_part, motion.body_rates, i), t) for i in (0, 1))
         pull = motion.mgs * ar.sin(theta)
         gyro = (motion.C - motion.A) * motion.r0
         yield motion.A * p_rate + gyro * q, pull * ar.cos(phi)
@@ -245,37 +253,35 @@ def _() -> Sides:
     for motion in MOTIONS:
         a, b, u1 = motion.of.a, motion.of.b, motion.of.u1
         root = ar.sqrt(b**4 - 4 * a * b**2 * u1 + 4 * a**2)
-        for u, ours in zip(((b**2 - root) / (2 * a), (b**2 + root) / (2 * a)), motion.of[5:7], strict=True):
+        for u, ours in zip(
+            ((b**2 - root) / (2 * a), (b**2 + root) / (2 * a)), motion.of[5:7], strict=True
+        ):
             yield ours, u
             yield -a * ours**2 + b**2 * ours - (b**2 * u1 - a), ar.mpf(0)
 
 
-def _roots(left: Callable[..., Any], right: Callable[..., Any]) -> Callable[[], Sides]:
-    """An identity between the roots of each top, and lambda = b^2/a."""
+ROOTS: dict[str, Callable[..., Any]] = {
+    "(4,11)": lambda u1, u2, u3, b: (u3 + u2, b),
+    "sum of products": lambda u1, u2, u3, b: (u1 * u2 + u1 * u3 - u2 * u3, 1),
+    "(4,12)": lambda u1, u2, u3, b: (u2 * u3, b * u1 - 1),
+    "(4,13)": lambda u1, u2, u3, b: (1 - u1**2, (u1 - u2) * (u3 - u1)),
+    "(4,14)": lambda u1, u2, u3, b: (1 - u2**2, (u1 - u2) * (u3 + u2)),
+    "(4,14), second": lambda u1, u2, u3, b: (u3**2 - 1, (u3 - u1) * (u3 + u2)),
+    "(4,15)": lambda u1, u2, u3, b: ((1 + u1) * (1 - u2), (u3 + 1) * (u1 - u2)),
+    "(4,15), second": lambda u1, u2, u3, b: ((1 - u1) * (1 + u2), (u3 - 1) * (u1 - u2)),
+    "(4,15), third": lambda u1, u2, u3, b: ((1 + u1) * (u3 - 1), (1 + u2) * (u3 - u1)),
+    "(4,16)": lambda u1, u2, u3, b: ((1 - u1) * (u3 + 1), (1 - u2) * (u3 - u1)),
+    "(4,17)": lambda u1, u2, u3, b: ((1 + u2) * (u3 + 1), (1 + u1) * (u3 + u2)),
+    "(4,18)": lambda u1, u2, u3, b: ((1 - u2) * (u3 - 1), (1 - u1) * (u3 + u2)),
+}
+"""Identities between the roots and b^2/a."""
 
-    def sides() -> Sides:
+for _name, _sides in ROOTS.items():
+
+    @equation(_name)
+    def _(sides: Callable[..., Any] = _sides) -> Sides:
         for motion in MOTIONS:
-            roots = motion.of.u1, motion.of.u2, motion.of.u3, motion.of.b**2 / motion.of.a
-            yield left(*roots), right(*roots)
-
-    return sides
-
-
-for _number, _left, _right in [
-    ("(4,11)", lambda u1, u2, u3, b: u3 + u2, lambda u1, u2, u3, b: b),
-    ("sum of products", lambda u1, u2, u3, b: u1 * u2 + u1 * u3 - u2 * u3, lambda *_: 1),
-    ("(4,12)", lambda u1, u2, u3, b: u2 * u3, lambda u1, u2, u3, b: b * u1 - 1),
-    ("(4,13)", lambda u1, u2, u3, b: 1 - u1**2, lambda u1, u2, u3, b: (u1 - u2) * (u3 - u1)),
-    ("(4,14)", lambda u1, u2, u3, b: 1 - u2**2, lambda u1, u2, u3, b: (u1 - u2) * (u3 + u2)),
-    ("(4,14), second", lambda u1, u2, u3, b: u3**2 - 1, lambda u1, u2, u3, b: (u3 - u1) * (u3 + u2)),
-    ("(4,15)", lambda u1, u2, u3, b: (1 + u1) * (1 - u2), lambda u1, u2, u3, b: (u3 + 1) * (u1 - u2)),
-    ("(4,15), second", lambda u1, u2, u3, b: (1 - u1) * (1 + u2), lambda u1, u2, u3, b: (u3 - 1) * (u1 - u2)),
-    ("(4,15), third", lambda u1, u2, u3, b: (1 + u1) * (u3 - 1), lambda u1, u2, u3, b: (1 + u2) * (u3 - u1)),
-    ("(4,16)", lambda u1, u2, u3, b: (1 - u1) * (u3 + 1), lambda u1, u2, u3, b: (1 - u2) * (u3 - u1)),
-    ("(4,17)", lambda u1, u2, u3, b: (1 + u2) * (u3 + 1), lambda u1, u2, u3, b: (1 + u1) * (u3 + u2)),
-    ("(4,18)", lambda u1, u2, u3, b: (1 - u2) * (u3 - 1), lambda u1, u2, u3, b: (1 - u1) * (u3 + u2)),
-]:
-    equation(_number)(_roots(_left, _right))
+            yield sides(*motion.of[4:7], motion.of.b**2 / motion.of.a)
 
 
 @equation("(4,19)")
@@ -349,30 +355,30 @@ def _size(motion: Motion, b: Any) -> Any:
 @equation("(4,27)")
 def _() -> Sides:
     for motion in MOTIONS:
-        yield _quotient(motion, I * motion.of.alpha), I * _size(motion, abs(motion.of.b))
+        yield _quotient(motion, J * motion.of.alpha), J * _size(motion, abs(motion.of.b))
 
 
 @as_printed("(4,27)")
 def _() -> Sides:
-    yield _quotient(LEFT, I * LEFT.of.alpha), I * _size(LEFT, LEFT.of.b)
+    yield _quotient(LEFT, J * LEFT.of.alpha), J * _size(LEFT, LEFT.of.b)
 
 
 @equation("(4,28)")
 def _() -> Sides:
     for motion in MOTIONS:
-        v = I * motion.of.alpha + I * motion.of.K_prime + motion.of.K
-        yield _quotient(motion, v), -I * _size(motion, abs(motion.of.b))
+        v = J * motion.of.alpha + J * motion.of.K_prime + motion.of.K
+        yield _quotient(motion, v), -J * _size(motion, abs(motion.of.b))
 
 
 @as_printed("(4,28)")
 def _() -> Sides:
-    v = I * LEFT.of.alpha + I * LEFT.of.K_prime + LEFT.of.K
-    yield _quotient(LEFT, v), -I * _size(LEFT, LEFT.of.b)
+    v = J * LEFT.of.alpha + J * LEFT.of.K_prime + LEFT.of.K
+    yield _quotient(LEFT, v), -J * _size(LEFT, LEFT.of.b)
 
 
 def _pi(motion: Motion, t: Any) -> tuple[Any, Any]:
     given = modulus(ar, k=motion.of.k)
-    w, parameter = motion.w(t), I * motion.of.alpha
+    w, parameter = motion.w(t), J * motion.of.alpha
     return pi_function(ar, "00", w, parameter, given), pi_function(ar, "11", w, parameter, given)
 
 
@@ -380,13 +386,13 @@ def _pi(motion: Motion, t: Any) -> tuple[Any, Any]:
 def _() -> Sides:
     for motion, t in moments():
         even, odd = _pi(motion, t)
-        yield motion.angles(t)[2], motion.sigma * I * (even + odd + I * ar.pi / 2)
+        yield motion.angles(t)[2], motion.sigma * J * (even + odd + J * ar.pi / 2)
 
 
 @as_printed("(4,29)")
 def _() -> Sides:
     even, odd = _pi(LEFT, LEFT.T / 3)
-    yield LEFT.angles(LEFT.T / 3)[2], I * (even + odd + I * ar.pi / 2)
+    yield LEFT.angles(LEFT.T / 3)[2], J * (even + odd + J * ar.pi / 2)
 
 
 @equation("(4,30)")
@@ -423,7 +429,7 @@ equation("(4,33)")(_at_alpha("dn", lambda u1, u2, u3: 1 + u1))
 def _() -> Sides:
     for motion, t in moments():
         even, odd = _pi(motion, t)
-        right = motion.r0 * t + motion.sigma * I * (even - odd - I * ar.pi / 2)
+        right = motion.r0 * t + motion.sigma * J * (even - odd - J * ar.pi / 2)
         yield motion.angles(t)[1], right
 
 
@@ -431,7 +437,7 @@ def _() -> Sides:
 def _() -> Sides:
     t = LEFT.T / 3
     even, odd = _pi(LEFT, t)
-    yield LEFT.angles(t)[1], LEFT.r0 * t + I * (even - odd - I * ar.pi / 2)
+    yield LEFT.angles(t)[1], LEFT.r0 * t + J * (even - odd - J * ar.pi / 2)
 
 
 @equation("(5,1)")

@@ -95,14 +95,15 @@ def _from_q(ar: Arithmetic, q: Real) -> Modulus:
     """theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and of k'."""
     limit = ar.exp(-ar.pi)
     large = q > limit
-    small = where(large, ar.exp(ar.pi**2 / ar.log(where(large, q, limit))), q)
+    root = where(large, ar.exp(ar.pi**2 / (2 * ar.log(where(large, q, limit)))), ar.sqrt(q))
+    small = root * root
     n, power, theta2, theta3, theta4 = 0, small**0, small * 0, small**0, small**0
     while not everywhere(power <= epsilon(ar) / 4):
         theta2 = theta2 + 2 * small ** (n * (n + 1))
         n += 1
         power = small ** (n * n)
         theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
-    one, other = ar.sqrt(small) * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
+    one, other = root * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
     return Modulus(where(large, other, one), where(large, one, other), 0 * q)
 
 

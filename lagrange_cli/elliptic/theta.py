@@ -46,9 +46,9 @@ def theta_of(ar: Arithmetic, ij: str, v: Complex, given: Modulus) -> Complex:
 def zeta(ar: Arithmetic, ij: str, v: Complex, given: Modulus) -> Complex:
     """Z_ij(v) = d log theta_ij(v/2K)/dv of section 1; Z_01 is Jacobi's Zeta function."""
     _check(ij, given)
+    if not has_arrays(ar) and v == 0:  # to all digits
+        return ar.inf if ij == "11" else 0 * v
     value, slope = _with_slope(ar, ij, _in_periods(ar, v, given), given)
-    if not has_arrays(ar) and not value:
-        return ar.inf
     return slope / value / (2 * complete_k(ar, given.k_prime))
 
 
@@ -61,6 +61,8 @@ def omega(ar: Arithmetic, ij: str, eta: Real, v: Complex, given: Modulus) -> Com
     """
     _check(ij, given)
     x, alpha = _in_periods(ar, eta, given), _imag(ar, v)
+    if not has_arrays(ar) and eta == 0 and not (ij == "11" and alpha):  # to all digits
+        return 0 * v
     if everywhere(alpha == 0):
         y = _in_periods(ar, _real(ar, v), given)
         less = _with_slope(ar, ij, Place(x.turns - y.turns, x.rest - y.rest), given)[0]

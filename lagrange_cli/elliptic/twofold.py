@@ -65,10 +65,10 @@ def two_sum(x: Array, y: float | Array) -> tuple[Array, Array]:
 
 
 def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
-    """The square root of high + low > 0."""
+    """The square root of high + low >= 0."""
     root = np.sqrt(high)
     square, error = two_product(root, root)
-    return root, ((high - square) - error + low) / (2 * root)
+    return root, ((high - square) - error + low) / np.where(root > 0, 2 * root, 1.0)
 
 
 def agm_over_pi(k_prime: Pair) -> Pair:

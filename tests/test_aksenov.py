@@ -1,0 +1,335 @@
+"""Aksenov's sections 3.1 and 3.2, equation by equation, and eta(tau) against its quadrature."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import islice
+from typing import Any
+
+import pytest
+from equations import Register, Sides, ar, gap
+
+from lagrange_cli.elliptic import complete_k, nome
+from lagrange_cli.elliptic.fourier import am_sums, cn_sums, k_sums, sn_sums
+from lagrange_cli.elliptic.incomplete import incomplete_f
+from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.satellite import (
+    Quadrature,
+    band,
+    constants,
+    eta_and_rate,
+)
+
+aksenov = Register()
+equation, as_printed = aksenov.equation, aksenov.as_printed
+
+MODULI = [modulus(ar, k=x) for x in ("0.03", "0.5", "0.9", "0.9999")]
+ARGUMENTS = [ar.mpf(x) for x in ("-2.3", "0.4", "1.7", "11")]
+
+
+@equation("(3.1.1)")
+def _() -> Sides:
+    for given in MODULI:
+        x, m = ar.mpf("0.7"), given.k**2
+        integral = ar.quad(lambda t: 1 / ar.sqrt((1 - t * t) * (1 - m * t * t)), [0, x])  # noqa: B023
+        yield jacobi(ar, integral, given).sn, x
+
+
+@equation("(3.1.2)")
+def _() -> Sides:
+    for given in MODULI:
+        for phi in (ar.mpf("0.7"), ar.mpf("4.4")):
+            yield incomplete_f(ar, phi, given), ar.ellipf(phi, given.k**2)
+        yield complete_k(ar, given.k_prime), ar.ellipk(given.k**2)
+
+
+@equation("(3.1.3)")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            yield ar.ellipf(jacobi(ar, u, given).am, given.k**2), u
+
+
+@equation("definitions of sn, cn, dn")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            am, sn, cn, dn = jacobi(ar, u, given)
+            yield sn, ar.sin(am)
+            yield cn, ar.cos(am)
+            yield dn, ar.sqrt(1 - given.k**2 * ar.sin(am) ** 2)
+            yield sn, ar.ellipfun("sn", u, m=given.k**2)
+
+
+@equation("property 1")
+def _() -> Sides:
+    for given in MODULI:
+        K = ar.ellipk(given.k**2)
+        for u in ARGUMENTS:
+            here, half = jacobi(ar, u, given), jacobi(ar, u + 2 * K, given)
+            yield from zip(half, (here.am + ar.pi, -here.sn, -here.cn, here.dn), strict=True)
+            yield from zip(jacobi(ar, u + 4 * K, given)[1:], here[1:], strict=True)
+
+
+@equation("property 2")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            _, sn, cn, dn = jacobi(ar, u, given)
+            yield max(abs(sn), abs(cn), dn, 1), 1
+            yield min(dn, given.k_prime), given.k_prime
+
+
+@equation("table 2")
+def _() -> Sides:
+    for given in MODULI:
+        K, less = ar.ellipk(given.k**2), given.k_prime
+        table = [(0, 1, 1), (1, 0, less), (0, -1, 1), (-1, 0, less), (0, 1, 1)]
+        for quarter, values in enumerate(table):
+            yield from zip(jacobi(ar, quarter * K, given)[1:], values, strict=True)
+
+
+@equation("property 3")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            here, there = jacobi(ar, u, given), jacobi(ar, -u, given)
+            yield from zip(there, (-here.am, -here.sn, here.cn, here.dn), strict=True)
+
+
+@equation("property 4")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            _, sn, cn, dn = jacobi(ar, u, given)
+            m = given.k**2
+            yield sn**2 + cn**2, 1
+            yield dn**2 + m * sn**2, 1
+            yield dn**2 - m * cn**2 + m, 1
+
+
+@as_printed("property 4")
+def _() -> Sides:
+    _, sn, _, dn = jacobi(ar, ARGUMENTS[1], MODULI[1])
+    yield dn**2 + MODULI[1].k ** 2 * sn**2, -1
+
+
+@equation("property 5")
+def _() -> Sides:
+    for u in ARGUMENTS:
+        yield from zip(jacobi(ar, u, modulus(ar, k=0)), (u, ar.sin(u), ar.cos(u), 1), strict=True)
+        limit = jacobi(ar, u, modulus(ar, k=1))
+        yield from zip(limit[1:], (ar.tanh(u), ar.sech(u), ar.sech(u)), strict=True)
+
+
+@equation("property 5, next terms")
+def _() -> Sides:
+    for u in ARGUMENTS[:3]:
+        small = ar.mpf(10) ** -12
+        circular = -ar.cos(u) * (u - ar.sin(u) * ar.cos(u)) / 4
+        yield (jacobi(ar, u, modulus(ar, k=small)).sn - ar.sin(u)) / small**2 * 1, circular
+        hyperbolic = (ar.sinh(u) * ar.cosh(u) - u) / ar.cosh(u) ** 2 / 4
+        near_one = jacobi(ar, u, modulus(ar, k_prime=small)).sn
+        yield (near_one - ar.tanh(u)) / small**2, hyperbolic
+
+
+def last(sums: Any, terms: int = 4000) -> Any:
+    """The partial sum of so many terms."""
+    return next(islice(sums, terms, None))
+
+
+@equation("(3.1.4)")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            yield last(sn_sums(ar, u, given), 250), ar.ellipfun("sn", u, m=given.k**2)
+
+
+@equation("(3.1.5)")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            yield last(cn_sums(ar, u, given), 250), ar.ellipfun("cn", u, m=given.k**2)
+
+
+@equation("(3.1.6)")
+def _() -> Sides:
+    for given in MODULI:
+        m = given.k**2
+        there = ar.exp(-ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
+        yield nome(ar, m=m, k_prime=given.k_prime), there
+
+
+@as_printed("(3.1.6)")
+def _() -> Sides:
+    m = MODULI[1].k ** 2
+    left = nome(ar, m=m, k_prime=MODULI[1].k_prime)
+    yield left, ar.exp(ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
+
+
+@equation("(3.1.7)")
+def _() -> Sides:
+    for given in MODULI:
+        for u in ARGUMENTS:
+            yield ar.ellipf(last(am_sums(ar, u, given), 250), given.k**2), u
+
+
+@equation("(3.1.8)")
+def _() -> Sides:
+    for given in MODULI[:3]:
+        yield last(k_sums(ar, given), 600), ar.ellipk(given.k**2)
+
+
+# Section 3.2 on a generic quadrature: the integral, and each constant by the text's own formula.
+
+LOWER, UPPER, P, Q, G = (Fraction(x) for x in ("-0.5", "0.6", "0.1", "1.4", "2.5"))
+NESTED = Quadrature(LOWER, UPPER, (P - Q, P + Q), G)
+C = constants(ar, NESTED)
+DELTA, DELTA_STAR, P_, Q_, G_ = (
+    ar.mpf(x.numerator) / x.denominator for x in (UPPER, LOWER, P, Q, G)
+)
+K1 = ar.ellipk(C.k1**2)
+
+
+def eta_at(tau: Any) -> Any:
+    return eta_and_rate(ar, C.sigma1 * tau / 2, C, band(ar, NESTED))[0]
+
+
+def speed(eta: Any) -> Any:
+    return ar.sqrt((DELTA - eta) * (eta - DELTA_STAR) * (Q_**2 - (eta - P_) ** 2))
+
+
+TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]
+
+
+@equation("(3.2.1)")
+def _() -> Sides:
+    middle, half = (DELTA + DELTA_STAR) / 2, (DELTA - DELTA_STAR) / 2
+    for tau in TAUS:
+        angle = ar.asin((eta_at(tau) - middle) / half)  # takes the root at delta* away
+
+        def integrand(x: Any) -> Any:
+            return 1 / ar.sqrt(Q_**2 - (middle + half * ar.sin(x) - P_) ** 2)
+
+        yield ar.quad(integrand, [-ar.pi / 2, angle]), ar.sqrt(G_) * tau
+
+
+def xi(tau: Any) -> Any:
+    """(3.2.11)."""
+    return ar.ellipfun("sn", C.sigma1 * tau - K1, m=C.k1**2)
+
+
+@equation("(3.2.2)")
+def _() -> Sides:
+    less, more = C.m1 - C.m2, C.m1 + C.m2
+    for tau in TAUS:
+        fraction = (less - more * xi(tau)) / (less * xi(tau) - more)
+        yield eta_at(tau), (DELTA + DELTA_STAR) / 2 + (DELTA - DELTA_STAR) / 2 * fraction
+
+
+@equation("(3.2.3)")
+def _() -> Sides:
+    yield C.m1, ar.sqrt(Q_**2 - (DELTA - P_) ** 2)
+    yield C.m2, ar.sqrt(Q_**2 - (DELTA_STAR - P_) ** 2)
+
+
+@equation("(3.2.4)")
+def _() -> Sides:
+    for tau in TAUS:
+        angle = ar.asin(xi(tau))
+        integral = ar.quad(lambda x: 1 / ar.sqrt(1 + C.k**2 * ar.cos(x) ** 2), [-ar.pi / 2, angle])
+        yield integral, ar.sqrt(G_ * C.m1 * C.m2) * tau
+
+
+def _k2(sign: int) -> Any:
+    return ((DELTA - DELTA_STAR) ** 2 + sign * (C.m1 - C.m2) ** 2) / (4 * C.m1 * C.m2)
+
+
+@equation("(3.2.5)")
+def _() -> Sides:
+    yield C.k**2, _k2(1)
+
+
+@equation("(3.2.5), with the minus sign")
+def _() -> Sides:
+    yield ar.sign(abs(C.k**2 - _k2(-1)) - ar.mpf(10) ** -4), 1
+
+
+@equation("(3.2.6)")
+def _() -> Sides:
+    for tau in TAUS:
+        theta = ar.asin(xi(tau))
+        yield eta_at(tau), (C.gamma + C.s * ar.sin(theta)) / (1 + C.d * ar.sin(theta))
+
+
+@equation("(3.2.7)")
+def _() -> Sides:
+    for tau in TAUS:
+        theta = ar.asin(xi(tau))
+        integral = ar.quad(lambda x: 1 / ar.sqrt(1 - (C.k1 * ar.sin(x)) ** 2), [-ar.pi / 2, theta])
+        yield integral, C.sigma1 * tau
+        yield ar.ellipf(theta, C.k1**2) + K1, C.sigma1 * tau
+
+
+@equation("(3.2.8)")
+def _() -> Sides:
+    k2 = _k2(1)
+    yield C.k1**2, k2 / (1 + k2)
+    yield C.sigma1, ar.sqrt(G_ * C.m1 * C.m2 * (1 + k2))
+    yield C.k1_prime**2, 1 - C.k1**2
+
+
+@equation("(3.2.9)")
+def _() -> Sides:
+    for tau in TAUS:
+        h1 = C.sigma1 * tau - K1
+        theta = jacobi(ar, h1, modulus(ar, k=C.k1)).am
+        yield eta_at(tau), (C.gamma + C.s * ar.sin(theta)) / (1 + C.d * ar.sin(theta))
+
+
+@equation("(3.2.10)")
+def _() -> Sides:
+    yield eta_at(ar.mpf(0)), DELTA_STAR
+    yield eta_at(2 * K1 / C.sigma1), DELTA
+    yield C.period, 4 * K1 / C.sigma1
+
+
+@as_printed("(3.2.10)")
+def _() -> Sides:
+    sn = ar.ellipfun("sn", C.sigma1 * TAUS[0] + K1, m=C.k1**2)
+    yield eta_at(TAUS[0]), (C.gamma + C.s * sn) / (1 + C.d * sn)
+
+
+@equation("(3.2.11)")
+def _() -> Sides:
+    for tau in TAUS:
+        yield eta_at(tau), (C.gamma + C.s * xi(tau)) / (1 + C.d * xi(tau))
+
+
+@equation("(3.2.12)")
+def _() -> Sides:
+    total = C.m1 + C.m2
+    yield C.s, -(C.m1 * DELTA_STAR - C.m2 * DELTA) / total
+    yield C.d, -(C.m1 - C.m2) / total
+    yield C.gamma, (C.m1 * DELTA_STAR + C.m2 * DELTA) / total
+    yield C.gamma + C.s, DELTA * (1 + C.d)
+    yield C.gamma - C.s, DELTA_STAR * (1 - C.d)
+
+
+@pytest.mark.parametrize("number", aksenov.holds)
+def test_equation(number: str) -> None:
+    tolerance = 1e-22 if number == "property 5, next terms" else 1e-40
+    for left, right in aksenov.holds[number]():
+        assert gap(left, right) < tolerance
+
+
+@pytest.mark.parametrize("number", aksenov.fails)
+def test_as_printed_it_fails(number: str) -> None:
+    for left, right in aksenov.fails[number]():
+        assert gap(left, right) > 1e-3
+
+
+def test_the_register_is_complete() -> None:
+    numbers = {f"(3.1.{i})" for i in range(1, 9)} | {f"(3.2.{i})" for i in range(1, 13)}
+    assert numbers | {f"property {i}" for i in range(1, 6)} <= set(aksenov.holds)

@@ -1,0 +1,308 @@
+"""am, sn, cn, dn, theta and Carlson functions on arrays against mpmath; `lagtop jacobi`."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from collections.abc import Iterator
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli import LagtopError
+from lagrange_cli.accuracy import units
+from lagrange_cli.elliptic import carlson_rf, complete_k, many_digits
+from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rj
+from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
+from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
+from lagrange_cli.elliptic.theta import omega, theta, zeta
+
+EPS = 2.0**-52
+
+
+def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:
+    """Ways to give k, each over all it can say; k' down to 1 - k^2 = 1e-300."""
+    while True:
+        yield rng.choice(
+            [
+                ("k", rng.random()),
+                ("k", 10 ** rng.uniform(-20, 0)),
+                ("k", 1 - 10 ** rng.uniform(-15, -1)),
+                ("k_prime", rng.random()),
+                ("k_prime", 10 ** rng.uniform(-150, 0)),
+                ("m", rng.random()),
+            ]
+        )
+
+
+def arguments(rng: random.Random, K: float) -> float:
+    """Within K, up to 1e6 K, close to the zeros of sn and of cn."""
+    close = (
+        2 * rng.randrange(10**6)
+        + rng.choice([0, 1])
+        + rng.choice([-1, 1]) * 10 ** rng.uniform(-12, -3)
+    )
+    parts = [rng.random(), 10 ** rng.uniform(-12, 0), 10 ** rng.uniform(0, 6), close]
+    return rng.choice([-1, 1]) * K * rng.choice(parts)
+
+
+def errors(name: str, value: float, u: float) -> list[float]:
+    """Of am, sn, cn, dn in units."""
+    ours = jacobi(np, u, modulus(np, **{name: value}))
+    with mpmath.workdps(400):
+        x = mpmath.mpf(value)
+        m = {"k": x**2, "k_prime": 1 - x**2, "m": x}[name]
+        K = mpmath.pi / 2 / mpmath.agm(1, mpmath.sqrt(1 - m))
+    with mpmath.workdps(60 if 1 - m > 1e-20 else 340):
+        halves = mpmath.nint(u / (2 * K))
+        tau = u - 2 * K * halves
+        sn, cn, dn = (mpmath.ellipfun(f, tau, m=m) for f in ("sn", "cn", "dn"))
+        am, sign = mpmath.atan2(sn, cn) + halves * mpmath.pi, (-1) ** int(halves % 2)
+        exact = [am, sign * sn, sign * cn, dn]
+        slopes = [dn, cn * dn, sn * dn, m * sn * cn]
+        return [
+            units(float(x), true, slope, tau)
+            for x, true, slope in zip(ours, exact, slopes, strict=True)
+        ]
+
+
+def test_jacobi() -> None:
+    """Worst seen in 20 000: 1.23 units."""
+    rng = random.Random("sn")
+    for _, (name, value) in zip(range(500), moduli(rng), strict=False):
+        K = float(complete_k(np, modulus(np, **{name: value}).k_prime))
+        assert max(errors(name, value, arguments(rng, K))) <= 1.25
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "u"),
+    [
+        ("m", 1 - 1e-10, 13.5),
+        ("m", 1 - 1e-12, 20.0),
+        ("k_prime", 1e-6, 40.0),
+        ("k_prime", 1e-8, 123.4),
+        ("m", 0.5, 1e6),
+    ],
+)
+def test_where_scipy_fails(name: str, value: float, u: float) -> None:
+    """scipy.special.ellipj is off by up to 2 for 1 - m <= 1e-10 beyond K, and drifts far away."""
+    assert max(errors(name, value, u)) <= 1.25
+
+
+def test_the_limits_of_the_modulus() -> None:
+    u = np.array([-800.0, -400.0, -1.5, 0.0, 1e-9, 0.5, 356.0, 1e300])
+    one = jacobi(np, u, modulus(np, k=1.0))
+    bounded = np.clip(u, -40, 40)
+    np.testing.assert_allclose(one.sn, np.tanh(bounded), rtol=4 * EPS)
+    np.testing.assert_allclose(
+        one.cn, 1 / np.cosh(np.clip(u, -700, 700)), atol=1e-150, rtol=4 * EPS
+    )
+    assert abs(one.am).max() <= np.pi / 2
+    u = u[2:6]
+    zero = jacobi(np, u, modulus(np, k=0.0))
+    for ours, exact in zip(zero, (u, np.sin(u), np.cos(u), 1 + 0 * u), strict=True):
+        np.testing.assert_allclose(ours, exact, rtol=4 * EPS)
+
+
+def test_arrays_of_moduli_give_what_single_ones_give() -> None:
+    rng = np.random.default_rng(5)
+    k, u = rng.random((40, 1)), rng.uniform(-9, 9, 30)
+    k[0], k[1] = 0, 1
+    together = jacobi(np, u, modulus(np, k=k))
+    for i in range(40):
+        alone = jacobi(np, u, modulus(np, k=k[i, 0]))
+        for one, other in zip(alone, together, strict=True):
+            np.testing.assert_allclose(other[i], one, rtol=1e-14, atol=4 * EPS)
+    assert jacobi(np, np.empty((0, 3)), modulus(np, k=0.5)).sn.shape == (0, 3)
+
+
+def test_theta_and_zeta_on_arrays() -> None:
+    """Worst seen in 2000: theta 2.6, Z 2.1 eps of max(1, |f|) (+ |v f'|, at the poles)."""
+    rng = random.Random("theta")
+    with mpmath.workdps(40):
+        for _ in range(60):
+            k = rng.choice([rng.random(), 1 - 10 ** rng.uniform(-6, 0), 10 ** rng.uniform(-6, 0)])
+            given, m = modulus(np, k=k), mpmath.mpf(k) ** 2
+            K = mpmath.ellipk(m)
+            q = mpmath.exp(-mpmath.pi * mpmath.ellipk(1 - m) / K)
+            x = rng.uniform(-2, 2)
+            v = float(2 * K * x)
+            for ij, n in {"01": 4, "00": 3, "11": 1, "10": 2}.items():
+                exact = mpmath.jtheta(n, mpmath.pi * x, q)
+                assert units(float(theta(np, ij, x, given)), exact, 0, 0) <= 3
+                angle = mpmath.pi * v / (2 * K)
+                value, slope, bend = (mpmath.jtheta(n, angle, q, i) for i in range(3))
+                scale = mpmath.pi / (2 * K)
+                ratio = slope / value
+                rate = scale**2 * (bend / value - ratio**2)
+                assert units(float(zeta(np, ij, v, given)), scale * ratio, rate, v) <= 3
+
+
+def test_omega_on_arrays() -> None:
+    """Real and imaginary parameters, both families of moduli in one array, against many digits."""
+    ar = many_digits(40)
+    eta = np.linspace(-7, 7, 29)
+    for parameter in (0.3, 0.3j):
+        for ij in ("01", "00", "11"):
+            for k in (0.3, 0.95):
+                ours = omega(np, ij, eta, parameter, modulus(np, k=k))
+                given = modulus(ar, k=k)
+                exact = [
+                    complex(omega(ar, ij, ar.mpf(x), ar.mpmathify(parameter), given)) for x in eta
+                ]
+                np.testing.assert_allclose(ours, exact, atol=2e-14)
+    both = omega(np, "11", eta, 0.3j, modulus(np, k=np.array([[0.3], [0.95]])))
+    assert both.shape == (2, 29)
+
+
+def relative(value: Any, exact: Any) -> float:
+    return float(abs(mpmath.mpf(float(value)) / exact - 1) / EPS)
+
+
+def test_carlson() -> None:
+    """Worst seen, arguments over forty decades: R_F 2.2, R_C 1.6, R_D 2.6, R_J 3.5 eps."""
+    rng = random.Random("Carlson")
+    for i in range(200):
+        x, y, z, p = (np.float64(10 ** rng.uniform(-s, s)) for s in [rng.choice([1, 5, 20])] * 4)
+        x = np.float64(0) if i % 5 == 0 else x
+        with mpmath.workdps(120):
+            many = [mpmath.mpf(float(value)) for value in (x, y, z, p)]
+            assert relative(carlson_rf(np, x, y, z), mpmath.elliprf(*many[:3])) <= 2.2
+            assert relative(carlson_rc(np, x, y), mpmath.elliprc(*many[:2])) <= 1.6
+            assert relative(carlson_rd(np, x, y, z), mpmath.elliprd(*many[:3])) <= 2.6
+            assert relative(carlson_rj(np, x, y, z, p), mpmath.elliprj(*many)) <= 3.5
+
+
+def test_carlson_in_blocks() -> None:
+    """Arrays longer than a block, of elements that need different numbers of steps."""
+    x, y, z, p = np.exp(np.random.default_rng(3).normal(0, 4, (4, 40_000)))
+    together = carlson_rj(np, x, y, z, p)
+    some = slice(None, None, 4001)
+    alone = [
+        carlson_rj(np, *values) for values in zip(x[some], y[some], z[some], p[some], strict=True)
+    ]
+    np.testing.assert_allclose(together[some], alone, rtol=8 * EPS)
+
+
+def test_incomplete_integrals() -> None:
+    """Worst seen in 20 000 amplitudes up to a quarter turn: F 2.9, E 3.0 eps."""
+    rng = random.Random("F")
+    for _ in range(200):
+        near = math.pi / 2 - 10 ** rng.uniform(-16, 0)
+        phi = rng.choice([rng.uniform(0, 1.5707), 10 ** rng.uniform(-10, 0), near])
+        k_prime = rng.choice([rng.random(), 10 ** rng.uniform(-100, 0)])
+        given = modulus(np, k_prime=k_prime)
+        with mpmath.workdps(250):
+            m, exact = 1 - mpmath.mpf(k_prime) ** 2, mpmath.mpf(phi)
+            assert relative(incomplete_f(np, phi, given), mpmath.ellipf(exact, m)) <= 3
+            assert relative(incomplete_e(np, phi, given), mpmath.ellipe(exact, m)) <= 3
+
+
+def test_incomplete_integrals_beyond_a_quarter_turn() -> None:
+    phi = np.linspace(-20, 20, 81)
+    given = modulus(np, k=0.8)
+    for ours, theirs in ((incomplete_f, mpmath.ellipf), (incomplete_e, mpmath.ellipe)):
+        exact = [float(theirs(x, mpmath.mpf(0.8) ** 2)) for x in phi]
+        np.testing.assert_allclose(ours(np, phi, given), exact, rtol=8 * EPS)
+
+
+@pytest.mark.parametrize("q", [0.0, 1e-200, 0.01, 0.0432139, 0.0432140, 0.5, 0.99])
+def test_inverse_of_the_nome(q: float) -> None:
+    with mpmath.workdps(60):
+        k, k_prime, _ = modulus(np, q=q)
+        assert float(k) == pytest.approx(float(mpmath.kfrom(q=mpmath.mpf(q))), rel=4 * EPS)
+        there = mpmath.sqrt(1 - mpmath.kfrom(q=mpmath.mpf(q)) ** 2) if q < 0.6 else None
+        if there is not None:
+            assert float(k_prime) == pytest.approx(float(there), rel=8 * EPS)
+    if 0 < q < 1:
+        assert float(constants(np, Modulus(k, k_prime)).q) == pytest.approx(q, rel=1e-13)
+
+
+@pytest.mark.parametrize("given", [{}, {"k": 0.1, "q": 0.1}, {"k": 1.1}, {"m": -0.1}, {"q": 1.0}])
+def test_one_modulus_in_range(given: dict[str, float]) -> None:
+    for ar in (np, many_digits(30)):
+        with pytest.raises(LagtopError, match="must be"):
+            modulus(ar, **given)
+
+
+def test_constants_of_the_command(lagtop: Lagtop) -> None:
+    record = json.loads(lagtop("jacobi", "--modular-angle", "60", "--format", "json").stdout)
+    with mpmath.workdps(40):
+        m = mpmath.mpf(3) / 4
+        exact = {
+            "k": mpmath.sqrt(m),
+            "k_prime": mpmath.mpf(0.5),
+            "modular_angle_deg": 60,
+            "nome": mpmath.qfrom(m=m),
+            "nome_prime": mpmath.qfrom(m=1 - m),
+            "K": mpmath.ellipk(m),
+            "K_prime": mpmath.ellipk(1 - m),
+            "E": mpmath.ellipe(m),
+            "E_prime": mpmath.ellipe(1 - m),
+        }
+        assert record == {key: float(value) for key, value in exact.items()}
+    one = json.loads(lagtop("jacobi", "--modular-angle", "90", "--format", "json").stdout)
+    assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
+
+
+def test_rows_of_the_command(lagtop: Lagtop) -> None:
+    args = "--k 0.8 --u-range -3:3:7 --theta --zeta --omega --pi --param 0.4i".split()
+    plain = json.loads(lagtop("jacobi", *args, "--format", "json").stdout)
+    many = json.loads(lagtop("jacobi", *args, "--format", "json", "--digits", "25").stdout)
+    assert len(plain) == 7
+    assert list(plain[0])[:6] == ["u", "am_deg", "sn", "cn", "dn", "theta01"]
+    assert list(plain[0])[-1] == "pi11_imag"
+    for row, exact in zip(plain, many, strict=True):
+        assert row == pytest.approx(exact, abs=1e-13)
+    radians = json.loads(lagtop("jacobi", *args, "--rad", "--format", "json").stdout)
+    assert radians[6]["am_rad"] == pytest.approx(math.radians(plain[6]["am_deg"]), rel=1e-15)
+
+
+def test_poles_are_empty(lagtop: Lagtop) -> None:
+    for digits in ([], ["--digits", "20"]):
+        shown = lagtop("jacobi", "--k", "0.8", "--u", "0", "--zeta", "--format", "json", *digits)
+        assert json.loads(shown.stdout)[0]["zeta11"] is None
+
+
+def test_series_of_the_command(lagtop: Lagtop) -> None:
+    args = "--k 0.9 --u 1.1 --series 20 --format json".split()
+    rows = json.loads(lagtop("jacobi", *args).stdout)
+    assert [row["terms"] for row in rows] == list(range(1, 21))
+    assert rows[-1]["sn"] == pytest.approx(float(mpmath.ellipfun("sn", 1.1, k=0.9)), abs=1e-15)
+    assert rows[-1]["K_error"] == pytest.approx(2.2805491384227703 - rows[-1]["K"], abs=1e-15)
+    assert rows[0]["cn_error"] > 1e-3 > rows[9]["cn_error"] > rows[-1]["cn_error"]
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        ("", "give exactly one of --k, --k-prime, --modular-angle, --nome"),
+        ("--k 0.5 --nome 0.1", "give exactly one of"),
+        ("--k 1.5", "k must be in [0, 1], got 1.5"),
+        ("--k-prime -1", "k_prime must be in [0, 1], got -1.0"),
+        ("--modular-angle 91", "modular_angle_deg must be in [0, 90], got 91.0"),
+        ("--nome 1", "q must be in [0, 1), got 1.0"),
+        ("--k 0.5 --u-range 0:1", "--u-range must be A:B:N"),
+        ("--k 0.5 --u-range 0:1:0", "--u-range must have a whole number N >= 1"),
+        ("--k 0.5 --u 1 --u-range 0:1:3", "exclude each other"),
+        ("--k 0.5 --theta", "--theta needs --u or --u-range"),
+        ("--k 0.5 --u 1 --pi", "--omega and --pi need --param"),
+        ("--k 0.5 --u 1 --param 2", "exclude each other"),
+        ("--k 0.5 --u 1 --pi --param x", "must be a finite decimal number"),
+        ("--k 0.5 --u 1 --pi --param 3i", "must be smaller than K'"),
+        ("--k 1 --u 1 --theta", "k must be below 1 for theta functions"),
+        ("--k 0.5 --series 0", "--series must be in [1, 10000], got 0"),
+        ("--k 1 --series 3", "the nome series need 0 < k < 1"),
+        ("--k 0.5 --u 1 --u 2 --series 3", "--series takes one --u, got 2"),
+    ],
+)
+def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
+    result = lagtop("jacobi", *args.split())
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1

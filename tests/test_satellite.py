@@ -1,0 +1,186 @@
+"""eta(tau) against its quadrature in 60 digits, in every layout and near every degeneracy."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import Lagtop
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.accuracy import units
+from lagrange_cli.elliptic import many_digits
+from lagrange_cli.grids import TimeList
+from lagrange_cli.released import released_record
+from lagrange_cli.satellite import Quadrature, constants, digit_rows, record, rows
+
+ORBITS = {
+    "generic": Quadrature(Fraction("-0.5"), Fraction("0.6"), (Fraction("-1.3"), Fraction("1.5"))),
+    "Earth-like": Quadrature(Fraction("-0.9"), Fraction("0.9"), (Fraction(-33), Fraction("33.1"))),
+    "narrow band": Quadrature(
+        Fraction("0.3"), Fraction("0.3") + Fraction("1e-12"), (Fraction(-1), Fraction("1.2"))
+    ),
+    "outer root close above": Quadrature(
+        Fraction("-0.2"), Fraction("0.7"), (Fraction("-1.5"), Fraction("0.7") + Fraction("1e-12"))
+    ),
+    "outer root close below": Quadrature(
+        Fraction("-0.2"), Fraction("0.7"), (Fraction("-0.2") - Fraction("1e-12"), Fraction(2))
+    ),
+    "1 - k1 = 1e-12": Quadrature(
+        Fraction(-1),
+        Fraction(1),
+        (-1 - Fraction("2.5e-13"), 1 + Fraction("2.5e-13")),
+        Fraction("0.7"),
+    ),
+    "both above": Quadrature(Fraction("-0.5"), Fraction("0.5"), (Fraction("0.8"), Fraction(3))),
+    "both below": Quadrature(Fraction("0.1"), Fraction("0.5"), (Fraction(-4), Fraction("0.05"))),
+    "cubic, root above": Quadrature(
+        Fraction("0.277"), Fraction("0.866"), (Fraction("1.29"),), Fraction("319.09")
+    ),
+    "cubic, root below": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction("-0.4"),)),
+    "equal outer roots": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction(2), Fraction(2))),
+}
+PARTS = [1e-6, 0.21, 0.4999, 0.62, 3.3, -7.7]
+
+
+class Integral:
+    """tau as a function of eta by quadrature over eta = middle - half cos chi; the judge."""
+
+    def __init__(self, of: Quadrature) -> None:
+        numbers = (of.lower, of.upper, of.g, *of.outer)
+        self.lower, self.upper, self.g, *self.outer = (
+            mpmath.mpf(x.numerator) / x.denominator for x in numbers
+        )
+
+    def eta(self, chi: Any) -> Any:
+        return self.lower + (self.upper - self.lower) * mpmath.sin(chi / 2) ** 2
+
+    def pace(self, chi: Any) -> Any:
+        """d tau/d chi."""
+        eta = self.eta(chi)
+        return 1 / mpmath.sqrt(self.g * abs(mpmath.fprod(eta - root for root in self.outer)))
+
+    def tau(self, chi: Any) -> Any:
+        """From delta* at chi = 0; split where an outer root is close."""
+        corners = [mpmath.mpf(10) ** -n for n in (12, 9, 6, 4, 2)]
+        ends = sorted({*corners, 1, mpmath.pi - 1, *(mpmath.pi - x for x in corners)})
+        return mpmath.quad(self.pace, [0, *(x for x in ends if x < chi), chi])
+
+    def chi(self, tau: Any, guess: Any) -> Any:
+        """Newton's method from our own answer: one step doubles its digits, were they right."""
+        for _ in range(2):
+            guess -= (self.tau(guess) - tau) / self.pace(guess)
+        return guess
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_eta(name: str) -> None:
+    """Within 4 units of the quadrature; the worst seen is 1.6."""
+    of = ORBITS[name]
+    with mpmath.workdps(60):
+        integral = Integral(of)
+        period = 2 * integral.tau(mpmath.pi)
+        assert abs(mpmath.mpf(constants(many_digits(50), of).period) / period - 1) < 1e-45
+        times = [Fraction(float(period) * part) for part in PARTS]
+        block = next(rows(of, TimeList(times), Fraction(0))[1])
+        for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
+            time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
+            tau = time - period * mpmath.nint(time / period)
+            risen = (mpmath.mpf(eta) - integral.lower) / (integral.upper - integral.lower)
+            guess = 2 * mpmath.asin(mpmath.sqrt(max(0, min(1, risen))))
+            chi = integral.chi(abs(tau), guess)
+            slope = mpmath.sign(tau) * (integral.upper - integral.lower) * mpmath.sin(chi) / 2
+            slope /= integral.pace(chi)
+            assert units(eta, integral.eta(chi), slope, tau) <= 1.6
+            size = max(1, abs(slope)) * mpmath.sqrt(integral.g)
+            assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
+
+
+def rational(value: Any) -> Fraction:
+    """A many-digit number as the fraction it is."""
+    sign, digits, exponent, _ = value._mpf_
+    size: Fraction = int(digits) * Fraction(2) ** exponent
+    return -size if sign else size
+
+
+def test_the_top_is_the_cubic_case() -> None:
+    """u(t) another way: the roots put into the satellite's routine.  Half a period is c3."""
+    exact = released_record(many_digits(50), Top())
+    u1, u2, u3 = map(rational, exact[4:7])
+    of = Quadrature(u2, u1, (u3,), rational(exact.a))
+    times = np.linspace(-3, 400, 1001)
+    block = next(
+        rows(of, TimeList([Fraction(t) for t in times]), rational(exact.T_nutation) / 2)[1]
+    )
+    assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
+    assert float(constants(many_digits(50), of).period) == solve(Top()).T_nutation
+
+
+@given(
+    st.fractions(-2, 2),
+    st.fractions(Fraction("1e-9"), 3),
+    st.lists(st.fractions(Fraction("1e-12"), 10), min_size=1, max_size=2),
+    st.booleans(),
+    st.fractions(-100, 100),
+)
+def test_energy_and_ends(
+    lower: Fraction, width: Fraction, gaps: list[Fraction], above: bool, tau: Fraction
+) -> None:
+    """eta stays in its band and the rate is that of the radicand, for any layout."""
+    upper = lower + width
+    ends = [upper + gaps[0] if above else lower - gaps[0], lower - gaps[-1]]
+    of = Quadrature(lower, upper, tuple(ends[: len(gaps)]))
+    ((_, eta, rate),) = next(rows(of, TimeList([tau]), Fraction(0))[1]).tolist()
+    assert lower <= Fraction(eta) + Fraction("1e-15")
+    assert Fraction(eta) <= upper + Fraction("1e-15")
+    radicand = (upper - Fraction(eta)) * (Fraction(eta) - lower)
+    for root in of.outer:
+        radicand *= abs(Fraction(eta) - root)
+    assert rate**2 == pytest.approx(float(radicand), rel=1e-6, abs=1e-11)
+
+
+def test_digits_agree_with_doubles() -> None:
+    of, times = ORBITS["generic"], TimeList([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
+    block = next(rows(of, times, Fraction("0.4"))[1])
+    header, texts = digit_rows(of, times, Fraction("0.4"), 30)
+    assert header == ["tau", "eta", "etadot"]
+    assert block == pytest.approx(np.array([[float(x) for x in row] for row in texts]), abs=1e-15)
+    assert record(of)["sigma1"] == float(record(of, 30)["sigma1"])
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "delta must be >= delta_star = 0.5, got 0.2"),
+        (
+            "--delta 1 --delta-star 0 --p 0 --q 0.5",
+            "outside [delta_star, delta] = [0.0, 1.0]",
+        ),
+        ("--delta 1 --delta-star 0 --p 0 --q -2", "--q must be >= 0, got -2.0"),
+        ("--delta 1 --delta-star 0 --p 0", "give either --p and --q or"),
+        ("--delta 1 --delta-star 0", "give either --p and --q or"),
+        (
+            "--delta 1 --delta-star 0 --gap-above 0",
+            "--gap-above must be > 0",
+        ),
+        ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "g must be > 0, got 0.0"),
+        ("--delta 1 --delta-star 0 --gap-below 1 --tau-range 0:1:0", "--tau-range must have"),
+        ("--delta 1 --delta-star 0 --gap-below 1 --tau 1 --tau-range 0:1:5", "exclude each other"),
+        ("--delta x --delta-star 0 --gap-below 1", "--delta must be a finite decimal"),
+    ],
+)
+def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
+    result = lagtop("eta", *args.split())
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_check_names_the_root() -> None:
+    with pytest.raises(LagtopError, match="outer roots must lie outside"):
+        record(Quadrature(Fraction(0), Fraction(1), (Fraction(1, 2),)))
