@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from .cubic import Place, Start, roots_from_start, start
 from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
-from .record import Record, Regime, period_of, with_constant_rates
+from .record import Record, Regime, constant_rates, period_of
 from .released import complement, modulus, phase_rate, u_quarter
 from .roots import Roots
 from .series import Swing, ThetaConstants
@@ -260,7 +260,9 @@ def general_record(ar: Arithmetic, top: Top) -> Record:
     record = record._replace(T_nutation=solution.period, **integrals)
     if not solution.nutates:
         tilt = top.tilt(ar).degrees(ar)
-        return with_constant_rates(record, tilt, spin_rate, precession_rate, 2 * ar.pi)
+        return record._replace(
+            **constant_rates(tilt, spin_rate, precession_rate, 2 * ar.pi)
+        )
     record = record._replace(spin_rate_start=spin_rate, precession_rate_start=precession_rate)
     return _with_mean_rates(ar, record, solution)
 

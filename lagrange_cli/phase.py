@@ -9,14 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .elliptic import Arithmetic, Real
-
-Array = NDArray[np.float64]
-
-_SPLITTER = 2.0**27 + 1
-
+from .twofold import Array, two_product
 
 class Pair(NamedTuple):
     """A number to twice the precision: the nearest double and the rest."""
@@ -86,28 +81,9 @@ def growths(
 
 def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
     """The integer nearest to t * rate + offset, and t * rate less it, free of cancellation."""
-    since, rest = _two_product(t, rate.high)
+    since, rest = two_product(t, rate.high)
     rest += t * rate.low
     step = np.rint(since + offset) if offset else np.rint(since)
     since -= step
     since += rest
     return step, since
-
-
-def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
-    """x * factor and its rounding error, exactly (Dekker)."""
-    scaled = factor * _SPLITTER
-    factor_high = scaled - (scaled - factor)
-    factor_low = factor - factor_high
-    high = x * _SPLITTER
-    high -= high - x
-    low = x - high
-    product = x * factor
-    error = high * factor_high
-    error -= product
-    high *= factor_low
-    error += high
-    error += low * factor_high
-    low *= factor_low
-    error += low
-    return product, error
