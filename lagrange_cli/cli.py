@@ -11,10 +11,10 @@ import click
 
 from . import __version__
 from .options import ExamplesFirst, complain
-from .output import CannotWriteError, Terminated
+from .sink import CannotWriteError, Terminated
 from .top import LagtopError
 
-COMMANDS = ["solve", "table"]
+COMMANDS = ["solve", "table", "sweep"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 

@@ -260,9 +260,7 @@ def general_record(ar: Arithmetic, top: Top) -> Record:
     record = record._replace(T_nutation=solution.period, **integrals)
     if not solution.nutates:
         tilt = top.tilt(ar).degrees(ar)
-        return record._replace(
-            **constant_rates(tilt, spin_rate, precession_rate, 2 * ar.pi)
-        )
+        return record._replace(**constant_rates(tilt, spin_rate, precession_rate, 2 * ar.pi))
     record = record._replace(spin_rate_start=spin_rate, precession_rate_start=precession_rate)
     return _with_mean_rates(ar, record, solution)
 

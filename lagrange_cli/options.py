@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sized
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -17,7 +17,7 @@ from .top import LagtopError, Number, build_top, parse_number
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
-P = TypeVar("P", bound=Sized)
+P = TypeVar("P")
 
 
 class DecimalType(click.ParamType):  # type: ignore[type-arg]
@@ -100,7 +100,9 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
 
 
-def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
+def with_progress(
+    parts: Iterable[P], count: int, long: int, size: Callable[[Any], int] = len
+) -> Iterator[P]:
     """The parts as they come; a bar on the terminal where `count` rows are `long` work."""
     if count < long or not sys.stderr.isatty():
         yield from parts
@@ -108,7 +110,7 @@ def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
     with click.progressbar(length=count, label="rows", file=sys.stderr) as bar:
         for part in parts:
             yield part
-            bar.update(len(part))
+            bar.update(size(part))
 
 
 def complain(line: str) -> None:
@@ -132,12 +134,23 @@ _SCENE_OPTIONS = [
 ]
 
 
+def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[type-arg]
+    """The inputs of a top, and --rad."""
+
+    def decorate(command: F) -> F:
+        command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
+            command
+        )
+        for name, text in reversed(_SCENE_OPTIONS):
+            command = click.option(name, name[2:], type=kind, help=text)(command)
+        return click.version_option(__version__, prog_name="lagtop")(command)
+
+    return decorate
+
+
 def scene_options(command: F) -> F:
     """The scene file and the inputs that override it."""
-    for name, text in reversed(_SCENE_OPTIONS):
-        command = click.option(name, name[2:], type=NUMBER, help=text)(command)
-    command = click.version_option(__version__, prog_name="lagtop")(command)
-    command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(command)
+    command = input_options(NUMBER)(command)
     return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
         command
     )

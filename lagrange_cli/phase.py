@@ -9,9 +9,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .elliptic import Arithmetic, Real
-from .twofold import Array, two_product
+
+Array = NDArray[np.float64]
+
+_SPLITTER = 2.0**27 + 1
+
 
 class Pair(NamedTuple):
     """A number to twice the precision: the nearest double and the rest."""
@@ -87,3 +92,22 @@ def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Arra
     since -= step
     since += rest
     return step, since
+
+
+def two_product(x: Array, factor: Array | float) -> tuple[Array, Array]:
+    """x * factor and its rounding error, exactly (Dekker)."""
+    scaled = factor * _SPLITTER
+    factor_high = scaled - (scaled - factor)
+    factor_low = factor - factor_high
+    high = x * _SPLITTER
+    high -= high - x
+    low = x - high
+    product = x * factor
+    error = high * factor_high
+    error -= product
+    high *= factor_low
+    error += high
+    error += low * factor_high
+    low *= factor_low
+    error += low
+    return product, error

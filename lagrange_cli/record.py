@@ -88,7 +88,7 @@ def _in_radians(ar: Arithmetic, key: str, value: Real | None) -> tuple[str, Real
 
 def constant_rates(
     tilt_deg: Real, spin_rate: Real, precession_rate: Real | None, two_pi: Real
-) -> dict[str, Real | None]:
+) -> dict[str, Any]:
     """Numbers of the record of a motion whose tilt and rates do not change."""
     return {
         "theta_min_deg": tilt_deg,

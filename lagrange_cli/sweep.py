@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .motion import solve
+from .phase import Array
 from .record import NUMBER_KEYS, Regime
 from .released import STILL, Nutation, remark, unmoved
 from .top import LagtopError, Top
 from .tops import Mask, Tops
-from .twofold import Array
 
 Column = Array | NDArray[np.object_]
 """Numbers, NaN where a regime has none; or texts, None where there is none."""
 
-BLOCK_ROWS = 1 << 13
+BLOCK_ROWS = 1 << 12
 """Tops that are computed together: their arrays stay in the cache."""
 
 _TEXT_KEYS = ("regime", "path", "remark")
@@ -42,8 +42,8 @@ def sweep(
 ) -> dict[str, Column]:
     """Records of many tops: arrays by key, in the shape that the inputs have together.
 
-    Inputs are those of `Top`, numbers or arrays.  Numbers that a regime does not have are NaN, texts
-    None; `error` says what is wrong with a top, which has NaN elsewhere.  Only `keys` are computed.
+    Inputs are those of `Top`, numbers or arrays.  A number that a regime does not have is NaN, a
+    text None; `error` says what is wrong with a top, which has neither.  Only `keys` are computed.
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
     chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
@@ -94,8 +94,8 @@ def records(
         if (rows := found & left).any():
             block.fill(rows, regime)
             left &= ~rows
-    for row in np.flatnonzero(left):
-        block.solve(int(row))
+    for row in np.flatnonzero(left).tolist():
+        block.solve(row)
     return {key: block.columns[key] for key in keys}
 
 
@@ -123,8 +123,7 @@ class _Block:
         values: Any
         if regime in STILL:
             values = unmoved(np, regime, inv, tops.tilt(), tops.r0)
-            stable = inv.lam_minus_1 >= 0
-            remarks = np.where(stable, remark(regime, True), remark(regime, False))
+            remarks = np.array([remark(regime, stable) for stable in inv.lam_minus_1 >= 0])
             texts = {"regime": regime.value, "path": None, "remark": remarks}
         else:
             motion = Nutation(np, inv, tops.tilt(), tops.r0, spins=regime is Regime.REGULAR)

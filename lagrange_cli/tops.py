@@ -11,15 +11,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .phase import Array
 from .record import Regime
 from .roots import Invariants
 from .top import Tilt
-from .twofold import Array, Twofold, two_sum
+from .twofold import Twofold, two_sum
 
 Mask = NDArray[np.bool_]
 
 _LARGE, _SMALL = 1e30, 1e-30
 """Between these sizes no formula leaves the range of doubles."""
+_DEGREE = Twofold(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _LEAST_DISTANCE = 2.0**-45
 """Of lambda from 1: from here on a pair of doubles gives lambda - 1 to its last bit."""
 
@@ -78,7 +80,7 @@ class Tops(NamedTuple):
         return found
 
     def _usual(self) -> Mask:
-        usual = (self.thetadot0 == 0) & (self.psidot0 == 0) & (2 * self.A >= self.C)
+        usual: Mask = (self.thetadot0 == 0) & (self.psidot0 == 0) & (2 * self.A >= self.C)
         for x in (self.m, self.A, self.C):
             usual &= (x >= _SMALL) & (x <= _LARGE)
         for x in (self.s, self.g, abs(self.r0)):
@@ -90,7 +92,9 @@ class Tops(NamedTuple):
         torque = self.m * self.g * self.s
         lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
         ratio = (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
-        return usual & one_tilt & ratio & ~(abs(lam - 1) < 2 * _LEAST_DISTANCE)
+        far = ~(abs(lam - 1) < 2 * _LEAST_DISTANCE)
+        usual &= one_tilt & ratio & far
+        return usual
 
     def invariants(self) -> Invariants:
         """(4,4), (4,5) and their combinations, each rounded once."""
@@ -141,5 +145,5 @@ def _tilt_of_degrees(tilt: Array) -> Tilt:
 
 
 def _in_radians(degrees: Twofold) -> tuple[Array, Array]:
-    arc = degrees * Twofold(np.full(1, np.pi / 180), 2.9486522708701687e-19)
+    arc = degrees * _DEGREE
     return arc.high, arc.low

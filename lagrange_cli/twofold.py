@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
-_SPLITTER = 2.0**27 + 1
+from .phase import Array, two_product
 
 
 class Twofold:
     """The numbers high + low, where high is the double nearest to the sum."""
 
-    __slots__ = ("high", "low")
-
-    def __init__(self, high: Array, low: Array | float = 0.0) -> None:
+    def __init__(self, high: Array, low: Array | None = None) -> None:
         self.high = high
-        self.low: Array | float = low
+        self.low = np.zeros_like(high) if low is None else low
 
     def scaled(self, power: float) -> Twofold:
         """Times a power of two, exactly."""
@@ -47,22 +42,3 @@ def two_sum(x: Array | float, y: Array) -> Twofold:
     total = x + y
     rest = total - x
     return Twofold(total, (x - (total - rest)) + (y - rest))
-
-
-def two_product(x: Array, factor: Array | float) -> tuple[Array, Array]:
-    """x * factor and its rounding error, exactly (Dekker)."""
-    scaled = factor * _SPLITTER
-    factor_high = scaled - (scaled - factor)
-    factor_low = factor - factor_high
-    high = x * _SPLITTER
-    high -= high - x
-    low = x - high
-    product = x * factor
-    error = high * factor_high
-    error -= product
-    high *= factor_low
-    error += high
-    error += low * factor_high
-    low *= factor_low
-    error += low
-    return product, error
