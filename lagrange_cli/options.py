@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -18,6 +18,7 @@ MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
 P = TypeVar("P")
+V = TypeVar("V")
 
 
 class DecimalType(click.ParamType):  # type: ignore[type-arg]
@@ -72,13 +73,17 @@ def solved(
     scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
 ) -> Motion:
     """The motion of the top in a scene file, if any, and in the options, which win."""
-    given: dict[str, Number] = {key: x for key, x in options.items() if x is not None}
-    if "theta0" in given:
-        given["theta0_rad" if rad else "theta0_deg"] = given.pop("theta0")
+    given: dict[str, Number] = dict(by_key(options, radians=rad))
     motion = solve(build_top(given, exact=exact)) if scene is None else _of(scene, given, exact)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
+
+
+def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
+    """The options that were given, by the keys of the inputs."""
+    unit = "theta0_rad" if radians else "theta0_deg"
+    return {unit if name == "theta0" else name: x for name, x in options.items() if x is not None}
 
 
 def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
@@ -98,6 +103,13 @@ def exclude(options: dict[str, Any]) -> None:
     given = [name for name, value in options.items() if value is not None]
     if len(given) > 1:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
+
+
+def given(name: str) -> bool:
+    """Whether an option of the command that runs was given."""
+    from click.core import ParameterSource
+
+    return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
 
 
 def with_progress(

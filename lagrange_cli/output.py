@@ -118,21 +118,24 @@ def block_text(columns: Columns, names: Sequence[str], style: str) -> bytes:
         rows = zip(*chain.from_iterable(map(_as_lists, columns)), strict=True)
         objects = [orjson.dumps(dict(zip(names, row, strict=True))) for row in rows]
         return b",\n".join(objects) if style == "json" else b"".join(x + b"\n" for x in objects)
-    if len(columns) == 1 and hasattr(columns[0], "dtype"):
+    if len(columns) == 1 < len(names) and hasattr(columns[0], "dtype"):
         return _array_text(columns[0]).replace(b"],[", b"\n") + b"\n"
     cells = [
         _array_text(x).split(b"],[") if hasattr(x, "dtype") else [csv_text(y).encode() for y in x]
         for x in columns
     ]
-    return b"".join(b",".join(row) + b"\n" for row in zip(*cells, strict=True))
+    lines = list(map(b",".join, zip(*cells, strict=True)))
+    if len(names) == 1:  # an empty line would be lost to its reader
+        lines = [line or b'""' for line in lines]
+    return b"\n".join(lines) + b"\n"
 
 
 def _array_text(rows: Any) -> bytes:
     """An array of rows as orjson writes it, `],[` between the rows; nothing for NaN."""
     import orjson
 
-    text = orjson.dumps(rows, option=orjson.OPT_SERIALIZE_NUMPY)
-    return text[2:-2].replace(b"null", b"")
+    text = orjson.dumps(rows, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
+    return text.replace(b"null", b"") if b"n" in text else text
 
 
 def _as_lists(column: Any) -> list[Any]:

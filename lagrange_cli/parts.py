@@ -6,19 +6,24 @@ hold in their order, wherever each of them was made.
 
 from __future__ import annotations
 
+import logging
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from typing import Any, NamedTuple
+from itertools import chain, repeat
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .grid import Grid
 from .output import Columns, block_text
-from .rowfile import Lines, Row, RowFile
+from .rowfile import Lines, RowFile
 from .sweep import Column, records
 from .top import LagtopError
 from .tops import Tops
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
 
 Block = tuple[int, range | Lines]
 """The number of a part, and the points of the grid or the lines of the file that it is made of."""
@@ -92,22 +97,13 @@ class Sweep(NamedTuple):
             return Inputs(Tops(*(_column(given.get(x), len(place)) for x in Tops._fields)))
         assert isinstance(place, Lines)
         rows = list(self.source.rows(place))
-        filled = [self._filled(row) for row in rows]
+        filled = [row.completed(self.given) for row in rows]
         return Inputs(
             Tops(*(np.array([x.get(name, np.nan) for x in filled]) for name in Tops._fields)),
             list(zip(*(row.carried for row in rows), strict=True)),
             [row.line for row in rows],
             {i: row.error for i, row in enumerate(rows) if row.error},
         )
-
-    def _filled(self, row: Row) -> Mapping[str, float]:
-        """The inputs of a row, with what it lacks."""
-        if row.error:
-            return row.inputs
-        if "theta0_deg" not in row.inputs and "theta0_rad" not in row.inputs:
-            return {**self.given, **row.inputs}
-        others = {name: x for name, x in self.given.items() if not name.startswith("theta0_")}
-        return {**others, **row.inputs}
 
 
 def _column(value: Any, count: int) -> Any:
@@ -136,42 +132,54 @@ def shard_of(blocks: Iterable[Block], which: tuple[int, int] | None) -> Iterator
 
 
 def computed(sweep: Sweep, blocks: Iterable[Block], cluster: str | None) -> Iterator[Part]:
-    """The parts in their order, made here or on a Dask cluster (its address, or `local`)."""
-    return map(sweep.part, blocks) if cluster is None else _on_cluster(sweep.part, blocks, cluster)
+    """The parts in their order, made here or on a Dask cluster (its address, or `local`).
+
+    Raises LagtopError for a cluster that cannot be reached.
+    """
+    if cluster is None:
+        return map(sweep.part, blocks)
+    return _gathered(_client(cluster), sweep, blocks)
 
 
-def _on_cluster(
-    compute: Callable[[Block], Part], blocks: Iterable[Block], address: str
-) -> Iterator[Part]:
-    """Some blocks a worker are under way at a time, so that memory does not grow with them."""
+def _client(address: str) -> Client:
     try:
         from distributed import Client
     except ImportError:
-        raise LagtopError(
-            "--dask needs the extra `cluster`: pip install 'lagtop[cluster]'"
-        ) from None
-    options = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 40}
+        raise LagtopError("--dask needs dask: pip install 'lagtop[cluster]'") from None
+    if address == "local":
+        return Client(threads_per_worker=1, dashboard_address=None, silence_logs=logging.ERROR)
     try:
-        client = Client(**options) if address == "local" else Client(address, timeout=30)
+        return Client(address, timeout=10)
     except (OSError, ValueError) as error:
-        raise LagtopError(
-            f"--dask must be `local` or a scheduler, got {address}: {error}"
-        ) from None
+        raise LagtopError(f"--dask must be local or a scheduler, got {address}: {error}") from None
+
+
+def _gathered(client: Client, sweep: Sweep, blocks: Iterable[Block]) -> Iterator[Part]:
+    """Some parts a worker are under way at a time, so that memory does not grow with their number.
+
+    What a lost worker was at is computed by another one.
+    """
+    from distributed import KilledWorker
+
+    most = 4 * max(sum(client.nthreads().values()), 4)
+    waiting: deque[Future[Part]] = deque()
     with closing(client):
-        most = 4 * max(sum(client.nthreads().values()), 4)
-        waiting: deque[Any] = deque()
-        for block in blocks:
-            waiting.append(client.submit(compute, block, pure=False))
-            if len(waiting) >= most:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
+        for block in chain(blocks, repeat(None)):
+            if block is not None:
+                waiting.append(client.submit(sweep.part, block, pure=False))
+            elif not waiting:
+                return
+            if block is None or len(waiting) >= most:
+                try:
+                    yield waiting.popleft().result()
+                except KilledWorker as error:
+                    raise LagtopError(f"--dask: a part killed its workers: {error}") from None
 
 
 class Tally:
     """Counts the tops that have an error as the parts pass by."""
 
-    def __init__(self, *, fail_fast: bool) -> None:
+    def __init__(self, *, fail_fast: bool = False) -> None:
         self.fail_fast = fail_fast
         self.count = self.failed = 0
         self.first = ""
@@ -184,6 +192,10 @@ class Tally:
             if self.fail_fast:
                 self.check()
             yield part
+
+    def texts(self, parts: Iterable[Part]) -> Iterator[bytes]:
+        """What there is to write."""
+        return (part.text for part in self.passing(parts))
 
     def check(self) -> None:
         """Raise FailedError if there was any error."""

@@ -35,6 +35,15 @@ class Row(NamedTuple):
     inputs: Mapping[str, float]
     error: str | None = None
 
+    def completed(self, given: Mapping[str, float]) -> Mapping[str, float]:
+        """The inputs, with those given where the row lacks them; those that could be read where
+        there is an error."""
+        if self.error:
+            return self.inputs
+        tilted = "theta0_deg" in self.inputs or "theta0_rad" in self.inputs
+        others = {x: y for x, y in given.items() if not (tilted and x.startswith("theta0_"))}
+        return {**others, **self.inputs}
+
 
 class RowFile(NamedTuple):
     """How to read the lines of a file: all of its blocks alike."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .phase import Array
 
 MAX_ROWS = 10**9
-BLOCK_ROWS = 1 << 16
+BLOCK_ROWS = 1 << 14
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256
 """Rows that settle together under --digits."""
@@ -170,18 +170,25 @@ def rows(
     """
     from .columns import COLUMNS
 
+    header = headings(columns, radians=radians)
+    chosen = [COLUMNS[name] for name in columns]
+    sampler = motion.sampler()
+    sampler.check(times.bounds())
+    samples = _samples(motion, sampler, times, any(column.needs_rate for column in chosen), wrap)
+    return header, (_block(sample, chosen, header) for sample in samples)
+
+
+def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
+    """The header of some columns.  Raises LagtopError for an unknown one."""
+    from .columns import COLUMNS
+
     for name in columns or [""]:
         if name not in COLUMNS:
             raise LagtopError(f"--columns must be among {' '.join(COLUMNS)}, got {name!r}")
     if len(set(columns)) < len(columns):
         raise LagtopError(f"--columns must name each column once, got {' '.join(columns)}")
-    chosen = [COLUMNS[name] for name in columns]
     unit = "rad" if radians else "deg"
-    header = [text.replace("*", unit) for column in chosen for text in column.headings]
-    sampler = motion.sampler()
-    sampler.check(times.bounds())
-    samples = _samples(motion, sampler, times, any(column.needs_rate for column in chosen), wrap)
-    return header, (_block(sample, chosen, header) for sample in samples)
+    return [text.replace("*", unit) for name in columns for text in COLUMNS[name].headings]
 
 
 def _samples(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import ExamplesFirst, exclude, input_options, output_options, with_progress
+from ..options import ExamplesFirst, by_key, exclude, input_options, output_options, with_progress
 from ..output import write_parts, write_text_blocks
 from ..top import LagtopError
 
@@ -90,8 +90,10 @@ def command(  # noqa: PLR0917 - click passes them by name
     from ..plan import plan
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
+    if folder is not None and style == "json":
+        raise LagtopError("--format json is one array: with --parts take csv or ndjson")
     names = None if keys is None else keys.replace(",", " ").split()
-    inputs = {name: axis for name, axis in axes.items() if axis is not None}
+    inputs = by_key(axes, radians=rad)
     sweep, blocks, size = plan(files, inputs, keys=names, radians=rad, style=style)
     tally = Tally(fail_fast=fail_fast)
     parts = tally.passing(computed(sweep, shard_of(blocks, shard), cluster))
