@@ -97,7 +97,7 @@ def sweeps(rng: np.random.Generator) -> None:
     """Records of many tops; contract: at most 1.5 of the integrals."""
     count = COUNT // 4
     inputs = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
-    record = sweep(**inputs)
+    record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"])
     tops = Tops(*(np.broadcast_to(inputs.get(x, given), (count,)) for x, given in TOP.items()))
     blocks = [tops.part(slice(i, i + BLOCK_ROWS)) for i in range(0, count, BLOCK_ROWS)]
 
