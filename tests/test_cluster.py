@@ -1,0 +1,71 @@
+"""Sweeps on a Dask cluster of two worker processes: the bytes of a local run, whatever dies."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import LAGTOP, process
+from distributed import Client, LocalCluster
+
+pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itself does
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[LocalCluster]:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        yield cluster
+
+
+def joined(folder: Path) -> bytes:
+    return b"".join(part.read_bytes() for part in sorted(folder.iterdir()))
+
+
+@pytest.mark.parametrize("style", ["csv", "ndjson"])
+def test_the_bytes_of_a_local_run(style: str, cluster: LocalCluster, tmp_path: Path) -> None:
+    options = ["sweep", "--r0", "0:90:301", "--theta0", "0:180:31", "--format", style]
+    options += ["--keys", "r0,regime,T_nutation,error"]
+    here = process(*options).stdout
+    there = process(*options, "--dask", cluster.scheduler_address)
+    assert there.stdout == here
+    assert there.stderr == b""
+    process(*options, "--dask", cluster.scheduler_address, "--parts", str(tmp_path))
+    assert len(list(tmp_path.iterdir())) == 3
+    assert joined(tmp_path) == here
+
+
+def test_rows_and_errors_as_in_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None:
+    file = tmp_path / "tops.csv"
+    file.write_text("id,r0\n" + "".join(f"{i},{'x' if i % 999 == 5 else i}\n" for i in range(9000)))
+    here = process("sweep", str(file), check=False)
+    there = process("sweep", str(file), "--dask", cluster.scheduler_address, check=False)
+    assert here.returncode == there.returncode == 1
+    assert (there.stdout, there.stderr) == (here.stdout, here.stderr)
+
+
+def test_a_killed_worker_loses_nothing(cluster: LocalCluster, tmp_path: Path) -> None:
+    options = ["sweep", "--r0", "1:100:200000"]
+    here = process(*options).stdout
+    with Client(cluster.scheduler_address) as client:
+        victim = min(client.run(os.getpid).values())
+    running = subprocess.Popen(
+        [*LAGTOP, *options, "--dask", cluster.scheduler_address, "--parts", str(tmp_path)]
+    )
+    while running.poll() is None and len(list(tmp_path.iterdir())) < 2:
+        time.sleep(0.005)
+    assert running.poll() is None
+    os.kill(victim, signal.SIGKILL)
+    assert running.wait(timeout=60) == 0
+    assert joined(tmp_path) == here
+
+
+def test_no_cluster() -> None:
+    result = process("sweep", "--dask", "nowhere", check=False)
+    assert (result.returncode, result.stdout) == (2, b"")
+    assert result.stderr.startswith(b"Error: --dask must be local or a scheduler, got nowhere")
+    assert result.stderr.count(b"\n") == 1
