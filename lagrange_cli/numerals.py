@@ -12,6 +12,13 @@ def value_text(value: Any) -> str:
     return double_text(value) if isinstance(value, float) else str(value)
 
 
+def json_text(value: Any) -> str:
+    """Any JSON value."""
+    import orjson
+
+    return orjson.dumps(value).decode()
+
+
 def double_text(value: float) -> str:
     """The shortest text that reads back as the same double.
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from .numerals import double_text, value_text
+from .numerals import double_text, json_text, value_text
 from .sink import CannotWriteError, sink
 
 if TYPE_CHECKING:
@@ -76,6 +76,11 @@ def write_rows(names: Sequence[str], blocks: Iterable[Array], style: str, path: 
 def write_text_blocks(style: str, names: Sequence[str], blocks: Iterable[bytes], path: str) -> None:
     """Texts made by `block_text`, with what stands before, between and after them."""
     with sink(path) as stream:
+        if style == "parquet":
+            from .parquet import write_parquet
+
+            write_parquet(stream, names, filter(None, blocks))
+            return
         stream.write(opening(style, names))
         between = b""
         for text in filter(None, blocks):
@@ -90,14 +95,19 @@ def write_parts(
 ) -> None:
     """Each text into a file of its own, named by its number, which is replaced whole or not at all.
 
-    One after the other they are what `write_text_blocks` writes.
+    One after the other they are what `write_text_blocks` writes (but for Parquet, where each is
+    whole).
     """
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
         raise CannotWriteError(f"cannot write {folder}: {error.strerror}") from None
     for number, text in parts:
-        with sink(os.path.join(folder, f"part-{number:06}.{style}")) as stream:
+        path = os.path.join(folder, f"part-{number:06}.{style}")
+        if style == "parquet":
+            write_text_blocks(style, names, [text], path)
+            continue
+        with sink(path) as stream:
             stream.write(text if number else opening(style, names) + text)
 
 
@@ -109,12 +119,17 @@ def opening(style: str, names: Sequence[str]) -> bytes:
 
 
 def block_text(columns: Columns, names: Sequence[str], style: str) -> bytes:
-    """A block of rows: `csv` and `ndjson` are lines, `json` the inside of an array."""
+    """A block of rows: `csv` and `ndjson` are lines, `json` the inside of an array; for `parquet`
+    an Arrow stream."""
     import numpy as np
     import orjson
 
     if not len(columns[0]):
         return b""
+    if style == "parquet":
+        from .parquet import arrow_block
+
+        return arrow_block(columns, names)
     if style != "csv":
         lists = (x.T.tolist() if isinstance(x, np.ndarray) else [x] for x in columns)
         rows = zip(*chain.from_iterable(lists), strict=True)
@@ -156,9 +171,7 @@ def csv_text(value: Any) -> str:
         return f'"{value.replace(QUOTE, QUOTE * 2)}"' if set(value) & _SPECIAL else value
     if value is None or isinstance(value, float):
         return value_text(value)
-    import orjson
-
-    return csv_text(orjson.dumps(value).decode())
+    return csv_text(json_text(value))
 
 
 def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str, path: str) -> None:

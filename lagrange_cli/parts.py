@@ -18,7 +18,7 @@ import numpy as np
 from .grid import Grid
 from .output import Columns, block_text
 from .rowfile import Lines, RowFile
-from .sweep import Column, records
+from .sweeps import Column, records
 from .top import LagtopError
 from .tops import Tops
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from .grid import Axis, Grid
 from .parts import Block, Sweep
 from .rowfile import open_rows
-from .sweep import BLOCK_ROWS, check_keys, record_keys
+from .sweeps import BLOCK_ROWS, check_keys, record_keys
 from .top import LagtopError, Number, Top, build_top
 
 

@@ -14,6 +14,7 @@ from contextlib import suppress
 from itertools import chain, islice
 from typing import Any, NamedTuple
 
+from .numerals import json_text
 from .top import LagtopError, Top, parse_number
 
 INPUTS = Top._fields
@@ -143,9 +144,7 @@ def _json_double(name: str, value: Any) -> float:
 
 
 def _shown(value: Any) -> str:
-    import orjson
-
-    return orjson.dumps(value).decode()[:60]
+    return json_text(value)[:60]
 
 
 def open_rows(path: str, computed: Collection[str], size: int) -> tuple[RowFile, Iterator[Lines]]:

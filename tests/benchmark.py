@@ -20,7 +20,7 @@ from scipy import special
 from lagrange_cli import Top, solve
 from lagrange_cli.angles import BLOCK
 from lagrange_cli.phase import Array
-from lagrange_cli.sweep import BLOCK_ROWS, Column, record_keys, records, sweep
+from lagrange_cli.sweeps import BLOCK_ROWS, Column, record_keys, records, sweep
 from lagrange_cli.tops import Tops
 
 COUNT = 1_000_000

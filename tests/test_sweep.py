@@ -22,7 +22,7 @@ from scenes import random_scene
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.grid import parse_axis
 from lagrange_cli.record import NUMBER_KEYS, Regime
-from lagrange_cli.sweep import record_keys, sweep
+from lagrange_cli.sweeps import record_keys, sweep
 from lagrange_cli.tops import Tops
 
 Record = dict[str, Any]
@@ -56,9 +56,9 @@ def condition(scene: dict[str, float], key: str) -> float:
     """Relative change of a number over that of each input, summed."""
     total, exact = 0.0, getattr(solve(Top(**scene)), key)
     for name in ("m", "A", "C", "s", "g", "r0", "theta0_deg"):
-        step = -1e-7 if name == "C" else 1e-7  # C <= 2A
+        step = -1e-7 if name in ("C", "theta0_deg") else 1e-7  # C <= 2A, theta0 <= 180
         moved = getattr(solve(Top(**scene | {name: scene[name] * (1 + step)})), key)
-        total += abs(moved - exact) / abs(exact) / 1e-7
+        total += abs(moved - exact) / abs(exact) / abs(step)
     return total
 
 
@@ -241,6 +241,22 @@ def test_formats_carry_the_same_doubles(style: str, lagtop: Lagtop) -> None:
                 assert float(value) == wanted
             else:
                 assert value in (wanted, "", None)
+
+
+def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
+    pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    text = "id,r0\n7,0\n8,40\n9,x\n"
+    rows = lagtop("sweep", "-", "--format", "json", input=text).stdout
+    whole, parts = tmp_path / "x.parquet", tmp_path / "parts"
+    for options in (["-o", whole], ["--parts", parts]):
+        assert lagtop("sweep", "-", "--format", "parquet", *options, input=text).exit_code == 1
+    for file in (whole, parts / "part-000000.parquet"):
+        assert parquet.read_table(file).to_pylist() == json.loads(rows)
+    empty = tmp_path / "empty.parquet"
+    lagtop("sweep", "-", "--format", "parquet", "-o", empty, input="r0\n")
+    assert parquet.read_table(empty).num_rows == 0
 
 
 def test_a_bad_shared_input_is_a_usage_error(lagtop: Lagtop) -> None:

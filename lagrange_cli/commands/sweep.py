@@ -86,12 +86,15 @@ def command(  # noqa: PLR0917 - click passes them by name
     what a row lacks comes from the options and the scene, other columns are carried through.  A top
     that cannot be solved has its `error` in its row, and the exit code is 1.
     """
+    from ..parquet import check_parquet
     from ..parts import Tally, computed, shard_of
     from ..plan import plan
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
     if folder is not None and style == "json":
         raise LagtopError("--format json is one array: with --parts take csv or ndjson")
+    if style == "parquet":
+        check_parquet()
     names = None if keys is None else keys.replace(",", " ").split()
     inputs = by_key(axes, radians=rad)
     sweep, blocks, size = plan(files, inputs, keys=names, radians=rad, style=style)
