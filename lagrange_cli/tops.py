@@ -104,7 +104,8 @@ class Tops(NamedTuple):
             lam = momentum * momentum / (torque * A)
             lam = lam.scaled(0.25)
             rate_half = (torque / momentum).high * 2
-        lam_minus_1 = (lam.high - 1) + lam.low
+            less = two_sum(-1.0, lam.high)
+        lam_minus_1 = less.high + (less.low + lam.low)
         free = torque.high == 0
         more = two_sum(2 * self.A, -self.C)
         return Invariants(
