@@ -7,9 +7,11 @@ hold in their order, wherever each of them was made.
 from __future__ import annotations
 
 import logging
+import signal
+from asyncio import CancelledError
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -131,14 +133,19 @@ def shard_of(blocks: Iterable[Block], which: tuple[int, int] | None) -> Iterator
     return (block for block in blocks if block[0] % step == first - 1)
 
 
-def computed(sweep: Sweep, blocks: Iterable[Block], cluster: str | None) -> Iterator[Part]:
+@contextmanager
+def computed(
+    sweep: Sweep, blocks: Iterable[Block], cluster: str | None
+) -> Iterator[Iterator[Part]]:
     """The parts in their order, made here or on a Dask cluster (its address, or `local`).
 
     Raises LagtopError for a cluster that cannot be reached.
     """
     if cluster is None:
-        return map(sweep.part, blocks)
-    return _gathered(_client(cluster), sweep, blocks)
+        yield map(sweep.part, blocks)
+        return
+    with closing(_client(cluster)) as client:
+        yield _gathered(client, sweep, blocks)
 
 
 def _client(address: str) -> Client:
@@ -147,11 +154,23 @@ def _client(address: str) -> Client:
     except ImportError:
         raise LagtopError("--dask needs dask: pip install 'lagtop[cluster]'") from None
     if address == "local":
-        return Client(threads_per_worker=1, dashboard_address=None, silence_logs=logging.ERROR)
+        with _no_interrupts():
+            return Client(threads_per_worker=1, dashboard_address=":0", silence_logs=logging.ERROR)
     try:
         return Client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise LagtopError(f"--dask must be local or a scheduler, got {address}: {error}") from None
+
+
+@contextmanager
+def _no_interrupts() -> Iterator[None]:
+    """Ignore Ctrl-C, and for good in the processes that are started meanwhile: workers are ours to
+    stop, and would each print a traceback."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _gathered(client: Client, sweep: Sweep, blocks: Iterable[Block]) -> Iterator[Part]:
@@ -163,17 +182,18 @@ def _gathered(client: Client, sweep: Sweep, blocks: Iterable[Block]) -> Iterator
 
     most = 4 * max(sum(client.nthreads().values()), 4)
     waiting: deque[Future[Part]] = deque()
-    with closing(client):
-        for block in chain(blocks, repeat(None)):
-            if block is not None:
-                waiting.append(client.submit(sweep.part, block, pure=False))
-            elif not waiting:
-                return
-            if block is None or len(waiting) >= most:
-                try:
-                    yield waiting.popleft().result()
-                except KilledWorker as error:
-                    raise LagtopError(f"--dask: a part killed its workers: {error}") from None
+    for block in chain(blocks, repeat(None)):
+        if block is not None:
+            waiting.append(client.submit(sweep.part, block, pure=False))
+        elif not waiting:
+            return
+        if block is None or len(waiting) >= most:
+            try:
+                yield waiting.popleft().result()
+            except (ImportError, OSError, CancelledError, KilledWorker) as error:
+                raise LagtopError(
+                    f"--dask: the cluster could not compute a part: {error}"
+                ) from None
 
 
 class Tally:

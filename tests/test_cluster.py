@@ -63,6 +63,33 @@ def test_a_killed_worker_loses_nothing(cluster: LocalCluster, tmp_path: Path) ->
     assert joined(tmp_path) == here
 
 
+def test_a_cluster_of_its_own_goes_with_it(tmp_path: Path) -> None:
+    command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--dask", "local", "-o"]
+    running = subprocess.Popen(
+        [*command, str(tmp_path / "out.csv")], stderr=subprocess.PIPE, start_new_session=True
+    )
+    while not list(tmp_path.iterdir()):
+        time.sleep(0.05)
+    time.sleep(0.5)
+    os.killpg(running.pid, signal.SIGINT)
+    assert running.communicate(timeout=60)[1] == b""
+    assert running.returncode == -signal.SIGINT
+    assert list(tmp_path.iterdir()) == []
+    deadline = time.monotonic() + 30
+    while alive(running.pid) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not alive(running.pid)
+
+
+def alive(group: int) -> bool:
+    """Whether a process group has a process left."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
 def test_no_cluster() -> None:
     result = process("sweep", "--dask", "nowhere", check=False)
     assert (result.returncode, result.stdout) == (2, b"")

@@ -99,10 +99,12 @@ def command(  # noqa: PLR0917 - click passes them by name
     inputs = by_key(axes, radians=rad)
     sweep, blocks, size = plan(files, inputs, keys=names, radians=rad, style=style)
     tally = Tally(fail_fast=fail_fast)
-    parts = tally.passing(computed(sweep, shard_of(blocks, shard), cluster))
-    parts = with_progress(parts, size // (shard or (1, 1))[1], 1_000_000, lambda part: part.tops)
-    if folder is not None:
-        write_parts(style, sweep.header, ((part.number, part.text) for part in parts), folder)
-    else:
-        write_text_blocks(style, sweep.header, (part.text for part in parts), output)
+    with computed(sweep, shard_of(blocks, shard), cluster) as parts:
+        passing = with_progress(
+            tally.passing(parts), size // (shard or (1, 1))[1], 1_000_000, lambda part: part.tops
+        )
+        if folder is not None:
+            write_parts(style, sweep.header, ((part.number, part.text) for part in passing), folder)
+        else:
+            write_text_blocks(style, sweep.header, (part.text for part in passing), output)
     tally.check()
