@@ -86,8 +86,9 @@ def command(  # noqa: PLR0917 - click passes them by name
     what a row lacks comes from the options and the scene, other columns are carried through.  A top
     that cannot be solved has its `error` in its row, and the exit code is 1.
     """
+    from ..cluster import computed
     from ..parquet import check_parquet
-    from ..parts import Tally, computed, shard_of
+    from ..parts import Tally, shard_of
     from ..plan import plan
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
