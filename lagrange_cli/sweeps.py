@@ -8,7 +8,8 @@ one, and a top that cannot be gets an error in place of its numbers.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -120,24 +121,23 @@ class _Block:
         chosen = slice(None) if rows.all() else rows
         tops = self.tops.part(chosen)
         inv = tops.invariants()
-        values: Any
+        value_of: Callable[[str], Any]
+        texts: dict[str, Any] = {"regime": regime.value}
         if regime in STILL:
-            values = unmoved(np, regime, inv, tops.tilt(), tops.r0)
-            remarks = np.array([remark(regime, stable) for stable in inv.lam_minus_1 >= 0])
-            texts = {"regime": regime.value, "path": None, "remark": remarks}
+            value_of = unmoved(np, regime, inv, tops.tilt(), tops.r0).get
+            texts["remark"] = [remark(regime, stable) for stable in inv.lam_minus_1 >= 0]
         else:
             motion = Nutation(np, inv, tops.tilt(), tops.r0, spins=regime is Regime.REGULAR)
-            values = _Attributes(motion)
-            texts = {"regime": regime.value, "path": motion.path, "remark": None}
+            value_of = partial(getattr, motion)
+            texts["path"] = motion.path
         for key in self.texts:
-            self.columns[key][chosen] = texts[key]
+            self.columns[key][chosen] = texts.get(key)
         for key in self.numbers:
+            value = value_of(key.replace("_rad", "_deg"))
             if key.startswith("theta_min"):  # it starts there
                 value = tops.tilt_in(self.radians)
-            else:
-                value = values.get(key.replace("_rad", "_deg"))
-                if key.endswith("_rad") and value is not None:
-                    value = np.radians(value)
+            elif key.endswith("_rad") and value is not None:
+                value = np.radians(value)
             if value is not None:
                 self.columns[key][chosen] = value
 
@@ -151,14 +151,3 @@ class _Block:
         for key in (*self.texts, *self.numbers):
             if record[key] is not None:
                 self.columns[key][row] = record[key]
-
-
-class _Attributes:
-    """Attributes looked up as in a mapping."""
-
-    def __init__(self, owner: object) -> None:
-        self.owner = owner
-
-    def get(self, name: str) -> Any:
-        """The value, computed now."""
-        return getattr(self.owner, name)
