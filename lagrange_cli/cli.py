@@ -12,9 +12,9 @@ import click
 from . import __version__
 from .errors import LagtopError
 from .options import ExamplesFirst, complain
-from .output import CannotWriteError, Terminated
+from .sink import CannotWriteError, Terminated
 
-COMMANDS = ["solve", "table", "jacobi", "eta"]
+COMMANDS = ["solve", "table", "sweep", "jacobi", "eta"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 

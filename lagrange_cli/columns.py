@@ -15,8 +15,8 @@ import numpy as np
 
 from .angles import Attitude
 from .cubic import Start
-from .elliptic.twofold import Array
 from .top import Top
+from .twofold import Array
 
 
 class ColumnConstants(NamedTuple):

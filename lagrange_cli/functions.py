@@ -12,15 +12,15 @@ from .elliptic.fourier import am_sums, cn_sums, k_sums, sn_sums
 from .elliptic.jacobi import jacobi
 from .elliptic.modulus import Modulus, constants, modulus
 from .elliptic.theta import Complex, omega, pi_function, theta_of, zeta
-from .elliptic.twofold import pair
 from .errors import LagtopError
 from .settle import settle
 from .top import number
+from .twofold import pair
 
 if TYPE_CHECKING:
-    from .elliptic.twofold import Array
-    from .grids import Times
     from .settle import NumberText
+    from .times import Times
+    from .twofold import Array
 
 WORKING_DIGITS = 50
 """Of what is rounded to doubles."""
@@ -122,11 +122,17 @@ def rows(arguments: Times, request: Request) -> tuple[list[str], Iterator[Array]
     of = Modulus(float(exact.k), *pair(exact.k_prime))
 
     def columns(u: Array) -> dict[str, Array]:
-        with np.errstate(divide="ignore", invalid="ignore"):  # Zeta, Omega and Pi have poles
+        with np.errstate(divide="ignore", invalid="ignore"):
             return values(np, u, of, request)
 
     header = list(columns(np.array(arguments.bounds())))
-    return header, (np.stack(list(columns(u).values()), axis=1) for u in arguments.blocks())
+
+    def block(u: Array) -> Array:
+        together = np.stack(list(columns(u).values()), axis=1)
+        together[np.isinf(together)] = np.nan  # the poles of Zeta, Omega and Pi: no number
+        return together
+
+    return header, (block(u) for u in arguments.blocks())
 
 
 def digit_rows(

@@ -23,7 +23,7 @@ from .elliptic import (
     period_mean,
 )
 from .errors import LagtopError
-from .record import Record, Regime, period_of, with_constant_rates
+from .record import Record, Regime, constant_rates, period_of
 from .released import complement, modulus, phase_rate, u_quarter
 from .roots import Roots
 from .series import Swing, ThetaConstants
@@ -261,7 +261,7 @@ def general_record(ar: Arithmetic, top: Top) -> Record:
     record = record._replace(T_nutation=solution.period, **integrals)
     if not solution.nutates:
         tilt = top.tilt(ar).degrees(ar)
-        return with_constant_rates(record, tilt, spin_rate, precession_rate, 2 * ar.pi)
+        return record._replace(**constant_rates(tilt, spin_rate, precession_rate, 2 * ar.pi))
     record = record._replace(spin_rate_start=spin_rate, precession_rate_start=precession_rate)
     return _with_mean_rates(ar, record, solution)
 

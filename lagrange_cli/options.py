@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -18,7 +18,8 @@ from .top import Number, build_top, parse_number
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
-P = TypeVar("P", bound=Sized)
+P = TypeVar("P")
+V = TypeVar("V")
 
 
 class DecimalType(click.ParamType):  # type: ignore[type-arg]
@@ -58,7 +59,7 @@ class RangeType(click.ParamType):  # type: ignore[type-arg]
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The grid."""
-        from .grids import parse_range
+        from .times import parse_range
 
         try:
             return parse_range(value) if isinstance(value, str) else value
@@ -88,13 +89,17 @@ def solved(
     scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
 ) -> Motion:
     """The motion of the top in a scene file, if any, and in the options, which win."""
-    given: dict[str, Number] = {key: x for key, x in options.items() if x is not None}
-    if "theta0" in given:
-        given["theta0_rad" if rad else "theta0_deg"] = given.pop("theta0")
+    given: dict[str, Number] = dict(by_key(options, radians=rad))
     motion = solve(build_top(given, exact=exact)) if scene is None else _of(scene, given, exact)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
+
+
+def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
+    """The options that were given, by the keys of the inputs."""
+    unit = "theta0_rad" if radians else "theta0_deg"
+    return {unit if name == "theta0" else name: x for name, x in options.items() if x is not None}
 
 
 def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
@@ -116,7 +121,16 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
 
 
-def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
+def given(name: str) -> bool:
+    """Whether an option of the command that runs was given."""
+    from click.core import ParameterSource
+
+    return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
+
+
+def with_progress(
+    parts: Iterable[P], count: int, long: int, size: Callable[[Any], int] = len
+) -> Iterator[P]:
     """The parts as they come; a bar on the terminal where `count` rows are `long` work."""
     if count < long or not sys.stderr.isatty():
         yield from parts
@@ -124,7 +138,7 @@ def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
     with click.progressbar(length=count, label="rows", file=sys.stderr) as bar:
         for part in parts:
             yield part
-            bar.update(len(part))
+            bar.update(size(part))
 
 
 def complain(line: str) -> None:
@@ -148,12 +162,23 @@ _SCENE_OPTIONS = [
 ]
 
 
+def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[type-arg]
+    """The inputs of a top, and --rad."""
+
+    def decorate(command: F) -> F:
+        command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
+            command
+        )
+        for name, text in reversed(_SCENE_OPTIONS):
+            command = click.option(name, name[2:], type=kind, help=text)(command)
+        return click.version_option(__version__, prog_name="lagtop")(command)
+
+    return decorate
+
+
 def scene_options(command: F) -> F:
     """The scene file and the inputs that override it."""
-    for name, text in reversed(_SCENE_OPTIONS):
-        command = click.option(name, name[2:], type=NUMBER, help=text)(command)
-    command = click.version_option(__version__, prog_name="lagtop")(command)
-    command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(command)
+    command = input_options(NUMBER)(command)
     return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
         command
     )

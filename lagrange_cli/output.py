@@ -1,111 +1,37 @@
-"""The only place that writes: rich tables, CSV and JSON, to a standard output that is watched for
-failure or to a file that is replaced whole or not at all."""
+"""The only place that writes: rich tables, CSV, JSON and Parquet, into a `sink`.
+
+A double has the same text in all of them (see `numerals`).
+"""
 
 from __future__ import annotations
 
-import io
 import os
-import stat
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
+from typing import TYPE_CHECKING, Any
+
+from .numerals import json_text, value_text
+from .sink import CannotWriteError, sink
 
 if TYPE_CHECKING:
-    from .elliptic.twofold import Array
+    from .twofold import Array
 
 MAX_TABLE_ROWS = 10_000
 """A rich table of more rows is neither read nor quickly made."""
 
+QUOTE = '"'
+_SPECIAL = {QUOTE, ",", "\n", "\r"}
 
-class CannotWriteError(Exception):
-    """The output could not be written; the message says where and why."""
-
-
-class Terminated(BaseException):
-    """A signal to end, raised so that a temporary file is removed on the way out."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
+Columns = Sequence["Array | Sequence[Any]"]
+"""The columns of a block: arrays of numbers, one or several columns each, where NaN stands for
+none; or lists of texts and JSON values."""
 
 
-@contextmanager
-def sink(path: str) -> Iterator[BinaryIO]:
-    """A binary stream to `path`, or to standard output for `-`.
-
-    An existing file is replaced when the block ends well and left alone when it does not.  Raises
-    CannotWriteError; a reader that went away raises BrokenPipeError.
-    """
-    try:
-        with _standard_output() if path == "-" else _file(path) as stream:
-            yield stream
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        name = "standard output" if path == "-" else path
-        raise CannotWriteError(f"cannot write {name}: {error.strerror or error}") from None
-
-
-@contextmanager
-def _standard_output() -> Iterator[BinaryIO]:
-    # A duplicate with a buffer of its own: unlike sys.stdout under PYTHONUNBUFFERED it neither
-    # drops what a full disk or a slow reader did not take nor hides the failure.
-    if sys.stdout is None:
-        raise OSError("it is closed")
-    try:
-        descriptor = os.dup(sys.stdout.fileno())
-    except io.UnsupportedOperation:  # replaced in-process, as by click's test runner
-        yield sys.stdout.buffer
-        sys.stdout.buffer.flush()
-        return
-    with open(descriptor, "wb") as stream:
-        yield stream
-
-
-@contextmanager
-def _file(path: str) -> Iterator[BinaryIO]:
-    if os.path.exists(path) and not stat.S_ISREG(os.stat(path).st_mode):  # a device, a pipe
-        with open(path, "wb") as stream:
-            yield stream
-        return
-    from tempfile import mkstemp
-
-    _catch_signals()
-    target = os.path.realpath(path)
-    descriptor, temporary = mkstemp(prefix=".lagtop-", dir=os.path.dirname(target))
-    with open(descriptor, "wb") as stream:
-        try:
-            yield stream
-            stream.flush()
-            os.fsync(stream.fileno())
-            os.chmod(temporary, _mode(target))
-            os.replace(temporary, target)
-        except BaseException:
-            os.unlink(temporary)
-            raise
-
-
-def _mode(target: str) -> int:
-    """The mode of the file that is replaced, or of a new one."""
-    if os.path.exists(target):
-        return stat.S_IMODE(os.stat(target).st_mode)
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
-
-
-def _catch_signals() -> None:
-    """Let the signals that end us remove the temporary file first."""
-    import signal
-
-    def end(number: int, _: Any) -> NoReturn:
-        raise Terminated(number)
-
-    for name in ("SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), end)
+def write_value(value: Any, path: str) -> None:
+    """One value, bare."""
+    with sink(path) as stream:
+        stream.write(f"{value_text(value)}\n".encode())
 
 
 def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "top") -> None:
@@ -115,7 +41,7 @@ def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "
 
         text = record_table(record, kind, terminal=_is_terminal(path), encoding=_encoding(path))
     elif style == "csv":
-        text = f"{','.join(record)}\n{','.join(map(_cell, record.values()))}\n".encode()
+        text = f"{','.join(record)}\n{','.join(map(value_text, record.values()))}\n".encode()
     else:
         members = (f'"{key}": {_json_value(value)}' for key, value in record.items())
         text = f"{{{', '.join(members)}}}\n".encode()
@@ -123,16 +49,11 @@ def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "
         stream.write(text)
 
 
-def _cell(value: Any) -> str:
-    return "" if value is None else str(value)
-
-
 def _json_value(value: Any) -> str:
-    # By hand, because importing json takes 4 % of the run; our only strings are plain words, and
-    # subclasses of str are numbers written out.
+    # By hand, because importing json takes 4 % of the run, and our only strings are plain words.
     if type(value) is str:
         return f'"{value}"'
-    return "null" if value is None else str(value)
+    return value_text(value) or "null"
 
 
 def _is_terminal(path: str) -> bool:
@@ -146,15 +67,115 @@ def _encoding(path: str) -> str:
 def write_rows(names: Sequence[str], blocks: Iterable[Array], style: str, path: str) -> None:
     """Blocks of rows as `csv`, as a `json` array of objects (a row a line) or as a rich `table`."""
     if style == "table":
-        rows = (map(repr, row) for block in blocks for row in block.tolist())
+        rows = (map(value_text, row) for block in blocks for row in block.tolist())
         write_texts(names, rows, style, path)
-        return
+    else:
+        write_text_blocks(style, names, (block_text([x], names, style) for x in blocks), path)
+
+
+def write_text_blocks(style: str, names: Sequence[str], blocks: Iterable[bytes], path: str) -> None:
+    """Texts made by `block_text`, with what stands before, between and after them."""
     with sink(path) as stream:
-        (_csv_rows if style == "csv" else _json_rows)(stream, names, blocks)
+        if style == "parquet":
+            from .parquet import write_parquet
+
+            write_parquet(stream, names, filter(None, blocks))
+            return
+        stream.write(opening(style, names))
+        between = b""
+        for text in filter(None, blocks):
+            stream.write(between)
+            stream.write(text)
+            between = b",\n" if style == "json" else b""
+        stream.write(b"]\n" if style == "json" else b"")
+
+
+def write_parts(
+    style: str, names: Sequence[str], parts: Iterable[tuple[int, bytes]], folder: str
+) -> None:
+    """Each text into a file of its own, named by its number, which is replaced whole or not at all.
+
+    One after the other they are what `write_text_blocks` writes (but for Parquet, where each is
+    whole).
+    """
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise CannotWriteError(f"cannot write {folder}: {error.strerror}") from None
+    for number, text in parts:
+        path = os.path.join(folder, f"part-{number:06}.{style}")
+        if style == "parquet":
+            write_text_blocks(style, names, [text], path)
+            continue
+        with sink(path) as stream:
+            stream.write(text if number else opening(style, names) + text)
+
+
+def opening(style: str, names: Sequence[str]) -> bytes:
+    """What stands before the rows."""
+    if style == "csv":
+        return (",".join(map(csv_text, names)) + "\n").encode()
+    return b"[" if style == "json" else b""
+
+
+def block_text(columns: Columns, names: Sequence[str], style: str) -> bytes:
+    """A block of rows: `csv` and `ndjson` are lines, `json` the inside of an array; for `parquet`
+    an Arrow stream."""
+    import numpy as np
+    import orjson
+
+    if not len(columns[0]):
+        return b""
+    if style == "parquet":
+        from .parquet import arrow_block
+
+        return arrow_block(columns, names)
+    if style != "csv":
+        lists = (x.T.tolist() if isinstance(x, np.ndarray) else [x] for x in columns)
+        rows = zip(*chain.from_iterable(lists), strict=True)
+        objects = [orjson.dumps(dict(zip(names, row, strict=True))) for row in rows]
+        return b",\n".join(objects) if style == "json" else b"".join(x + b"\n" for x in objects)
+    if len(columns) == 1 < len(names) and isinstance(columns[0], np.ndarray):
+        return _array_lines(columns[0])
+    cells = [
+        _array_lines(x).splitlines()
+        if isinstance(x, np.ndarray)
+        else [csv_text(y).encode() for y in x]
+        for x in columns
+    ]
+    lines = list(map(b",".join, zip(*cells, strict=True)))
+    if len(names) == 1:  # an empty line would be lost to its reader
+        lines = [line or b'""' for line in lines]
+    return b"\n".join(lines) + b"\n"
+
+
+def _array_lines(rows: Array) -> bytes:
+    """An array of rows of numbers, a line each; nothing for NaN."""
+    import numpy as np
+    import orjson
+
+    text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
+    if b"n" in text:
+        text = text.replace(b"null", b"")
+    # Commas at the ends of rows become line ends in place: to look for `],[` takes twice as long.
+    view = np.frombuffer(text, dtype=np.uint8)
+    commas = np.flatnonzero(view == ord(","))
+    view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
+    view[-1] = ord("\n")
+    return bytes(view[1:])
+
+
+def csv_text(value: Any) -> str:
+    """A cell, in quotes where it has to be; what is neither text nor number as JSON."""
+    if type(value) is str:
+        return f'"{value.replace(QUOTE, QUOTE * 2)}"' if set(value) & _SPECIAL else value
+    if value is None or isinstance(value, float):
+        return value_text(value)
+    return csv_text(json_text(value))
 
 
 def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str, path: str) -> None:
-    """Rows of numbers written out, in the same three styles."""
+    """Rows of numbers written out, in the same three styles; an empty text stands for none."""
     with sink(path) as stream:
         if style == "table":
             from .report import rows_table
@@ -167,27 +188,8 @@ def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str,
         else:
             separator = b"["
             for row in rows:
-                members = (f'"{name}": {text}' for name, text in zip(names, row, strict=True))
+                pairs = zip(names, row, strict=True)
+                members = (f'"{name}": {text or "null"}' for name, text in pairs)
                 stream.write(separator + f"{{{', '.join(members)}}}".encode())
                 separator = b",\n"
             stream.write(b"]\n")
-
-
-def _csv_rows(stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array]) -> None:
-    import orjson
-
-    stream.write(",".join(names).encode() + b"\n")
-    for block in blocks:
-        text = orjson.dumps(block, option=orjson.OPT_SERIALIZE_NUMPY)
-        stream.write(text[2:-2].replace(b"],[", b"\n") + b"\n")
-
-
-def _json_rows(stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array]) -> None:
-    import orjson
-
-    separator = b"["
-    for block in blocks:
-        for row in block.tolist():
-            stream.write(separator + orjson.dumps(dict(zip(names, row, strict=True))))
-            separator = b",\n"
-    stream.write(b"]\n")

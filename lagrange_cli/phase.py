@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .elliptic import Arithmetic, Real
-from .elliptic.twofold import Array, Pair, pair, reduce_phase
+from .twofold import Array, Pair, pair, reduce_phase
 
 
 class Growth(NamedTuple):

@@ -6,7 +6,7 @@ import math
 from enum import Enum
 from typing import Any, NamedTuple
 
-from .elliptic import Arithmetic, Real
+from .elliptic import Arithmetic, Real, where
 from .top import Top
 
 
@@ -59,7 +59,7 @@ class Record(NamedTuple):
 
     def numbers(self) -> dict[str, Real | None]:
         """The numbers by key."""
-        return dict(zip(self._fields[2:-2], self[2:-2], strict=True))
+        return dict(zip(NUMBER_KEYS, self[2:-2], strict=True))
 
     def record(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
         """Inputs and results by key, in the order of the paper; `radians` renames _deg to _rad.
@@ -77,28 +77,33 @@ class Record(NamedTuple):
         return inputs | {"regime": self.regime.value} | numbers | texts
 
 
+NUMBER_KEYS = Record._fields[2:-2]
+
+
 def _in_radians(ar: Arithmetic, key: str, value: Real | None) -> tuple[str, Real | None]:
     if not key.endswith("_deg"):
         return key, value
     return key.removesuffix("deg") + "rad", None if value is None else value * (ar.pi / 180)
 
 
-def with_constant_rates(
-    record: Record, tilt_deg: Real, spin_rate: Real, precession_rate: Real | None, two_pi: Real
-) -> Record:
-    """Complete the record of a motion whose tilt and rates do not change."""
-    return record._replace(
-        theta_min_deg=tilt_deg,
-        theta_max_deg=tilt_deg,
-        T_spin=period_of(spin_rate, two_pi),
-        T_precession=period_of(precession_rate, two_pi),
-        mean_spin_rate=spin_rate,
-        spin_rate_start=spin_rate,
-        mean_precession_rate=precession_rate,
-        precession_rate_start=precession_rate,
-    )
+def constant_rates(
+    tilt_deg: Real, spin_rate: Real, precession_rate: Real | None, two_pi: Real
+) -> dict[str, Any]:
+    """Numbers of the record of a motion whose tilt and rates do not change."""
+    return {
+        "theta_min_deg": tilt_deg,
+        "theta_max_deg": tilt_deg,
+        "T_spin": period_of(spin_rate, two_pi),
+        "T_precession": period_of(precession_rate, two_pi),
+        "mean_spin_rate": spin_rate,
+        "spin_rate_start": spin_rate,
+        "mean_precession_rate": precession_rate,
+        "precession_rate_start": precession_rate,
+    }
 
 
 def period_of(rate: Real | None, two_pi: Real) -> Real | None:
-    """2 pi over a mean rate (section 8), None where it stands still."""
+    """2 pi over a mean rate (section 8); None, or NaN in an array, where it stands still."""
+    if hasattr(rate, "all"):
+        return two_pi / abs(where(rate == 0, math.nan, rate))
     return two_pi / abs(rate) if rate else None

@@ -7,18 +7,35 @@ and plain doubles are good to about 5 eps.  Equation numbers in parentheses are 
 
 from __future__ import annotations
 
-from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
-from .record import Record, Regime, period_of, with_constant_rates
-from .roots import Roots, invariants, roots_from_rest
+from functools import cached_property
+
+from .elliptic import (
+    Arithmetic,
+    Real,
+    carlson_rf,
+    complete_k,
+    nome,
+    period_mean,
+    where,
+)
+from .record import NUMBER_KEYS, Record, Regime, constant_rates, period_of
+from .roots import Invariants, Roots, invariants, roots_from_rest
 from .top import Tilt, Top, number
 
 
 def released_record(ar: Arithmetic, top: Top) -> Record:
     """The record of a top released from rest, in the arithmetic given."""
-    regime = _classify(top)
-    if regime in (Regime.TORQUE_FREE, Regime.SLEEPING, Regime.HANGING):
-        return _unmoved(ar, top, regime)
-    return _nutating(ar, top, regime)
+    regime, inv, tilt, r0 = _classify(top), invariants(ar, top), top.tilt(ar), number(ar, top.r0)
+    if regime in STILL:
+        numbers = unmoved(ar, regime, inv, tilt, r0)
+        return Record(top, regime, **numbers, remark=remark(regime, inv.lam_minus_1 >= 0))
+    motion = Nutation(ar, inv, tilt, r0, spins=regime is Regime.REGULAR)
+    numbers = {key: getattr(motion, key) for key in NUMBER_KEYS}
+    return Record(top, regime, **numbers, path=motion.path)
+
+
+STILL = (Regime.TORQUE_FREE, Regime.SLEEPING, Regime.HANGING)
+"""The regimes in which a top that is released from rest stays as it is."""
 
 
 def _classify(top: Top) -> Regime:
@@ -71,88 +88,184 @@ def mean_precession_rate(ar: Arithmetic, b: Real, roots: Roots, k_prime: Real, t
     return b * (weighted / roots.u3_u2)
 
 
-def _nutating(ar: Arithmetic, top: Top, regime: Regime) -> Record:
-    """Sections 4-7; also r0 = 0, as the limit r0 -> +0."""
-    inv, tilt = invariants(ar, top), top.tilt(ar)
-    roots = roots_from_rest(ar, inv.lam, inv.lam_minus_1, tilt)
-    k, k_prime = modulus(ar, roots), complement(ar, roots)
-    K = complete_k(ar, k_prime)
-    T = 2 * K / phase_rate(ar, inv.a, roots)
-    half_turns, spins = ar.pi / T, regime is Regime.REGULAR
-    spin = inv.drift + (-half_turns if top.r0 < 0 else half_turns)
-    precession = mean_precession_rate(ar, inv.b, roots, k_prime, tilt) if spins else half_turns
-    degree = ar.pi / 180
-    return Record(
-        top=top,
-        regime=regime,
-        a=inv.a,
-        b=inv.b,
-        u1=roots.u1,
-        u2=roots.u2,
-        u3=roots.u3,
-        k=k,
-        k_prime=k_prime,
-        modular_angle_deg=ar.atan2(k, k_prime) / degree,
-        nome=nome(ar, m=roots.u1_u2 / roots.u3_u2, k_prime=k_prime),
-        K=K,
-        K_prime=complete_k(ar, k),
-        E=complete_e(ar, k_prime),
-        amplitude_deg=amplitude(ar, roots) / degree,
-        alpha=parameter_alpha(ar, roots),
-        T_nutation=T,
-        T_spin=period_of(spin, 2 * ar.pi),
-        T_precession=period_of(precession, 2 * ar.pi),
-        u_quarter=u_quarter(roots, k_prime),
-        theta_min_deg=tilt.degrees(ar),
-        theta_max_deg=2 * ar.atan2(ar.sqrt(roots.above_u2), ar.sqrt(roots.below_u2)) / degree,
-        mean_spin_rate=spin,
-        mean_precession_rate=precession,
-        spin_rate_start=number(ar, top.r0),
-        spin_rate_half=number(ar, top.r0) - inv.rate_half * roots.u2 if spins else None,
-        precession_rate_start=0 * T,
-        precession_rate_half=inv.rate_half,
-        path="cusped" if spins else None,
-    )
+class Nutation:
+    """Sections 4 to 7; also r0 = 0, as the limit r0 -> +0.
+
+    The numbers of a record under their keys, each computed once and only when it is asked for; of
+    one top, or of an array of tops that all spin or all do not.
+    """
+
+    def __init__(
+        self, ar: Arithmetic, inv: Invariants, tilt: Tilt, r0: Real, *, spins: bool
+    ) -> None:
+        self.ar, self.inv, self.tilt, self.r0, self.spins = ar, inv, tilt, r0, spins
+        self.a, self.b = inv.a, inv.b
+        self.precession_rate_start = 0 * inv.a
+        self.path = "cusped" if spins else None
+
+    @cached_property
+    def roots(self) -> Roots:
+        """Roots of the cubic, and their gaps."""
+        return roots_from_rest(self.ar, self.inv.lam, self.inv.lam_minus_1, self.tilt)
+
+    @property
+    def u1(self) -> Real:
+        """cos(theta0)."""
+        return self.tilt.cos
+
+    @property
+    def u2(self) -> Real:
+        """(4,11)."""
+        return self.roots.u2
+
+    @property
+    def u3(self) -> Real:
+        """(4,11)."""
+        return self.roots.u3
+
+    @cached_property
+    def k(self) -> Real:
+        """(4,19)."""
+        return modulus(self.ar, self.roots)
+
+    @cached_property
+    def k_prime(self) -> Real:
+        """(4,21)."""
+        return complement(self.ar, self.roots)
+
+    @property
+    def modular_angle_deg(self) -> Real:
+        """arcsin k."""
+        return self.ar.atan2(self.k, self.k_prime) / self._degree
+
+    @property
+    def _degree(self) -> Real:
+        return self.ar.pi / 180
+
+    @property
+    def nome(self) -> Real:
+        """(2,4)."""
+        return nome(self.ar, m=self.roots.u1_u2 / self.roots.u3_u2, k_prime=self.k_prime)
+
+    @cached_property
+    def K(self) -> Real:
+        """Complete integral of the first kind."""
+        return complete_k(self.ar, self.k_prime)
+
+    @cached_property
+    def K_prime(self) -> Real:
+        """The same of the complement."""
+        return complete_k(self.ar, self.k)
+
+    @property
+    def E(self) -> Real:
+        """Second kind, by Legendre's relation as a sum of positive terms that are exact at k = 1:
+
+        E = pi/2K' + K (K' - E')/K'."""
+        rest = period_mean(self.ar, self.k, 1, 0, self.k_prime * self.k_prime)
+        return self.ar.pi / (2 * self.K_prime) + self.K * rest
+
+    @property
+    def amplitude_deg(self) -> Real:
+        """(7,2)."""
+        return amplitude(self.ar, self.roots) / self._degree
+
+    @property
+    def alpha(self) -> Real:
+        """(1,6)."""
+        return parameter_alpha(self.ar, self.roots)
+
+    @cached_property
+    def T_nutation(self) -> Real:
+        """(5,1)."""
+        return 2 * self.K / phase_rate(self.ar, self.a, self.roots)
+
+    @property
+    def T_spin(self) -> Real:
+        """Section 8."""
+        return period_of(self.mean_spin_rate, 2 * self.ar.pi)
+
+    @property
+    def T_precession(self) -> Real:
+        """Section 8."""
+        return period_of(self.mean_precession_rate, 2 * self.ar.pi)
+
+    @property
+    def u_quarter(self) -> Real:
+        """(5,2)."""
+        return u_quarter(self.roots, self.k_prime)
+
+    @property
+    def theta_min_deg(self) -> Real:
+        """The tilt at the start."""
+        return self.tilt.degrees(self.ar)
+
+    @property
+    def theta_max_deg(self) -> Real:
+        """The tilt at u2."""
+        above, below = self.roots.above_u2, self.roots.below_u2
+        return 2 * self.ar.atan2(self.ar.sqrt(above), self.ar.sqrt(below)) / self._degree
+
+    @cached_property
+    def mean_spin_rate(self) -> Real:
+        """(6,3): a drift, and a turn in the sense of the spin every nutation."""
+        half_turns = self.ar.pi / self.T_nutation
+        return self.inv.drift + where(self.r0 < 0, -half_turns, half_turns)
+
+    @cached_property
+    def mean_precession_rate(self) -> Real:
+        """(7,3); without spin, half a turn at each pass of the bottom."""
+        if not self.spins:
+            return self.ar.pi / self.T_nutation
+        return mean_precession_rate(self.ar, self.b, self.roots, self.k_prime, self.tilt)
+
+    @property
+    def spin_rate_start(self) -> Real:
+        """(6,2)."""
+        return self.r0
+
+    @property
+    def spin_rate_half(self) -> Real | None:
+        """(6,2) at T/2."""
+        return self.r0 - self.inv.rate_half * self.roots.u2 if self.spins else None
+
+    @property
+    def precession_rate_half(self) -> Real | None:
+        """(4,7) at T/2."""
+        return self.inv.rate_half
 
 
-def _unmoved(ar: Arithmetic, top: Top, regime: Regime) -> Record:
+def unmoved(
+    ar: Arithmetic, regime: Regime, inv: Invariants, tilt: Tilt, r0: Real
+) -> dict[str, Real | None]:
     """No torque, or upright, or hanging: the top turns about its own axis and does nothing else.
 
     On the vertical only the sum (upright) or the difference (hanging) of the two angles has a
     meaning; all of it is counted as spin.  Without torque the nutation period is that of a small
     disturbance.
     """
-    inv, tilt = invariants(ar, top), top.tilt(ar)
-    record = Record(
-        top=top,
-        regime=regime,
-        a=inv.a,
-        b=inv.b,
-        u1=tilt.cos,
-        u2=tilt.cos,
-        remark=_remark(top, regime),
-    )
-    spin, zero = number(ar, top.r0), number(ar, 0)
+    numbers = {"a": inv.a, "b": inv.b, "u1": tilt.cos, "u2": tilt.cos}
     if regime is not Regime.TORQUE_FREE:
-        return with_constant_rates(record, tilt.degrees(ar), spin, None, 2 * ar.pi)
+        return numbers | constant_rates(tilt.degrees(ar), r0, None, 2 * ar.pi)
+    zero = 0 * tilt.sin
     quarter = ar.pi / 2 + zero
-    record = record._replace(
-        k=zero,
-        k_prime=zero + 1,
-        modular_angle_deg=zero,
-        nome=zero,
-        K=quarter,
-        E=quarter,
-        T_nutation=period_of(inv.b, 2 * ar.pi),
-    )
-    return with_constant_rates(record, tilt.degrees(ar), spin, zero, 2 * ar.pi)
+    without_torque = {
+        "k": zero,
+        "k_prime": zero + 1,
+        "modular_angle_deg": zero,
+        "nome": zero,
+        "K": quarter,
+        "E": quarter,
+        "T_nutation": period_of(inv.b, 2 * ar.pi),
+    }
+    return numbers | without_torque | constant_rates(tilt.degrees(ar), r0, zero, 2 * ar.pi)
 
 
-def _remark(top: Top, regime: Regime) -> str | None:
+def remark(regime: Regime, stable: bool) -> str | None:
+    """What there is to add; `stable` says whether lambda >= 1."""
     if regime is Regime.HANGING:
         return "only phi - psi is defined; stable"
     if regime is Regime.SLEEPING:
-        stable = "stable" if top.sleeps_stably() else "unstable"
-        sign = ">=" if top.sleeps_stably() else "<"
-        return f"only phi + psi is defined; {stable} (lambda = b^2/2a {sign} 1)"
+        found, sign = ("stable", ">=") if stable else ("unstable", "<")
+        return f"only phi + psi is defined; {found} (lambda = b^2/2a {sign} 1)"
     return None

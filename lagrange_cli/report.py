@@ -11,6 +11,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from .numerals import value_text
+
 
 class Row(NamedTuple):
     """How a key is shown: symbol, name, unit and the equation it comes from."""
@@ -152,7 +154,7 @@ def _line(record: Mapping[str, Any], row: Row, angle: str) -> tuple[str, ...] | 
     value = record[f"{row.key}_{angle}" if is_angle else row.key]
     if value is None:
         return None
-    return row.symbol, row.name, str(value), angle if is_angle else row.unit, row.equation
+    return row.symbol, row.name, value_text(value), angle if is_angle else row.unit, row.equation
 
 
 def rows_table(

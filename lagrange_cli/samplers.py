@@ -6,7 +6,6 @@ from functools import lru_cache
 
 from .angles import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
 from .elliptic import Arithmetic, Real, many_digits
-from .elliptic.twofold import pair
 from .general import (
     Solution,
     analyse,
@@ -18,6 +17,7 @@ from .phase import growths
 from .record import Regime
 from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
 from .top import Tilt, Top
+from .twofold import pair
 
 WORKING_DIGITS = 50
 """Digits of the constants; 34 would do, the rest is margin."""

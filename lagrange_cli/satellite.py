@@ -24,9 +24,9 @@ from .top import number
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from .elliptic.twofold import Array
-    from .grids import Times
     from .settle import NumberText
+    from .times import Times
+    from .twofold import Array
 
 WORKING_DIGITS = 50
 """Of what is rounded to doubles."""
@@ -211,7 +211,7 @@ def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterato
     import numpy as np
 
     from .elliptic import complete_k
-    from .elliptic.twofold import pair, reduce_phase
+    from .twofold import pair, reduce_phase
 
     of.check()
     exact = many_digits(WORKING_DIGITS)

@@ -49,4 +49,6 @@ def _precisions(digits: int) -> Iterator[int]:
 def _text(ar: Arithmetic, value: Any, digits: int) -> Any:
     if value is None or isinstance(value, str):
         return value
+    if not ar.isfinite(value):
+        return NumberText()
     return NumberText(ar.nstr(number(ar, value), digits, min_fixed=-5, max_fixed=16))

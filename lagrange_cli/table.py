@@ -8,14 +8,14 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from .errors import LagtopError
-from .grids import Grid, Times, even_grid
 from .motion import Motion
+from .times import Grid, Times, even_grid
 
 if TYPE_CHECKING:
     from .angles import Sampler
     from .columns import Column, Sample
-    from .elliptic.twofold import Array
     from .settle import NumberText
+    from .twofold import Array
 
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256
@@ -66,18 +66,25 @@ def rows(
     """
     from .columns import COLUMNS
 
+    header = headings(columns, radians=radians)
+    chosen = [COLUMNS[name] for name in columns]
+    sampler = motion.sampler()
+    sampler.check(times.bounds())
+    samples = _samples(motion, sampler, times, any(column.needs_rate for column in chosen), wrap)
+    return header, (_block(sample, chosen, header) for sample in samples)
+
+
+def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
+    """The header of some columns.  Raises LagtopError for an unknown one."""
+    from .columns import COLUMNS
+
     for name in columns or [""]:
         if name not in COLUMNS:
             raise LagtopError(f"--columns must be among {' '.join(COLUMNS)}, got {name!r}")
     if len(set(columns)) < len(columns):
         raise LagtopError(f"--columns must name each column once, got {' '.join(columns)}")
-    chosen = [COLUMNS[name] for name in columns]
     unit = "rad" if radians else "deg"
-    header = [text.replace("*", unit) for column in chosen for text in column.headings]
-    sampler = motion.sampler()
-    sampler.check(times.bounds())
-    samples = _samples(motion, sampler, times, any(column.needs_rate for column in chosen), wrap)
-    return header, (_block(sample, chosen, header) for sample in samples)
+    return [text.replace("*", unit) for name in columns for text in COLUMNS[name].headings]
 
 
 def _samples(

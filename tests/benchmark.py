@@ -1,23 +1,30 @@
-"""`python tests/benchmark.py`: cost of a sample as ratios, all in one run on one thread.
+"""`python tests/benchmark.py`: costs as ratios, all in one run on one thread.
 
 Peers: the floor sin + cos + 3 arctan2, scipy.special's ellipj + 2 elliprj, heyoka's dense output.
 """
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import heyoka as hy
 import numpy as np
+import orjson
 from scipy import special
 
 from lagrange_cli import Top, solve
 from lagrange_cli.angles import BLOCK
-from lagrange_cli.elliptic.twofold import Array
+from lagrange_cli.sweeps import BLOCK_ROWS, Column, record_keys, records, sweep
+from lagrange_cli.tops import Tops
+from lagrange_cli.twofold import Array
 
 COUNT = 1_000_000
+TOP = {name: np.nan if x is None else float(x) for name, x in Top()._asdict().items()}
 STARTS: dict[str, dict[str, float]] = {
     "worked example": {},
     "fast (trigonometric series)": {"r0": 200},
@@ -72,6 +79,64 @@ def heyoka_dense(top: Top, t: Array) -> Callable[[], object]:
     return run
 
 
+def integrals(record: dict[str, Column]) -> None:
+    """The least that the record of a top needs of scipy.special, block by block."""
+    k, k_prime, u3 = (np.asarray(record[key], dtype=float) for key in ("k", "k_prime", "u3"))
+    mc, amplitude = k_prime * k_prime, np.radians(record["amplitude_deg"])
+    gap = u3 - np.asarray(record["u2"], dtype=float)
+    for first in range(0, k.size, BLOCK_ROWS):
+        rows = slice(first, first + BLOCK_ROWS)
+        special.ellipkm1(mc[rows])
+        special.ellipkinc(amplitude[rows], mc[rows])
+        special.ellipeinc(amplitude[rows], mc[rows])
+        for p in ((u3 - 1) / gap, (u3 + 1) / gap):
+            special.elliprj(0.0, mc[rows], 1.0, p[rows])
+
+
+def sweeps(rng: np.random.Generator) -> None:
+    """Records of many tops; contract: at most 1.5 of the integrals."""
+    count = COUNT // 4
+    inputs = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
+    record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"])
+    tops = Tops(*(np.broadcast_to(inputs.get(x, given), (count,)) for x, given in TOP.items()))
+    blocks = [tops.part(slice(i, i + BLOCK_ROWS)) for i in range(0, count, BLOCK_ROWS)]
+
+    def solved(keys: Sequence[str]) -> None:
+        for block in blocks:
+            records(block, keys)
+
+    least = nanoseconds(lambda: integrals(record), count)
+    rows = {"scipy.special, ellipkm1 + ellipkinc + ellipeinc + 2 elliprj": least}
+    for keys in (record_keys(), ["mean_precession_rate", "T_nutation"], ["T_nutation"]):
+        name = "all keys" if len(keys) > 2 else " ".join(keys)
+        rows[f"lagtop, {name}"] = nanoseconds(partial(solved, keys), count)
+    general = [Top(psidot0=3, r0=r0) for r0 in range(20, 70)]
+    rows["lagtop, general start, one by one"] = nanoseconds(
+        lambda: [solve(top) for top in general], len(general)
+    )
+    print("\nA sweep, per top")
+    for name, cost in rows.items():
+        print(f"{name:65} {cost:8.1f} ns  {cost / least:6.2f} x scipy")
+
+
+def writing(t: Array) -> None:
+    """`table` to a file as a whole process; contract: at most 2 of sampling and dumping."""
+    sampler = solve(Top()).sampler()
+
+    def least() -> None:
+        angles = sampler.angles(t)
+        block = np.stack([t, *map(np.degrees, angles)], axis=1)
+        orjson.dumps(block, option=orjson.OPT_SERIALIZE_NUMPY)
+
+    command = [sys.executable, "-m", "lagrange_cli", "table", "--t-max", "100", "--n", str(t.size)]
+    with tempfile.NamedTemporaryFile(dir="/dev/shm") as file:
+        process = nanoseconds(lambda: subprocess.run([*command, "-o", file.name], check=True))
+    floor = nanoseconds(least)
+    print("\nA table of 1e6 rows to a file, per row")
+    print(f"{'sampling and orjson.dumps':65} {floor:8.1f} ns")
+    print(f"{'lagtop table, whole process':65} {process:8.1f} ns  {process / floor:6.2f} x that")
+
+
 def main() -> None:
     rng = np.random.default_rng(0)
     t = np.sort(rng.uniform(0, 100, COUNT))
@@ -89,6 +154,8 @@ def main() -> None:
         rows[f"lagtop, {name}, wrapped"] = nanoseconds(partial(sampler.angles, t, wrap=True))
     for name, cost in rows.items():
         print(f"{name:55} {cost:8.1f} ns  {cost / least:6.2f} x floor")
+    sweeps(rng)
+    writing(t)
 
 
 if __name__ == "__main__":

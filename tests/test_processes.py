@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from conftest import LAGTOP, process
 
-HEAVY = {"numpy", "scipy", "mpmath", "rich", "matplotlib", "orjson"}
+HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotlib", "orjson"}
 
 
 def loaded(*args: str) -> set[str]:
@@ -33,6 +33,9 @@ def loaded(*args: str) -> set[str]:
         ("solve", {"rich"}),
         ("table", {"numpy", "mpmath", "orjson"}),
         ("table --r0 0 --format json", {"numpy", "mpmath", "orjson"}),
+        ("solve --get T_nutation", set()),
+        ("sweep --help", set()),
+        ("sweep --r0 1:2:3", {"numpy", "orjson"}),
     ],
 )
 def test_nothing_is_loaded_that_is_not_needed(line: str, allowed: set[str]) -> None:
@@ -53,7 +56,14 @@ def shell(line: str, **extra: str) -> subprocess.CompletedProcess[bytes]:
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize(
-    "command", ["table --t-max 1", "table --n 200000", "table --n 5000 --format json"]
+    "command",
+    [
+        "table --t-max 1",
+        "table --n 200000",
+        "table --n 5000 --format json",
+        "sweep --r0 1:100:20000",
+        "sweep --r0 1:100:5000 --format ndjson",
+    ],
 )
 def test_head_is_silent(command: str, unbuffered: str) -> None:
     line = f"$LAGTOP {command} | head -3; echo ${{PIPESTATUS[0]}}"
@@ -64,18 +74,110 @@ def test_head_is_silent(command: str, unbuffered: str) -> None:
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("command", ["solve", "solve --format json", "table --n 100000"])
+@pytest.mark.parametrize(
+    "command", ["solve", "solve --format json", "table --n 100000", "sweep --r0 1:9:20000"]
+)
 def test_full_disk(command: str, unbuffered: str) -> None:
     result = shell(f"$LAGTOP {command} > /dev/full", PYTHONUNBUFFERED=unbuffered)
     assert result.returncode == 74
     assert result.stderr == b"Error: cannot write standard output: No space left on device\n"
 
 
-def test_closed_output() -> None:
-    result = shell("$LAGTOP solve --format json >&-")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("command", ["solve --get b", "solve --format json", "table", "sweep"])
+def test_closed_output(command: str, unbuffered: str) -> None:
+    result = shell(f"$LAGTOP {command} >&-", PYTHONUNBUFFERED=unbuffered)
     assert result.returncode == 74
     assert result.stderr.startswith(b"Error: cannot write standard output")
     assert result.stderr.count(b"\n") == 1
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_is_gone_before_the_first_byte(unbuffered: str) -> None:
+    for command in ("solve --format json", "table", "sweep"):
+        line = f"$LAGTOP {command} | true; echo ${{PIPESTATUS[0]}}"
+        result = shell(line, PYTHONUNBUFFERED=unbuffered)
+        assert (result.stdout, result.stderr) in [(b"141\n", b""), (b"0\n", b"")]
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_file_that_may_not_grow(unbuffered: str, tmp_path: Path) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old")
+    line = f"ulimit -f 64; trap '' XFSZ; $LAGTOP table --n 100000 -o {target}"
+    result = shell(line, PYTHONUNBUFFERED=unbuffered)
+    assert result.returncode == 74
+    assert result.stderr == f"Error: cannot write {target}: File too large\n".encode()
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_slow_reader_gets_all_of_it(unbuffered: str) -> None:
+    command = [*LAGTOP, "table", "--n", "20000"]
+    whole = subprocess.run(command, capture_output=True, check=True).stdout
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, env=environment) as running:
+        assert running.stdout is not None
+        time.sleep(1)  # the pipe is full long before
+        parts = []
+        while part := os.read(running.stdout.fileno(), 30_000):
+            parts.append(part)
+            time.sleep(0.002)
+    assert b"".join(parts) == whole
+    assert running.returncode == 0
+
+
+def test_a_named_pipe_is_written_in_place(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE) as reader:
+        process("table", "--n", "3", "-o", str(pipe))
+        assert reader.communicate(timeout=30)[0] == process("table", "--n", "3").stdout
+    assert pipe.is_fifo()
+
+
+def test_a_shell_loop_stops_with_ctrl_c(tmp_path: Path) -> None:
+    line = f"for i in 1 2 3; do echo $i; $LAGTOP table --n 1e9 -o {tmp_path}/out.csv; done; echo 4"
+    environment = os.environ | {"LAGTOP": " ".join(LAGTOP)}
+    running = subprocess.Popen(
+        ["bash", "-c", line], stdout=subprocess.PIPE, env=environment, start_new_session=True
+    )
+    wait_for_a_file(tmp_path)
+    os.killpg(running.pid, signal.SIGINT)
+    assert running.communicate(timeout=30)[0] == b"1\n"
+    assert running.returncode == -signal.SIGINT
+    assert list(tmp_path.iterdir()) == []
+
+
+def wait_for_a_file(folder: Path, count: int = 1) -> None:
+    """Until so many are there, and their writer is at work."""
+    deadline = time.monotonic() + 30
+    while len(list(folder.iterdir())) < count and time.monotonic() < deadline:
+        time.sleep(0.02)
+    time.sleep(0.2)
+
+
+def most_memory(*args: str) -> float:
+    """The most that a command had, in MB (by its own account: ru_maxrss counts its parent too)."""
+    code = """if True:
+        import atexit, sys
+        from lagrange_cli.cli import main
+        atexit.register(lambda: sys.stderr.write(open("/proc/self/status").read()))
+        main()
+    """
+    command = [sys.executable, "-c", code, *args, "-o", "/dev/null"]
+    status = subprocess.run(command, capture_output=True, check=True).stderr.decode()
+    return int(status.partition("VmHWM:")[2].split()[0]) / 1024
+
+
+@pytest.mark.parametrize(
+    "command", ["table --n {}", "sweep --r0 1:90:{} --keys r0,regime --format ndjson"]
+)
+def test_memory_does_not_grow_with_the_rows(command: str) -> None:
+    few, many = (most_memory(*command.format(n).split()) for n in ("1e5", "1e6"))
+    assert many < 200
+    assert many < few + 10
 
 
 def test_output_to_a_file(tmp_path: Path) -> None:
@@ -114,17 +216,15 @@ def test_output_to_a_device() -> None:
     assert process("solve", "-o", "/dev/null").stdout == b""
 
 
+@pytest.mark.parametrize("command", ["table --n 1e9", "sweep --r0 1:2:1e9"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_signals_kill_and_clean_up(number: signal.Signals, tmp_path: Path) -> None:
+def test_signals_kill_and_clean_up(number: signal.Signals, command: str, tmp_path: Path) -> None:
     target = tmp_path / "out.csv"
     target.write_text("old")
     running = subprocess.Popen(
-        [*LAGTOP, "table", "--n", "1e9", "-o", str(target)], stderr=subprocess.PIPE
+        [*LAGTOP, *command.split(), "-o", str(target)], stderr=subprocess.PIPE
     )
-    deadline = time.monotonic() + 30
-    while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    time.sleep(0.2)
+    wait_for_a_file(tmp_path, 2)
     running.send_signal(number)
     _, stderr = running.communicate(timeout=30)
     assert running.returncode == -number
@@ -137,6 +237,20 @@ def test_narrow_terminal_without_colour_cuts_nothing() -> None:
     plain = process("solve").stdout
     environment = os.environ | {"COLUMNS": "40", "NO_COLOR": "1", "TERM": "dumb"}
     assert process("solve", env=environment).stdout == plain
+
+
+@pytest.mark.parametrize("locale", [{"LC_ALL": "C"}, {"PYTHONIOENCODING": "ascii"}])
+def test_any_locale_shows_all_digits(locale: dict[str, str], tmp_path: Path) -> None:
+    file = tmp_path / "tops.csv"
+    file.write_text("id,r0\n\u03d1,40\n\u2212,x\n", encoding="utf-8")
+    bare = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    shown = process("solve", env=os.environ | bare | locale)
+    digits = {word for word in process("solve").stdout.split() if word.isascii()}
+    assert digits <= set(shown.stdout.split())
+    swept = process("sweep", str(file), check=False, env=os.environ | bare | locale)
+    assert swept.returncode == 1
+    assert b"Traceback" not in swept.stderr + shown.stderr
+    assert swept.stdout.decode().splitlines()[1].startswith("\u03d1,")
 
 
 def test_completion() -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import math
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
+import orjson
 import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
@@ -14,6 +18,8 @@ from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.cli import main
+from lagrange_cli.numerals import double_text, value_text
+from lagrange_cli.output import block_text, csv_text, opening
 from lagrange_cli.top import parse_number
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)
@@ -24,6 +30,37 @@ tilts = st.floats(0, 180)
 @given(doubles)
 def test_a_printed_double_reads_back_as_itself(x: float) -> None:
     assert float(parse_number(repr(x))) == x
+
+
+@given(doubles)
+def test_a_double_has_one_text_in_every_format(x: float) -> None:
+    text = double_text(x)
+    assert text.encode() == orjson.dumps(x)
+    assert text == value_text(x) == csv_text(x)
+    assert f"{text}\n".encode() == block_text([np.array([[x]])], ["x"], "csv")
+    assert f'{{"x":{text}}}\n'.encode() == block_text([np.array([[x]])], ["x"], "ndjson")
+    assert math.copysign(1, float(text)) == math.copysign(1, x)
+    assert float(text) == x
+
+
+cells = st.one_of(st.none(), st.text(st.characters(exclude_categories=["Cs"])), st.integers(0, 9))
+
+
+@given(st.lists(st.tuples(cells, doubles, cells), min_size=1))
+def test_csv_and_json_read_back_as_they_were(rows: list[tuple[Any, float, Any]]) -> None:
+    first, numbers, last = (list(column) for column in zip(*rows, strict=True))
+    columns: list[Any] = [first, np.array(numbers)[:, None], last]
+    names = ["a", "b,", 'c"']
+    for style in ("ndjson", "json"):
+        text = block_text(columns, names, style).decode()
+        lines = text.rstrip("\n").split("\n") if style == "ndjson" else json.loads(f"[{text}]")
+        found = [json.loads(line) if isinstance(line, str) else line for line in lines]
+        assert [tuple(row.values()) for row in found] == rows
+    text = (opening("csv", names) + block_text(columns, names, "csv")).decode()
+    header, *found = csv.reader(io.StringIO(text, newline=""))
+    assert header == names
+    wanted = [["" if x is None else x if type(x) is str else str(x) for x in row] for row in rows]
+    assert [[a, float(b), c] for a, b, c in found] == [[a, float(b), c] for a, b, c in wanted]
 
 
 @given(st.text())

@@ -21,8 +21,8 @@ from ..options import (
 from ..output import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
-    from ..grids import Grid
     from ..satellite import Quadrature
+    from ..times import Grid
 
 
 @click.command(
@@ -68,8 +68,8 @@ def command(  # noqa: PLR0917 - click passes them by name
     Without --tau the constants; with it eta and its rate.  With one gap alone the other outer root
     is at infinity, as for Lagrange's top.
     """
-    from ..grids import TimeList
     from ..satellite import digit_rows, record, rows
+    from ..times import TimeList
 
     exclude({"--tau": single or None, "--tau-range": grid})
     of = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)

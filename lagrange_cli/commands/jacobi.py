@@ -23,7 +23,7 @@ from ..output import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
     from ..functions import Given, Request
-    from ..grids import Grid, Times
+    from ..times import Grid, Times
 
 MOST_TERMS = 10_000
 
@@ -104,7 +104,7 @@ def command(  # noqa: PLR0917 - click passes them by name
 
 
 def _arguments(single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
-    from ..grids import TimeList
+    from ..times import TimeList
 
     exclude({"--u": single or None, "--u-range": grid})
     return grid or (TimeList(list(single)) if single else None)

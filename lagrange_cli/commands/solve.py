@@ -6,15 +6,18 @@ from typing import Any
 
 import click
 
+from ..errors import LagtopError
 from ..options import (
     MOST_RECORD_DIGITS,
     ExamplesFirst,
     digits_option,
+    exclude,
+    given,
     output_options,
     scene_options,
     solved,
 )
-from ..output import write_record
+from ..output import write_record, write_value
 
 
 @click.command(
@@ -25,14 +28,22 @@ from ..output import write_record
         lagtop solve sample_inputs/simo-wong-1991.toml --r0 40
         lagtop solve --r0 -20 --theta0 120 --format json | jq .T_nutation
         lagtop solve --theta0 60 --psidot0 -3 --digits 50
+        period=$(lagtop solve --r0 80 --get T_nutation)
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
     """,
 )
 @scene_options
 @digits_option(MOST_RECORD_DIGITS)
+@click.option("--get", "key", metavar="KEY", help="Print one value of the record, bare.")
 @output_options("table", "json", "csv")
-def command(
-    scene: str | None, rad: bool, digits: int | None, style: str, output: str, **options: Any
+def command(  # noqa: PLR0917 - click passes them by name
+    scene: str | None,
+    rad: bool,
+    digits: int | None,
+    key: str | None,
+    style: str,
+    output: str,
+    **options: Any,
 ) -> None:
     """Roots, moduli, periods and mean rates of one top.
 
@@ -46,4 +57,18 @@ def command(
         from ..digits import settled_record
 
         record = settled_record(motion.top, digits, radians=rad)
-    write_record(record, style, output)
+    if key is None:
+        write_record(record, style, output)
+        return
+    exclude({"--get": key, "--format": style if given("style") else None})
+    if key not in record:
+        raise LagtopError(f"--get must be among {' '.join(record)}, got {key!r}")
+    if record[key] is None:
+        raise AbsentError(f"a top of the regime {record['regime']!r} has no {key}")
+    write_value(record[key], output)
+
+
+class AbsentError(LagtopError):
+    """A number that was asked for, and that the regime does not have."""
+
+    exit_code = 1

@@ -14,6 +14,7 @@ from ..options import (
     MOST_TABLE_DIGITS,
     NUMBER,
     ExamplesFirst,
+    by_key,
     digits_option,
     exclude,
     output_options,
@@ -21,10 +22,11 @@ from ..options import (
     solved,
     with_progress,
 )
-from ..output import MAX_TABLE_ROWS, write_rows, write_texts
+from ..output import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
 
 if TYPE_CHECKING:
-    from ..grids import Times
+    from ..motion import Motion
+    from ..times import Times
 
 
 @click.command(
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
         lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
         lagtop table --t-min -5 --t-max 5 --n 1e6 --rad -o angles.csv
         lagtop table --t-max 1 --columns t,axis,energy
+        lagtop table --tops tops.csv --t-max 1 --n 11
         seq 0 0.25 2 | lagtop table --times - --format json
     """,
 )
@@ -55,6 +58,12 @@ if TYPE_CHECKING:
     help="Of t theta phi psi u thetadot phidot psidot p q r axis quaternion energy Lz, with commas "
     "between.  [default: t,theta,phi,psi]",
 )
+@click.option(
+    "--tops",
+    type=click.Path(allow_dash=True),
+    metavar="FILE|-",
+    help="A table of each top in a file, CSV or JSON lines as for `sweep`, one after the other.",
+)
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("csv", "json", "table")
@@ -67,6 +76,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     dt: Fraction | None,
     times: str | None,
     columns: str | None,
+    tops: str | None,
     wrap: bool,
     digits: int | None,
     style: str,
@@ -78,20 +88,40 @@ def command(  # noqa: PLR0917 - click passes them by name
     Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
     nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
-    from ..grids import read_times
     from ..table import DEFAULT_COLUMNS, digit_rows, grid, rows
+    from ..times import read_times
 
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})
+    exclude({"--tops": tops, "--digits": digits})
+    exclude(
+        {"--tops -": tops if tops == "-" else None, "--times -": times if times == "-" else None}
+    )
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
+    listed = None if times is None else read_times(times)
+
+    def times_of(motion: Motion) -> Times:
+        return listed or grid(motion, t_min, t_max, n=count, dt=dt)
+
+    names = DEFAULT_COLUMNS if columns is None else columns.replace(",", " ").split()
+    if tops is not None:
+        if style == "table":
+            raise LagtopError("--format table shows one top: with --tops take csv or json")
+        from ..parts import Tally
+        from ..plan import shared_inputs
+        from ..tables import open_tables
+
+        given = shared_inputs(scene, by_key(options, radians=rad))
+        tables = open_tables(tops, given, names, times_of, radians=rad, wrap=wrap, style=style)
+        tally = Tally()
+        write_text_blocks(style, tables.header, tally.texts(tables.parts()), output)
+        tally.check()
+        return
     motion = solved(scene, rad, digits is not None, options)
-    chosen: Times = (
-        read_times(times) if times is not None else grid(motion, t_min, t_max, n=count, dt=dt)
-    )
+    chosen = times_of(motion)
     if style == "table" and chosen.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {chosen.count}")
-    names = DEFAULT_COLUMNS if columns is None else columns.replace(",", " ").split()
     header, blocks = rows(motion, chosen, names, radians=rad, wrap=wrap)
     if digits is None:
         write_rows(header, with_progress(blocks, chosen.count, 3_000_000), style, output)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from ..twofold import two_product
 from .arithmetic import Arithmetic, Real, has_arrays
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
 from .modulus import Modulus
-from .twofold import two_product
 
 _PI = 3.141592653589793, 1.2246467991473532e-16
 

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..twofold import Array, Pair, reduce_phase
 from .arithmetic import Arithmetic, Real, blocks, has_arrays
 from .complete import complete_k, nome
-from .modulus import Modulus
+from .modulus import Modulus, rate_of_half_periods
 from .theta import theta
-from .twofold import Array, Pair, agm_over_pi, reduce_phase
 
 _LARGEST_ARGUMENT = 350.0
 """Of sinh.  Beyond it, which is for k' = 0 alone, sn is 1 and cn is 0 to doubles."""
@@ -83,7 +83,7 @@ def _series(given: Modulus) -> _Series:
     """The coefficients; the moduli are all of one family."""
     k, k_prime = given.k, given.k_prime
     finite = np.where(k_prime > 0, k_prime, 1.0)
-    rate = agm_over_pi(Pair(finite, given.rest))
+    rate = rate_of_half_periods(np, finite, given.rest)
     if np.all(k <= k_prime):
         q = nome(np, m=k * k, k_prime=k_prime)
         return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)

@@ -15,10 +15,10 @@ import math
 from typing import NamedTuple
 
 from ..errors import LagtopError
+from ..twofold import reduce_phase
 from .arithmetic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
 from .complete import complete_k, nome
-from .modulus import Modulus
-from .twofold import Pair, agm_over_pi, reduce_phase
+from .modulus import Modulus, rate_of_half_periods
 
 Complex = Real
 """A real or complex number, or array, of the arithmetic in use."""
@@ -109,7 +109,7 @@ def _in_periods(ar: Arithmetic, v: Complex, given: Modulus) -> Place:
     """v/2K; real arrays keep their digits far away."""
     if has_arrays(ar) and ar.isrealobj(v):
         v, k_prime, rest = ar.broadcast_arrays(ar.asarray(v, dtype=float), *given[1:])
-        return Place(*reduce_phase(v, agm_over_pi(Pair(k_prime, rest))))
+        return Place(*reduce_phase(v, rate_of_half_periods(ar, k_prime, rest)))
     return _place(ar, v / (2 * complete_k(ar, given.k_prime)))
 
 

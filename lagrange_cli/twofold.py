@@ -1,18 +1,19 @@
-"""Numbers held as two doubles, the nearest one and the rest: the exact arithmetic of phases."""
+"""Arithmetic on unevaluated sums of two doubles, about 104 bits (Dekker 1971).
+
+A double times a constant held as two gives the whole periods that have passed and the rest of the
+time exactly, however far away it is.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .arithmetic import Real
-
 Array = NDArray[np.float64]
 
 _SPLITTER = 2.0**27 + 1
-_INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 
 
 class Pair(NamedTuple):
@@ -22,7 +23,7 @@ class Pair(NamedTuple):
     low: float | Array
 
 
-def pair(value: Real) -> Pair:
+def pair(value: Any) -> Pair:
     """A many-digit number as two doubles."""
     high = float(value)
     return Pair(high, float(value - high))
@@ -57,9 +58,9 @@ def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Arra
     return step, since
 
 
-def two_sum(x: Array, y: float | Array) -> tuple[Array, Array]:
+def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:
     """x + y and its rounding error, exactly (Knuth)."""
-    total = x + y
+    total: Array = np.add(x, y)
     part = total - x
     return total, (x - (total - part)) + (y - part)
 
@@ -71,20 +72,31 @@ def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
     return root, ((high - square) - error + low) / np.where(root > 0, 2 * root, 1.0)
 
 
-def agm_over_pi(k_prime: Pair) -> Pair:
-    """agm(1, k')/pi = 1/(2K), the rate of half periods, for k' > 0 in (0, 1], to 25 digits."""
-    a, a_low = two_sum(np.asarray(k_prime.high) / 2, 0.5)
-    a_low += k_prime.low / 2
-    b, b_low = sqrt_pair(np.asarray(k_prime.high), np.asarray(k_prime.low))
-    while not (abs(a - b) <= 2.0**-13 * a).all():
-        total, total_error = two_sum(a, b)
-        product, product_error = two_product(a, b)
-        product_error += a * b_low + b * a_low
-        a, a_low = total / 2, (total_error + a_low + b_low) / 2
-        b, b_low = sqrt_pair(product, product_error)
-    mean, mean_low = two_sum(a / 2, b / 2)
-    x2 = ((a - b + (a_low - b_low)) / (2 * mean)) ** 2
-    mean_low += (a_low + b_low) / 2 - mean * (x2 * (0.25 + x2 * (5 / 64)))  # agm(1 + x, 1 - x)
-    high, low = two_product(mean, _INVERSE_PI[0])
-    low += mean_low * _INVERSE_PI[0] + mean * _INVERSE_PI[1]
-    return Pair(*two_sum(high, low))
+class Twofold:
+    """The numbers high + low, where high is the double nearest to the sum."""
+
+    def __init__(self, high: Array, low: Array | None = None) -> None:
+        self.high = high
+        self.low = np.zeros_like(high) if low is None else low
+
+    def scaled(self, power: float) -> Twofold:
+        """Times a power of two, exactly."""
+        return Twofold(self.high * power, self.low * power)
+
+    def __mul__(self, other: Twofold) -> Twofold:
+        """The product, to a few units of 2^-104."""
+        high, low = two_product(self.high, other.high)
+        low += self.high * other.low + self.low * other.high
+        return _renormalised(high, low)
+
+    def __truediv__(self, other: Twofold) -> Twofold:
+        """The quotient, to a few units of 2^-104."""
+        high = self.high / other.high
+        product, error = two_product(high, other.high)
+        rest = (self.high - product) - error + self.low - high * other.low
+        return _renormalised(high, rest / other.high)
+
+
+def _renormalised(high: Array, low: Array) -> Twofold:
+    total = high + low
+    return Twofold(total, low - (total - high))

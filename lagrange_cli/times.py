@@ -14,7 +14,7 @@ from .errors import LagtopError
 from .top import parse_number
 
 if TYPE_CHECKING:
-    from .elliptic.twofold import Array
+    from .twofold import Array
 
 BLOCK_ROWS = 1 << 16
 MAX_ROWS = 10**9

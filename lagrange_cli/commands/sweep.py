@@ -1,0 +1,111 @@
+"""`lagtop sweep`: one record a top."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import LagtopError
+from ..options import ExamplesFirst, by_key, exclude, input_options, output_options, with_progress
+from ..output import write_parts, write_text_blocks
+
+if TYPE_CHECKING:
+    from ..axes import Axis
+
+
+class AxisType(click.ParamType):  # type: ignore[type-arg]
+    """A number, a list of numbers, or a range of them."""
+
+    name = "range"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Axis:
+        """The values."""
+        from ..axes import parse_axis
+
+        try:
+            return parse_axis(value)
+        except LagtopError as error:
+            raise click.UsageError(f"{param.opts[0] if param else ''} {error}", ctx) from None
+
+
+class ShardType(click.ParamType):  # type: ignore[type-arg]
+    """I/N, the I-th of N."""
+
+    name = "I/N"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        """The two numbers."""
+        which, _, count = str(value).partition("/")
+        if which.isdecimal() and count.isdecimal() and 1 <= int(which) <= int(count):
+            return int(which), int(count)
+        raise click.UsageError(f"--shard must be I/N with 1 <= I <= N, got {value}", ctx)
+
+
+@click.command(
+    "sweep",
+    cls=ExamplesFirst,
+    examples="""
+        lagtop sweep --r0 10:200:1000 --theta0 5,10,30 > tops.csv
+        lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
+        lagtop sweep tops.csv --format ndjson -o solved.ndjson
+        jq -c .top log.json | lagtop sweep - --keys T_nutation,error
+        lagtop sweep --r0 10:200:1e7 --shard $SLURM_ARRAY_TASK_ID/100 --parts out
+    """,
+)
+@click.argument("files", nargs=-1, type=click.Path(), metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
+@input_options(AxisType())
+@click.option(
+    "--keys", metavar="NAMES", help="Compute and print only these keys of the record, with commas."
+)
+@click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
+@click.option("--shard", type=ShardType(), help="Only every N-th part, from the I-th on.")
+@click.option(
+    "--dask", "cluster", metavar="ADDRESS|local", help="Compute the parts on a Dask cluster."
+)
+@click.option("--parts", "folder", type=click.Path(), metavar="DIR", help="Write a file a part.")
+@output_options("csv", "ndjson", "json", "parquet")
+def command(  # noqa: PLR0917 - click passes them by name
+    files: tuple[str, ...],
+    rad: bool,
+    keys: str | None,
+    fail_fast: bool,
+    shard: tuple[int, int] | None,
+    cluster: str | None,
+    folder: str | None,
+    style: str,
+    output: str,
+    **axes: Axis | None,
+) -> None:
+    """One record a top, with the keys of `solve`: over a grid, or for each row of a file.
+
+    An input is a number, a list 1,2,3 or a range [log:]start:stop:count; the grid is the product of
+    all, the last option fastest.  In a file the header, or the keys of JSON lines, name the inputs;
+    what a row lacks comes from the options and the scene, other columns are carried through.  A top
+    that cannot be solved has its `error` in its row, and the exit code is 1.
+    """
+    from ..cluster import computed
+    from ..parquet import check_parquet
+    from ..parts import Tally, shard_of
+    from ..plan import plan
+
+    exclude({"--parts": folder, "--output": None if output == "-" else output})
+    if folder is not None and style == "json":
+        raise LagtopError("--format json is one array: with --parts take csv or ndjson")
+    if style == "parquet":
+        check_parquet()
+    names = None if keys is None else keys.replace(",", " ").split()
+    inputs = by_key(axes, radians=rad)
+    sweep, blocks, size = plan(files, inputs, keys=names, radians=rad, style=style)
+    tally = Tally(fail_fast=fail_fast)
+    with computed(sweep, shard_of(blocks, shard), cluster) as parts:
+        passing = with_progress(
+            tally.passing(parts), size // (shard or (1, 1))[1], 1_000_000, lambda part: part.tops
+        )
+        if folder is not None:
+            write_parts(style, sweep.header, ((part.number, part.text) for part in passing), folder)
+        else:
+            write_text_blocks(style, sweep.header, (part.text for part in passing), output)
+    tally.check()

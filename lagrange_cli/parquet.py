@@ -1,0 +1,55 @@
+"""Parquet: blocks of columns as Arrow streams, which any process can make, and a file of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from .errors import LagtopError
+from .numerals import json_text
+
+
+def check_parquet() -> None:
+    """Raise LagtopError where pyarrow is not installed."""
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError:
+        raise LagtopError("--format parquet needs: pip install 'lagtop[parquet]'") from None
+
+
+def arrow_block(columns: Sequence[Any], names: Sequence[str]) -> bytes:
+    """Columns as one Arrow stream: numbers with null for NaN, and texts."""
+    import pyarrow as pa
+
+    arrays = chain.from_iterable(
+        [pa.array(x, from_pandas=True) for x in column.T]
+        if isinstance(column, np.ndarray)
+        else [pa.array([None if x is None else _text(x) for x in column], pa.string())]
+        for column in columns
+    )
+    table = pa.table(list(arrays), names=list(names))
+    with pa.BufferOutputStream() as stream:
+        with pa.ipc.new_stream(stream, table.schema) as writer:
+            writer.write_table(table)
+        return stream.getvalue().to_pybytes()  # type: ignore[no-any-return]
+
+
+def write_parquet(stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
+    """Arrow streams as one Parquet file, a row group each."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    writer = None
+    for block in blocks:
+        table = pa.ipc.open_stream(block).read_all()
+        writer = writer or parquet.ParquetWriter(stream, table.schema)
+        writer.write_table(table)
+    writer = writer or parquet.ParquetWriter(stream, pa.schema([(x, pa.null()) for x in names]))
+    writer.close()
+
+
+def _text(value: Any) -> str:
+    return value if type(value) is str else json_text(value)

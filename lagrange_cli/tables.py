@@ -1,0 +1,86 @@
+"""Tables of many tops, one after the other, each row with what its top carries."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from .errors import LagtopError
+from .motion import Motion, solve
+from .output import block_text
+from .parts import Part
+from .rowfile import Lines, Row, RowFile, open_rows
+from .table import headings, rows
+from .times import Times
+from .top import Top
+from .twofold import Array
+
+_TOPS_AT_ONCE = 64
+
+
+class Tables(NamedTuple):
+    """What to do with every top of a file."""
+
+    source: RowFile
+    lines: Iterator[Lines]
+    given: Mapping[str, float]
+    """Inputs that a row may lack."""
+    columns: Sequence[str]
+    times: Callable[[Motion], Times]
+    """The times for a motion."""
+    radians: bool
+    wrap: bool
+    style: str
+
+    @property
+    def header(self) -> list[str]:
+        """What is carried (the number of the line, if there is nothing), the columns, `error`."""
+        carried = self.source.carried or ["line"]
+        return [*carried, *headings(self.columns, radians=self.radians), "error"]
+
+    def parts(self) -> Iterator[Part]:
+        """Blocks of rows as text; a top that has no table has one row with its error."""
+        number = 0
+        for some in self.lines:
+            for row in self.source.rows(some):
+                for part in self._table(row):
+                    yield part._replace(number=number)
+                    number += 1
+
+    def _table(self, row: Row) -> Iterator[Part]:
+        try:
+            if row.error:
+                raise LagtopError(row.error)
+            motion = solve(Top(**row.completed(self.given)))
+            _, blocks = rows(
+                motion, self.times(motion), self.columns, radians=self.radians, wrap=self.wrap
+            )
+        except LagtopError as error:
+            reason = f"line {row.line}: {error}"
+            nothing = np.full((1, len(headings(self.columns))), np.nan)
+            yield Part(0, self._text(row, nothing, reason), 1, 1, reason)
+            return
+        for i, block in enumerate(blocks):
+            yield Part(0, self._text(row, block, None), 0 if i else 1, 0, "")
+
+    def _text(self, row: Row, block: Array, error: str | None) -> bytes:
+        carried = row.carried or [row.line]
+        same = [[value] * len(block) for value in carried]
+        return block_text([*same, block, [error] * len(block)], self.header, self.style)
+
+
+def open_tables(
+    path: str,
+    given: Mapping[str, float],
+    columns: Sequence[str],
+    times: Callable[[Motion], Times],
+    *,
+    radians: bool,
+    wrap: bool,
+    style: str,
+) -> Tables:
+    """The tables of the tops in a file.  Raises LagtopError for one that cannot be read."""
+    source, lines = open_rows(path, [*headings(columns, radians=radians), "error"], _TOPS_AT_ONCE)
+    return Tables(source, lines, given, columns, times, radians, wrap, style)

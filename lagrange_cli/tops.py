@@ -1,0 +1,149 @@
+"""Many tops at once: arrays in place of the numbers of a `Top`.
+
+What `roots` and `top` form from exact fractions is formed here from pairs of doubles and rounded
+once, so that the formulas start from the same numbers.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .record import Regime
+from .roots import Invariants
+from .top import Tilt
+from .twofold import Array, Twofold, two_sum
+
+Mask = NDArray[np.bool_]
+
+_LARGE, _SMALL = 1e30, 1e-30
+"""Between these sizes no formula leaves the range of doubles."""
+_DEGREE = Twofold(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
+_LEAST_DISTANCE = 2.0**-45
+"""Of lambda from 1: from here on a pair of doubles gives lambda - 1 to its last bit."""
+
+
+class Tops(NamedTuple):
+    """The inputs of `Top`, an array each; the tilt is NaN in the unit it is not given in."""
+
+    m: Array
+    A: Array
+    C: Array
+    s: Array
+    g: Array
+    r0: Array
+    theta0_deg: Array
+    thetadot0: Array
+    psidot0: Array
+    theta0_rad: Array
+
+    def part(self, rows: Any) -> Tops:
+        """Some of them."""
+        return Tops(*(x[rows] for x in self))
+
+    def one(self, row: int) -> dict[str, float]:
+        """The inputs of one of them."""
+        inputs = {name: float(x[row]) for name, x in zip(self._fields, self, strict=True)}
+        unused = "theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"
+        if np.isnan(inputs[unused]):
+            del inputs[unused]
+        return inputs
+
+    def tilt_in(self, radians: bool) -> Array:
+        """theta0, in degrees or in radians."""
+        if radians:
+            return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)
+        return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
+
+    def regimes(self) -> dict[Regime, Mask]:
+        """The rows of each regime, of tops released from rest whose numbers are of a usual size.
+
+        The others may be general starts, out of range or wrong, and are in none.
+        """
+        with np.errstate(all="ignore"):  # of wrong inputs too
+            left = self._usual()
+        upright = (self.theta0_deg == 0) | (self.theta0_rad == 0)
+        found = {}
+        for regime, mask in (
+            (Regime.SLEEPING, upright),
+            (Regime.HANGING, self.theta0_deg == 180),
+            (Regime.TORQUE_FREE, (self.s == 0) | (self.g == 0)),
+            (Regime.NO_SPIN, self.r0 == 0),
+            (Regime.REGULAR, left),
+        ):
+            if (rows := left & mask).any():
+                found[regime] = rows
+                left = left & ~rows
+        return found
+
+    def _usual(self) -> Mask:
+        usual: Mask = (self.thetadot0 == 0) & (self.psidot0 == 0) & (2 * self.A >= self.C)
+        for x in (self.m, self.A, self.C):
+            usual &= (x >= _SMALL) & (x <= _LARGE)
+        for x in (self.s, self.g, abs(self.r0)):
+            usual &= (x == 0) | (x >= _SMALL) & (x <= _LARGE)
+        tilts = ((self.theta0_deg, self.theta0_rad, 180), (self.theta0_rad, self.theta0_deg, np.pi))
+        one_tilt = np.zeros_like(usual)
+        for tilt, other, most in tilts:
+            one_tilt |= np.isnan(other) & ((tilt == 0) | (tilt >= _SMALL) & (tilt <= most))
+        torque = self.m * self.g * self.s
+        lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
+        ratio = (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
+        far = ~(abs(lam - 1) < 2 * _LEAST_DISTANCE)
+        usual &= one_tilt & ratio & far
+        return usual
+
+    def invariants(self) -> Invariants:
+        """(4,4), (4,5) and their combinations, each rounded once."""
+        m, A, C, s, g, r0 = (Twofold(x) for x in self[:6])
+        torque, momentum = m * g * s, C * r0
+        with np.errstate(divide="ignore", invalid="ignore"):  # 0/0 without torque
+            lam = momentum * momentum / (torque * A)
+            lam = lam.scaled(0.25)
+            rate_half = (torque / momentum).high * 2
+            less, less_rest = two_sum(-1.0, lam.high)
+        lam_minus_1 = less + (less_rest + lam.low)
+        free = torque.high == 0
+        more = Twofold(*two_sum(2 * self.A, -self.C))
+        return Invariants(
+            a=2 * (torque / A).high,
+            b=(momentum / A).high,
+            lam=np.where(free, 0.0, lam.high),
+            lam_minus_1=np.where(free, -1.0, lam_minus_1),
+            drift=(r0 * more / A).high / 2,
+            rate_half=np.where(self.r0 == 0, np.nan, rate_half),
+        )
+
+    def tilt(self) -> Tilt:
+        """Sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
+        in_radians = ~np.isnan(self.theta0_rad)
+        if in_radians.all():
+            return _tilt_of_radians(self.theta0_rad)
+        tilt = _tilt_of_degrees(self.theta0_deg)
+        if not in_radians.any():
+            return tilt
+        other = _tilt_of_radians(self.theta0_rad)
+        return Tilt(*(np.where(in_radians, x, y) for x, y in zip(other, tilt, strict=True)))
+
+
+def _tilt_of_radians(tilt: Array) -> Tilt:
+    return Tilt(np.sin(tilt), np.cos(tilt), np.sin(tilt / 2), np.cos(tilt / 2))
+
+
+def _tilt_of_degrees(tilt: Array) -> Tilt:
+    nearer = np.minimum(tilt, 180 - tilt)
+    arc, rest = _in_radians(Twofold(nearer))
+    sin, sin_half, cos_half = np.sin(arc), np.sin(arc / 2), np.cos(arc / 2)
+    up, up_rest = _in_radians(Twofold(*two_sum(90.0, -nearer)))
+    cos = np.sin(up) + up_rest * sin
+    sin += rest * cos
+    near, far = sin_half + rest / 2 * cos_half, cos_half - rest / 2 * sin_half
+    low = tilt > 90
+    return Tilt(sin, np.where(low, -cos, cos), np.where(low, far, near), np.where(low, near, far))
+
+
+def _in_radians(degrees: Twofold) -> tuple[Array, Array]:
+    arc = degrees * _DEGREE
+    return arc.high, arc.low

@@ -1,0 +1,490 @@
+"""`lagtop sweep`: the numbers of `solve`, for many tops, from grids and from files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import json
+import math
+import random
+from decimal import localcontext
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Lagtop
+from hypothesis import given
+from hypothesis import strategies as st
+from scenes import random_scene
+
+from lagrange_cli import LagtopError, Motion, Top, decimals, solve, sweeps
+from lagrange_cli.axes import parse_axis
+from lagrange_cli.record import NUMBER_KEYS, Regime
+from lagrange_cli.roots import invariants
+from lagrange_cli.sweeps import record_keys, sweep
+from lagrange_cli.tops import Tops
+
+Record = dict[str, Any]
+EPS = 2.0**-52
+
+
+def table(text: str) -> list[Record]:
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def arrays(scenes: list[dict[str, float]]) -> dict[str, Any]:
+    return {key: [scene[key] for scene in scenes] for key in scenes[0]}
+
+
+# Accuracy
+
+
+def error(key: str, value: float, exact: float, r0: float) -> float:
+    """In eps; absolute for cosines, relative to r0 for spin rates, as `solve` promises."""
+    if value == exact:
+        return 0.0
+    scale = abs(exact)
+    if key in ("u1", "u2", "u_quarter"):
+        scale = 1
+    elif "spin_rate" in key:
+        scale = max(scale, abs(r0))
+    return abs(value - exact) / (EPS * scale) if scale else math.inf
+
+
+def condition(scene: dict[str, float], key: str) -> float:
+    """Relative change of a number over that of each input, summed."""
+    total, exact = 0.0, getattr(solve(Top(**scene)), key)
+    for name in ("m", "A", "C", "s", "g", "r0", "theta0_deg"):
+        step = -1e-7 if name in ("C", "theta0_deg") else 1e-7  # C <= 2A, theta0 <= 180
+        moved = getattr(solve(Top(**scene | {name: scene[name] * (1 + step)})), key)
+        total += abs(moved - exact) / abs(exact) / abs(step)
+    return total
+
+
+def test_as_solve_over_all_ranges() -> None:
+    """Worst seen in 2.2e5 scenes: nome 6.4 and mean precession 6.0 eps, 2.8 over the condition
+    number; all others 4.0 eps."""
+    rng = random.Random(20)
+    scenes = [random_scene(rng) for _ in range(1500)]
+    found = sweep(**arrays(scenes), keys=NUMBER_KEYS)
+    for i, scene in enumerate(scenes):
+        motion = solve(Top(**scene))
+        for key in NUMBER_KEYS:
+            exact, value = getattr(motion, key), float(found[key][i])
+            if exact is None:
+                assert math.isnan(value)
+                continue
+            off = error(key, value, exact, scene["r0"])
+            assert not math.isnan(off)
+            assert off <= 4 or off <= 4 * condition(scene, key), (key, off, scene)
+
+
+def tops_of(inputs: dict[str, Any]) -> Tops:
+    """The inputs that are given as arrays, those of the worked example besides."""
+    given = {name: np.nan if x is None else x for name, x in Top()._asdict().items()} | inputs
+    return Tops(*np.broadcast_arrays(*(np.asarray(given[x], float) for x in Tops._fields)))
+
+
+def test_what_the_formulas_start_from_is_rounded_once() -> None:
+    """The invariants to the bit; sines and cosines: worst seen 0.9 eps."""
+    rng = random.Random(21)
+    scenes = [random_scene(rng) for _ in range(2000)]
+    tops = tops_of(arrays(scenes))
+    regular = tops.regimes()[Regime.REGULAR]
+    found, tilts = tops.invariants(), tops.tilt()
+    for i in np.flatnonzero(regular).tolist():
+        top = Top(**scenes[i])
+        assert [np.asarray(x)[i] for x in found] == list(invariants(math, top))
+        with localcontext(decimals.context()):
+            exact = [float(x) for x in top.tilt(decimals)]
+        assert [x[i] for x in tilts] == pytest.approx(exact, rel=1.0 * EPS, abs=0)
+
+
+def test_only_what_is_unusual_is_solved_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    alone = []
+
+    def watched(top: Top) -> Motion:
+        alone.append(top)
+        return solve(top)
+
+    monkeypatch.setattr(sweeps, "solve", watched)
+    sweep(r0=[50, 0, 50, 50, 60], theta0_deg=[30, 30, 0, 180, 1e-40], psidot0=[0, 0, 0, 0, 0])
+    assert [top.theta0_deg for top in alone] == [1e-40]
+
+
+def test_few_tops_of_a_grid_need_the_exact_way() -> None:
+    spins, tilts = np.linspace(-200, 200, 401), np.linspace(0, 180, 181)
+    r0, theta0 = (x.ravel() for x in np.meshgrid(spins, tilts))
+    regimes = tops_of({"r0": r0, "theta0_deg": theta0}).regimes()
+    assert sum(rows.sum() for rows in regimes.values()) == r0.size
+    assert set(regimes) == {Regime.SLEEPING, Regime.HANGING, Regime.NO_SPIN, Regime.REGULAR}
+
+
+SPECIAL: list[dict[str, Any]] = [
+    {},
+    {"r0": 0},
+    {"theta0_deg": 0},
+    {"theta0_deg": 0, "r0": 100},
+    {"theta0_deg": 180, "r0": -3},
+    {"g": 0},
+    {"s": 0, "r0": 0},
+    {"theta0_rad": 0.5},
+    {"theta0_rad": 0, "r0": 40},
+    {"psidot0": 3},
+    {"thetadot0": -2, "psidot0": 1},
+    {"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},
+    {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 1},
+    {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": math.nextafter(2, 3), "theta0_deg": 0},
+    {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 0},
+    {"m": 1e-40, "A": 1e-40, "C": 1e-40},
+    {"r0": 1e90},
+    {"theta0_deg": 1e-100},
+]
+
+
+@pytest.mark.parametrize("radians", [False, True])
+@pytest.mark.parametrize("inputs", SPECIAL)
+def test_every_regime_as_solve(inputs: dict[str, Any], radians: bool) -> None:
+    exact = solve(Top(**inputs)).record(radians=radians)
+    found = sweep(**inputs, radians=radians)
+    assert list(found) == [*exact, "error"]
+    assert found["error"].item() is None
+    for key, value in exact.items():
+        if isinstance(value, float):
+            assert float(found[key]) == pytest.approx(value, rel=2e-15, abs=1e-15), key
+        else:
+            assert value == found[key].item() or (value is None and np.isnan(found[key])), key
+
+
+def test_shapes_and_keys() -> None:
+    found = sweep(r0=[[10.0], [20.0]], theta0_deg=[1, 2, 3], keys=["T_nutation", "regime"])
+    assert list(found) == ["T_nutation", "regime"]
+    assert found["T_nutation"].shape == found["regime"].shape == (2, 3)
+    assert found["T_nutation"][1, 2] == pytest.approx(solve(Top(r0=20, theta0_deg=3)).T_nutation)
+    assert sweep(r0=[])["nome"].shape == (0,)
+
+
+def test_bad_tops_have_an_error_and_harm_no_other() -> None:
+    found = sweep(m=[1587, -1, math.nan, 1587], theta0_deg=[30, 30, 30, 181])
+    errors = found["error"].tolist()
+    assert errors[0] is None
+    assert errors[1:] == [
+        "m must be > 0, got -1.0",
+        "m must be finite, got nan",
+        "theta0_deg must be in [0, 180], got 181.0",
+    ]
+    assert np.isfinite(found["T_nutation"]).tolist() == [True, False, False, False]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"keys": ["x"]}, {"keys": []}, {"keys": ["a", "a"]}, {"x": 1}, {"r0": [1, 2], "m": [1, 2, 3]}],
+)
+def test_wrong_questions(wrong: Any) -> None:
+    with pytest.raises(LagtopError, match=r"must|together"):
+        sweep(**wrong)
+
+
+# Grids
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("5", [5]),
+        ("1,-2.5,1e3", [1, -2.5, 1000]),
+        ("0:1:11", [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]),
+        ("3:-3:3", [3, 0, -3]),
+        ("log:1e-3:1e3:7", [1e-3, 1e-2, 0.1, 1, 10, 100, 1000]),
+        ("log:-1:-4:3", [-1, -2, -4]),
+        ("2:2:1", [2]),
+    ],
+)
+def test_values_of_an_axis(text: str, values: list[float]) -> None:
+    axis = parse_axis(text)
+    assert axis.values(range(axis.size)).tolist() == values
+
+
+@given(st.decimals(-(10**6), 10**6, places=3), st.decimals(-(10**6), 10**6, places=3))
+def test_points_of_a_range_are_rounded_once(first: Any, last: Any) -> None:
+    axis = parse_axis(f"{first}:{last}:7")
+    step = (Fraction(last) - Fraction(first)) / 6
+    assert axis.values(range(7)).tolist() == [float(Fraction(first) + i * step) for i in range(7)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "x", "1:2", "1:2:0", "1:2:1", "1:2:2.5", "log:0:1:3", "log:-1:1:3", "1,,2", "1:2:1e10"],
+)
+def test_wrong_axis(text: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "--r0", text)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("Error: --r0 must ")
+
+
+def test_the_last_option_is_the_fastest(lagtop: Lagtop) -> None:
+    options = ["--theta0", "5,10", "--r0", "1:3:3", "--keys", "theta0_deg,r0"]
+    found = table(lagtop("sweep", *options).stdout)
+    pairs = [(float(row["theta0_deg"]), float(row["r0"])) for row in found]
+    assert pairs == list(itertools.product([5, 10], [1, 2, 3]))
+
+
+def test_keys_of_a_grid_are_all_that_is_printed(lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "--r0", "0,50", "--keys", "T_nutation,spin_rate_half")
+    header, *rows = csv.reader(io.StringIO(result.stdout))
+    assert header == ["T_nutation", "spin_rate_half"]
+    assert [bool(cell) for row in rows for cell in row] == [True, False, True, True]
+    failed = lagtop("sweep", "--r0", "50", "--m", "1,-1", "--keys", "k")
+    assert failed.exit_code == 1
+    assert failed.stdout.splitlines()[::2] == ["k", '""']
+    assert failed.stderr == (
+        "Error: 1 of 2 tops have an error; the first: m must be > 0, got -1.0\n"
+    )
+
+
+def test_one_top_is_what_solve_says(lagtop: Lagtop) -> None:
+    record = json.loads(lagtop("solve", "--rad", "--format", "json").stdout)
+    (found,) = json.loads(lagtop("sweep", "--rad", "--format", "json").stdout)
+    assert found.pop("error") is None
+    assert list(found) == list(record)
+    for key, value in record.items():
+        same = pytest.approx(value, rel=1e-15) if isinstance(value, float) else value
+        assert found[key] == same, key
+
+
+@pytest.mark.parametrize("style", ["csv", "ndjson", "json"])
+def test_formats_carry_the_same_doubles(style: str, lagtop: Lagtop) -> None:
+    text = lagtop("sweep", "--r0", "0:60:7", "--theta0", "0,30", "--format", style).stdout
+    exact = sweep(r0=np.repeat(np.arange(0, 61, 10), 2), theta0_deg=np.tile([0, 30], 7))
+    rows = (
+        table(text)
+        if style == "csv"
+        else json.loads(text)
+        if style == "json"
+        else list(map(json.loads, text.splitlines()))
+    )
+    assert len(rows) == 14
+    for i, row in enumerate(rows):
+        assert list(row) == record_keys()
+        for key, value in row.items():
+            wanted = exact[key][i]
+            if isinstance(wanted, float) and not math.isnan(wanted):
+                assert float(value) == wanted
+            else:
+                assert value in (wanted, "", None)
+
+
+def test_parquet_carries_the_same(tmp_path: Path, lagtop: Lagtop) -> None:
+    pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    text = "id,r0\n7,0\n8,40\n9,x\n"
+    rows = lagtop("sweep", "-", "--format", "json", input=text).stdout
+    whole, parts = tmp_path / "x.parquet", tmp_path / "parts"
+    for options in (["-o", whole], ["--parts", parts]):
+        assert lagtop("sweep", "-", "--format", "parquet", *options, input=text).exit_code == 1
+    for file in (whole, parts / "part-000000.parquet"):
+        assert parquet.read_table(file).to_pylist() == json.loads(rows)
+    empty = tmp_path / "empty.parquet"
+    lagtop("sweep", "-", "--format", "parquet", "-o", empty, input="r0\n")
+    assert parquet.read_table(empty).num_rows == 0
+
+
+def test_a_bad_shared_input_is_a_usage_error(lagtop: Lagtop) -> None:
+    for options in (["--m", "-1"], ["--m", "-1", "--r0", "1:5:5"], ["--A", "1", "--C", "3"]):
+        result = lagtop("sweep", *options)
+        assert (result.exit_code, result.stdout) == (2, "")
+    assert lagtop("sweep", "--C", "1,1e6").exit_code == 1
+
+
+def test_scene_and_grid(lagtop: Lagtop) -> None:
+    keys = ["--keys", "m,r0,theta0_rad"]
+    shown = lagtop("sweep", "sample_inputs/simo-wong-1991.toml", "--r0", "1,2", *keys, "--rad")
+    assert [row["r0"] for row in table(shown.stdout)] == ["1.0", "2.0"]
+    assert len({row["m"] for row in table(shown.stdout)}) == 1
+    assert lagtop("sweep", "nowhere.toml").exit_code == 65
+    assert lagtop("sweep", "a.csv", "b.csv").exit_code == 2
+
+
+# Files of tops
+
+
+def test_rows_of_csv(tmp_path: Path, lagtop: Lagtop) -> None:
+    file = tmp_path / "tops.csv"
+    file.write_bytes(
+        b"\xef\xbb\xbfname,r0,theta0_deg,T_nutation\r\n"
+        b'"a, ""b""",50,30,9\r\n\r\n=x,5_0,30,9\r\nc,7\r\n'
+        b'd,"40",1e400,9\r\n"e,1,2\r\n\xff,1,2,3\r\nf,-60,20,9\r\n'
+    )
+    result = lagtop("sweep", file, "--keys", "r0,T_nutation", "--psidot0", "0")
+    assert result.exit_code == 1
+    assert result.stderr == (
+        "Error: 5 of 7 tops have an error; the first: line 4: r0 must be a finite decimal number, "
+        "got '5_0' (leave out the underscores)\n"
+    )
+    rows = table(result.stdout)
+    assert [row["name"] for row in rows] == ['a, "b"', "=x", "c", "d", "", "", "f"]
+    assert [row["error"].partition(":")[0] for row in rows] == [
+        "",
+        "line 4",
+        "line 5",
+        "line 6",
+        "line 7",
+        "line 8",
+        "",
+    ]
+    assert float(rows[-1]["T_nutation"]) == pytest.approx(
+        solve(Top(r0=-60, theta0_deg=20)).T_nutation, rel=1e-15
+    )
+
+
+def test_blank_lines_without_end(lagtop: Lagtop) -> None:
+    text = "r0\n" + 9000 * "\n" + "50\n" + 9000 * "\n"
+    options = ["sweep", "-", "--keys", "r0", "--format"]
+    assert lagtop(*options, "csv", input=text).stdout == "r0,error\n50.0,\n"
+    assert json.loads(lagtop(*options, "json", input=text).stdout) == [{"r0": 50, "error": None}]
+    assert lagtop(*options, "json", input="r0\n\n").stdout == "[]\n"
+
+
+def test_a_tilt_in_radians_over_one_in_degrees(lagtop: Lagtop) -> None:
+    keys = ["--rad", "--keys", "theta0_rad", "sample_inputs/simo-wong-1991.toml"]
+    assert lagtop("sweep", "--theta0", "0.25", *keys).stdout == "theta0_rad\n0.25\n"
+    found = lagtop("sweep", *keys, "-", input="theta0_deg\n180\n").stdout
+    assert found == f"theta0_rad,error\n{math.pi},\n"
+
+
+def test_rows_of_json(lagtop: Lagtop) -> None:
+    text = (
+        '{"id": 1, "r0": 40}\n{"id": {"x": [2]}, "theta0_rad": 1, "r0": 7}\n{"r0": true}\n[]\n{\n'
+    )
+    result = lagtop(
+        "sweep", "-", "--keys", "r0,theta0_deg,error", "--format", "ndjson", "--theta0", "20",
+        input=text,
+    )  # fmt: skip
+    rows = list(map(json.loads, result.stdout.splitlines()))
+    assert [row["id"] for row in rows] == [1, {"x": [2]}, None, None, None]
+    assert [row["theta0_deg"] for row in rows[:2]] == [20, math.degrees(1)]
+    assert [bool(row["error"]) for row in rows] == [False, False, True, True, True]
+    assert rows[2]["error"] == "line 3: r0 must be a finite number, got true"
+    assert result.exit_code == 1
+
+
+def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -> None:
+    once, twice = tmp_path / "once.csv", tmp_path / "twice.csv"
+    lagtop("sweep", "--r0", "0:100:50", "--theta0", "0,10,180", "-o", once)
+    lagtop("sweep", once, "-o", twice)
+    assert once.read_bytes() == twice.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "must begin with a header"),
+        ("x,y\n1,2\n", "must begin with a header that names inputs"),
+        ("r0,r0\n1,2\n", "must name each column once, got 'r0' twice"),
+        ("theta0\n1\n", "the column theta0 must be theta0_deg or theta0_rad"),
+        ('r0,"x\n1,2\n', "wrong quote"),
+    ],
+)
+def test_files_that_are_none(text: str, message: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "-", input=text)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+
+
+def test_a_range_and_a_file_exclude_each_other(lagtop: Lagtop) -> None:
+    assert lagtop("sweep", "-", "--m", "1,2", input="r0\n1\n").exit_code == 2
+
+
+def test_fail_fast(tmp_path: Path, lagtop: Lagtop) -> None:
+    file = tmp_path / "out.csv"
+    file.write_text("old")
+    result = lagtop("sweep", "-", "--fail-fast", "-o", file, input="r0\n1\nx\ny\n")
+    assert result.exit_code == 1
+    assert result.stderr.startswith("Error: line 3: r0 must be")
+    assert file.read_text() == "old"
+
+
+RUBBISH = ["text", "nan", "inf", "1e999", "--", "1,5", '"', "", "1_0", "\u0663", "1e-400", " "]
+
+
+def test_a_large_file_with_rubbish_in_it(tmp_path: Path, lagtop: Lagtop) -> None:
+    """1e5 rows, one in a hundred broken in a way of its own, CRLF, a BOM and blank lines."""
+    rng = random.Random(3)
+    lines, bad = ["\ufeffid,m,r0,theta0_deg"], {}
+    for i in range(100_000):
+        cells = [str(i), "1587", repr(rng.uniform(-100, 100)), repr(rng.uniform(1, 179))]
+        if rng.random() < 0.01:
+            kind = rng.randrange(4)
+            if kind == 0:
+                cells[rng.randrange(1, 4)] = rng.choice(RUBBISH)
+            elif kind == 1:
+                cells[1] = "-1587"
+            elif kind == 2:
+                del cells[-1]
+            else:
+                cells[2] = f'"{cells[2]}'
+            bad[i] = len(lines) + 1
+        lines.append(",".join(cells))
+        if rng.random() < 0.01:
+            lines.append(rng.choice(["", "  "]))
+    file = tmp_path / "tops.csv"
+    file.write_bytes("\r\n".join(lines).encode())
+    result = lagtop("sweep", file, "--keys", "r0,theta0_deg,mean_precession_rate")
+    assert result.exit_code == 1
+    assert result.stderr.startswith(f"Error: {len(bad)} of 100000 tops have an error")
+    rows = table(result.stdout)
+    assert {i: row["error"].partition(":")[0] for i, row in enumerate(rows) if row["error"]} == {
+        i: f"line {line}" for i, line in bad.items()
+    }
+    good = [row for row in rows if not row["error"]]
+    assert [int(row["id"]) for row in good] == [i for i in range(100_000) if i not in bad]
+    for row in rng.sample(good, 100):
+        top = Top(r0=float(row["r0"]), theta0_deg=float(row["theta0_deg"]))
+        rate = float(row["mean_precession_rate"])
+        assert rate == pytest.approx(solve(top).mean_precession_rate, rel=1.5e-15)
+
+
+# Parts
+
+
+def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
+    options = ["sweep", "--r0", "1:100:3000", "--theta0", "10,20,30", "--keys", "r0,nome"]
+    whole = lagtop(*options).stdout_bytes
+    for i in (3, 1, 2):
+        assert lagtop(*options, "--shard", f"{i}/3", "--parts", tmp_path).exit_code == 0
+        assert (tmp_path / f"part-{i - 1:06}.csv").exists()
+    parts = sorted(tmp_path.iterdir())
+    assert [part.name for part in parts] == [f"part-00000{i}.csv" for i in range(3)]
+    assert b"".join(part.read_bytes() for part in parts) == whole
+    alone = [lagtop(*options, "--shard", f"{i}/3").stdout.splitlines() for i in (1, 2, 3)]
+    assert {lines[0] for lines in alone} == {"r0,nome"}
+    assert sum(len(lines) - 1 for lines in alone) == 9000
+
+
+def test_shards_of_a_file(tmp_path: Path, lagtop: Lagtop) -> None:
+    file = tmp_path / "tops.ndjson"
+    file.write_text("".join(f'{{"id": {i}, "r0": {i / 100}}}\n' for i in range(9000)))
+    options = ["sweep", file, "--keys", "T_nutation", "--format", "ndjson"]
+    whole = lagtop(*options).stdout_bytes
+    parts = tmp_path / "parts"
+    for i in (1, 2):
+        lagtop(*options, "--shard", f"{i}/2", "--parts", parts)
+    assert b"".join(part.read_bytes() for part in sorted(parts.iterdir())) == whole
+
+
+@pytest.mark.parametrize("text", ["0/3", "4/3", "1", "a/b", "1/0", "-1/3"])
+def test_wrong_shard(text: str, lagtop: Lagtop) -> None:
+    result = lagtop("sweep", "--shard", text)
+    assert result.exit_code == 2
+    assert "--shard must be I/N" in result.stderr
+
+
+def test_parts_that_cannot_be(tmp_path: Path, lagtop: Lagtop) -> None:
+    (tmp_path / "file").write_text("")
+    assert lagtop("sweep", "--parts", tmp_path / "file").exit_code == 74
+    assert lagtop("sweep", "--parts", tmp_path, "-o", "x").exit_code == 2
+    assert lagtop("sweep", "--parts", tmp_path, "--format", "json").exit_code == 2
