@@ -100,12 +100,12 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
 
 
-def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
+def with_progress(parts: Iterable[P], count: int, long: int, label: str = "rows") -> Iterator[P]:
     """The parts as they come; a bar on the terminal where `count` rows are `long` work."""
     if count < long or not sys.stderr.isatty():
         yield from parts
         return
-    with click.progressbar(length=count, label="rows", file=sys.stderr) as bar:
+    with click.progressbar(length=count, label=label, file=sys.stderr) as bar:
         for part in parts:
             yield part
             bar.update(len(part))

@@ -7,7 +7,7 @@ import io
 import os
 import stat
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
@@ -106,6 +106,12 @@ def _catch_signals() -> None:
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), end)
+
+
+def write_bytes(path: str, make: Callable[[], bytes]) -> None:
+    """A picture, made only when it is known that there is a place for it."""
+    with sink(path) as stream:
+        stream.write(make())
 
 
 def write_record(record: Mapping[str, Any], style: str, path: str) -> None:
