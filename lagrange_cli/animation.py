@@ -14,18 +14,15 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from . import curves
-from .globe import View, best_view, runs
+from .globe import best_view, runs, seen_top
 from .motion import Motion
 from .phase import Array
-from .plots import draw_globe
 from .sheet import Page, styled
+from .sphere import draw_globe
 from .style import scale
 from .top import LagtopError
 
 FRAMES, FRAMES_PER_SECOND = 144, 24
-HEIGHT, RADIUS = 0.62, 0.34
-"""Of the cone, in radii of the globe."""
-WEDGES = 24
 SIZE = 4.8, 5.0
 
 Watch = Callable[[Iterable[range], int], Iterable[range]]
@@ -70,8 +67,9 @@ class Film:
         self.view = best_view(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
         draw_globe(self.axes, self.view, self.path, style)
-        self.cone = PolyCollection([], zorder=2, linewidths=0.3)
-        self.axes.add_collection(self.cone)
+        self.body = PolyCollection([], zorder=2, linewidths=0.3)
+        self.axes.add_collection(self.body)
+        (self.rim,) = self.axes.plot([], [], color=style.ink, lw=0.9, zorder=2.5)
         (self.far,) = self.axes.plot([], [], color=scale(style)(0.35), lw=1.2, alpha=0.45)
         (self.near,) = self.axes.plot([], [], color=scale(style)(0.35), lw=2.2, zorder=3)
         (self.axle,) = self.axes.plot([], [], "o-", color=style.ink, lw=1.4, ms=4, markevery=[-1])
@@ -80,12 +78,15 @@ class Film:
     def show(self, i: int) -> None:
         """Bring the picture to frame i."""
         theta, phi, psi = (float(angle[i]) for angle in self.angles)
-        axis, faces, lights = cone(theta, phi, psi, self.view)
-        colours = np.array([self.style.lines[1], self.style.paper])[lights]
-        self.cone.set(verts=faces, facecolors=colours, edgecolors=self.style.ink)
-        ends = np.stack([HEIGHT * axis, axis])
-        self.axle.set_data(*self.view.project(ends))
-        self.axle.set_zorder(4 if self.view.toward @ axis > 0 else 1.5)
+        top = seen_top(theta, phi, psi, self.view)
+        white, blue, red = self.style.paper, *self.style.lines[:2]
+        colours = [white if face.light else blue if face.on_lid else red for face in top.faces]
+        self.body.set(
+            verts=[face.corners for face in top.faces], facecolors=colours, edgecolors=colours
+        )
+        self.rim.set_data(*top.rim)
+        self.axle.set_data(*top.axle)
+        self.axle.set_zorder(4 if top.lid_in_sight else 1.5)
         passed = int(np.searchsorted(self.path.t, self.times[i], side="right"))
         self._trace(self.path.axis[:passed])
         self.clock.set_text(f"t = {self.times[i]:.4g}")
@@ -99,20 +100,3 @@ class Film:
                 if on_near is side:
                     shown[part] = np.stack([x[part], y[part]], axis=1)
             line.set_data(*shown.T)
-
-
-def cone(theta: float, phi: float, psi: float, view: View) -> tuple[Array, list[Array], Array]:
-    """The figure axis, and the faces that are seen: wedges of the side and of the lid, projected,
-    each with the index of its colour, which turns with the spin."""
-    nodes = np.array([np.cos(psi), np.sin(psi), 0.0])
-    axis = np.array([np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)])
-    across = np.cross(axis, nodes)
-    around = phi + 2 * np.pi / WEDGES * np.arange(WEDGES + 1)
-    spokes = np.outer(np.cos(around), nodes) + np.outer(np.sin(around), across)
-    rim, middle = HEIGHT * axis + RADIUS * spokes, HEIGHT * axis
-    outward = (spokes[1:] + spokes[:-1]) / 2 * HEIGHT - RADIUS * axis
-    seen = [(np.zeros(3), j) for j in range(WEDGES) if outward[j] @ view.toward > 0]
-    if axis @ view.toward > 0:
-        seen += [(middle, j) for j in range(WEDGES)]
-    faces = [np.stack(view.project(np.stack([tip, rim[j], rim[j + 1]])), axis=1) for tip, j in seen]
-    return axis, faces, np.array([j * 6 // WEDGES % 2 for _, j in seen])

@@ -1,4 +1,4 @@
-"""The unit sphere seen from afar: directions of view, projection, and what lies on the far side."""
+"""The unit sphere and the top in it, seen from afar: what is in sight, and where on the page."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .phase import Array
+
+HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
+"""Of the cone that stands for the top; lengths in radii of the sphere."""
 
 Near = NDArray[np.bool_]
 """Whether points are on the near side."""
@@ -73,3 +76,45 @@ def runs(near: Near) -> Iterator[tuple[slice, bool]]:
     bounds = [0, *ends.tolist(), near.size]
     for first, last in pairwise(bounds):
         yield slice(max(first - 1, 0), last), bool(near[first])
+
+
+class Face(NamedTuple):
+    """A triangle of the top on the page, corners of shape (3, 2)."""
+
+    corners: Array
+    on_lid: bool
+    light: bool
+    """Every other sixth of a turn, so that one sees the spin."""
+
+
+class SeenTop(NamedTuple):
+    """The top on the page: the faces in sight, the lid last."""
+
+    faces: list[Face]
+    rim: tuple[Array, Array]
+    axle: tuple[Array, Array]
+    """From the lid to the sphere."""
+    lid_in_sight: bool
+
+
+def seen_top(theta: float, phi: float, psi: float, view: View) -> SeenTop:
+    """A cone on its tip at the given Euler angles (radians)."""
+    nodes = np.array([math.cos(psi), math.sin(psi), 0.0])
+    axis = np.array(
+        [math.sin(theta) * math.sin(psi), -math.sin(theta) * math.cos(psi), math.cos(theta)]
+    )
+    around = phi + 2 * math.pi / WEDGES * np.arange(WEDGES + 1)
+    spokes = np.outer(np.cos(around), nodes) + np.outer(np.sin(around), np.cross(axis, nodes))
+    rim, middle = HEIGHT * axis + RADIUS * spokes, HEIGHT * axis
+    outward = HEIGHT * (spokes[1:] + spokes[:-1]) / 2 - RADIUS * axis
+    lid_in_sight = bool(axis @ view.toward > 0)
+
+    def face(j: int, tip: Array, on_lid: bool) -> Face:
+        corners = np.stack(view.project(np.stack([tip, rim[j], rim[j + 1]])), axis=1)
+        return Face(corners, on_lid, light=j * 6 // WEDGES % 2 == 0)
+
+    faces = [face(j, 0 * axis, False) for j in range(WEDGES) if outward[j] @ view.toward > 0]
+    if lid_in_sight:
+        faces += [face(j, middle, True) for j in range(WEDGES)]
+    axle = view.project(np.stack([middle, axis]))
+    return SeenTop(faces, view.project(rim), axle, lid_in_sight)

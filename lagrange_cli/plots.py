@@ -4,28 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import SubFigure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from . import curves
-from .globe import Near, View, best_view, parallel, runs
 from .keymap import INPUTS, Axis, KeyMap, Watch, default_axes, key_map
 from .motion import Motion
 from .phase import Array
-from .style import Look, scale
-
-NARROW = math.radians(6.0)
-"""A band of tilts that a circle on the globe hides: it is shown magnified as well."""
-
-PIECES = 160
-"""Steps of the colour along a path."""
+from .phase_plane import Cubic, cubic_curve, phase_portrait
+from .sphere import draw_path_on_sphere
+from .style import Look, mark_start, scale
 
 
 class Wish(NamedTuple):
@@ -40,110 +33,8 @@ class Wish(NamedTuple):
 
 
 def draw_sphere(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
-    """The path of the figure axis on the unit sphere; with a magnified piece of a narrow path."""
-    path = curves.axis_path(motion, wish.t_max or curves.turn_span(motion))
-    narrow = 0 < path.greatest - path.least < NARROW
-    axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
-    view = best_view(path.axis)
-    axes[0].set_title(
-        " ".join(["Figure axis on the unit sphere:", path.kind or motion.regime.value])
-    )
-    draw_globe(axes[0], view, path, style)
-    lines = draw_path(axes[0], view, path, style)
-    bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)
-    bar.outline.set_visible(False)
-    bar.set_label("time t")
-    if narrow:
-        _draw_magnified(axes[1], motion, path, style)
-
-
-def draw_globe(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> None:
-    """Outline, equator, vertical and the two limiting circles; far sides dashed and paler."""
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.set(xlim=(-1.06, 1.06), ylim=(-1.06, 1.24))
-    outline = np.linspace(0.0, 2 * math.pi, 361)
-    axes.fill(np.cos(outline), np.sin(outline), facecolor=style.faint, alpha=0.55, zorder=0)
-    axes.plot(np.cos(outline), np.sin(outline), color=style.quiet, lw=1.0, zorder=1)
-    _draw_circle(axes, view, math.pi / 2, color=style.quiet, lw=0.6)
-    for tilt, colour, label in (
-        (path.least, style.lines[0], "ϑ min"),
-        (path.greatest, style.lines[1], "ϑ max"),
-    ):
-        _draw_circle(axes, view, tilt, color=colour, lw=1.2)
-        axes.plot([], [], color=colour, lw=1.2, label=f"{label} {math.degrees(tilt):.4g}°")
-    hidden = view.toward[2] < 0
-    feet = np.array([[0.0, 0.0, 1 / view.up[2] if hidden else 1.0], [0.0, 0.0, 1.32]])
-    x, y = view.project(feet)
-    axes.plot(x, y, color=style.quiet, lw=1.0, zorder=4)
-    axes.annotate("z", (x[1], y[1]), (5, -8), textcoords="offset points", color=style.quiet)
-
-
-def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
-    circle = parallel(tilt)
-    x, y = view.project(circle)
-    for part, near in runs(view.faces(circle)):
-        fade: dict[str, Any] = (
-            {"zorder": 2} if near else {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1}
-        )
-        axes.plot(x[part], y[part], **(line | fade))
-
-
-def draw_path(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> LineCollection:
-    """The path, coloured by time and paler on the far side; its start, and a legend."""
-    x, y = view.project(path.axis)
-    near = view.faces(path.axis)
-    colours = scale(style)
-    for side, alpha, width in ((False, 0.35, 1.2), (True, 1.0, 2.2)):
-        pieces, times = _pieces(path.t, np.stack([x, y], axis=1), near, side)
-        lines = LineCollection(
-            pieces, cmap=colours, linewidths=width, alpha=alpha, capstyle="round"
-        )
-        lines.set_array(times)
-        lines.set_clim(path.t[0], path.t[-1])
-        lines.set_zorder(3 if side else 1)
-        axes.add_collection(lines)
-    _mark_start(axes, x[0], y[0], style)
-    axes.legend(loc="lower left", fontsize="small", borderaxespad=0, handlelength=1.4)
-    lines.set_alpha(None)
-    return lines
-
-
-def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array], Array]:
-    """The parts of the curve on one side, cut into pieces of one colour each."""
-    step = max((t[-1] - t[0]) / PIECES, 1e-300)
-    pieces, times = [], []
-    for part, on_near in runs(near):
-        if on_near is not side:
-            continue
-        cuts = np.flatnonzero(np.diff(np.floor((t[part] - t[0]) / step))) + 1
-        bounds = [0, *cuts.tolist(), t[part].size - 1]
-        for first, last in pairwise(bounds):
-            if last > first:
-                pieces.append(points[part][first : last + 1])
-                times.append((t[part][first] + t[part][last]) / 2)
-    return pieces, np.array(times)
-
-
-def _draw_magnified(axes: Axes, motion: Motion, path: curves.AxisPath, style: Look) -> None:
-    """The first two nods unrolled; a degree of precession is as long as it is on the sphere."""
-    short = curves.angle_curves(motion, min(curves.span(motion, 2), path.t[-1]))
-    x, y = np.degrees(short.psi), np.degrees(short.theta)
-    axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
-    axes.plot(x, y, color=scale(style)(0.0))
-    _mark_start(axes, x[0], y[0], style)
-    axes.set_title("the first two nods, magnified", fontsize="medium")
-    axes.set(xlabel="precession ψ (deg)", ylabel="tilt ϑ (deg)")
-    axes.ticklabel_format(useOffset=False)
-    axes.locator_params(axis="y", nbins=4)
-    axes.margins(y=0.25)
-    axes.invert_yaxis()
-
-
-def _mark_start(axes: Axes, x: float, y: float, style: Look, label: str = "start") -> None:
-    axes.plot(
-        x, y, "o", ms=7, mfc=style.paper, mec=style.ink, mew=1.6, zorder=6, label=label, ls="none"
-    )
+    """The path of the figure axis on the unit sphere."""
+    draw_path_on_sphere(panel, motion, wish.t_max, style)
 
 
 def draw_angles(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
@@ -205,7 +96,7 @@ def _finish_time_axes(axes: Any, motion: Motion, t: Array) -> None:
 
 def draw_cubic(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
     """f(u), its roots, and the band in which the motion takes place."""
-    cubic = curves.cubic_curve(motion)
+    cubic = cubic_curve(motion)
     axes = panel.subplots()
     axes.set_title("The cubic f(u) = u̇² (4,9); shaded: where the motion is")
     axes.set(xlabel="u = cos ϑ", ylabel="f(u) (1/time²)")
@@ -225,7 +116,7 @@ def draw_cubic(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> Non
     axes.locator_params(axis="x", nbins=6)
 
 
-def _draw_roots(axes: Axes, cubic: curves.Cubic, style: Look) -> None:
+def _draw_roots(axes: Axes, cubic: Cubic, style: Look) -> None:
     """The roots, labelled where the curve leaves room; an arrow to u3 where it is out of view."""
     double = cubic.u1 == cubic.u2
     roots = [("u₁ = u₂" if double else "u₁", cubic.u1, "right", -18)]
@@ -238,7 +129,7 @@ def _draw_roots(axes: Axes, cubic: curves.Cubic, style: Look) -> None:
         axes.text(0.99, 0.93, text, transform=axes.transAxes, ha="right", color=style.lines[1])
     for name, root, side, height in roots:
         axes.annotate(
-            f"{name} = {root:.7g}",
+            f"{name} = {root:.7g}".replace("-", "−"),
             (root, 0.0),
             (-8 if side == "right" else 8, height),
             textcoords="offset points",
@@ -251,14 +142,14 @@ def _draw_roots(axes: Axes, cubic: curves.Cubic, style: Look) -> None:
 
 def draw_phase(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
     """The nutation in the plane of tilt and tilt rate, and the separatrix."""
-    portrait = curves.phase_portrait(motion)
+    portrait = phase_portrait(motion)
     unit, factor = ("rad", 1.0) if wish.radians else ("deg", 180 / math.pi)
     axes = panel.subplots()
     axes.set_title("Nutation in the phase plane")
     axes.set(xlabel=f"tilt ϑ ({unit})", ylabel="tilt rate ϑ̇ (rad/time)")
     axes.axhline(0.0, color=style.quiet, lw=0.9)
     axes.plot(portrait.theta * factor, portrait.rate, color=style.lines[0], label="this motion")
-    _mark_start(axes, portrait.start[0] * factor, portrait.start[1], style)
+    mark_start(axes, portrait.start[0] * factor, portrait.start[1], style)
     theta, rate = portrait.separatrix or (np.empty(0), np.empty(0))
     both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
     dashes = {"lw": 1.4, "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
@@ -287,7 +178,7 @@ def draw_map(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
         bar.ax.yaxis.set_major_formatter("{x:g}")
         bar.ax.yaxis.set_minor_locator(NullLocator())
     if chart.sleeping.min() < 1.0 < chart.sleeping.max():
-        axes.contour(x, y, chart.sleeping, [1.0], colors=style.paper, linewidths=4.0)
+        axes.contour(x, y, chart.sleeping, [1.0], colors=style.paper, linewidths=3.2)
         axes.contour(x, y, chart.sleeping, [1.0], colors=style.ink, linewidths=1.6)
         axes.plot([], [], color=style.ink, lw=1.6, label="sleeping threshold, C²r0² = 4Amgs")
     _mark_own(axes, motion, chart, style)
@@ -300,7 +191,7 @@ def _mark_own(axes: Axes, motion: Motion, chart: KeyMap, style: Look) -> None:
     own = [float(inputs[axis.name]) for axis in (chart.x, chart.y)]
     pairs = zip(own, (chart.x, chart.y), strict=True)
     if all(axis.values[0] <= value <= axis.values[-1] for value, axis in pairs):
-        _mark_start(axes, own[0], own[1], style, "this scene")
+        mark_start(axes, own[0], own[1], style, "this scene")
 
 
 def _is_logarithmic(values: Array) -> bool:

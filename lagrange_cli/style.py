@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from .top import LagtopError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
 
 
@@ -91,3 +92,10 @@ def scale(style: Look) -> Colormap:
     from matplotlib.colors import ListedColormap
 
     return ListedColormap(colormaps["viridis"](np.linspace(*style.scale, 256)), name="lagtop")
+
+
+def mark_start(axes: Axes, x: float, y: float, style: Look, label: str = "start") -> None:
+    """A ring at one point."""
+    axes.plot(
+        x, y, "o", ms=7, mfc=style.paper, mec=style.ink, mew=1.6, zorder=6, label=label, ls="none"
+    )
