@@ -1,8 +1,8 @@
 """The curves that the pictures of one motion show, as numbers: nothing here draws.
 
-Curves are sampled evenly in the amplitude am(w) of the motion and not in time, so that cusps and
-fast passes are smooth, and the turning points themselves are among the samples.  Equation numbers
-are Chrapan's.
+Curves are sampled evenly in the amplitude am(w), w counted from the lowest point, and not in time,
+so that cusps and fast passes are smooth; the turning points themselves are among the samples.
+Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -117,13 +117,14 @@ def phase_times(motion: Motion, t_max: float) -> Array:
 
 
 def _half_period(k_prime: float) -> Array:
-    """t/T from 0 to 1/2 at even steps of the amplitude: F(am, k)/2K."""
+    """t/T from 0 to 1/2 at even steps of the amplitude: F(am, k)/2K before the lowest point, where
+    u - u2 = (u1 - u2) sin^2(am)."""
     amplitude = np.linspace(0.0, math.pi / 2, PHASES + 1)
     sin, cos2 = np.sin(amplitude), np.cos(amplitude) ** 2
     F = sin * carlson_rf(np, cos2, cos2 + (k_prime * sin) ** 2, np.ones_like(sin))
     fraction: Array = F / (2 * complete_k(math, k_prime))
     fraction[-1] = 0.5
-    return fraction
+    return 0.5 - fraction[::-1]
 
 
 def _separatrix_times(motion: Motion, t_max: float) -> Array:

@@ -182,7 +182,8 @@ def draw_map(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
         axes.contour(x, y, chart.sleeping, [1.0], colors=style.ink, linewidths=1.6)
         axes.plot([], [], color=style.ink, lw=1.6, label="sleeping threshold, C²r0² = 4Amgs")
     _mark_own(axes, motion, chart, style)
-    panel.legend(loc="outside lower center", ncols=2, fontsize="small")
+    if axes.get_legend_handles_labels()[0]:
+        panel.legend(loc="outside lower center", ncols=2, fontsize="small")
 
 
 def _mark_own(axes: Axes, motion: Motion, chart: KeyMap, style: Look) -> None:

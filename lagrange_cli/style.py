@@ -74,7 +74,6 @@ def settings(style: Look) -> dict[str, Any]:
         "lines.solid_joinstyle": "round",
         "mathtext.fontset": "dejavusans",
         "path.simplify": False,  # it would blunt the cusps
-        "pdf.fonttype": 42,
         "savefig.facecolor": style.paper,
         "svg.hashsalt": "lagtop",  # the same names inside the file every time
         "text.color": style.ink,
