@@ -46,7 +46,7 @@ def cubic_curve(motion: Motion) -> Cubic:
     near = u3 is not None and u3 - u1 <= max(4.0 * band, 0.0 if band else 2.0)
     right = u3 if near and u3 is not None else u1
     width = right - u2 or 0.4
-    u = np.linspace(u2 - 0.4 * width, right + 0.4 * width, 801)
+    u = np.linspace(u2 - 0.5 * width, right + 0.5 * width, 801)
     f = (u - u1) * (u - u2)
     if u3 is None:
         f *= -float(begin.alpha + begin.b**2)

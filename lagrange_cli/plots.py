@@ -17,6 +17,7 @@ from .keymap import INPUTS, Axis, KeyMap, Watch, default_axes, key_map
 from .motion import Motion
 from .phase import Array
 from .phase_plane import Cubic, cubic_curve, phase_portrait
+from .record import Regime
 from .sphere import draw_path_on_sphere
 from .style import Look, mark_start, scale
 
@@ -43,16 +44,19 @@ def draw_angles(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> No
     unit, factor = ("rad", 1.0) if wish.radians else ("deg", 180 / math.pi)
     axes = panel.subplots(3, sharex=True)
     rows = (
-        ("tilt", "ϑ", course.theta, None),
-        ("spin", "φ", course.phi, course.spin_rate),
-        ("precession", "ψ", course.psi, course.precession_rate),
+        ("ϑ", course.theta, None),
+        ("φ", course.phi, course.spin_rate),
+        ("ψ", course.psi, course.precession_rate),
     )
-    axes[0].set_title("Angles over time; thin: the mean rates")
-    for ax, (name, symbol, angle, rate), colour in zip(axes, rows, style.lines, strict=True):
+    axes[0].set_title("Tilt ϑ, spin φ, precession ψ; thin: mean rates")
+    for ax, (symbol, angle, rate), colour in zip(axes, rows, style.lines, strict=True):
         if rate is not None:
             ax.plot(course.t, rate * course.t * factor, color=style.quiet, lw=0.9)
+        ax.set_ylabel(f"{symbol} ({unit})")
+        if angle is course.psi and motion.regime in (Regime.SLEEPING, Regime.HANGING):
+            ax.text(0.5, 0.5, "not defined: all is spin", transform=ax.transAxes, ha="center")
+            continue
         ax.plot(course.t, angle * factor, color=colour)
-        ax.set_ylabel(f"{name} {symbol} ({unit})")
     _finish_time_axes(axes, motion, course.t)
     panel.align_ylabels(axes)
 
@@ -62,8 +66,8 @@ def draw_remainders(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -
     course = curves.remainder_curves(motion, wish.t_max or curves.span(motion, 2))
     unit, factor = ("rad", 1.0) if wish.radians else ("deg", 180 / math.pi)
     axes = panel.subplots(2, sharex=True)
-    axes[0].set_title("Spin and precession less their mean growth (6,4), (7,4)")
-    names = "spin Δφ", "precession Δψ"
+    axes[0].set_title("Spin and precession less their mean growth, (6,4), (7,4)")
+    names = "Δφ", "Δψ"
     for ax, remainder, name, colour in zip(
         axes, course.remainders(), names, style.lines[1:], strict=True
     ):

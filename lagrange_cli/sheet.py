@@ -87,10 +87,10 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     """The record, to seven digits."""
     record = page.motion.record(radians=page.wish.radians)
     shown = {key: value for key, value in record.items() if value is not None and key != "remark"}
-    height = 0.975
-    panel.text(0.05, height, "lagtop", va="top", size="x-large")
+    height = 0.955
+    panel.text(0.05, 0.985, "lagtop", va="top", size="x-large")
     for key, value in shown.items():
-        height -= 0.0245
+        height -= 0.0242
         text = value if isinstance(value, str) else f"{float(value):.7g}"
         panel.text(0.05, height, key, va="top", size="small", color=page.style.quiet)
         panel.text(0.97, height, text, va="top", ha="right", size="small")
