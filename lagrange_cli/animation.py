@@ -66,7 +66,7 @@ class Film:
         self.angles = motion.angles(self.times, wrap=True)
         self.view = best_view(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        draw_globe(self.axes, self.view, self.path, style)
+        draw_globe(self.axes, self.view, self.path, page.wish.radians, style)
         self.body = PolyCollection([], zorder=2, linewidths=0.3)
         self.axes.add_collection(self.body)
         (self.rim,) = self.axes.plot([], [], color=style.ink, lw=0.9, zorder=2.5)

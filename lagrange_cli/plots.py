@@ -35,7 +35,7 @@ class Wish(NamedTuple):
 
 def draw_sphere(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:
     """The path of the figure axis on the unit sphere."""
-    draw_path_on_sphere(panel, motion, wish.t_max, style)
+    draw_path_on_sphere(panel, motion, wish.t_max, wish.radians, style)
 
 
 def draw_angles(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> None:

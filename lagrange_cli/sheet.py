@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
@@ -40,8 +41,15 @@ class Page(NamedTuple):
 
     def inches(self) -> tuple[float, float]:
         """The size."""
-        if self.size:
-            return self.size
+        return self.size or self.usual_inches()
+
+    def lettering(self) -> float:
+        """Size of the letters: 1, and smaller on a page that is smaller than usual."""
+        pairs = zip(self.inches(), self.usual_inches(), strict=True)
+        return min(1.0, *(given / usual for given, usual in pairs))
+
+    def usual_inches(self) -> tuple[float, float]:
+        """The size that the kinds need."""
         if len(self.kinds) == 1:
             return SIZES.get(self.kinds[0], USUAL_SIZE)
         rows, columns = self.grid()
@@ -54,11 +62,11 @@ class Page(NamedTuple):
 
 
 @contextmanager
-def styled(style: Look) -> Iterator[None]:
+def styled(style: Look, size: float = 1.0) -> Iterator[None]:
     """Our settings and nobody else's, whatever the user's own matplotlibrc says."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(cast(Any, settings(style)))  # the stub lists every key
+        matplotlib.rcParams.update(cast(Any, settings(style, size)))  # the stub lists every key
         yield
 
 
@@ -84,7 +92,8 @@ def _draw(kind: str, panel: SubFigure, page: Page) -> None:
 
 
 def _write_numbers(panel: SubFigure, page: Page) -> None:
-    """The record, to seven digits."""
+    """The record, to seven digits, a line for each of up to 38 keys."""
+    points = min(9.0 * page.lettering(), 0.0242 * 72 * page.inches()[1] * 0.8)
     record = page.motion.record(radians=page.wish.radians)
     shown = {key: value for key, value in record.items() if value is not None and key != "remark"}
     height = 0.955
@@ -92,8 +101,8 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     for key, value in shown.items():
         height -= 0.0242
         text = value if isinstance(value, str) else f"{float(value):.7g}"
-        panel.text(0.05, height, key, va="top", size="small", color=page.style.quiet)
-        panel.text(0.97, height, text, va="top", ha="right", size="small")
+        panel.text(0.05, height, key, va="top", size=points, color=page.style.quiet)
+        panel.text(0.97, height, text, va="top", ha="right", size=points)
 
 
 def page_bytes(page: Page, file_style: str, dpi: float) -> bytes:
@@ -102,7 +111,8 @@ def page_bytes(page: Page, file_style: str, dpi: float) -> bytes:
     Raises LagtopError where there is nothing to draw.
     """
     buffer = io.BytesIO()
-    with styled(page.style):
+    os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # or the fonts in a PDF would carry the day
+    with styled(page.style, page.lettering()):
         figure = Figure(figsize=page.inches(), layout="constrained")
         draw_page(figure, page)
         figure.savefig(buffer, format=file_style, dpi=dpi, metadata=METADATA[file_style])
@@ -116,7 +126,7 @@ def show_page(page: Page) -> None:
     """
     from matplotlib import pyplot
 
-    with styled(page.style):
+    with styled(page.style, page.lettering()):
         try:
             figure = pyplot.figure(figsize=page.inches(), layout="constrained")
         except ImportError as error:  # of a toolkit that was asked for by MPLBACKEND

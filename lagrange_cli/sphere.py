@@ -24,7 +24,9 @@ PIECES = 160
 """Steps of the colour along a path."""
 
 
-def draw_path_on_sphere(panel: SubFigure, motion: Motion, t_max: float | None, style: Look) -> None:
+def draw_path_on_sphere(
+    panel: SubFigure, motion: Motion, t_max: float | None, radians: bool, style: Look
+) -> None:
     """The globe with the path on it; under it, magnified, a piece of a narrow path."""
     path = curves.axis_path(motion, t_max or curves.turn_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
@@ -33,16 +35,16 @@ def draw_path_on_sphere(panel: SubFigure, motion: Motion, t_max: float | None, s
     axes[0].set_title(
         " ".join(["Figure axis on the unit sphere:", path.kind or motion.regime.value])
     )
-    draw_globe(axes[0], view, path, style)
+    draw_globe(axes[0], view, path, radians, style)
     lines = draw_path(axes[0], view, path, style)
     bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)
     bar.outline.set_visible(False)
     bar.set_label("time t")
     if narrow:
-        _draw_magnified(axes[1], motion, path, style)
+        _draw_magnified(axes[1], motion, path, radians, style)
 
 
-def draw_globe(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> None:
+def draw_globe(axes: Axes, view: View, path: curves.AxisPath, radians: bool, style: Look) -> None:
     """Outline, equator, vertical and the two limiting circles; far sides dashed and paler."""
     axes.set_aspect("equal")
     axes.set_axis_off()
@@ -56,7 +58,8 @@ def draw_globe(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> No
         (path.greatest, style.lines[1], "ϑ max"),
     ):
         _draw_circle(axes, view, tilt, color=colour, lw=1.2)
-        axes.plot([], [], color=colour, lw=1.2, label=f"{label} {math.degrees(tilt):.4g}°")
+        angle = f"{tilt:.4g} rad" if radians else f"{math.degrees(tilt):.4g}°"
+        axes.plot([], [], color=colour, lw=1.2, label=f"{label} {angle}")
     hidden = view.toward[2] < 0
     feet = np.array([[0.0, 0.0, 1 / view.up[2] if hidden else 1.0], [0.0, 0.0, 1.32]])
     x, y = view.project(feet)
@@ -110,15 +113,18 @@ def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array
     return pieces, np.array(times)
 
 
-def _draw_magnified(axes: Axes, motion: Motion, path: curves.AxisPath, style: Look) -> None:
+def _draw_magnified(
+    axes: Axes, motion: Motion, path: curves.AxisPath, radians: bool, style: Look
+) -> None:
     """The first two nods unrolled; a degree of precession is as long as it is on the sphere."""
     short = curves.angle_curves(motion, min(curves.span(motion, 2), path.t[-1]))
-    x, y = np.degrees(short.psi), np.degrees(short.theta)
+    unit, factor = ("rad", 1.0) if radians else ("deg", 180 / math.pi)
+    x, y = short.psi * factor, short.theta * factor
     axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
     axes.plot(x, y, color=scale(style)(0.0))
     mark_start(axes, x[0], y[0], style)
     axes.set_title("the first two nods, magnified", fontsize="medium")
-    axes.set(xlabel="precession ψ (deg)", ylabel="tilt ϑ (deg)")
+    axes.set(xlabel=f"precession ψ ({unit})", ylabel=f"tilt ϑ ({unit})")
     axes.ticklabel_format(useOffset=False)
     axes.locator_params(axis="y", nbins=4)
     axes.margins(y=0.25)

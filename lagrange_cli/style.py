@@ -51,8 +51,8 @@ def look(dark: bool) -> Look:
     return DARK if dark else LIGHT
 
 
-def settings(style: Look) -> dict[str, Any]:
-    """The style sheet, as matplotlib's settings."""
+def settings(style: Look, size: float = 1.0) -> dict[str, Any]:
+    """The style sheet, as matplotlib's settings; `size` is that of the letters and lines."""
     return {
         "axes.axisbelow": True,
         "axes.edgecolor": style.quiet,
@@ -63,13 +63,13 @@ def settings(style: Look) -> dict[str, Any]:
         "axes.spines.right": False,
         "axes.spines.top": False,
         "axes.titlelocation": "left",
-        "axes.titlesize": 12.0,
+        "axes.titlesize": 12.0 * size,
         "figure.facecolor": style.paper,
         "font.family": "DejaVu Sans",  # comes with matplotlib, and has Greek
-        "font.size": 11.0,
+        "font.size": 11.0 * size,
         "hatch.color": style.quiet,
         "legend.frameon": False,
-        "lines.linewidth": 1.8,
+        "lines.linewidth": 1.8 * size,
         "lines.solid_capstyle": "round",
         "lines.solid_joinstyle": "round",
         "mathtext.fontset": "dejavusans",

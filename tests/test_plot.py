@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import os
 import re
@@ -9,6 +10,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -269,8 +271,9 @@ def test_the_top_of_the_film_stands_on_its_axis() -> None:
 # The page and its files.
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
-@pytest.mark.parametrize("style", [LIGHT, DARK], ids=["light", "dark"])
+@pytest.mark.parametrize(
+    ("path", "style"), [*((path, LIGHT) for path in SAMPLES), (SAMPLES[0], DARK)]
+)
 def test_every_kind_of_every_sample(path: Path, style: Look) -> None:
     """Warnings are errors, those of missing glyphs and of failed layouts too."""
     x, y = keymap.parse_axis("--x", "r0=20:100:4"), keymap.parse_axis("--y", "theta0=10:90:3")
@@ -297,6 +300,19 @@ def test_files_are_the_same_every_time(style: str, start: bytes) -> None:
     assert first == second
     assert first.startswith(start)
     assert not re.search(rb"20\d\d-\d\d|CreationDate|matplotlib v", first)
+
+
+def test_letters_shrink_with_the_page_and_fit_it() -> None:
+    page = Page(solve(Top()), ["sphere", "phase"], Wish(), LIGHT, (7.35, 2.5))
+    assert page.lettering() == pytest.approx(0.5)
+    with styled(LIGHT, page.lettering()):
+        figure = Figure(figsize=page.inches(), layout="constrained")
+        draw_page(figure, page)
+        figure.savefig(io.BytesIO(), format="png")
+        boxes = [text.get_window_extent() for text in figure.subfigs[0].texts[1:]]
+    keys, values = boxes[::2], boxes[1::2]
+    assert all(key.x1 < value.x0 for key, value in zip(keys, values, strict=True))
+    assert all(upper.y0 > lower.y0 for upper, lower in pairwise(keys))
 
 
 def test_the_numbers_of_the_sheet(lagtop: Lagtop) -> None:
