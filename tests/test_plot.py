@@ -196,10 +196,11 @@ def test_the_separatrix_is_where_upright_tops_go() -> None:
     assert theta[0] == rate[0] == 0
     assert theta[-1] == pytest.approx(math.radians(near.theta_max_deg or 0), abs=1e-12)
     orbit = phase_portrait(near)
-    falls = (orbit.rate > 0) & (orbit.theta > 0.01)
-    half = orbit.theta[falls] / 2
-    expected = 2 * near.a * np.sin(half) ** 2 - (near.b * np.tan(half)) ** 2
-    assert orbit.rate[falls] ** 2 == pytest.approx(expected, abs=1e-6)
+    lowest = int(np.argmax(orbit.theta))
+    falling = np.interp(theta, orbit.theta[: lowest + 1], orbit.rate[: lowest + 1])
+    inner = (theta > 0.01) & (theta < 0.99 * theta[-1])
+    assert inner.sum() > 100
+    assert rate[inner] == pytest.approx(falling[inner], rel=2e-3)
 
 
 def test_the_map_holds_what_solve_says() -> None:
