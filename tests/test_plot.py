@@ -21,7 +21,7 @@ from conftest import ROOT, Lagtop, process
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from lagrange_cli import LagtopError, Motion, Top, animation, curves, globe, keymap, solve
+from lagrange_cli import LagtopError, Motion, Regime, Top, animation, curves, globe, keymap, solve
 from lagrange_cli.commands.plot import KINDS as NAMES
 from lagrange_cli.options import solved as motion_of
 from lagrange_cli.phase import Array
@@ -31,6 +31,7 @@ from lagrange_cli.sheet import Page, draw_page, page_bytes, styled
 from lagrange_cli.style import DARK, LIGHT, Look
 
 SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
+UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 REGIMES: dict[str, dict[str, float]] = {
     "sleeping": {"theta0_deg": 0},
     "hanging": {"theta0_deg": 180},
@@ -38,8 +39,9 @@ REGIMES: dict[str, dict[str, float]] = {
     "torque-free, nodding": {"g": 0, "psidot0": 3},
     "plane pendulum": {"r0": 0},
     "spherical pendulum": {"r0": 0, "psidot0": 3},
-    "separatrix": {"theta0_deg": 0, "thetadot0": 2, "r0": 20},
-    "steady": {"theta0_deg": 90, "r0": 50, "psidot0": 2 * 3963.0 * 1571 / 17458 / 100},
+    "over the upper pole": {"theta0_deg": 0, "thetadot0": 2, "r0": 20},
+    "separatrix": {**UNIT, "A": 2, "theta0_deg": 90, "thetadot0": 1, "r0": 0},
+    "steady precession": {**UNIT, "theta0_deg": 90, "r0": 1, "psidot0": 1},
     "nothing but noise": {"r0": 1e9},
 }
 
@@ -285,6 +287,7 @@ def test_every_kind_of_every_sample(path: Path, style: Look) -> None:
 @pytest.mark.parametrize("name", REGIMES)
 def test_every_regime(name: str) -> None:
     scene = solve(Top(**REGIMES[name]))
+    assert name == scene.regime.value or name not in {regime.value for regime in Regime}
     page = Page(scene, ["sphere", "angles", "remainders", "cubic", "phase"], Wish(), LIGHT)
     assert page_bytes(page, "png", 40).startswith(b"\x89PNG")
     if not curves.period(scene):
