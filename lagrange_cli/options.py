@@ -129,13 +129,17 @@ def given(name: str) -> bool:
 
 
 def with_progress(
-    parts: Iterable[P], count: int, long: int, size: Callable[[Any], int] = len
+    parts: Iterable[P],
+    count: int,
+    long: int,
+    size: Callable[[Any], int] = len,
+    label: str = "rows",
 ) -> Iterator[P]:
     """The parts as they come; a bar on the terminal where `count` rows are `long` work."""
     if count < long or not sys.stderr.isatty():
         yield from parts
         return
-    with click.progressbar(length=count, label="rows", file=sys.stderr) as bar:
+    with click.progressbar(length=count, label=label, file=sys.stderr) as bar:
         for part in parts:
             yield part
             bar.update(size(part))

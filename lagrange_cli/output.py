@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +32,12 @@ def write_value(value: Any, path: str) -> None:
     """One value, bare."""
     with sink(path) as stream:
         stream.write(f"{value_text(value)}\n".encode())
+
+
+def write_bytes(path: str, make: Callable[[], bytes]) -> None:
+    """A picture, made only when it is known that there is a place for it."""
+    with sink(path) as stream:
+        stream.write(make())
 
 
 def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "top") -> None:

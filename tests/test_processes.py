@@ -30,6 +30,7 @@ def loaded(*args: str) -> set[str]:
         ("solve --format csv --rad --theta0 1", set()),
         ("--help", set()),
         ("table --help", set()),
+        ("plot --help", set()),
         ("solve", {"rich"}),
         ("table", {"numpy", "mpmath", "orjson"}),
         ("table --r0 0 --format json", {"numpy", "mpmath", "orjson"}),

@@ -64,8 +64,8 @@ def test_errata_table() -> None:
 
 def test_every_option_and_key_is_explained() -> None:
     text = README.read_text()
-    ctx = click.Context(main)
-    commands = [main.get_command(ctx, name) for name in main.list_commands(ctx)]
+    context = click.Context(main)
+    commands = [main.get_command(context, name) for name in main.list_commands(context)]
     options = {name for command in commands if command for p in command.params for name in p.opts}
     assert "--theta0" in options
     assert {name for name in options if name.startswith("-")} - set(

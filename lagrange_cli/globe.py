@@ -1,0 +1,120 @@
+"""The unit sphere and the top in it, seen from afar: what is in sight, and where on the page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .twofold import Array
+
+HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
+"""Of the cone that stands for the top; lengths in radii of the sphere."""
+
+Near = NDArray[np.bool_]
+"""Whether points are on the near side."""
+
+
+class View(NamedTuple):
+    """An orthographic view: three orthonormal vectors."""
+
+    right: Array
+    up: Array
+    toward: Array
+    """From the centre to the eye."""
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """x and y on the page of points of shape (n, 3)."""
+        return points @ self.right, points @ self.up
+
+    def faces(self, points: Array) -> Near:
+        """Whether points of the sphere lie on the near side."""
+        near: Near = points @ self.toward >= 0.0
+        return near
+
+
+def view_from(azimuth: float, elevation: float) -> View:
+    """The view from a direction (radians), with z upwards on the page."""
+    sa, ca, se, ce = (f(x) for x in (azimuth, elevation) for f in (math.sin, math.cos))
+    return View(
+        right=np.array([-sa, ca, 0.0]),
+        up=np.array([-se * ca, -se * sa, ce]),
+        toward=np.array([ce * ca, ce * sa, se]),
+    )
+
+
+def best_view(path: Array) -> View:
+    """From above or from below, and from the side that the path faces most; the start in sight."""
+    start = math.atan2(path[0, 1], path[0, 0])
+    views = [
+        view_from(start + math.radians(azimuth), math.radians(elevation))
+        for elevation in (25, -25)
+        for azimuth in sorted(range(-180, 180, 15), key=lambda degrees: abs(degrees - 30))
+    ]
+
+    def shown(view: View) -> float:
+        turned = (path @ view.toward).mean()
+        return float(view.faces(path).mean() + 0.5 * turned + view.faces(path[:1])[0])
+
+    return max(views, key=lambda view: round(shown(view), 2))
+
+
+def parallel(tilt: float) -> Array:
+    """The circle of a tilt on the unit sphere, shape (n, 3)."""
+    around = np.linspace(0.0, 2 * math.pi, 241)
+    sine, cosine = math.sin(tilt), math.cos(tilt)
+    return np.stack([sine * np.cos(around), sine * np.sin(around), 0 * around + cosine], axis=1)
+
+
+def runs(near: Near) -> Iterator[tuple[slice, bool]]:
+    """The pieces of a curve on either side; neighbours share the point where they meet."""
+    ends = np.flatnonzero(near[1:] != near[:-1]) + 1
+    bounds = [0, *ends.tolist(), near.size]
+    for first, last in pairwise(bounds):
+        yield slice(max(first - 1, 0), last), bool(near[first])
+
+
+class Face(NamedTuple):
+    """A triangle of the top on the page, corners of shape (3, 2)."""
+
+    corners: Array
+    on_lid: bool
+    light: bool
+    """Every other sixth of a turn, so that one sees the spin."""
+
+
+class SeenTop(NamedTuple):
+    """The top on the page: the faces in sight, the lid last."""
+
+    faces: list[Face]
+    rim: tuple[Array, Array]
+    axle: tuple[Array, Array]
+    """From the lid to the sphere."""
+    lid_in_sight: bool
+
+
+def seen_top(theta: float, phi: float, psi: float, view: View) -> SeenTop:
+    """A cone on its tip at the given Euler angles (radians)."""
+    nodes = np.array([math.cos(psi), math.sin(psi), 0.0])
+    axis = np.array(
+        [math.sin(theta) * math.sin(psi), -math.sin(theta) * math.cos(psi), math.cos(theta)]
+    )
+    around = phi + 2 * math.pi / WEDGES * np.arange(WEDGES + 1)
+    spokes = np.outer(np.cos(around), nodes) + np.outer(np.sin(around), np.cross(axis, nodes))
+    rim, middle = HEIGHT * axis + RADIUS * spokes, HEIGHT * axis
+    outward = HEIGHT * (spokes[1:] + spokes[:-1]) / 2 - RADIUS * axis
+    lid_in_sight = bool(axis @ view.toward > 0)
+
+    def face(j: int, tip: Array, on_lid: bool) -> Face:
+        corners = np.stack(view.project(np.stack([tip, rim[j], rim[j + 1]])), axis=1)
+        return Face(corners, on_lid, light=j * 6 // WEDGES % 2 == 0)
+
+    faces = [face(j, 0 * axis, False) for j in range(WEDGES) if outward[j] @ view.toward > 0]
+    if lid_in_sight:
+        faces += [face(j, middle, True) for j in range(WEDGES)]
+    axle = view.project(np.stack([middle, axis]))
+    return SeenTop(faces, view.project(rim), axle, lid_in_sight)

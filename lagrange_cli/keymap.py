@@ -1,0 +1,117 @@
+"""A key of the record over a grid of two inputs, as numbers: nothing here draws."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from .errors import LagtopError
+from .motion import Motion, solve
+from .record import Record
+from .top import Top, parse_number
+from .twofold import Array
+
+INPUTS = {
+    "m": "mass m",
+    "A": "equatorial moment A",
+    "C": "polar moment C",
+    "s": "pivot to mass centre s",
+    "g": "gravity g",
+    "r0": "spin r₀ (rad/time)",
+    "theta0": "tilt ϑ₀ (deg)",
+    "thetadot0": "nutation rate at the start (rad/time)",
+    "psidot0": "precession rate at the start (rad/time)",
+}
+"""The inputs that can vary, and what they are."""
+
+KEYS = [key for key in Record._fields[2:-2] if key not in ("a", "b")] + ["a", "b"]
+MOST_CELLS = 1_000_000
+DEFAULT_COUNTS = 64, 48
+
+Watch = Callable[[Iterable[Array], int], Iterable[Array]]
+"""Hands on the rows as they are computed; see `options.with_progress`."""
+
+
+class Axis(NamedTuple):
+    """An input and the values it takes; a tilt in degrees."""
+
+    name: str
+    values: Array
+
+
+class KeyMap(NamedTuple):
+    """The key at each pair of inputs: values[i, j] at y[i], x[j]; not a number where there is
+    none."""
+
+    key: str
+    x: Axis
+    y: Axis
+    values: Array
+    sleeping: Array
+    """C |r0| / sqrt(4Amgs), 1 on the sleeping threshold; infinite without torque."""
+
+
+def parse_axis(option: str, text: str) -> Axis:
+    """`r0=10:100:40`: an input and so many values from the first to the last.
+
+    Raises LagtopError.
+    """
+    name, _, grid = text.partition("=")
+    if name not in INPUTS:
+        raise LagtopError(f"{option} must begin with one of {' '.join(INPUTS)} and =, got {text!r}")
+    parts = grid.split(":")
+    if len(parts) != 3:
+        raise LagtopError(f"{option} must be NAME=FIRST:LAST:COUNT, got {text!r}")
+    try:
+        first, last, count = map(parse_number, parts)
+    except LagtopError as error:
+        raise LagtopError(f"{option} {error}") from None
+    if count.denominator != 1 or not 2 <= count <= 2000:
+        raise LagtopError(f"{option} must have a COUNT in [2, 2000], got {parts[2]}")
+    if not first < last:
+        raise LagtopError(f"{option} must have FIRST < LAST, got {text!r}")
+    return Axis(name, np.linspace(float(first), float(last), int(count)))
+
+
+def default_axes(top: Top) -> tuple[Axis, Axis]:
+    """Spin, to twice the sleeping threshold or beyond the top's own, and tilt."""
+    columns, rows = DEFAULT_COUNTS
+    threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
+    most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
+    spins = np.linspace(most / columns, most, columns)
+    return Axis("r0", spins), Axis("theta0", np.linspace(2.0, 178.0, rows))
+
+
+def key_map(
+    motion: Motion, key: str, x: Axis, y: Axis, watch: Watch = lambda rows, _: rows
+) -> KeyMap:
+    """The key over the grid, the other inputs as in the motion.  Raises LagtopError."""
+    if key not in KEYS:
+        raise LagtopError(f"--key must be among {' '.join(KEYS)}, got {key!r}")
+    if x.name == y.name:
+        raise LagtopError(f"--x and --y must be different inputs, got {x.name} twice")
+    tops = [[_changed(motion.top, {x.name: p, y.name: q}) for p in x.values] for q in y.values]
+    rows = (_values(row, key) for row in tops)
+    values = np.stack(list(watch(rows, len(tops) * len(tops[0]))))
+    return KeyMap(key, x, y, values, np.array([[_sleeping(top) for top in row] for row in tops]))
+
+
+def _values(tops: list[Top], key: str) -> Array:
+    # The one place that computes a sweep: one solve() a top, until the package has `sweep`.
+    return np.array([getattr(solve(top), key) for top in tops], dtype=np.float64)
+
+
+def _changed(top: Top, inputs: dict[str, float]) -> Top:
+    given = {key: value for key, value in top._asdict().items() if value is not None}
+    if "theta0" in inputs:
+        given.pop("theta0_rad", None)
+    renamed = {"theta0_deg" if key == "theta0" else key: x for key, x in inputs.items()}
+    return Top(**(given | renamed))
+
+
+def _sleeping(top: Top) -> float:
+    torque = float(4 * top.A * top.m * top.g * top.s)
+    return abs(float(top.C * top.r0)) / math.sqrt(torque) if torque else math.inf

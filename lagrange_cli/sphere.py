@@ -1,0 +1,131 @@
+"""The unit sphere with the path of the figure axis, drawn."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import SubFigure
+
+from . import curves
+from .globe import Near, View, best_view, parallel, runs
+from .motion import Motion
+from .style import Look, mark_start, scale
+from .twofold import Array
+
+NARROW = math.radians(6.0)
+"""A band of tilts that a circle on the globe hides: it is shown magnified as well."""
+
+PIECES = 160
+"""Steps of the colour along a path."""
+
+
+def draw_path_on_sphere(
+    panel: SubFigure, motion: Motion, t_max: float | None, radians: bool, style: Look
+) -> None:
+    """The globe with the path on it; under it, magnified, a piece of a narrow path."""
+    path = curves.axis_path(motion, t_max or curves.turn_span(motion))
+    narrow = 0 < path.greatest - path.least < NARROW
+    axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
+    view = best_view(path.axis)
+    axes[0].set_title(
+        " ".join(["Figure axis on the unit sphere:", path.kind or motion.regime.value])
+    )
+    draw_globe(axes[0], view, path, radians, style)
+    lines = draw_path(axes[0], view, path, style)
+    bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)
+    bar.outline.set_visible(False)
+    bar.set_label("time t")
+    if narrow:
+        _draw_magnified(axes[1], motion, path, radians, style)
+
+
+def draw_globe(axes: Axes, view: View, path: curves.AxisPath, radians: bool, style: Look) -> None:
+    """Outline, equator, vertical and the two limiting circles; far sides dashed and paler."""
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set(xlim=(-1.06, 1.06), ylim=(-1.06, 1.24))
+    outline = np.linspace(0.0, 2 * math.pi, 361)
+    axes.fill(np.cos(outline), np.sin(outline), facecolor=style.faint, alpha=0.55, zorder=0)
+    axes.plot(np.cos(outline), np.sin(outline), color=style.quiet, lw=1.0, zorder=1)
+    _draw_circle(axes, view, math.pi / 2, color=style.quiet, lw=0.6)
+    for tilt, colour, label in (
+        (path.least, style.lines[0], "ϑ min"),
+        (path.greatest, style.lines[1], "ϑ max"),
+    ):
+        _draw_circle(axes, view, tilt, color=colour, lw=1.2)
+        angle = f"{tilt:.4g} rad" if radians else f"{math.degrees(tilt):.4g}°"
+        axes.plot([], [], color=colour, lw=1.2, label=f"{label} {angle}")
+    hidden = view.toward[2] < 0
+    feet = np.array([[0.0, 0.0, 1 / view.up[2] if hidden else 1.0], [0.0, 0.0, 1.32]])
+    x, y = view.project(feet)
+    axes.plot(x, y, color=style.quiet, lw=1.0, zorder=4)
+    axes.annotate("z", (x[1], y[1]), (5, -8), textcoords="offset points", color=style.quiet)
+
+
+def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
+    circle = parallel(tilt)
+    x, y = view.project(circle)
+    for part, near in runs(view.faces(circle)):
+        fade: dict[str, Any] = (
+            {"zorder": 2} if near else {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1}
+        )
+        axes.plot(x[part], y[part], **(line | fade))
+
+
+def draw_path(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> LineCollection:
+    """The path, coloured by time and paler on the far side; its start, and a legend."""
+    x, y = view.project(path.axis)
+    near = view.faces(path.axis)
+    colours = scale(style)
+    for side, alpha, width in ((False, 0.35, 1.2), (True, 1.0, 2.2)):
+        pieces, times = _pieces(path.t, np.stack([x, y], axis=1), near, side)
+        lines = LineCollection(
+            pieces, cmap=colours, linewidths=width, alpha=alpha, capstyle="round"
+        )
+        lines.set_array(times)
+        lines.set_clim(path.t[0], path.t[-1])
+        lines.set_zorder(3 if side else 1)
+        axes.add_collection(lines)
+    mark_start(axes, x[0], y[0], style)
+    axes.legend(loc="lower left", fontsize="small", borderaxespad=0, handlelength=1.4)
+    lines.set_alpha(None)
+    return lines
+
+
+def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array], Array]:
+    """The parts of the curve on one side, cut into pieces of one colour each."""
+    step = max((t[-1] - t[0]) / PIECES, 1e-300)
+    pieces, times = [], []
+    for part, on_near in runs(near):
+        if on_near is not side:
+            continue
+        cuts = np.flatnonzero(np.diff(np.floor((t[part] - t[0]) / step))) + 1
+        bounds = [0, *cuts.tolist(), t[part].size - 1]
+        for first, last in pairwise(bounds):
+            if last > first:
+                pieces.append(points[part][first : last + 1])
+                times.append((t[part][first] + t[part][last]) / 2)
+    return pieces, np.array(times)
+
+
+def _draw_magnified(
+    axes: Axes, motion: Motion, path: curves.AxisPath, radians: bool, style: Look
+) -> None:
+    """The first two nods unrolled; a degree of precession is as long as it is on the sphere."""
+    short = curves.angle_curves(motion, min(curves.span(motion, 2), path.t[-1]))
+    unit, factor = ("rad", 1.0) if radians else ("deg", 180 / math.pi)
+    x, y = short.psi * factor, short.theta * factor
+    axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
+    axes.plot(x, y, color=scale(style)(0.0))
+    mark_start(axes, x[0], y[0], style)
+    axes.set_title("the first two nods, magnified", fontsize="medium")
+    axes.set(xlabel=f"precession ψ ({unit})", ylabel=f"tilt ϑ ({unit})")
+    axes.ticklabel_format(useOffset=False)
+    axes.locator_params(axis="y", nbins=4)
+    axes.margins(y=0.25)
+    axes.invert_yaxis()
