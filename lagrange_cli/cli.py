@@ -14,7 +14,7 @@ from .options import ExamplesFirst, complain
 from .output import CannotWriteError, Terminated
 from .top import LagtopError
 
-COMMANDS = ["solve", "table"]
+COMMANDS = ["solve", "table", "bench", "stability"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 

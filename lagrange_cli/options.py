@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sized
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from contextlib import suppress
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -18,6 +18,7 @@ MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
 P = TypeVar("P", bound=Sized)
+T = TypeVar("T")
 
 
 class DecimalType(click.ParamType):  # type: ignore[type-arg]
@@ -109,6 +110,15 @@ def with_progress(parts: Iterable[P], count: int, long: int) -> Iterator[P]:
         for part in parts:
             yield part
             bar.update(len(part))
+
+
+def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
+    """The items one by one; on a terminal a bar says how many are done."""
+    if not sys.stderr.isatty():
+        yield from items
+        return
+    with click.progressbar(items, label=label, file=sys.stderr, show_pos=True) as bar:
+        yield from bar
 
 
 def complain(line: str) -> None:

@@ -13,6 +13,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 if TYPE_CHECKING:
+    from .findings import Findings
     from .phase import Array
 
 MAX_TABLE_ROWS = 10_000
@@ -171,6 +172,18 @@ def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str,
                 stream.write(separator + f"{{{', '.join(members)}}}".encode())
                 separator = b",\n"
             stream.write(b"]\n")
+
+
+def write_findings(findings: Findings, style: str, path: str) -> None:
+    """A report: its conditions, its rows and what they say, in the same three styles."""
+    if style == "table":
+        from .report import findings_table
+
+        text = findings_table(findings, terminal=_is_terminal(path), encoding=_encoding(path))
+    else:
+        text = findings.as_csv() if style == "csv" else findings.as_json()
+    with sink(path) as stream:
+        stream.write(text)
 
 
 def _csv_rows(stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array]) -> None:
