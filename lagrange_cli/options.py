@@ -6,13 +6,17 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from contextlib import suppress
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from . import __version__
 from .motion import Motion, solve
+from .output import write_findings
 from .top import LagtopError, Number, build_top, parse_number
+
+if TYPE_CHECKING:
+    from .findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -119,6 +123,14 @@ def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
         return
     with click.progressbar(items, label=label, file=sys.stderr, show_pos=True) as bar:
         yield from bar
+
+
+def write_report(findings: Findings, style: str, output: str) -> None:
+    """Write it; of CSV, which holds the rows alone, the conditions go to standard error."""
+    write_findings(findings, style, output)
+    if style == "csv":
+        for name, text in findings.conditions.items():
+            complain(f"{name}: {text}")
 
 
 def complain(line: str) -> None:

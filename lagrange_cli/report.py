@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Mapping, Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rich import box
@@ -135,10 +136,15 @@ def findings_table(findings: Findings, *, terminal: bool, encoding: str) -> byte
     for row in findings.rows:
         table.add_row(*(field.cell(getattr(row, field.key)) for field in shown))
     spelling = {} if encoding.lower().startswith("utf") else _ASCII
-    heads = (f"{name:10} {text}" for name, text in findings.conditions.items())
+    heads = (_condition(name, text) for name, text in findings.conditions.items())
     above = "\n".join(heads).translate(spelling) + "\n\n"
     below = "".join(f"\n{line}" for line in findings.conclusions).translate(spelling)
     return above.encode() + _rendered(table, terminal, encoding) + f"{below}\n".encode()
+
+
+def _condition(name: str, text: str) -> str:
+    """The name, and the text beside it in lines of 100 columns."""
+    return fill(f"{name:11}{text}", 100, subsequent_indent=" " * 11, break_on_hyphens=False)
 
 
 def _rendered(table: Table, terminal: bool, encoding: str) -> bytes:

@@ -11,11 +11,11 @@ import mpmath
 import numpy as np
 import oracle
 import pytest
-from strata import STRATA, Scene, generic
 
 from lagrange_cli import Motion, Regime, Top, solve
 from lagrange_cli.accuracy import Reference, angle_units
 from lagrange_cli.phase import Array
+from lagrange_cli.strata import STRATA, Scene, generic
 from lagrange_cli.table import Grid, rows
 
 UNIT: Scene = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}

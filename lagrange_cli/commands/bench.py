@@ -16,8 +16,8 @@ from ..options import (
     scene_options,
     solved,
     with_steps,
+    write_report,
 )
-from ..output import write_findings
 from ..top import LagtopError
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
@@ -83,7 +83,7 @@ def command(  # noqa: PLR0917 - click passes them by name
         found = bench.report(motion, end, count or SAMPLES, chosen, **how)
     if plot:
         (draw_drift if is_long else draw_work_precision)(found, plot)
-    write_findings(found, style, output)
+    write_report(found, style, output)
 
 
 def _check(count: int | None, limit: Fraction) -> None:

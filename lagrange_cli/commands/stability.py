@@ -5,11 +5,10 @@ from __future__ import annotations
 import click
 
 from .. import __version__
-from ..options import COUNT, ExamplesFirst, exclude, output_options, with_steps
-from ..output import write_findings
+from ..options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
 from ..top import LagtopError
 
-SAMPLES, THOROUGH, MOST_SAMPLES = 5, 200, 100_000
+SAMPLES, THOROUGH, MOST_SAMPLES = 8, 200, 100_000
 SEED = 1952
 
 
@@ -58,6 +57,6 @@ def command(  # noqa: PLR0917 - click passes them by name
     found = stability.report(stability.chosen_strata(strata), count, seed, with_steps)
     if plot:
         draw_stability(found, plot)
-    write_findings(found, style, output)
+    write_report(found, style, output)
     if stability.exceeded(found):
         ctx.exit(1)
