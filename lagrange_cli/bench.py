@@ -277,6 +277,8 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
         f"digits it differs by {work.agreement:.0e} rad at most",
         "error": f"radians, greatest of the three angles at {len(work.exact)} of the times, the "
         "last among them",
+        "units": "the same over eps (max(1, |angle|) + |tau rate|), tau the time since the nearest "
+        "whole period",
         "turns": "compared unwrapped; quaternion forms know angles modulo 2 pi, and so are judged",
         "time": f"one thread; after a warm-up, least and median of up to {RUNS} runs (of one where "
         f"it takes {SECONDS_OF_RUNS} s)",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from .bench import is_done
 from .findings import Findings
-from .output import sink
+from .output import CannotWriteError, sink
 from .stability import CONTRACT
 from .top import LagtopError
 
@@ -23,13 +23,18 @@ LEAST_ERROR = 1e-17
 
 
 def check_plot(path: str | None) -> None:
-    """Raise LagtopError for a kind of file that is not drawn, or where matplotlib is missing."""
+    """Raise LagtopError for a kind of file that is not drawn, or where matplotlib is missing.
+
+    Raises CannotWriteError where there is no such directory.
+    """
     if path is None:
         return
     if Path(path).suffix.lower() not in KINDS:
         raise LagtopError(f"--plot must end in {' or '.join(KINDS)}, got {path!r}")
     if find_spec("matplotlib") is None:
         raise LagtopError("--plot needs matplotlib: pip install 'lagtop[plot]'")
+    if not Path(path).resolve().parent.is_dir():
+        raise CannotWriteError(f"cannot write {path}: no such directory")
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:
@@ -40,7 +45,7 @@ def draw_work_precision(findings: Findings, path: str) -> None:
         points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
         _line(axes, i, name, points)
     axes.set(xlabel="greatest error (rad)", ylabel="time a sample (ns)")
-    axes.set_title(f"Error against run time\n{findings.conditions['times']}", fontsize=9)
+    axes.set_title(f"Error against run time\ntimes: {findings.conditions['times']}", fontsize=9)
     _save(figure, path)
 
 
@@ -54,7 +59,8 @@ def draw_drift(findings: Findings, path: str) -> None:
         _line(below, i, name, [(row.periods, row.ns_min) for row in mine])
     above.set(xlabel="nutation periods", ylabel="greatest error (rad)")
     below.set(xlabel="nutation periods", ylabel="time a sample (ns)")
-    above.set_title(f"Error and time against the span\n{findings.conditions['times']}", fontsize=9)
+    title = f"Error and time against the span\ntimes: {findings.conditions['times']}"
+    above.set_title(title, fontsize=9)
     _save(figure, path)
 
 
@@ -75,7 +81,7 @@ def draw_stability(findings: Findings, path: str) -> None:
     axes.set(yscale="linear", xlabel="worst error (units)", yticks=range(len(strata)))
     axes.set_yticklabels(strata)
     axes.invert_yaxis()
-    axes.set_title(f"Error by stratum\n{findings.conditions['scenes']}", fontsize=9)
+    axes.set_title(f"Error by stratum\nscenes: {findings.conditions['scenes']}", fontsize=9)
     _save(figure, path)
 
 

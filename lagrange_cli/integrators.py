@@ -168,11 +168,18 @@ def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.
     return sample
 
 
+def _forget_compiled_code(state: Any) -> None:
+    """Or the set-up would be that of the first run ever of this scene, found in a cache."""
+    state.clear_memcache()
+    if hasattr(state, "set_diskcache_enabled"):
+        state.set_diskcache_enabled(False)
+
+
 def heyoka_method(form: Form, top: Top, tol: float, limit: float = 5.0) -> Sample:
     """Taylor's method, compiled for this top; set-up includes the compilation."""
     import heyoka
 
-    heyoka.llvm_state.clear_memcache()  # or it would be compiled once for all set-ups
+    _forget_compiled_code(heyoka.llvm_state)
     scene = problem(top)
     start = np.array(form.start(scene))
     variables = heyoka.make_vars(*(f"x{i}" for i in range(start.size)))

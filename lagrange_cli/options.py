@@ -125,12 +125,13 @@ def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
         yield from bar
 
 
-def write_report(findings: Findings, style: str, output: str) -> None:
-    """Write it; of CSV, which holds the rows alone, the conditions go to standard error."""
-    write_findings(findings, style, output)
+def write_report(find: Callable[[], Findings], style: str, output: str) -> Findings:
+    """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
+    findings = write_findings(find, style, output)
     if style == "csv":
         for name, text in findings.conditions.items():
             complain(f"{name}: {text}")
+    return findings
 
 
 def complain(line: str) -> None:

@@ -7,7 +7,7 @@ import io
 import os
 import stat
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
@@ -174,16 +174,21 @@ def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str,
             stream.write(b"]\n")
 
 
-def write_findings(findings: Findings, style: str, path: str) -> None:
-    """A report: its conditions, its rows and what they say, in the same three styles."""
-    if style == "table":
-        from .report import findings_table
+def write_findings(find: Callable[[], Findings], style: str, path: str) -> Findings:
+    """What a report finds, in the same three styles.
 
-        text = findings_table(findings, terminal=_is_terminal(path), encoding=_encoding(path))
-    else:
-        text = findings.as_csv() if style == "csv" else findings.as_json()
+    It is made when the place to write is open already: long work must not end before a closed door.
+    """
     with sink(path) as stream:
-        stream.write(text)
+        findings = find()
+        if style == "table":
+            from .report import findings_table
+
+            terminal, encoding = _is_terminal(path), _encoding(path)
+            stream.write(findings_table(findings, terminal=terminal, encoding=encoding))
+        else:
+            stream.write(findings.as_csv() if style == "csv" else findings.as_json())
+    return findings
 
 
 def _csv_rows(stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array]) -> None:

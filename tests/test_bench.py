@@ -190,6 +190,13 @@ def test_plots_without_matplotlib(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatc
     assert result.stderr == "Error: --plot needs matplotlib: pip install 'lagtop[plot]'\n"
 
 
+def test_what_cannot_be_written_is_known_before_the_work(lagtop: Lagtop, tmp_path: Path) -> None:
+    for option, name in (("-o", "x.csv"), ("--plot", "x.svg")):
+        result = lagtop("bench", "--n", "1e7", option, tmp_path / "none" / name)
+        assert result.exit_code == 74
+        assert result.stderr.startswith(f"Error: cannot write {tmp_path}")
+
+
 def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
     rows = with_front([row("lagtop", 1e-15, 2.0), row("x-euler", 1e-3, 9.0), row("y", None, None)])
     found = Findings({"times": "5", "scenes": "3"}, bench.FIELDS, rows, [])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,6 +19,9 @@ from ..options import (
     write_report,
 )
 from ..top import LagtopError
+
+if TYPE_CHECKING:
+    from ..findings import Findings
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
 PERIODS = 20.3
@@ -40,7 +43,9 @@ MOST_SAMPLES = 10_000_000
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
 @click.option("--methods", metavar="NAMES", help="Only these, with commas between.")
-@click.option("--limit", type=NUMBER, default="3", help="Seconds a run may take.")
+@click.option(
+    "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
+)
 @click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
 @click.option("--plot", type=click.Path(), metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
@@ -59,7 +64,7 @@ def command(  # noqa: PLR0917 - click passes them by name
 ) -> None:
     """Error against run time: closed forms and integrators at the same times.
 
-    Every method is judged by a reference of 50 digits that shares no formula with lagtop, and
+    Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
     timed on one thread.  Needs the extra `bench` for scipy and heyoka; without them their rows say
     so.  A * marks the Pareto front: no other run is both faster and more accurate.
     """
@@ -76,14 +81,18 @@ def command(  # noqa: PLR0917 - click passes them by name
     motion = solved(scene, rad, False, options)
     bench.check_scene(motion)
     how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
-    if is_long:
-        found = drift.report(motion, count or LONG_SAMPLES, chosen, **how)
-    else:
-        end = float(PERIODS * bench.period_of(motion) if t_max is None else t_max)
-        found = bench.report(motion, end, count or SAMPLES, chosen, **how)
-    if plot:
-        (draw_drift if is_long else draw_work_precision)(found, plot)
-    write_report(found, style, output)
+    end = float(PERIODS * bench.period_of(motion) if t_max is None else t_max)
+
+    def find() -> Findings:
+        if is_long:
+            found = drift.report(motion, count or LONG_SAMPLES, chosen, **how)
+        else:
+            found = bench.report(motion, end, count or SAMPLES, chosen, **how)
+        if plot:
+            (draw_drift if is_long else draw_work_precision)(found, plot)
+        return found
+
+    write_report(find, style, output)
 
 
 def _check(count: int | None, limit: Fraction) -> None:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from .. import __version__
 from ..options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
 from ..top import LagtopError
+
+if TYPE_CHECKING:
+    from ..findings import Findings
 
 SAMPLES, THOROUGH, MOST_SAMPLES = 8, 200, 100_000
 SEED = 1952
@@ -53,10 +58,13 @@ def command(  # noqa: PLR0917 - click passes them by name
     from ..diagrams import check_plot, draw_stability
 
     check_plot(plot)
-    count = samples or (THOROUGH if thorough else SAMPLES)
-    found = stability.report(stability.chosen_strata(strata), count, seed, with_steps)
-    if plot:
-        draw_stability(found, plot)
-    write_report(found, style, output)
-    if stability.exceeded(found):
+    chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)
+
+    def find() -> Findings:
+        found = stability.report(chosen, count, seed, with_steps)
+        if plot:
+            draw_stability(found, plot)
+        return found
+
+    if stability.exceeded(write_report(find, style, output)):
         ctx.exit(1)
