@@ -22,17 +22,21 @@ def report(
     Raises LagtopError as `bench.task` does.
     """
     spans = [task(motion, span * period_of(motion), count, judged=JUDGED) for span in SPANS]
-    runs = [(name, work) for name, method in methods.items() if not method.costly for work in spans]
+    runs = [(name, work) for name in methods for work in spans]
     rows: list[Row] = []
     for name, work in steps(runs, "methods and spans"):
         rows.append(_measure(work, name, methods[name], rows))
-    fields = [field if field.key in SHOWN else field._replace(heading="") for field in FIELDS]
-    fields.insert(2, Field("periods", "periods", lambda periods: f"{periods:.0e}"))
-    fields = [field for i, field in enumerate(fields) if field.key != "periods" or i == 2]
     last = conditions(spans[-1], limit)
     last["times"] = f"{count} over each span"
     last["reference"] += " over the longest span"
-    return Findings(last, fields, rows, _conclusions(rows))
+    return Findings(last, [_field(field) for field in FIELDS], rows, _conclusions(rows))
+
+
+def _field(field: Field) -> Field:
+    """As in a report of one span, with the span and without what matters less here."""
+    if field.key == "periods":
+        return Field("periods", "periods", lambda periods: f"{periods:.0e}")
+    return field if field.key in SHOWN else field._replace(heading="")
 
 
 def _measure(work: Task, name: str, method: Method, before: list[Row]) -> Row:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import oracle
 import pytest
-from conftest import ROOT, Lagtop
+from conftest import ROOT, Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, bench, diagrams, drift, methods, solve
 from lagrange_cli.bench import Row, conclusions, measure, task, with_front
@@ -177,10 +177,7 @@ BAD = {
 
 @pytest.mark.parametrize("line", BAD)
 def test_bad_input_is_one_line(line: str, lagtop: Lagtop) -> None:
-    result = lagtop("bench", *line.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr.startswith(f"Error: {BAD[line]}")
-    assert result.stderr.count("\n") == 1
+    assert_one_line(lagtop("bench", *line.split()), 2, BAD[line])
 
 
 def test_plots_without_matplotlib(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,11 +11,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from conftest import Lagtop
+from conftest import Lagtop, assert_one_line
 
 from lagrange_cli import Top, methods, samplers, solve, stability
-from lagrange_cli.accuracy import Reference
+from lagrange_cli.accuracy import EPS, Reference
 from lagrange_cli.general import theta_constants
 from lagrange_cli.strata import STRATA, scene_and_times
 
@@ -154,7 +155,12 @@ BAD = {
 
 @pytest.mark.parametrize("line", BAD)
 def test_bad_input_is_one_line(line: str, lagtop: Lagtop) -> None:
-    result = lagtop("stability", *line.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr.startswith(f"Error: {BAD[line]}")
-    assert result.stderr.count("\n") == 1
+    assert_one_line(lagtop("stability", *line.split()), 2, BAD[line])
+
+
+def test_drift_is_over_the_size_of_the_terms(monkeypatch: pytest.MonkeyPatch) -> None:
+    energy = 2 * 1587 * 4 * 981 * (1 + math.cos(math.pi / 6)) / 2 + 17458 * 50**2 / 2
+    block = np.array([[0.0, 0.0], [3 * EPS * energy, -5 * EPS * 2 * 17458 * 50]])
+    monkeypatch.setattr(stability, "rows", lambda *_: ([], iter([block])))
+    drifts = stability.drifts(solve(Top()), np.array([1.0]))
+    assert drifts == pytest.approx((3.0, 5.0))
