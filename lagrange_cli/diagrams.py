@@ -55,9 +55,9 @@ def draw_drift(findings: Findings, path: str) -> None:
     rows = [row for row in findings.rows if is_done(row)]
     for i, name in enumerate(dict.fromkeys(row.method for row in rows)):
         mine = [row for row in rows if row.method == name]
-        _line(above, i, name, [(row.periods, row.error_max) for row in mine])
+        _line(above, i, name, [(row.periods, row.units_max) for row in mine])
         _line(below, i, name, [(row.periods, row.ns_min) for row in mine])
-    above.set(xlabel="nutation periods", ylabel="greatest error (rad)")
+    above.set(xlabel="nutation periods", ylabel="greatest error (units)")
     below.set(xlabel="nutation periods", ylabel="time a sample (ns)")
     title = f"Error and time against the span\ntimes: {findings.conditions['times']}"
     above.set_title(title, fontsize=9)

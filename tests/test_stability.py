@@ -29,7 +29,7 @@ def test_stratum(stratum: str) -> None:
         assert case.angle <= 2.7, case
         assert case.key_eps <= 0.5, case
         assert max(case.energy_eps, case.Lz_eps) <= 20, case
-        assert case.agreement < 1e-3
+        assert case.agreement < 1e-9
 
 
 def test_scenes_and_times_are_those_of_the_seed() -> None:
