@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .accuracy import Exact, Reference, angle_differences, angle_units
 from .closed_forms import CLOSED_FORMS
 from .findings import Field, Findings, as_options, short
-from .integrators import integrators
+from .integrators import STEPS_PER_SECOND, integrators
 from .machine import machine, versions
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
 from .motion import Motion
@@ -29,6 +29,7 @@ DIGITS, FEWER_DIGITS = 80, 50
 """Of the reference, and of the one it is checked against."""
 RUNS, SECONDS_OF_RUNS = 9, 0.3
 """A timing is repeated so often, or for so long."""
+NOT_APPLICABLE = "not applicable"
 
 Steps = Callable[[Sequence[Any], str], Iterable[Any]]
 """Goes through a sequence, and may show how far it is, under a label."""
@@ -154,7 +155,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> Row:
             sample, setup = _set_up(method, work, setting)
             angles, seconds = _run(sample, times)
     except NotApplicableError as reason:
-        return row._replace(remark=f"not applicable: {reason}")
+        return row._replace(setting="", remark=f"{NOT_APPLICABLE}: {reason}")
     except FailedError as reason:
         return row._replace(remark=f"failed: {reason}")
     timed = row._replace(
@@ -218,6 +219,11 @@ def is_done(row: Row) -> bool:
     return row.error_max is not None and row.ns_min is not None
 
 
+def is_out(row: Row) -> bool:
+    """Whether the method cannot do the scene, at any setting."""
+    return (row.remark or "").startswith(NOT_APPLICABLE)
+
+
 def rivals(row: Row, rows: Iterable[Row]) -> list[Row]:
     """The rows of other methods that are at least as fast and as accurate, and better in one."""
     mine = (row.error_max, row.ns_min)
@@ -242,7 +248,11 @@ def report(
     """Every method at every setting over one span.  Raises LagtopError as `task` does."""
     work = task(motion, t_max, count, steps=steps)
     runs = [(name, method, x) for name, method in methods.items() for x in method.settings]
-    rows = with_front([measure(work, *run) for run in steps(runs, "methods")])
+    found: list[Row] = []
+    for name, method, setting in steps(runs, "methods"):
+        if not (found and found[-1].method == name and is_out(found[-1])):  # said once is enough
+            found.append(measure(work, name, method, setting))
+    rows = with_front(found)
     return Findings(conditions(work, limit), FIELDS, rows, list(conclusions(rows)))
 
 
@@ -260,7 +270,7 @@ def conclusions(rows: Sequence[Row]) -> Iterator[str]:
                 yield "No method is both faster and more accurate than lagtop."
     missing = sum(not is_done(row) for row in rows)
     if missing:
-        yield f"{missing} runs without a result: see their remarks."
+        yield f"Without a result: {missing} (see the remarks)."
 
 
 def conditions(work: Task, limit: float) -> dict[str, str]:
@@ -282,6 +292,7 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
         "turns": "compared unwrapped; quaternion forms know angles modulo 2 pi, and so are judged",
         "time": f"one thread; after a warm-up, least and median of up to {RUNS} runs (of one where "
         f"it takes {SECONDS_OF_RUNS} s)",
-        "exceptions": f"a run of {limit:g} s fails; lagtop-digits runs at the judged times only, "
+        "exceptions": f"a run of {limit:g} s fails (of heyoka, one of {limit * STEPS_PER_SECOND:g} "
+        "steps); lagtop-digits runs at the judged times only, "
         "set-up included",
     }

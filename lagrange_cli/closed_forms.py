@@ -177,8 +177,8 @@ def _theta_series(top: Top, terms: int) -> Sample:
 
 CLOSED_FORMS: dict[str, Method] = {
     "lagtop": Method(["double"], _ours),
-    "lagtop-digits": Method([20, 30, 50], _ours_in_digits, "digits", costly=True),
+    "lagtop-digits": Method([20, 30, 50], _ours_in_digits, costly=True),
     "scipy.special": Method(["double"], _legendre, package="scipy.special"),
     "mean-rates": Method(["double"], _mean_rates),
-    "theta-series": Method([1, 2, 3, 6, 12], _theta_series, "terms"),
+    "theta-series": Method([1, 2, 3, 6, 12], _theta_series),
 }

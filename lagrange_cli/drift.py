@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .bench import FIELDS, Row, Steps, Task, conditions, is_done, measure, period_of, task
+from .bench import FIELDS, Row, Steps, Task, conditions, is_done, is_out, measure, period_of, task
 from .findings import Field, Findings
 from .methods import Method
 from .motion import Motion
@@ -43,9 +43,9 @@ def _measure(work: Task, name: str, method: Method, before: list[Row]) -> Row:
     """As `measure`, but for a method that has failed over a shorter span."""
     setting = method.settings[-1]
     if before and before[-1].method == name and not is_done(before[-1]):
-        remark = before[-1].remark or ""
-        if remark.startswith("failed"):
-            remark = "not run: it failed over a shorter span"
+        if is_out(before[-1]):
+            return before[-1]._replace(periods=work.periods)
+        remark = "not run: it failed over a shorter span"
         return Row(name, setting, work.periods, remark=remark)
     return measure(work, name, method, setting)
 

@@ -22,8 +22,8 @@ from .top import Top
 TIGHTEST = 3e-14
 """As tight as scipy lets a relative tolerance be."""
 
-HEYOKA_STEPS_PER_SECOND = 100_000
-"""Fewer than it does; its steps are counted because nothing can look at a clock between them."""
+STEPS_PER_SECOND = 100_000
+"""Of heyoka, which does more; nothing can look at a clock between its steps, so they are counted."""
 
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 
@@ -189,7 +189,7 @@ def heyoka_method(form: Form, top: Top, tol: float, limit: float = 5.0) -> Sampl
     def sample(t: Array) -> Sampled:
         integrator.time, integrator.state[:] = 0.0, start
         grid = np.concatenate(([0.0], t[t != 0] * scene.clock))
-        steps = int(limit * HEYOKA_STEPS_PER_SECOND)
+        steps = int(limit * STEPS_PER_SECOND)
         outcome, *_, rows = integrator.propagate_grid(grid, max_steps=steps)
         if outcome == heyoka.taylor_outcome.step_limit:
             raise FailedError(f"took more than {steps} steps")
@@ -216,8 +216,8 @@ def integrators(limit: float) -> dict[str, Method]:
         for name, tolerances in SCIPY.items():
             prepare = partial(scipy_method, name, form, limit=limit)
             table[f"{name}-{shape}"] = Method(
-                tolerances, prepare, "rtol", "scipy.integrate", form.whole_turns
+                tolerances, prepare, "scipy.integrate", whole_turns=form.whole_turns
             )
         prepare = partial(heyoka_method, form, limit=limit)
-        table[f"Taylor-{shape}"] = Method(TAYLOR, prepare, "tol", "heyoka", form.whole_turns)
+        table[f"Taylor-{shape}"] = Method(TAYLOR, prepare, "heyoka", whole_turns=form.whole_turns)
     return table

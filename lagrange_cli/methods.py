@@ -33,7 +33,6 @@ class Method(NamedTuple):
 
     It may raise NotApplicableError; what it returns may raise FailedError.
     """
-    setting_name: str = ""
     package: str = ""
     """The module it needs beyond lagtop itself."""
     whole_turns: bool = True

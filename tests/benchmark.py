@@ -9,12 +9,12 @@ import time
 from collections.abc import Callable
 from functools import partial
 
-import heyoka as hy
 import numpy as np
-from scipy import special
 
 from lagrange_cli import Top, solve
 from lagrange_cli.angles import BLOCK
+from lagrange_cli.closed_forms import CLOSED_FORMS
+from lagrange_cli.integrators import integrators
 from lagrange_cli.phase import Array
 
 COUNT = 1_000_000
@@ -44,43 +44,17 @@ def floor(t: Array) -> None:
             np.arctan2(x, 1.5)
 
 
-def legendre(t: Array) -> None:
-    """The least that a closed form by scipy.special needs."""
-    sn, cn, dn, _ = special.ellipj(t, 0.58)
-    for n in (0.3, -2.0):
-        special.elliprj(cn * cn, dn * dn, 1.0, 1.0 - n * sn * sn)
-
-
-def heyoka_dense(top: Top, t: Array) -> Callable[[], object]:
-    """Taylor's method on the Euler angles of the worked example, on a sorted grid."""
-    theta, speed, phi, psi = hy.make_vars("theta", "speed", "phi", "psi")
-    a, b, r0 = float(2 * top.m * top.g * top.s / top.A), float(top.C * top.r0 / top.A), top.r0
-    rate = b * (np.cos(np.radians(30)) - hy.cos(theta)) / hy.sin(theta) ** 2
-    system = [
-        (theta, speed),
-        (speed, hy.sin(theta) * (rate * rate * hy.cos(theta) - b * rate + a / 2)),
-        (phi, r0 - rate * hy.cos(theta)),
-        (psi, rate),
-    ]
-    start = [np.radians(30), 0.0, 0.0, 0.0]
-    integrator = hy.taylor_adaptive(system, start, tol=1e-16)
-
-    def run() -> object:
-        integrator.time, integrator.state[:] = 0.0, start
-        return integrator.propagate_grid(t)
-
-    return run
-
-
 def main() -> None:
     rng = np.random.default_rng(0)
     t = np.sort(rng.uniform(0, 100, COUNT))
     t[0] = 0.0
+    by_legendre = CLOSED_FORMS["scipy.special"].prepare(Top(), "double")
+    by_taylor = integrators(60)["Taylor-euler"].prepare(Top(), 1e-16)
     least = nanoseconds(lambda: floor(t))
     rows = {
         "sin + cos + 3 arctan2": least,
-        "scipy.special, ellipj + 2 elliprj": nanoseconds(lambda: legendre(t)),
-        "heyoka, dense output over 233 periods": nanoseconds(heyoka_dense(Top(), t)),
+        "scipy.special, ellipj + 2 elliprj": nanoseconds(partial(by_legendre, t)),
+        "heyoka, dense output over 233 periods": nanoseconds(partial(by_taylor, t)),
     }
     for name, start in STARTS.items():
         sampler = solve(Top(**start)).sampler()

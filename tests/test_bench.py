@@ -90,7 +90,7 @@ def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
 
 
 def row(method: str, error_max: float | None, ns_min: float | None, **more: Any) -> Row:
-    return Row(method, "", 1.0, error_max=error_max, ns_min=ns_min, **more)
+    return Row(method, "", 1.0, error_max=error_max, ns_min=ns_min, units_max=9.0, **more)
 
 
 def test_front_and_what_it_says() -> None:
@@ -101,7 +101,7 @@ def test_front_and_what_it_says() -> None:
     assert [x.method for x in marked if x.front] == ["lagtop", "rough"]
     assert list(conclusions(marked)) == [
         "No method is both faster and more accurate than lagtop.",
-        "2 runs without a result: see their remarks.",
+        "Without a result: 2 (see the remarks).",
     ]
     better = list(conclusions(with_front([*rows, row("better", 1e-16, 1.5)])))
     assert better[0].startswith("better at  beats lagtop: 1.0e-16 rad in 2 ns against 1.0e-15 rad")
@@ -153,7 +153,9 @@ def test_missing_packages_are_rows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
     names = "lagtop,scipy.special,RK45-euler,Taylor-euler"
     result = lagtop("bench", "--methods", names, "--n", 5, "--format", "json")
     assert result.exit_code == 0
-    remarks = {x["method"]: x["remark"] for x in json.loads(result.stdout)["rows"]}
+    rows = json.loads(result.stdout)["rows"]
+    assert len(rows) == 4  # one for a method, not one for each of its settings
+    remarks = {x["method"]: x["remark"] for x in rows}
     assert remarks["lagtop"] is None
     for name, package in {"scipy.special": "scipy", "Taylor-euler": "heyoka"}.items():
         assert remarks[name] == (f"not applicable: needs {package}: pip install 'lagtop[bench]'")
