@@ -16,7 +16,7 @@ from .accuracy import Exact, Reference, angle_differences, angle_units
 from .closed_forms import CLOSED_FORMS
 from .findings import Field, Findings, as_options, short
 from .integrators import STEPS_PER_SECOND, integrators
-from .machine import machine, versions
+from .machine import machine, versions, warm_allocator
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
 from .motion import Motion
 from .phase import Array
@@ -125,6 +125,7 @@ def task(
     Raises LagtopError for a motion that the reference cannot judge, and for a time out of reach.
     """
     check_scene(motion)
+    warm_allocator()
     times = np.linspace(0.0, t_max, count) if count > 1 else np.array([t_max])
     motion.sampler().check(times)
     index = np.unique(np.linspace(0, count - 1, min(judged, count)).round().astype(np.int64))
@@ -290,8 +291,8 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
         "units": "the same over eps (max(1, |angle|) + |tau rate|), tau the time since the nearest "
         "whole period",
         "turns": "compared unwrapped; quaternion forms know angles modulo 2 pi, and so are judged",
-        "time": f"one thread; after a warm-up, least and median of up to {RUNS} runs (of one where "
-        f"it takes {SECONDS_OF_RUNS} s)",
+        "time": f"one thread; after a warm-up, of memory too, least and median of up to {RUNS} "
+        f"runs (of one where it takes {SECONDS_OF_RUNS} s)",
         "exceptions": f"a run of {limit:g} s fails (of heyoka, one of {limit * STEPS_PER_SECOND:g} "
         "steps); lagtop-digits runs at the judged times only, "
         "set-up included",

@@ -23,7 +23,7 @@ TIGHTEST = 3e-14
 """As tight as scipy lets a relative tolerance be."""
 
 STEPS_PER_SECOND = 100_000
-"""Of heyoka, which does more; nothing can look at a clock between its steps, so they are counted."""
+"""Of heyoka, which does more; between its steps nothing can look at a clock, so they count."""
 
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 

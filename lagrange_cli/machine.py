@@ -14,6 +14,14 @@ def use_one_thread() -> None:
     os.environ.update(dict.fromkeys(_THREADS, "1"))
 
 
+def warm_allocator() -> None:
+    """Let a large array come and go: until then glibc gives freed memory back at once, and to ask
+    for it again doubles the time of whatever works on arrays of some thousand numbers."""
+    import numpy as np
+
+    np.empty(1 << 21)
+
+
 def machine() -> str:
     """Processor, system and Python."""
     return f"{_processor()}, {platform.system()} {platform.machine()}"
