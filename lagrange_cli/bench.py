@@ -157,7 +157,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> Row:
             angles, seconds = _run(sample, times)
     except NotApplicableError as reason:
         return row._replace(setting="", remark=f"{NOT_APPLICABLE}: {reason}")
-    except FailedError as reason:
+    except (FailedError, ArithmeticError, ValueError) as reason:  # formulas of others in doubles
         return row._replace(remark=f"failed: {reason}")
     timed = row._replace(
         setup_s=setup,

@@ -209,7 +209,7 @@ def peer_units(method: Method, top: Top, times: Any, exact: Sequence[Exact]) -> 
     try:
         with np.errstate(all="ignore"):
             found = list(zip(*method.prepare(top, method.settings[-1])(times), strict=True))
-    except (FailedError, ArithmeticError):
+    except (FailedError, ArithmeticError, ValueError):  # formulas of others in doubles
         return math.inf
     return max(max(error) for error in _units(found, exact, method.whole_turns))
 

@@ -120,6 +120,8 @@ def test_what_fails_is_told() -> None:
     lost = measure(work, "x", nothing, "x")
     assert lost.remark == "failed: gave what is not a number"
     assert lost.ns_min is not None
+    lost = run(Top(r0=1e-3, theta0_deg=179.9999999), "scipy.special", "double")
+    assert lost.remark == "failed: float division by zero"
     start = "not applicable: the paper's formulas are for a top released from rest"
     assert run(LOOPING, "mean-rates", "double").remark == start
 
@@ -166,6 +168,7 @@ BAD = {
     "--methods ,": "--methods must be among lagtop, ",
     "--n 0": "--n must be in [1, 10000000], got 0",
     "--n 2e7": "--n must be in [1, 10000000], got 20000000",
+    "--t-max 0": "--t-max must be other than 0",
     "--limit 0": "--limit must be > 0, got 0.0",
     "--plot x.pdf": "--plot must end in .svg or .png, got 'x.pdf'",
     "--long --t-max 1": "--long and --t-max exclude each other",

@@ -75,7 +75,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     from ..diagrams import check_plot, draw_drift, draw_work_precision
 
     exclude({"--long": is_long or None, "--t-max": t_max})
-    _check(count, limit)
+    _check(t_max, count, limit)
     check_plot(plot)
     chosen = bench.chosen_methods(methods, float(limit))
     motion = solved(scene, rad, False, options)
@@ -95,7 +95,9 @@ def command(  # noqa: PLR0917 - click passes them by name
     write_report(find, style, output)
 
 
-def _check(count: int | None, limit: Fraction) -> None:
+def _check(t_max: Fraction | None, count: int | None, limit: Fraction) -> None:
+    if t_max == 0:
+        raise LagtopError("--t-max must be other than 0: nothing has moved by then")
     if count is not None and not 1 <= count <= MOST_SAMPLES:
         raise LagtopError(f"--n must be in [1, {MOST_SAMPLES}], got {count}")
     if not limit > 0:
