@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 
 import mpmath
 
-from .top import LagtopError, Top
+from .errors import LagtopError
+from .top import Top
 
 EPS = 2.0**-52
 

@@ -23,9 +23,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .phase import Array, Growth, Growths, Pair, reduce_phase
+from .elliptic.twofold import Array, Pair, reduce_phase
+from .errors import LagtopError
+from .phase import Growth, Growths
 from .series import Component, Frame, Polynomial
-from .top import LagtopError
 
 BLOCK = 16384
 """Samples at a time, so that the work arrays stay in the cache."""

@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from .accuracy import Exact, Reference, angle_differences, angle_units
 from .closed_forms import CLOSED_FORMS
+from .elliptic.twofold import Array
+from .errors import LagtopError
 from .findings import Field, Findings, as_options, short
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import machine, versions, warm_allocator
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
 from .motion import Motion
-from .phase import Array
 from .record import Regime
-from .top import LagtopError
 
 JUDGED = 201
 """So many of the times, the last among them, are compared with the reference."""

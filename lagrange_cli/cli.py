@@ -10,11 +10,11 @@ from typing import Any, NoReturn
 import click
 
 from . import __version__
+from .errors import LagtopError
 from .options import ExamplesFirst, complain
 from .output import CannotWriteError, Terminated
-from .top import LagtopError
 
-COMMANDS = ["solve", "table", "bench", "stability"]
+COMMANDS = ["solve", "table", "bench", "stability", "jacobi", "eta"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .general import many_digits
+from .elliptic import many_digits
+from .elliptic.twofold import Array
 from .methods import Method, NotApplicableError, Sample, Sampled
 from .motion import solve
-from .phase import Array
 from .top import Top
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from .angles import Attitude
 from .cubic import Start
-from .phase import Array
+from .elliptic.twofold import Array
 from .top import Top
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .bench import is_done
+from .errors import LagtopError
 from .findings import Findings
 from .output import CannotWriteError, sink
 from .stability import CONTRACT
-from .top import LagtopError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

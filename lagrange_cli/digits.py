@@ -1,9 +1,9 @@
-"""Any number of digits: compute with more and more until the digits asked for have settled."""
+"""Any number of digits of a motion: its record and its angles."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from .elliptic import Arithmetic, Real
@@ -11,7 +11,6 @@ from .general import (
     Solution,
     analyse,
     general_record,
-    many_digits,
     separatrix_swing,
     steady_rates,
     theta_constants,
@@ -19,19 +18,14 @@ from .general import (
 from .record import Regime
 from .released import released_record
 from .series import ThetaConstants, evaluate, theta_series
-from .top import LagtopError, Number, Top, number
-
-
-class NumberText(str):
-    """A number written out, to be printed as it stands."""
-
-    __slots__ = ()
+from .settle import NumberText, TooFewDigitsError, settle
+from .top import Number, Top, number
 
 
 def settled_record(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
     """The record with every number to so many significant digits, inputs read as decimals."""
     record_in = released_record if top.is_released else general_record
-    return _settle(lambda ar: record_in(ar, top).record(radians=radians, ar=ar), digits)
+    return settle(lambda ar: record_in(ar, top).record(radians=radians, ar=ar), digits)
 
 
 def settled_rows(
@@ -40,7 +34,7 @@ def settled_rows(
     """Rows of t, tilt, spin and precession to so many significant digits."""
 
     def compute(ar: Arithmetic) -> dict[tuple[int, int], Real]:
-        angles_at = _angles(ar, top)
+        angles_at = angles_in(ar, top)
         unit = 1 if radians else 180 / ar.pi
         values: dict[tuple[int, int], Real] = {}
         for i, time in enumerate(times):
@@ -49,11 +43,11 @@ def settled_rows(
             if wrap:
                 phi, psi = _wrapped(ar, phi), _wrapped(ar, psi)
             if any(0 < abs(angle) < noise * 10**digits for angle in (theta, phi, psi)):
-                raise _TooFewDigitsError
+                raise TooFewDigitsError
             values |= {(i, j): x for j, x in enumerate((t, theta * unit, phi * unit, psi * unit))}
         return values
 
-    settled = _settle(compute, digits)
+    settled = settle(compute, digits)
     return [[settled[i, j] for j in range(4)] for i in range(len(times))]
 
 
@@ -62,7 +56,7 @@ def _wrapped(ar: Arithmetic, angle: Real) -> Real:
     return angle - 2 * ar.pi * ar.ceil(angle / (2 * ar.pi) - ar.mpf(0.5))
 
 
-def _angles(ar: Arithmetic, top: Top) -> Callable[[Real], tuple[Real, Real, Real, Real]]:
+def angles_in(ar: Arithmetic, top: Top) -> Callable[[Real], tuple[Real, Real, Real, Real]]:
     """The angles as a function of time, and how far they may be off."""
     solution = analyse(ar, top)
     plane = not (solution.start.beta_plus_b or solution.start.beta_minus_b)
@@ -133,39 +127,3 @@ def _separatrix_args(ar: Arithmetic, solution: Solution) -> Args:
         return ar.hypot(real, imag), arg_x, swing.y / ar.cosh(h), (begin.b - begin.r0) * t / 2
 
     return args
-
-
-class _TooFewDigitsError(Exception):
-    """A number has not the digits that are asked for."""
-
-
-def _settle(compute: Callable[[Arithmetic], Mapping[Any, Any]], digits: int) -> dict[Any, Any]:
-    """Ziv's strategy: raise the precision until two in a row print alike.
-
-    Raises LagtopError where none do, which takes a number that is zero without our knowing it.
-    """
-    previous: dict[Any, Any] | None = None
-    for working in _precisions(digits):
-        ar = many_digits(working)
-        try:
-            texts = {key: _text(ar, value, digits) for key, value in compute(ar).items()}
-        except _TooFewDigitsError:
-            continue
-        if texts == previous:
-            return texts
-        previous = texts
-    raise LagtopError(f"{digits} digits did not settle with {working} to work with")
-
-
-def _precisions(digits: int) -> Iterator[int]:
-    """By half as much again each time."""
-    working = digits + 15
-    while working <= 20 * digits + 4000:
-        yield working
-        working = working * 3 // 2
-
-
-def _text(ar: Arithmetic, value: Any, digits: int) -> Any:
-    if value is None or isinstance(value, str):
-        return value
-    return NumberText(ar.nstr(number(ar, value), digits, min_fixed=-5, max_fixed=16))

@@ -12,12 +12,22 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .cubic import Place, Start, roots_from_start, start
-from .elliptic import Arithmetic, Real, carlson_rf, complete_e, complete_k, nome, period_mean
+from .elliptic import (
+    Arithmetic,
+    Real,
+    carlson_rf,
+    complete_e,
+    complete_k,
+    many_digits,
+    nome,
+    period_mean,
+)
+from .errors import LagtopError
 from .record import Record, Regime, period_of, with_constant_rates
 from .released import complement, modulus, phase_rate, u_quarter
 from .roots import Roots
 from .series import Swing, ThetaConstants
-from .top import LagtopError, Number, Top
+from .top import Number, Top
 
 
 class Solution(NamedTuple):
@@ -38,15 +48,6 @@ class Solution(NamedTuple):
     def nutates(self) -> bool:
         """Whether the tilt changes, periodically."""
         return self.period is not None and self.roots.u1_u2 > 0
-
-
-def many_digits(digits: int) -> Arithmetic:
-    """An mpmath context of its own: nobody else's precision is touched."""
-    import mpmath
-
-    context = mpmath.mp.clone()
-    context.dps = digits
-    return context
 
 
 def analyse(ar: Arithmetic, top: Top) -> Solution:

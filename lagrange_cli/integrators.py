@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .elliptic.twofold import Array
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
-from .phase import Array
 from .top import Top
 
 TIGHTEST = 3e-14

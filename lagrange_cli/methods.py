@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
-from .phase import Array
+from .elliptic.twofold import Array
 from .top import Top
 
 Sampled = Sequence[Any]

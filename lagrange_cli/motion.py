@@ -7,10 +7,11 @@ from decimal import localcontext
 from typing import TYPE_CHECKING, Any
 
 from . import decimals
-from .elliptic import Real
+from .elliptic import Real, many_digits
+from .errors import LagtopError
 from .record import Record
 from .released import released_record
-from .top import LagtopError, Top
+from .top import Top
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -47,7 +48,7 @@ def solve(top: Top) -> Motion:
     if top.is_released:
         with localcontext(decimals.context()):
             return _rounded(released_record(decimals, top))
-    from .general import digits_for_record, general_record, many_digits
+    from .general import digits_for_record, general_record
 
     return _rounded(general_record(many_digits(digits_for_record(top)), top))
 

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from . import __version__
+from .errors import LagtopError
 from .motion import Motion, solve
 from .output import write_findings
-from .top import LagtopError, Number, build_top, parse_number
+from .top import Number, build_top, parse_number
 
 if TYPE_CHECKING:
     from .findings import Findings
@@ -53,6 +54,21 @@ class CountType(DecimalType):
         if exact.denominator != 1:
             raise click.UsageError(f"{_option(param)} must be a whole number, got {value}", ctx)
         return int(exact)
+
+
+class RangeType(click.ParamType):  # type: ignore[type-arg]
+    """A:B:N, so many numbers from A to B."""
+
+    name = "A:B:N"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The grid."""
+        from .grids import parse_range
+
+        try:
+            return parse_range(value) if isinstance(value, str) else value
+        except LagtopError as error:
+            raise click.UsageError(f"{_option(param)} {error}", ctx) from None
 
 
 def _option(param: click.Parameter | None) -> str:
@@ -140,7 +156,7 @@ def complain(line: str) -> None:
         click.echo(" ".join(line.split()), err=True)
 
 
-NUMBER, COUNT = DecimalType(), CountType()
+NUMBER, COUNT, RANGE = DecimalType(), CountType(), RangeType()
 
 _SCENE_OPTIONS = [
     ("--m", "Mass."),

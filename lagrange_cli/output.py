@@ -13,8 +13,8 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NoReturn
 
 if TYPE_CHECKING:
+    from .elliptic.twofold import Array
     from .findings import Findings
-    from .phase import Array
 
 MAX_TABLE_ROWS = 10_000
 """A rich table of more rows is neither read nor quickly made."""
@@ -109,12 +109,12 @@ def _catch_signals() -> None:
             signal.signal(getattr(signal, name), end)
 
 
-def write_record(record: Mapping[str, Any], style: str, path: str) -> None:
-    """One record as a rich `table`, as `csv` (header and row) or as `json` (one line)."""
+def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "top") -> None:
+    """One record as a rich `table` of its kind, as `csv` (header and row) or as `json` (a line)."""
     if style == "table":
         from .report import record_table
 
-        text = record_table(record, terminal=_is_terminal(path), encoding=_encoding(path))
+        text = record_table(record, kind, terminal=_is_terminal(path), encoding=_encoding(path))
     elif style == "csv":
         text = f"{','.join(record)}\n{','.join(map(_cell, record.values()))}\n".encode()
     else:

@@ -9,26 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .elliptic import Arithmetic, Real
-
-Array = NDArray[np.float64]
-
-_SPLITTER = 2.0**27 + 1
-
-
-class Pair(NamedTuple):
-    """A number to twice the precision: the nearest double and the rest."""
-
-    high: float
-    low: float
-
-
-def pair(value: Real) -> Pair:
-    """A many-digit number as two doubles."""
-    high = float(value)
-    return Pair(high, float(value - high))
+from .elliptic.twofold import Array, Pair, pair, reduce_phase
 
 
 class Growth(NamedTuple):
@@ -82,32 +65,3 @@ def growths(
         return Growth(pair(step), pair(step / (2 * ar.pi)), float(slope), float(start))
 
     return Growths(phi=growth(1, -1), psi=growth(1, 1), arg_x=growth(1, 0), arg_y=growth(0, 1))
-
-
-def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
-    """The integer nearest to t * rate + offset, and t * rate less it, free of cancellation."""
-    since, rest = _two_product(t, rate.high)
-    rest += t * rate.low
-    step = np.rint(since + offset) if offset else np.rint(since)
-    since -= step
-    since += rest
-    return step, since
-
-
-def _two_product(x: Array, factor: float) -> tuple[Array, Array]:
-    """x * factor and its rounding error, exactly (Dekker)."""
-    scaled = factor * _SPLITTER
-    factor_high = scaled - (scaled - factor)
-    factor_low = factor - factor_high
-    high = x * _SPLITTER
-    high -= high - x
-    low = x - high
-    product = x * factor
-    error = high * factor_high
-    error -= product
-    high *= factor_low
-    error += high
-    error += low * factor_high
-    low *= factor_low
-    error += low
-    return product, error

@@ -1,4 +1,4 @@
-"""Rich tables: the record in the order of the paper, and rows over time.  No digit is ever cut."""
+"""Rich tables: records in the order of the papers, and rows.  No digit is ever cut."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Row(NamedTuple):
     equation: str = ""
 
 
-_GROUPS: dict[str, list[Row]] = {
+_TOP: dict[str, list[Row]] = {
     "Inputs": [
         Row("m", "m", "mass", "mass"),
         Row("A", "A", "equatorial moment", "mass len²"),
@@ -80,19 +80,63 @@ _GROUPS: dict[str, list[Row]] = {
     ],
 }
 
+_JACOBI: dict[str, list[Row]] = {
+    "Moduli": [
+        Row("k", "k", "modulus"),
+        Row("k_prime", "k'", "complementary modulus"),
+        Row("modular_angle", "arcsin k", "modular angle", "angle"),
+        Row("nome", "q", "nome", "", "(3.1.6)"),
+        Row("nome_prime", "q'", "nome of k'", "", "(3.1.6)"),
+    ],
+    "Complete integrals": [
+        Row("K", "K", "first kind, k", "", "(3.1.2)"),
+        Row("K_prime", "K'", "first kind, k'", "", "(3.1.2)"),
+        Row("E", "E", "second kind, k"),
+        Row("E_prime", "E'", "second kind, k'"),
+    ],
+}
+
+_ETA: dict[str, list[Row]] = {
+    "Roots": [
+        Row("delta", "δ", "upper end of the band", "", "(3.2.1)"),
+        Row("delta_star", "δ*", "lower end of the band", "", "(3.2.1)"),
+        Row("p", "p'", "middle of the outer roots", "", "(3.2.1)"),
+        Row("q", "q'", "half their distance", "", "(3.2.1)"),
+        Row("outer_root", "", "the finite outer root"),
+        Row("layout", "", "outer roots"),
+        Row("g", "g", "-2 α1 c²", "1/time²", "(3.2.1)"),
+    ],
+    "Constants": [
+        Row("m_prime", "m'", "at δ", "", "(3.2.3)"),
+        Row("m_double_prime", 'm"', "at δ*", "", "(3.2.3)"),
+        Row("k", "k", "modulus of (3.2.4)", "", "(3.2.5)"),
+        Row("k1", "k1", "modulus", "", "(3.2.8)"),
+        Row("k1_prime", "k1'", "complementary modulus"),
+        Row("K1", "K1", "first kind, k1", "", "(3.2.8)"),
+        Row("sigma1", "σ1", "rate of the argument", "1/time", "(3.2.8)"),
+        Row("s", "s", "amplitude of sn", "", "(3.2.12)"),
+        Row("d", "d", "of the denominator", "", "(3.2.12)"),
+        Row("gamma", "γ", "shift", "", "(3.2.12)"),
+        Row("period", "T", "of η, 4 K1/σ1", "time", "(3.2.10)"),
+    ],
+}
+
+LAYOUTS = {"top": _TOP, "jacobi": _JACOBI, "eta": _ETA}
+
 _ASCII = str.maketrans(
     {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "§": "sec. "}
+    | {"δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta"}
 )
 
 
-def record_table(record: Mapping[str, Any], *, terminal: bool, encoding: str) -> bytes:
-    """The record by groups, a line for each key that the regime has; its remark last."""
-    angle = "rad" if "theta0_rad" in record else "deg"
+def record_table(record: Mapping[str, Any], kind: str, *, terminal: bool, encoding: str) -> bytes:
+    """A record by the groups of its kind, a line for each key that has a value; its remark last."""
+    angle = "rad" if any(key.endswith("_rad") for key in record) else "deg"
     spelling = {} if encoding.lower().startswith("utf") else _ASCII
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for heading in ("Symbol", "Name", "Value", "Unit", "Equation"):
         table.add_column(heading, justify="right" if heading == "Value" else "left", no_wrap=True)
-    for group, rows in _GROUPS.items():
+    for group, rows in LAYOUTS[kind].items():
         shown = [
             [cell.translate(spelling) for cell in line]
             for row in rows
@@ -103,7 +147,7 @@ def record_table(record: Mapping[str, Any], *, terminal: bool, encoding: str) ->
             symbols, names, *rest = ("\n".join(column) for column in zip(*shown, strict=True))
             name_cell = Text.assemble((f"{group}\n", "bold"), names)
             table.add_row(f"\n{symbols}", name_cell, *(f"\n{column}" for column in rest))
-    remark = f"\n{record['remark']}\n" if record["remark"] else ""
+    remark = f"\n{record['remark']}\n" if record.get("remark") else ""
     return _rendered(table, terminal, encoding) + remark.encode()
 
 

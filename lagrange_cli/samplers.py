@@ -5,16 +5,16 @@ from __future__ import annotations
 from functools import lru_cache
 
 from .angles import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
-from .elliptic import Arithmetic, Real
+from .elliptic import Arithmetic, Real, many_digits
+from .elliptic.twofold import pair
 from .general import (
     Solution,
     analyse,
-    many_digits,
     separatrix_swing,
     steady_rates,
     theta_constants,
 )
-from .phase import growths, pair
+from .phase import growths
 from .record import Regime
 from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
 from .top import Tilt, Top

@@ -7,7 +7,8 @@ import tomllib
 from fractions import Fraction
 from typing import Any
 
-from .top import LagtopError, Top, parse_number
+from .errors import LagtopError
+from .top import Top, parse_number
 
 _MOST_BYTES = 1 << 20
 KEYS = Top._fields

@@ -1,94 +1,26 @@
-"""Rows over time: the time grid or the file of times, and blocks of rows for the writer."""
+"""Rows over time: the grid of times that suits a motion, and blocks of rows for the writer."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from decimal import Decimal
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from .errors import LagtopError
+from .grids import Grid, Times, even_grid
 from .motion import Motion
-from .top import LagtopError, parse_number
 
 if TYPE_CHECKING:
     from .angles import Sampler
     from .columns import Column, Sample
-    from .digits import NumberText
-    from .phase import Array
+    from .elliptic.twofold import Array
+    from .settle import NumberText
 
-MAX_ROWS = 10**9
-BLOCK_ROWS = 1 << 16
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256
 """Rows that settle together under --digits."""
 DEFAULT_COLUMNS = ("t", "theta", "phi", "psi")
-
-
-@dataclass(frozen=True)
-class Grid:
-    """The times start + i step, i = 0 ... count - 1, each formed from its own i."""
-
-    start: float
-    step: float
-    count: int
-    exact: tuple[Fraction, Fraction]
-    """Start and step as the decimals they were given as."""
-
-    def decimals(self) -> Iterator[Fraction]:
-        """The times in exact arithmetic."""
-        start, step = self.exact
-        return (start + i * step for i in range(self.count))
-
-    def blocks(self) -> Iterator[Array]:
-        """The times, a block at a time."""
-        import numpy as np
-
-        for first in range(0, self.count, BLOCK_ROWS):
-            i = np.arange(first, min(first + BLOCK_ROWS, self.count), dtype=np.float64)
-            yield self.start + i * self.step
-
-    def bounds(self) -> list[float]:
-        """The first and the last time."""
-        return [self.start, self.start + (self.count - 1) * self.step]
-
-
-@dataclass(frozen=True)
-class TimeList:
-    """Times that were given one by one."""
-
-    exact: list[Fraction]
-
-    @cached_property
-    def times(self) -> list[float]:
-        """The doubles nearest to them."""
-        return [float(time) for time in self.exact]
-
-    def decimals(self) -> Iterator[Fraction]:
-        """The times in exact arithmetic."""
-        return iter(self.exact)
-
-    @property
-    def count(self) -> int:
-        """How many there are."""
-        return len(self.exact)
-
-    def blocks(self) -> Iterator[Array]:
-        """The times, a block at a time."""
-        import numpy as np
-
-        for first in range(0, self.count, BLOCK_ROWS):
-            yield np.array(self.times[first : first + BLOCK_ROWS])
-
-    def bounds(self) -> list[float]:
-        """The earliest and the latest time."""
-        return [min(self.times), max(self.times)]
-
-
-Times = Grid | TimeList
 
 
 def grid(
@@ -117,43 +49,7 @@ def grid(
     else:
         count = n or (DEFAULT_ROWS if t_max > t_min else 1)
         step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
-    if count > MAX_ROWS:
-        raise LagtopError(
-            f"a grid has at most 1e9 rows, this one would have {Decimal(count):.4g} "
-            "(take a larger --dt, a smaller --n, or --times)"
-        )
-    return Grid(float(t_min), float(step), count, (t_min, step))
-
-
-def read_times(path: str) -> TimeList:
-    """One time a line, from a file or from standard input for `-`; # starts a comment line.
-
-    Raises LagtopError, with the line's number.
-    """
-    name = "standard input" if path == "-" else path
-    try:
-        if path == "-":
-            return TimeList(_parse_times(sys.stdin or (), name))
-        with open(path, encoding="utf-8-sig") as lines:
-            return TimeList(_parse_times(lines, name))
-    except OSError as error:
-        raise LagtopError(f"--times {name}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise LagtopError(f"--times {name} must be UTF-8 text, a time a line") from None
-
-
-def _parse_times(lines: Iterable[str], name: str) -> list[Fraction]:
-    times = []
-    for i, line in enumerate(lines, 1):
-        text = line.strip()
-        if text and not text.startswith("#"):
-            try:
-                times.append(parse_number(text))
-            except LagtopError as error:
-                raise LagtopError(f"{name}, line {i}: the time {error}") from None
-    if not times:
-        raise LagtopError(f"{name} must hold at least one time, got none")
-    return times
+    return even_grid(t_min, step, count)
 
 
 def rows(

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .elliptic import Arithmetic, Real
+from .errors import LagtopError
 
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
@@ -19,14 +20,6 @@ _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
-
-
-class LagtopError(ValueError):
-    """A bad input. `key` names the input at fault where there is one."""
-
-    def __init__(self, message: str, key: str | None = None) -> None:
-        super().__init__(message)
-        self.key = key
 
 
 def parse_number(text: str) -> Fraction:

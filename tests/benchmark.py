@@ -14,8 +14,8 @@ import numpy as np
 from lagrange_cli import Top, solve
 from lagrange_cli.angles import BLOCK
 from lagrange_cli.closed_forms import CLOSED_FORMS
+from lagrange_cli.elliptic.twofold import Array
 from lagrange_cli.integrators import integrators
-from lagrange_cli.phase import Array
 
 COUNT = 1_000_000
 STARTS: dict[str, dict[str, float]] = {

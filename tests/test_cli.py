@@ -14,7 +14,7 @@ import pytest
 from conftest import ROOT, Lagtop
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.report import _GROUPS
+from lagrange_cli.report import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
 SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
@@ -61,13 +61,13 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
     assert {str(value) for value in solved().values() if value is not None} <= words
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
-    order = [shown.index(group) for group in _GROUPS]
+    order = [shown.index(group) for group in LAYOUTS["top"]]
     assert order == sorted(order)
 
 
 def test_table_explains_every_key() -> None:
     angles = {"theta0", "modular_angle", "amplitude", "theta_min", "theta_max"}
-    keys = [row.key for group in _GROUPS.values() for row in group]
+    keys = [row.key for group in LAYOUTS["top"].values() for row in group]
     shown = [f"{key}_deg" if key in angles else key for key in keys]
     assert sorted([*shown, "remark"]) == sorted(KEYS)
 

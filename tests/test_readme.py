@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 from errata import errata_table
 
@@ -63,9 +64,10 @@ def test_errata_table() -> None:
 
 def test_every_option_and_key_is_explained() -> None:
     text = README.read_text()
-    options = {
-        name for command in main.commands.values() for p in command.params for name in p.opts
-    }
+    ctx = click.Context(main)
+    commands = [main.get_command(ctx, name) for name in main.list_commands(ctx)]
+    options = {name for command in commands if command for p in command.params for name in p.opts}
+    assert "--theta0" in options
     assert {name for name in options if name.startswith("-")} - set(
         re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", text)
     ) == set()

@@ -13,7 +13,7 @@ import pytest
 from scenes import NAMED, random_scene
 
 from lagrange_cli import LagtopError, Top, decimals, solve
-from lagrange_cli.general import many_digits
+from lagrange_cli.elliptic import many_digits
 from lagrange_cli.record import Regime
 from lagrange_cli.released import released_record
 from lagrange_cli.roots import invariants, roots_from_rest

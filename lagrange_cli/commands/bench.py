@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..errors import LagtopError
 from ..options import (
     COUNT,
     NUMBER,
@@ -18,7 +19,6 @@ from ..options import (
     with_steps,
     write_report,
 )
-from ..top import LagtopError
 
 if TYPE_CHECKING:
     from ..findings import Findings

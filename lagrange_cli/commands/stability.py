@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from .. import __version__
+from ..errors import LagtopError
 from ..options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
-from ..top import LagtopError
 
 if TYPE_CHECKING:
     from ..findings import Findings

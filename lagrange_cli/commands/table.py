@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..errors import LagtopError
 from ..options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -21,10 +22,9 @@ from ..options import (
     with_progress,
 )
 from ..output import MAX_TABLE_ROWS, write_rows, write_texts
-from ..top import LagtopError
 
 if TYPE_CHECKING:
-    from ..table import Times
+    from ..grids import Times
 
 
 @click.command(
@@ -78,7 +78,8 @@ def command(  # noqa: PLR0917 - click passes them by name
     Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
     nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
-    from ..table import DEFAULT_COLUMNS, digit_rows, grid, read_times, rows
+    from ..grids import read_times
+    from ..table import DEFAULT_COLUMNS, digit_rows, grid, rows
 
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})

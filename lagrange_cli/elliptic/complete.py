@@ -1,42 +1,11 @@
-"""Complete elliptic integrals, Carlson's R_F and the nome, written once for every arithmetic.
-
-Convention: modulus k with its complement k' = sqrt(1 - k^2) *passed in beside it*; 1 - k^2 is
-never formed, so nothing is lost as k -> 1.  Every function takes the arithmetic as its first
-argument: our module `decimals` (40 digits), an mpmath context (any number of digits), the module
-`math` (floats) or `numpy` (arrays).  All spell sqrt, sin, cos, atan2, hypot and pi alike.
+"""Complete elliptic integrals and the nome, by the arithmetic-geometric mean.
 
 Every loop adds and multiplies positive numbers only, so each result is good to a few eps.
 """
 
 from __future__ import annotations
 
-import sys
-from typing import Any
-
-Arithmetic = Any
-"""`decimals`, an mpmath context, `math` or `numpy`."""
-
-Real = Any
-"""A number of the arithmetic in use: Decimal, mpf, float or float64 array."""
-
-
-def epsilon(ar: Arithmetic) -> Real:
-    """Distance from 1 to the next number of the arithmetic."""
-    return getattr(ar, "eps", sys.float_info.epsilon)
-
-
-def everywhere(condition: Any) -> bool:
-    """Whether a condition holds, or holds for every element of an array."""
-    return condition.all() if hasattr(condition, "all") else bool(condition)
-
-
-def where(condition: Any, yes: Real, no: Real) -> Real:
-    """Choose between two numbers, or element by element between two arrays."""
-    if hasattr(condition, "all"):
-        import numpy as np
-
-        return np.where(condition, yes, no)
-    return yes if condition else no
+from .arithmetic import Arithmetic, Real, epsilon, everywhere
 
 
 def agm(ar: Arithmetic, a: Real, b: Real) -> Real:
@@ -92,24 +61,3 @@ def nome(ar: Arithmetic, *, m: Real, k_prime: Real) -> Real:
     for _ in range(roots):
         q = ar.sqrt(q)
     return q
-
-
-def carlson_rf(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
-    """Carlson's R_F(x, y, z) for x, y, z >= 0, at most one of them zero (DLMF 19.36.1).
-
-    F(phi, k) = sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1).
-    """
-    tolerance = (epsilon(ar) / 4) ** (ar.sqrt(1) / 8)
-    while True:
-        mean = (x + y + z) / 3
-        dx, dy = 1 - x / mean, 1 - y / mean
-        dz = -dx - dy
-        if everywhere((abs(dx) < tolerance) & (abs(dy) < tolerance) & (abs(dz) < tolerance)):
-            break
-        root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
-        shift = root_x * root_y + root_y * root_z + root_z * root_x
-        x, y, z = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4
-    e2, e3 = dx * dy - dz * dz, dx * dy * dz
-    series = -e2 / 10 + e3 / 14 + e2 * e2 / 24 - 3 * e2 * e3 / 44
-    series += -5 * e2**3 / 208 + 3 * e3 * e3 / 104 + e2 * e2 * e3 / 16
-    return (1 + series) / ar.sqrt(mean)

@@ -1,0 +1,109 @@
+"""`lagtop eta`: Aksenov's coordinate eta."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import LagtopError
+from ..options import (
+    MOST_TABLE_DIGITS,
+    NUMBER,
+    RANGE,
+    ExamplesFirst,
+    digits_option,
+    exclude,
+    output_options,
+    with_progress,
+)
+from ..output import write_record, write_rows, write_texts
+
+if TYPE_CHECKING:
+    from ..grids import Grid
+    from ..satellite import Quadrature
+
+
+@click.command(
+    "eta",
+    cls=ExamplesFirst,
+    examples="""
+        lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
+        lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --tau-range 0:10:101 --format csv
+        lagtop eta --delta 0.7 --delta-star 0.2 --gap-above 1e-12 --gap-below 2 --digits 30
+        lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0.1 --tau 0.2
+        lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
+    """,
+)
+@click.option("--delta", type=NUMBER, required=True, help="Upper end of the band.")
+@click.option("--delta-star", type=NUMBER, required=True, help="Lower end of the band.")
+@click.option("--p", type=NUMBER, help="Middle of the two outer roots p - q and p + q.")
+@click.option("--q", type=NUMBER, help="Half their distance.")
+@click.option("--gap-above", type=NUMBER, help="From delta up to an outer root, instead.")
+@click.option("--gap-below", type=NUMBER, help="From delta* down to an outer root, instead.")
+@click.option("--g", type=NUMBER, default="1", help="Leading coefficient, -2 alpha1 c^2 > 0.")
+@click.option("--c3", type=NUMBER, default="0", help="eta = delta* at tau = -c3.")
+@click.option("--tau", "single", type=NUMBER, multiple=True, help="Time; may be repeated.")
+@click.option("--tau-range", "grid", type=RANGE, help="N times from A to B.")
+@digits_option(MOST_TABLE_DIGITS)
+@output_options("table", "csv", "json")
+def command(  # noqa: PLR0917 - click passes them by name
+    delta: Fraction,
+    delta_star: Fraction,
+    p: Fraction | None,
+    q: Fraction | None,
+    gap_above: Fraction | None,
+    gap_below: Fraction | None,
+    g: Fraction,
+    c3: Fraction,
+    single: tuple[Fraction, ...],
+    grid: Grid | None,
+    digits: int | None,
+    style: str,
+    output: str,
+) -> None:
+    """The oscillation of eta between delta* and delta, from its quadrature (Aksenov, 3.2).
+
+    Without --tau the constants; with it eta and its rate.  With one gap alone the other outer root
+    is at infinity, as for Lagrange's top.
+    """
+    from ..grids import TimeList
+    from ..satellite import digit_rows, record, rows
+
+    exclude({"--tau": single or None, "--tau-range": grid})
+    of = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
+    times = grid or (TimeList(list(single)) if single else None)
+    if times is None:
+        write_record(record(of, digits), style, output, "eta")
+    elif digits is None:
+        header, blocks = rows(of, times, c3)
+        write_rows(header, with_progress(blocks, times.count, 3_000_000), style, output)
+    else:
+        header, texts = digit_rows(of, times, c3, digits)
+        write_texts(header, texts, style, output)
+
+
+def _quadrature(
+    delta: Fraction,
+    delta_star: Fraction,
+    middle: dict[str, Fraction | None],
+    gaps: tuple[Fraction | None, Fraction | None],
+    g: Fraction,
+) -> Quadrature:
+    """The roots from either way to give the outer ones; the rest is checked where it is used."""
+    from ..satellite import Quadrature
+
+    p, q = middle.values()
+    above, below = gaps
+    if (p is None) != (q is None) or (p is None) == (above is None and below is None):
+        raise LagtopError("give either --p and --q or one or both of --gap-above, --gap-below")
+    if p is not None and q is not None:
+        if q < 0:
+            raise LagtopError(f"--q must be >= 0, got {float(q)}")
+        return Quadrature(delta_star, delta, (p - q, p + q), g)
+    for name, gap in {"--gap-above": above, "--gap-below": below}.items():
+        if gap is not None and gap <= 0:
+            raise LagtopError(f"{name} must be > 0 (the period is infinite at 0), got {float(gap)}")
+    outer = (delta_star - below if below else None, delta + above if above else None)
+    return Quadrature(delta_star, delta, tuple(root for root in outer if root is not None), g)

@@ -1,0 +1,148 @@
+"""`lagtop jacobi`: the elliptic and theta functions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import LagtopError
+from ..options import (
+    COUNT,
+    MOST_TABLE_DIGITS,
+    NUMBER,
+    RANGE,
+    ExamplesFirst,
+    digits_option,
+    exclude,
+    output_options,
+    with_progress,
+)
+from ..output import write_record, write_rows, write_texts
+
+if TYPE_CHECKING:
+    from ..functions import Given, Request
+    from ..grids import Grid, Times
+
+MOST_TERMS = 10_000
+
+
+@click.command(
+    "jacobi",
+    cls=ExamplesFirst,
+    examples="""
+        lagtop jacobi --k 0.8
+        lagtop jacobi --k-prime 1e-9 --u 0.5 --u 20
+        lagtop jacobi --modular-angle 45 --u-range 0:10:101 --format csv -o sn.csv
+        lagtop jacobi --k 0.8 --u 0.3 --theta --pi --param 0.7i
+        lagtop jacobi --nome 0.1 --u 1 --digits 40
+        lagtop jacobi --k 0.99 --u 1 --series 10
+    """,
+)
+@click.option("--k", type=NUMBER, help="Modulus, 0 to 1.")
+@click.option("--k-prime", type=NUMBER, help="Its complement, for k close to 1.")
+@click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")
+@click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
+@click.option("--u", "single", type=NUMBER, multiple=True, help="Argument; may be repeated.")
+@click.option("--u-range", "grid", type=RANGE, help="N arguments from A to B.")
+@click.option("--theta", is_flag=True, help="Theta functions of u, too.")
+@click.option("--zeta", is_flag=True, help="Zeta functions, too.")
+@click.option("--omega", is_flag=True, help="Omega functions of u and --param, too.")
+@click.option("--pi", is_flag=True, help="Pi functions of u and --param, too.")
+@click.option("--param", metavar="V|Vi", help="Their parameter, real or imaginary.")
+@click.option(
+    "--series", "terms", type=COUNT, metavar="N", help="Partial sums of the nome series instead."
+)
+@click.option("--rad", is_flag=True, help="Angles in radians, in and out.")
+@digits_option(MOST_TABLE_DIGITS)
+@output_options("table", "csv", "json")
+def command(  # noqa: PLR0917 - click passes them by name
+    k: Fraction | None,
+    k_prime: Fraction | None,
+    angle: Fraction | None,
+    q: Fraction | None,
+    single: tuple[Fraction, ...],
+    grid: Grid | None,
+    theta: bool,
+    zeta: bool,
+    omega: bool,
+    pi: bool,
+    param: str | None,
+    terms: int | None,
+    rad: bool,
+    digits: int | None,
+    style: str,
+    output: str,
+) -> None:
+    """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
+
+    Without --u the constants; with it am, sn, cn, dn of every u, and what else is asked for, right
+    to an ulp or two as close to k = 1 as --k-prime can say, or to --digits digits.
+    """
+    from ..functions import Given, Request, constants_record
+
+    named = {"k": k, "k_prime": k_prime, "angle": angle, "q": q}
+    chosen = [(name, value) for name, value in named.items() if value is not None]
+    if len(chosen) != 1:
+        raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
+    given = Given(*chosen[0], radians=rad)
+    flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
+    families = tuple(name for name, wanted in flags.items() if wanted)
+    arguments = _arguments(single, grid)
+    if terms is not None:
+        exclude({"--series": terms, "--digits": digits})
+        _write_series(given, arguments, terms, style, output)
+        return
+    if arguments is None:
+        if families:
+            raise LagtopError(f"--{families[0]} needs --u or --u-range")
+        write_record(constants_record(given, digits), style, output, "jacobi")
+        return
+    request = Request(given, families, *_parameter(param, families), radians=rad)
+    _write_rows(arguments, request, digits, style, output)
+
+
+def _arguments(single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
+    from ..grids import TimeList
+
+    exclude({"--u": single or None, "--u-range": grid})
+    return grid or (TimeList(list(single)) if single else None)
+
+
+def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:
+    """The value of --param, and whether it is imaginary."""
+    if not {"omega", "pi"} & set(families):
+        exclude({"--param": param, "no --omega or --pi": True})
+        return Fraction(0), False
+    if param is None:
+        raise LagtopError("--omega and --pi need --param, as 0.7 or, imaginary, as 0.7i")
+    text = param.strip()
+    return NUMBER.convert(text.removesuffix("i"), None, None), text.endswith("i")
+
+
+def _write_rows(
+    arguments: Times, request: Request, digits: int | None, style: str, output: str
+) -> None:
+    from ..functions import digit_rows, rows
+
+    if digits is None:
+        header, blocks = rows(arguments, request)
+        write_rows(header, with_progress(blocks, arguments.count, 3_000_000), style, output)
+    else:
+        header, texts = digit_rows(arguments, request, digits)
+        write_texts(header, texts, style, output)
+
+
+def _write_series(
+    given: Given, arguments: Times | None, terms: int, style: str, output: str
+) -> None:
+    from ..functions import series_rows
+
+    if not 1 <= terms <= MOST_TERMS:
+        raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")
+    if arguments is not None and arguments.count != 1:
+        raise LagtopError(f"--series takes one --u, got {arguments.count}")
+    u = None if arguments is None else next(arguments.decimals())
+    header, table = series_rows(given, u, terms)
+    write_texts(header, table, style, output)

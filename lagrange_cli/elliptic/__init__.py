@@ -1,0 +1,29 @@
+"""The functions of both sources: elliptic integrals, Jacobi's functions, theta functions and nomes.
+
+Every function takes the arithmetic as its first argument: our module `decimals` (40 digits), an
+mpmath context (any number of digits; complex arguments), the module `math` (floats) or `numpy`
+(arrays).  Conventions: modulus k, complement k', parameter m = k^2, nome q = exp(-pi K'/K), always
+named in the call (`modulus(np, k_prime=1e-9)`), so that they cannot be confused.  The complement is
+passed in beside the modulus; 1 - k^2 is never formed, so nothing is lost as k -> 1.
+
+What start-up needs is here; `modulus`, `incomplete`, `jacobi`, `theta` and `fourier` are modules.
+"""
+
+from .arithmetic import Arithmetic, Real, epsilon, everywhere, many_digits, where
+from .carlson import carlson_rf
+from .complete import agm, complete_e, complete_k, nome, period_mean
+
+__all__ = [
+    "Arithmetic",
+    "Real",
+    "agm",
+    "carlson_rf",
+    "complete_e",
+    "complete_k",
+    "epsilon",
+    "everywhere",
+    "many_digits",
+    "nome",
+    "period_mean",
+    "where",
+]

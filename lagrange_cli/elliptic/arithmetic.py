@@ -1,0 +1,71 @@
+"""The arithmetics that formulas are written over, and the few things they do not spell alike."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from functools import wraps
+from typing import Any
+
+Arithmetic = Any
+"""`decimals`, an mpmath context, `math` or `numpy`."""
+
+Real = Any
+"""A number of the arithmetic in use: Decimal, mpf, float or float64 array."""
+
+
+def epsilon(ar: Arithmetic) -> Real:
+    """Distance from 1 to the next number of the arithmetic."""
+    return getattr(ar, "eps", sys.float_info.epsilon)
+
+
+def everywhere(condition: Any) -> bool:
+    """Whether a condition holds, or holds for every element of an array."""
+    return condition.all() if hasattr(condition, "all") else bool(condition)
+
+
+def where(condition: Any, yes: Real, no: Real) -> Real:
+    """Choose between two numbers, or element by element between two arrays."""
+    if hasattr(condition, "all"):
+        import numpy as np
+
+        return np.where(condition, yes, no)
+    return yes if condition else no
+
+
+def many_digits(digits: int) -> Arithmetic:
+    """An mpmath context of its own: nobody else's precision is touched."""
+    import mpmath
+
+    context = mpmath.mp.clone()
+    context.dps = digits
+    return context
+
+
+def has_arrays(ar: Arithmetic) -> bool:
+    """Whether the arithmetic is numpy, rather than one of scalars."""
+    return hasattr(ar, "asarray")
+
+
+BLOCK = 16384
+"""So many elements of arrays at a time: what is computed in between stays in the cache."""
+
+
+def blocks(size: int) -> Iterator[slice]:
+    """Slices that cover an array of so many elements; one of them where it is empty."""
+    return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
+
+
+def blockwise(function: Callable[..., Real]) -> Callable[..., Real]:
+    """A formula f(ar, *arguments), evaluated block by block where the arguments are long arrays."""
+
+    @wraps(function)
+    def evaluate(ar: Arithmetic, *arguments: Real) -> Real:
+        if not has_arrays(ar) or max(map(ar.size, arguments)) <= BLOCK:
+            return function(ar, *arguments)
+        arrays = ar.broadcast_arrays(*arguments)
+        flat = [array.ravel() for array in arrays]
+        parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
+        return ar.concatenate(parts).reshape(arrays[0].shape)
+
+    return evaluate

@@ -1,0 +1,139 @@
+"""Carlson's symmetric elliptic integrals R_F, R_C, R_D, R_J by duplication (DLMF 19.36(i)).
+
+Real arguments as stated, or complex ones off the negative axis in mpmath.  Each step replaces the
+arguments by others four times closer to their mean; the rest is a Taylor series about the mean.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import reduce
+from typing import Any
+
+from .arithmetic import Arithmetic, Real, blockwise, epsilon, everywhere, has_arrays, where
+
+Roots = tuple[Real, Real, Real, Real]
+Gain = Callable[[Roots, Real, Real], Real]
+
+_NEAR_ONE, _TINY = 0.01, 1e-17
+"""Where R_C(1, 1 - e) = sum e^n/(2n + 1) is used, and what it may leave out."""
+
+
+@blockwise
+def carlson_rf(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
+    """Carlson's R_F(x, y, z) for x, y, z >= 0, at most one of them zero (DLMF 19.36.1).
+
+    F(phi, k) = sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1).
+    """
+    mean = (x + y + z) / 3
+    spread = _spread(ar, mean, x, y, z)
+    while not everywhere(spread <= abs(mean)):
+        root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
+        shift = root_x * root_y + root_y * root_z + root_z * root_x
+        x, y, z, spread = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, spread / 4
+        mean = (x + y + z) / 3
+    dx, dy = 1 - x / mean, 1 - y / mean
+    dz = -dx - dy
+    e2, e3 = dx * dy - dz * dz, dx * dy * dz
+    square = e2 * e2
+    series = -e2 / 10 + e3 / 14 + square / 24 - 3 * e2 * e3 / 44
+    series += -5 * e2 * square / 208 + 3 * e3 * e3 / 104 + square * e3 / 16
+    return (1 + series) / ar.sqrt(mean)
+
+
+def carlson_rc(ar: Arithmetic, x: Real, y: Real) -> Real:
+    """R_C(x, y) = R_F(x, y, y) for x >= 0, y > 0 (DLMF 19.2.17); on arrays by arctan and log."""
+    if not has_arrays(ar):
+        return carlson_rf(ar, x, y, y)
+    difference = y - x
+    root = ar.sqrt(abs(ar.where(difference == 0, 1.0, difference)))
+    sum_of_roots = ar.sqrt(x) + root
+    circular, hyperbolic = ar.arctan2(root, ar.sqrt(x)), ar.log1p(2 * root * sum_of_roots / y) / 2
+    integral = ar.where(difference > 0, circular, hyperbolic) / root
+    return ar.where(difference == 0, 1 / ar.sqrt(y), integral)
+
+
+@blockwise
+def carlson_rd(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
+    """R_D(x, y, z) for x, y >= 0, at most one of them zero, and z > 0 (DLMF 19.36.2)."""
+
+    def gain(roots: Roots, z: Real, shift: Real) -> Real:
+        return 3 / (roots[2] * (z + shift))
+
+    return _duplicated(ar, (x, y, z, z), gain)
+
+
+@blockwise
+def carlson_rj(ar: Arithmetic, x: Real, y: Real, z: Real, p: Real) -> Real:
+    """R_J(x, y, z, p) for x, y, z >= 0, at most one of them zero, and p > 0 (DLMF 19.36.2).
+
+    Each step adds an R_C(1, 1 + e); 1 + e is formed as a quotient of sums, so that nothing cancels
+    where p is much smaller than the other arguments.
+    """
+
+    def gain(roots: Roots, p: Real, shift: Real) -> Real:
+        root_x, root_y, root_z, root_p = roots
+        beta = root_p * (p + shift)
+        total = beta + p * (root_x + root_y + root_z) + root_x * root_y * root_z
+        return 6 / total * _rc_from_one(ar, 2 * beta / total)
+
+    return _duplicated(ar, (x, y, z, p), gain)
+
+
+def _spread(ar: Arithmetic, mean: Real, *arguments: Real) -> Real:
+    """The greatest distance from the mean, over the one at which the series is exact."""
+    distances = [abs(mean - x) for x in arguments]
+    greatest = reduce(lambda a, b: where(a > b, a, b), distances)
+    return greatest / (epsilon(ar) / 4) ** (ar.sqrt(1) / 8)
+
+
+def _rc_from_one(ar: Arithmetic, y: Real) -> Real:
+    """R_C(1, y), for arrays by its Taylor series where all of it is close to 1."""
+    e = 1 - y
+    largest = float(ar.max(abs(e), initial=_TINY)) if has_arrays(ar) else 1.0
+    if largest > _NEAR_ONE:
+        return carlson_rc(ar, ar.sqrt(1), y)
+    last = int(math.log(_TINY) / math.log(largest))
+    return reduce(lambda value, n: value * e + 1 / (2 * n + 1), range(last, -1, -1), 0 * e)
+
+
+def _duplicated(ar: Arithmetic, arguments: Roots, gain: Gain) -> Real:
+    """R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`.
+
+    What remains after n steps is R_J of the new arguments over 4^n: where fewer than half of an
+    array need more, they are continued alone.
+    """
+    x, y, z, p = arguments
+    mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, ar.sqrt(1)
+    spread = _spread(ar, mean, x, y, z, p)
+    while _mostly(unequal := spread > abs(mean)):
+        root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
+        shift = root_x * root_y + root_y * root_z + root_z * root_x
+        total = total + gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
+        x, y, z, p = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, (p + shift) / 4
+        weight, spread = weight / 4, spread / 4
+        mean = (x + y + z + 2 * p) / 5
+    rest = _near_mean(1 - x / mean, 1 - y / mean, 1 - z / mean) / (mean * ar.sqrt(mean))
+    if not everywhere(~unequal if has_arrays(ar) else not unequal):
+        rest[unequal] = _duplicated(ar, (x[unequal], y[unequal], z[unequal], p[unequal]), gain)
+    return total + rest * weight
+
+
+def _mostly(condition: Any) -> bool:
+    """Whether a condition holds, or holds for half of the elements of an array."""
+    return 2 * condition.sum() > condition.size if hasattr(condition, "all") else bool(condition)
+
+
+def _near_mean(dx: Real, dy: Real, dz: Real) -> Real:
+    """The Taylor series of R_J about equal arguments, to the seventh order (DLMF 19.36.2)."""
+    dp = -(dx + dy + dz) / 2
+    xyz, p2 = dx * dy * dz, dp * dp
+    e2 = dx * dy + dy * dz + dz * dx - 3 * p2
+    e3 = xyz + 2 * e2 * dp + 4 * p2 * dp
+    e4 = (2 * xyz + e2 * dp + 3 * p2 * dp) * dp
+    e5 = xyz * p2
+    square = e2 * e2
+    series = 1 - 3 * e2 / 14 + e3 / 6 + 9 * square / 88 - 3 * e4 / 22 - 9 * e2 * e3 / 52
+    series = series + 3 * e5 / 26 - e2 * square / 16 + 3 * e3 * e3 / 40 + 3 * e2 * e4 / 20
+    return series + 45 * square * e3 / 272 - 9 * (e3 * e4 + e2 * e5) / 68

@@ -1,0 +1,191 @@
+"""Jacobi's am, sn, cn, dn (Aksenov section 3.1): arrays of any real u at once, or many digits.
+
+On arrays they come from tan(am u) = sn u/cn u, a quotient of two theta series that has no
+cancellation for |u| <= K/2; beyond, sn(K - u) : cn(K - u) = cn u : k' sn u.  Up to k = k' the
+series run in q; for larger k, by Jacobi's imaginary transformation, in q' = exp(-pi K/K').  So the
+nome in use is at most exp(-pi) and four terms are enough, however close k is to 1.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .arithmetic import Arithmetic, Real, blocks, has_arrays
+from .complete import complete_k, nome
+from .modulus import Modulus
+from .theta import theta
+from .twofold import Array, Pair, agm_over_pi, reduce_phase
+
+_LARGEST_ARGUMENT = 350.0
+"""Of sinh.  Beyond it, which is for k' = 0 alone, sn is 1 and cn is 0 to doubles."""
+
+
+Polynomial = tuple[Real, ...]
+"""Coefficients, the lowest power first."""
+
+
+class Jacobi(NamedTuple):
+    """am u, unwrapped; its sine and its cosine; and dn u, the derivative of am u."""
+
+    am: Real
+    sn: Real
+    cn: Real
+    dn: Real
+
+
+def jacobi(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
+    """am, sn, cn, dn of u (3.1.3), for k in [0, 1].
+
+    numpy: real u and a modulus of shapes that broadcast; the worst error seen, also at 1e6 K and at
+    1 - k^2 = 1e-300, was 2 units of eps (max(1, |f|) + |u df/du|) with u less the nearest multiple
+    of 2K.  mpmath: u real or complex (am then only within |Im u| < K'), to a few eps and what |u|/K
+    costs.
+    """
+    if not has_arrays(ar):
+        return _by_theta(ar, u, given)
+    u = np.asarray(u, dtype=float)
+    if all(np.ndim(part) == 0 for part in given):
+        series = _series(given)
+        parts = [_evaluate(u.ravel()[block], series) for block in blocks(u.size)]
+        return Jacobi(*(np.concatenate(f).reshape(u.shape) for f in zip(*parts, strict=True)))
+    u, *moduli = np.broadcast_arrays(u, *given)
+    flat = [np.ravel(part) for part in (u, *moduli)]
+    results = np.empty((4, u.size))
+    circular = flat[1] <= flat[2]
+    for family in (np.flatnonzero(circular), np.flatnonzero(~circular)):
+        for block in blocks(family.size):
+            index = family[block]
+            series = _series(Modulus(*(part[index] for part in flat[1:])))
+            results[:, index] = _evaluate(flat[0][index], series)
+    return Jacobi(*results.reshape(4, *u.shape))
+
+
+class _Series(NamedTuple):
+    """tan(am u) = f(y) P(x)/Q(x): circular with f = tan, x = sin^2; hyperbolic with f = sinh,
+    x = q' sinh^2.  All for one modulus, or for one at each element."""
+
+    circular: bool
+    k_prime: Real
+    rate: Pair
+    """1/(2K)."""
+    stretch: Real
+    """Argument y per half period."""
+    above: Polynomial
+    below: Polynomial
+    q: Real
+    """The nome in use."""
+
+
+def _series(given: Modulus) -> _Series:
+    """The coefficients; the moduli are all of one family."""
+    k, k_prime = given.k, given.k_prime
+    finite = np.where(k_prime > 0, k_prime, 1.0)
+    rate = agm_over_pi(Pair(finite, given.rest))
+    if np.all(k <= k_prime):
+        q = nome(np, m=k * k, k_prime=k_prime)
+        return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)
+    q = nome(np, m=k_prime * k_prime, k_prime=k)
+    stretch = -np.where(q > 0, np.log(np.where(q > 0, q, 1.0)), 2 * np.log(finite / 4))  # pi K/K'
+    return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
+
+
+def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
+    """theta1 : theta2 in powers of sin^2; `root` is sqrt(k') = theta4/theta3."""
+    q2 = q * q
+    q6 = q2 * q2 * q2
+    above = 1 - 3 * q2 + 5 * q6, 4 * q2 - 20 * q6, 16 * q6
+    below = 1 + q2 + q6, -4 * q2 - 12 * q6, 16 * q6
+    return above, tuple(root * c for c in below)
+
+
+def _hyperbolic(q: Real) -> tuple[Polynomial, Polynomial]:
+    """theta1 : theta4 of an imaginary argument in powers of q sinh^2, which stays small."""
+    q2 = q * q
+    q4 = q2 * q2
+    q8 = q4 * q4
+    above = (
+        1 - 3 * q2 + 5 * q2 * q4 - 7 * q4 * q8,
+        -4 * q + 20 * q * q4 - 56 * q * q2 * q8,
+        16 * q4 - 112 * q2 * q8,
+        -64 * q * q8,
+    )
+    below = (
+        1 - 2 * q + 2 * q4 - 2 * q * q8,
+        -4 + 16 * q * q2 - 36 * q8,
+        16 * q2 - 96 * q * q2 * q4,
+        -64 * q2 * q4,
+    )
+    scale = (1 + q2 + q2 * q4 + q4 * q8) / (1 + 2 * q + 2 * q4 + 2 * q * q8)  # theta2/theta3
+    return above, tuple(scale * c for c in below)
+
+
+def _evaluate(u: Array, series: _Series) -> Jacobi:
+    """One block."""
+    k_prime = series.k_prime
+    halves, since = reduce_phase(u, series.rate)
+    far = abs(since) > 0.25
+    side = np.copysign(1.0, since)
+    y = np.where(far, 0.5 * side - since, since) * series.stretch
+    if np.any(k_prime == 0):  # without a period
+        endless = np.broadcast_to(k_prime == 0, u.shape)
+        halves, far = np.where(endless, 0.0, halves), far & ~endless
+        y = np.where(endless, u, y)
+    above, below = _tangent(y, series)
+    sine = np.where(far, side * below, above)
+    cosine = np.where(far, side * (k_prime * above), below)
+    am = halves * np.pi + np.arctan2(sine, cosine)
+    size = np.sqrt(sine * sine + cosine * cosine)
+    sine /= size
+    cosine /= size
+    dn = np.sqrt(cosine * cosine + (k_prime * sine) ** 2)
+    pairs = halves / 2
+    sign = 1.0 - 4.0 * abs(pairs - np.rint(pairs))  # (-1)^halves
+    return Jacobi(am, sign * sine, sign * cosine, dn)
+
+
+def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
+    """Numerator and denominator of tan(am u)."""
+    if series.circular:
+        f = np.tan(y)
+        square = f * f
+        x = square / (1.0 + square)
+    else:
+        f = np.sinh(np.clip(y, -_LARGEST_ARGUMENT, _LARGEST_ARGUMENT))
+        x = series.q * f * f
+    return f * _polynomial(series.above, x), _polynomial(series.below, x)
+
+
+def _polynomial(coefficients: Polynomial, x: Array) -> Array:
+    value: NDArray[Any] = coefficients[-1] * x
+    for coefficient in coefficients[-2:0:-1]:
+        value += coefficient
+        value *= x
+    value += coefficients[0]
+    return value
+
+
+def _by_theta(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
+    """By quotients of theta functions, for k < 1; real or complex u."""
+    u = ar.convert(u)
+    if not given.k_prime:
+        am = 2 * ar.atan(ar.tanh(u / 2))
+        return Jacobi(am, ar.tanh(u), ar.sech(u), ar.sech(u))
+    if not given.k:
+        return Jacobi(u, ar.sin(u), ar.cos(u), 1 + 0 * u)
+    K = complete_k(ar, given.k_prime)
+    halves = ar.nint(ar.re(u) / (2 * K))
+    x = u / (2 * K) - halves
+    zero = ar.mpf(0)
+    sine, cosine, delta, below = (theta(ar, ij, x, given) for ij in ("11", "10", "00", "01"))
+    at_2, at_3, at_4 = (theta(ar, ij, zero, given) for ij in ("10", "00", "01"))
+    sn, cn, dn = (
+        at_3 / at_2 * sine / below,
+        at_4 / at_2 * cosine / below,
+        at_4 / at_3 * delta / below,
+    )
+    am = ar.atan2(sn, cn) if ar.im(u) == 0 else -ar.mpc(0, 1) * ar.log(cn + ar.mpc(0, 1) * sn)
+    sign = -1 if halves % 2 else 1
+    return Jacobi(halves * ar.pi + am, sign * sn, sign * cn, dn)

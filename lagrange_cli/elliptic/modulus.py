@@ -1,0 +1,124 @@
+"""The modulus, by whichever of its names keeps the digits, and the constants that hang on it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..errors import LagtopError
+from .arithmetic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
+from .complete import complete_e, complete_k, nome
+from .twofold import sqrt_pair, two_product, two_sum
+
+
+class Modulus(NamedTuple):
+    """k and its complement k', scalars or arrays, each good to an ulp."""
+
+    k: Real
+    k_prime: Real
+    rest: Real = 0.0
+    """What rounding took from k' (arrays only): far away, the period must be known better."""
+
+
+class Constants(NamedTuple):
+    """K, E and the nome q of k; K', E' of the complement.  K = inf and q = 1 where k = 1."""
+
+    K: Real
+    K_prime: Real
+    E: Real
+    E_prime: Real
+    q: Real
+
+
+def modulus(
+    ar: Arithmetic,
+    *,
+    k: Real = None,
+    k_prime: Real = None,
+    m: Real = None,
+    angle: Real = None,
+    q: Real = None,
+) -> Modulus:
+    """The modulus from exactly one of: k, the complement k', the parameter m = k^2, the modular
+    angle arcsin k in radians, the nome q.  Give k' where k is close to 1.
+
+    `ar` is numpy or an mpmath context.  Raises LagtopError for a value outside [0, 1] (the angle:
+    [0, pi/2]; the nome: [0, 1)) and for none or several of them.
+    """
+    given = {"k": k, "k_prime": k_prime, "m": m, "angle": angle, "q": q}
+    named = [(name, value) for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        raise LagtopError(f"exactly one of {', '.join(given)} must be given, got {len(named)}")
+    name, value = named[0]
+    value = ar.asarray(value, dtype=float) if has_arrays(ar) else ar.convert(value)
+    most = ar.pi / 2 if name == "angle" else 1
+    inside = (value >= 0) & ((value < 1) if name == "q" else (value <= most))
+    if not everywhere(inside):
+        end = {"angle": "pi/2]", "q": "1)"}.get(name, "1]")
+        wrong = value[~inside].flat[0] if has_arrays(ar) and value.ndim else value
+        raise LagtopError(f"{name} must be in [0, {end}, got {float(wrong)}")
+    return _FROM[name](ar, value)
+
+
+def constants(ar: Arithmetic, given: Modulus) -> Constants:
+    """The complete integrals and the nome (2,4), each to a few eps."""
+    k, k_prime = given.k, given.k_prime
+    ordinary, other = where(k_prime > 0, k_prime, 1 + 0 * k), where(k > 0, k, 1 + 0 * k)
+    infinite = ar.inf
+    return Constants(
+        K=where(k_prime > 0, complete_k(ar, ordinary), infinite),
+        K_prime=where(k > 0, complete_k(ar, other), infinite),
+        E=where(k_prime > 0, complete_e(ar, ordinary), 1 + 0 * k),
+        E_prime=where(k > 0, complete_e(ar, other), 1 + 0 * k),
+        q=where(k_prime > 0, nome(ar, m=k * k, k_prime=ordinary), 1 + 0 * k),
+    )
+
+
+def _from_k(ar: Arithmetic, k: Real) -> Modulus:
+    return Modulus(k, *_complement(ar, k))
+
+
+def _from_k_prime(ar: Arithmetic, k_prime: Real) -> Modulus:
+    return Modulus(_complement(ar, k_prime)[0], k_prime, 0 * k_prime)
+
+
+def _from_m(ar: Arithmetic, m: Real) -> Modulus:
+    if not has_arrays(ar):
+        return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
+    return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(ar.ones_like(m), -m)))
+
+
+def _from_angle(ar: Arithmetic, angle: Real) -> Modulus:
+    return Modulus(ar.sin(angle), ar.cos(angle), 0 * angle)
+
+
+def _from_q(ar: Arithmetic, q: Real) -> Modulus:
+    """theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and of k'."""
+    limit = ar.exp(-ar.pi)
+    large = q > limit
+    small = where(large, ar.exp(ar.pi**2 / ar.log(where(large, q, limit))), q)
+    n, power, theta2, theta3, theta4 = 0, small**0, small * 0, small**0, small**0
+    while not everywhere(power <= epsilon(ar) / 4):
+        theta2 = theta2 + 2 * small ** (n * (n + 1))
+        n += 1
+        power = small ** (n * n)
+        theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
+    one, other = ar.sqrt(small) * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
+    return Modulus(where(large, other, one), where(large, one, other), 0 * q)
+
+
+def _complement(ar: Arithmetic, k: Real) -> tuple[Real, Real]:
+    """sqrt(1 - k^2) and what rounding takes from it."""
+    if not has_arrays(ar):
+        return ar.sqrt((1 - k) * (1 + k)), 0 * k
+    square, error = two_product(k, k)
+    difference, rest = two_sum(ar.ones_like(k), -square)
+    return sqrt_pair(*two_sum(difference, rest - error))
+
+
+_FROM = {
+    "k": _from_k,
+    "k_prime": _from_k_prime,
+    "m": _from_m,
+    "angle": _from_angle,
+    "q": _from_q,
+}

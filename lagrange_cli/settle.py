@@ -1,0 +1,52 @@
+"""Any number of digits: compute with more and more until the digits asked for have settled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from .elliptic import Arithmetic, many_digits
+from .errors import LagtopError
+from .top import number
+
+
+class NumberText(str):
+    """A number written out, to be printed as it stands."""
+
+    __slots__ = ()
+
+
+class TooFewDigitsError(Exception):
+    """A number has not the digits that are asked for."""
+
+
+def settle(compute: Callable[[Arithmetic], Mapping[Any, Any]], digits: int) -> dict[Any, Any]:
+    """Ziv's strategy: raise the precision until two in a row print alike.
+
+    Raises LagtopError where none do, which takes a number that is zero without our knowing it.
+    """
+    previous: dict[Any, Any] | None = None
+    for working in _precisions(digits):
+        ar = many_digits(working)
+        try:
+            texts = {key: _text(ar, value, digits) for key, value in compute(ar).items()}
+        except TooFewDigitsError:
+            continue
+        if texts == previous:
+            return texts
+        previous = texts
+    raise LagtopError(f"{digits} digits did not settle with {working} to work with")
+
+
+def _precisions(digits: int) -> Iterator[int]:
+    """By half as much again each time."""
+    working = digits + 15
+    while working <= 20 * digits + 4000:
+        yield working
+        working = working * 3 // 2
+
+
+def _text(ar: Arithmetic, value: Any, digits: int) -> Any:
+    if value is None or isinstance(value, str):
+        return value
+    return NumberText(ar.nstr(number(ar, value), digits, min_fixed=-5, max_fixed=16))
