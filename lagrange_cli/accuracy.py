@@ -10,6 +10,7 @@ integral about the lowest, by mpmath's sn, R_F and R_J, from roots by Viete's co
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import mpmath
@@ -36,21 +37,52 @@ class Exact(NamedTuple):
     """The time reduced to the nearest multiple of the nutation period."""
 
 
-def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
-    """|computed - exact| / (eps (max(1, |exact|) + |tau rate|)); not a number counts as infinite.
+def unit(exact: Many, rate: Many, tau: Many) -> float:
+    """eps (max(1, |exact|) + |tau rate|), what the error of a computed value is counted in.
 
-    The second term in the denominator is what one rounding of the reduced time does.
+    The second term is what one rounding of the time, less whole periods, does.
     """
+    return EPS * float(max(1, abs(exact)) + abs(tau * rate))
+
+
+def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
+    """The error of one value in units; not a number counts as infinite."""
     if not math.isfinite(computed):
         return math.inf
-    unit = max(1, abs(exact)) + abs(tau * rate)
-    return float(abs(mpmath.mpf(computed) - exact) / (EPS * unit))
+    return float(abs(mpmath.mpf(computed) - exact)) / unit(exact, rate, tau)
 
 
-def angle_units(angles: tuple[float, float, float], exact: Exact) -> tuple[float, float, float]:
-    """Errors of tilt, spin and precession."""
-    pairs = zip(angles, exact[:3], exact[3:6], strict=True)
-    theta, phi, psi = (units(float(x), true, rate, exact.tau) for x, true, rate in pairs)
+def angle_differences(
+    angles: Sequence[Any], exact: Exact, *, whole_turns: bool = True
+) -> tuple[float, float, float]:
+    """|computed - exact| of tilt, spin and precession, in radians.
+
+    Not a number counts as infinite.  Without `whole_turns`, spin and precession count modulo 2 pi.
+    """
+    with mpmath.workdps(80):  # more than what is compared: nothing is lost in the differences
+        theta, phi, psi = (
+            mpmath.mpf(x) - true if mpmath.isfinite(x) else mpmath.inf
+            for x, true in zip(angles, exact[:3], strict=True)
+        )
+        if not whole_turns:
+            phi, psi = (_less_turns(x) for x in (phi, psi))
+        return float(abs(theta)), float(abs(phi)), float(abs(psi))
+
+
+def _less_turns(angle: Many) -> Many:
+    turn = 2 * mpmath.pi
+    return angle - turn * mpmath.nint(angle / turn) if mpmath.isfinite(angle) else angle
+
+
+def angle_units(
+    angles: Sequence[Any], exact: Exact, *, whole_turns: bool = True
+) -> tuple[float, float, float]:
+    """The same in units."""
+    differences = angle_differences(angles, exact, whole_turns=whole_turns)
+    theta, phi, psi = (
+        difference / unit(true, rate, exact.tau)
+        for difference, true, rate in zip(differences, exact[:3], exact[3:6], strict=True)
+    )
     return theta, phi, psi
 
 

@@ -14,7 +14,7 @@ from .errors import LagtopError
 from .options import ExamplesFirst, complain
 from .sink import CannotWriteError, Terminated
 
-COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta"]
+COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
 EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from . import __version__
 from .errors import LagtopError
 from .motion import Motion, solve
+from .output import write_findings
 from .top import Number, build_top, parse_number
+
+if TYPE_CHECKING:
+    from .findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
 P = TypeVar("P")
+T = TypeVar("T")
 V = TypeVar("V")
 
 
@@ -143,6 +148,24 @@ def with_progress(
         for part in parts:
             yield part
             bar.update(size(part))
+
+
+def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
+    """The items one by one; on a terminal a bar says how many are done."""
+    if not sys.stderr.isatty():
+        yield from items
+        return
+    with click.progressbar(items, label=label, file=sys.stderr, show_pos=True) as bar:
+        yield from bar
+
+
+def write_report(find: Callable[[], Findings], style: str, output: str) -> Findings:
+    """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
+    findings = write_findings(find, style, output)
+    if style == "csv":
+        for name, text in findings.conditions.items():
+            complain(f"{name}: {text}")
+    return findings
 
 
 def complain(line: str) -> None:

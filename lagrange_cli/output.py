@@ -15,6 +15,7 @@ from .numerals import json_text, value_text
 from .sink import CannotWriteError, sink
 
 if TYPE_CHECKING:
+    from .findings import Findings
     from .twofold import Array
 
 MAX_TABLE_ROWS = 10_000
@@ -199,3 +200,20 @@ def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str,
                 stream.write(separator + f"{{{', '.join(members)}}}".encode())
                 separator = b",\n"
             stream.write(b"]\n")
+
+
+def write_findings(find: Callable[[], Findings], style: str, path: str) -> Findings:
+    """What a report finds, in the same three styles.
+
+    It is made when the place to write is open already: long work must not end before a closed door.
+    """
+    with sink(path) as stream:
+        findings = find()
+        if style == "table":
+            from .report import findings_table
+
+            terminal, encoding = _is_terminal(path), _encoding(path)
+            stream.write(findings_table(findings, terminal=terminal, encoding=encoding))
+        else:
+            stream.write(findings.as_csv() if style == "csv" else findings.as_json())
+    return findings

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rich import box
 from rich.console import Console
@@ -12,6 +13,9 @@ from rich.table import Table
 from rich.text import Text
 
 from .numerals import value_text
+
+if TYPE_CHECKING:
+    from .findings import Findings
 
 
 class Row(NamedTuple):
@@ -167,6 +171,26 @@ def rows_table(
     for row in rows:
         table.add_row(*row)
     return _rendered(table, terminal, encoding)
+
+
+def findings_table(findings: Findings, *, terminal: bool, encoding: str) -> bytes:
+    """The conditions as lines, the rows as a table of short numbers, and the conclusions."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    shown = [field for field in findings.fields if field.heading]
+    for field in shown:
+        table.add_column(field.heading, justify="left" if field.is_text else "right", no_wrap=True)
+    for row in findings.rows:
+        table.add_row(*(field.cell(getattr(row, field.key)) for field in shown))
+    spelling = {} if encoding.lower().startswith("utf") else _ASCII
+    heads = (_condition(name, text) for name, text in findings.conditions.items())
+    above = "\n".join(heads).translate(spelling) + "\n\n"
+    below = "".join(f"\n{line}" for line in findings.conclusions).translate(spelling)
+    return above.encode() + _rendered(table, terminal, encoding) + f"{below}\n".encode()
+
+
+def _condition(name: str, text: str) -> str:
+    """The name, and the text beside it in lines of 100 columns."""
+    return fill(f"{name:11}{text}", 100, subsequent_indent=" " * 11, break_on_hyphens=False)
 
 
 def _rendered(table: Table, terminal: bool, encoding: str) -> bytes:

@@ -12,13 +12,18 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 
-import heyoka as hy
 import numpy as np
 import orjson
 from scipy import special
 
 from lagrange_cli import Top, solve
 from lagrange_cli.angles import BLOCK
+from lagrange_cli.closed_forms import CLOSED_FORMS
+from lagrange_cli.elliptic import carlson_rf
+from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
+from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.integrators import integrators
 from lagrange_cli.sweeps import BLOCK_ROWS, Column, record_keys, records, sweep
 from lagrange_cli.tops import Tops
 from lagrange_cli.twofold import Array
@@ -49,34 +54,6 @@ def floor(t: Array) -> None:
         np.sin(x), np.cos(x)
         for _ in range(3):
             np.arctan2(x, 1.5)
-
-
-def legendre(t: Array) -> None:
-    """The least that a closed form by scipy.special needs."""
-    sn, cn, dn, _ = special.ellipj(t, 0.58)
-    for n in (0.3, -2.0):
-        special.elliprj(cn * cn, dn * dn, 1.0, 1.0 - n * sn * sn)
-
-
-def heyoka_dense(top: Top, t: Array) -> Callable[[], object]:
-    """Taylor's method on the Euler angles of the worked example, on a sorted grid."""
-    theta, speed, phi, psi = hy.make_vars("theta", "speed", "phi", "psi")
-    a, b, r0 = float(2 * top.m * top.g * top.s / top.A), float(top.C * top.r0 / top.A), top.r0
-    rate = b * (np.cos(np.radians(30)) - hy.cos(theta)) / hy.sin(theta) ** 2
-    system = [
-        (theta, speed),
-        (speed, hy.sin(theta) * (rate * rate * hy.cos(theta) - b * rate + a / 2)),
-        (phi, r0 - rate * hy.cos(theta)),
-        (psi, rate),
-    ]
-    start = [np.radians(30), 0.0, 0.0, 0.0]
-    integrator = hy.taylor_adaptive(system, start, tol=1e-16)
-
-    def run() -> object:
-        integrator.time, integrator.state[:] = 0.0, start
-        return integrator.propagate_grid(t)
-
-    return run
 
 
 def integrals(record: dict[str, Column]) -> None:
@@ -119,6 +96,44 @@ def sweeps(rng: np.random.Generator) -> None:
         print(f"{name:65} {cost:8.1f} ns  {cost / least:6.2f} x scipy")
 
 
+def functions(rng: np.random.Generator) -> None:
+    """Arrays of elliptic functions; contract: at most what scipy.special takes."""
+    u, m = rng.uniform(-10, 10, COUNT), rng.random(COUNT)
+    sn, cn, dn, _ = special.ellipj(u, m)
+    legendre = cn * cn, dn * dn, np.ones(COUNT), 1 - rng.uniform(-3, 0.9, COUNT) * sn * sn
+    unbalanced = np.exp(rng.normal(0, 2, (4, COUNT)))
+    pairs: dict[str, tuple[Callable[[], object], Callable[[], object]]] = {
+        "am, sn, cn, dn, one modulus": (
+            lambda: jacobi(np, u, modulus(np, m=0.58)),
+            lambda: special.ellipj(u, 0.58),
+        ),
+        "am, sn, cn, dn, a modulus each": (
+            lambda: jacobi(np, u, modulus(np, m=m)),
+            lambda: special.ellipj(u, m),
+        ),
+        "R_J of Legendre's third integral": (
+            lambda: carlson_rj(np, *legendre),
+            lambda: special.elliprj(*legendre),
+        ),
+        "R_J, lognormal arguments": (
+            lambda: carlson_rj(np, *unbalanced),
+            lambda: special.elliprj(*unbalanced),
+        ),
+        "R_D": (
+            lambda: carlson_rd(np, *unbalanced[:3]),
+            lambda: special.elliprd(*unbalanced[:3]),
+        ),
+        "R_F": (
+            lambda: carlson_rf(np, *unbalanced[:3]),
+            lambda: special.elliprf(*unbalanced[:3]),
+        ),
+    }
+    print("\nElliptic functions, per element")
+    for name, (ours, theirs) in pairs.items():
+        cost, least = nanoseconds(ours), nanoseconds(theirs)
+        print(f"{name:65} {cost:8.1f} ns  {cost / least:6.2f} x scipy")
+
+
 def writing(t: Array) -> None:
     """`table` to a file as a whole process; contract: at most 2 of sampling and dumping."""
     sampler = solve(Top()).sampler()
@@ -141,11 +156,13 @@ def main() -> None:
     rng = np.random.default_rng(0)
     t = np.sort(rng.uniform(0, 100, COUNT))
     t[0] = 0.0
+    by_legendre = CLOSED_FORMS["scipy.special"].prepare(Top(), "double")
+    by_taylor = integrators(60)["Taylor-euler"].prepare(Top(), 1e-16)
     least = nanoseconds(lambda: floor(t))
     rows = {
         "sin + cos + 3 arctan2": least,
-        "scipy.special, ellipj + 2 elliprj": nanoseconds(lambda: legendre(t)),
-        "heyoka, dense output over 233 periods": nanoseconds(heyoka_dense(Top(), t)),
+        "scipy.special, ellipj + 2 elliprj": nanoseconds(partial(by_legendre, t)),
+        "heyoka, dense output over 233 periods": nanoseconds(partial(by_taylor, t)),
     }
     for name, start in STARTS.items():
         sampler = solve(Top(**start)).sampler()
@@ -154,6 +171,7 @@ def main() -> None:
         rows[f"lagtop, {name}, wrapped"] = nanoseconds(partial(sampler.angles, t, wrap=True))
     for name, cost in rows.items():
         print(f"{name:55} {cost:8.1f} ns  {cost / least:6.2f} x floor")
+    functions(rng)
     sweeps(rng)
     writing(t)
 

@@ -43,6 +43,13 @@ def solved(lagtop: Lagtop) -> Callable[..., dict[str, Any]]:
     return run
 
 
+def assert_one_line(result: Result, code: int, message: str) -> None:
+    """That a command failed with one line on standard error, and said nothing else."""
+    assert (result.exit_code, result.stdout) == (code, "")
+    assert result.stderr.startswith(f"Error: {message}")
+    assert result.stderr.count("\n") == 1
+
+
 def process(*args: str, check: bool = True, **extra: Any) -> subprocess.CompletedProcess[bytes]:
     """Run the command as a process of its own."""
     return subprocess.run([*LAGTOP, *args], capture_output=True, check=check, **extra)

@@ -11,10 +11,10 @@ import mpmath
 import numpy as np
 import oracle
 import pytest
-from strata import STRATA, Scene, generic
 
 from lagrange_cli import Motion, Regime, Top, solve
 from lagrange_cli.accuracy import Reference, angle_units
+from lagrange_cli.strata import STRATA, Scene, generic
 from lagrange_cli.table import rows
 from lagrange_cli.times import Grid
 from lagrange_cli.twofold import Array

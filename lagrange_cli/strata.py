@@ -1,4 +1,7 @@
-"""Random scenes, a stratum for each thing that is hard; general starts, both signs of all."""
+"""Random scenes, a stratum for each thing that is hard; general starts, both signs of all.
+
+Lengths, masses and times are of the size of 1 but for the stratum of units.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +18,18 @@ def power(rng: random.Random, low: float, high: float) -> float:
 
 
 def body(rng: random.Random) -> Scene:
+    """A top with m = s = g = 1."""
     A = rng.uniform(0.5, 2)
     return {"m": 1, "s": 1, "g": 1, "A": A, "C": A * rng.uniform(0.05, 2)}
 
 
 def signed(rng: random.Random, size: float) -> float:
+    """The size with a random sign."""
     return rng.choice([-1, 1]) * size
 
 
 def generic(rng: random.Random) -> Scene:
+    """Nothing special: any tilt, moderate rates."""
     return body(rng) | {
         "r0": rng.uniform(-6, 6),
         "theta0_deg": rng.uniform(1, 179),
@@ -33,10 +39,12 @@ def generic(rng: random.Random) -> Scene:
 
 
 def fast(rng: random.Random) -> Scene:
+    """Spins from 10^2 to 10^12."""
     return generic(rng) | {"r0": signed(rng, power(rng, 2, 12))}
 
 
 def slow(rng: random.Random) -> Scene:
+    """Spins from 10^-12 to 0.1."""
     scene = generic(rng) | {"r0": signed(rng, power(rng, -12, -1))}
     return scene | {"psidot0": signed(rng, power(rng, -6, 0))}
 
@@ -47,6 +55,7 @@ def threshold_spin(scene: Scene) -> float:
 
 
 def upright(rng: random.Random, factor: float) -> Scene:
+    """Next to the upright position, with so many times the spin of the threshold."""
     scene = generic(rng)
     scene["r0"] = signed(rng, threshold_spin(scene) * factor)
     scene["theta0_deg"] = power(rng, -12, 0)
@@ -55,14 +64,17 @@ def upright(rng: random.Random, factor: float) -> Scene:
 
 
 def upright_below(rng: random.Random) -> Scene:
+    """Too slow to sleep, far from the threshold or within 10^-12 of it."""
     return upright(rng, rng.choice([rng.uniform(0.1, 0.99), 1 - power(rng, -12, -2)]))
 
 
 def upright_above(rng: random.Random) -> Scene:
+    """Fast enough to sleep, likewise."""
     return upright(rng, rng.choice([rng.uniform(1.01, 5), 1 + power(rng, -12, -2)]))
 
 
 def hanging(rng: random.Random) -> Scene:
+    """Next to the lowest position."""
     scene = generic(rng) | {"theta0_deg": 180 - power(rng, -12, 0)}
     return scene | {"thetadot0": rng.choice([0, signed(rng, power(rng, -12, -1))])}
 
@@ -85,12 +97,14 @@ def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float) -> Sc
 
 
 def bottom_pass(rng: random.Random) -> Scene:
+    """The axis passes the lower pole within 10^-9 to 10^-6."""
     scene, u = generic(rng), rng.uniform(-0.9, 0.9)
     scene["r0"] = rng.uniform(-2, 2)
     return scene | to_pole(scene, u, -1, rng.uniform(0, 30), power(rng, -9, -6))
 
 
 def top_pass(rng: random.Random) -> Scene:
+    """The axis passes the upper pole within 10^-9 to 10^-6."""
     scene, u = generic(rng), rng.uniform(-0.9, 0.9)
     scene["r0"] = rng.uniform(-2, 2)
     return scene | to_pole(scene, u, 1, rng.uniform(10, 40), power(rng, -9, -6))
@@ -107,13 +121,73 @@ def tiny_nutation(rng: random.Random) -> Scene:
 
 
 def sphere(rng: random.Random) -> Scene:
+    """A = C."""
     scene = generic(rng)
     return scene | {"C": scene["A"]}
 
 
 def disc(rng: random.Random) -> Scene:
+    """C = 2A, the most a rigid body can have."""
     scene = generic(rng)
     return scene | {"C": 2 * scene["A"]}
+
+
+def sphere_limit(rng: random.Random) -> Scene:
+    """C within 10^-15 to 10^-6 of A."""
+    scene = generic(rng)
+    return scene | {"C": scene["A"] * (1 + signed(rng, power(rng, -15, -6)))}
+
+
+def disc_limit(rng: random.Random) -> Scene:
+    """C less than 2A by 10^-15 to 10^-6 of it; or a needle, C = 10^-6 to 10^-2 of A."""
+    scene = generic(rng)
+    part = rng.choice([2 * (1 - power(rng, -15, -6)), power(rng, -6, -2)])
+    return scene | {"C": scene["A"] * part}
+
+
+def units(rng: random.Random) -> Scene:
+    """A generic scene in units of mass, length and time of 10^-30 to 10^30."""
+    scene, (mass, length, time) = generic(rng), (power(rng, -30, 30) for _ in range(3))
+    scene |= {"m": mass, "s": length, "g": length / time**2}
+    scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
+    return scene | {key: scene[key] / time for key in ("r0", "thetadot0", "psidot0")}
+
+
+def far_times(rng: random.Random) -> Scene:
+    """Any of the other strata, at 10^11 to 10^12 periods (see `times`)."""
+    return rng.choice([generic, fast, slow, upright_below, hanging, bottom_pass, tiny_nutation])(
+        rng
+    )
+
+
+def thresholds(rng: random.Random) -> Scene:
+    """Where the program, or the motion, goes over from one kind to another, within 10^-15."""
+    return rng.choice([_series_change, _sleeping_threshold, _hardly_torque, _hardly_start])(rng)
+
+
+def _series_change(rng: random.Random) -> Scene:
+    """Released at k = k' (lambda = cos(theta0)), where the series change their nome."""
+    scene = body(rng) | {"theta0_deg": rng.uniform(1, 85)}
+    lam = math.cos(math.radians(scene["theta0_deg"])) * (1 + signed(rng, power(rng, -15, -3)))
+    return scene | {"r0": signed(rng, threshold_spin(scene) * math.sqrt(lam))}
+
+
+def _sleeping_threshold(rng: random.Random) -> Scene:
+    """Released next to the vertical, at the spin that just makes it sleep."""
+    scene = body(rng) | {"theta0_deg": power(rng, -9, 0)}
+    miss = 1 + signed(rng, power(rng, -15, -3))
+    return scene | {"r0": signed(rng, threshold_spin(scene) * miss)}
+
+
+def _hardly_torque(rng: random.Random) -> Scene:
+    """Next to torque-free."""
+    return generic(rng) | {"g": power(rng, -15, -6)}
+
+
+def _hardly_start(rng: random.Random) -> Scene:
+    """Next to a release from rest, and next to no spin."""
+    scene = generic(rng) | {"r0": signed(rng, power(rng, -15, -12))}
+    return scene | {key: signed(rng, power(rng, -15, -6)) for key in ("thetadot0", "psidot0")}
 
 
 STRATA: dict[str, Callable[[random.Random], Scene]] = {
@@ -131,10 +205,22 @@ STRATA: dict[str, Callable[[random.Random], Scene]] = {
         tiny_nutation,
         sphere,
         disc,
+        sphere_limit,
+        disc_limit,
+        units,
+        thresholds,
+        far_times,
     )
 }
 
 
-def times(rng: random.Random, period: float, count: int = 5) -> list[float]:
-    """Times of 1e-9 to 1e12 periods, before and after the start."""
-    return [period * signed(rng, power(rng, -9, 12)) for _ in range(count)]
+def times(rng: random.Random, period: float, count: int = 5, *, least: float = -9) -> list[float]:
+    """Times of 10^least to 10^12 periods, before and after the start."""
+    return [period * signed(rng, power(rng, least, 12)) for _ in range(count)]
+
+
+def scene_and_times(stratum: str, seed: int, i: int, count: int) -> tuple[Scene, list[float]]:
+    """The i-th scene of a stratum, and so many times in nutation periods."""
+    rng = random.Random(f"{seed} {stratum} {i}")
+    scene = STRATA[stratum](rng)
+    return scene, times(rng, 1.0, count, least=11 if stratum == "far times" else -9)

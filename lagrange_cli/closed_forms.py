@@ -1,0 +1,184 @@
+"""Closed forms to compare: ours, Legendre's integrals by scipy.special, and the paper's series.
+
+The last two are written as a reader of the paper or of a handbook would write them, in plain
+doubles.  Equation numbers in parentheses are Chrapan's.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .elliptic import many_digits
+from .methods import Method, NotApplicableError, Sample, Sampled
+from .motion import solve
+from .top import Top
+from .twofold import Array
+
+
+def _ours(top: Top, _: str) -> Sample:
+    from .samplers import sampler_of, solution_of
+
+    sampler_of.cache_clear()  # or the set-up would be timed once and found ready ever after
+    solution_of.cache_clear()
+    return sampler_of(top).angles
+
+
+def _ours_in_digits(top: Top, digits: int) -> Sample:
+    import mpmath
+
+    from .digits import settled_rows
+
+    def sample(t: Array) -> Sampled:
+        rows = settled_rows(top, t.tolist(), digits, radians=True)
+        with mpmath.workdps(digits + 10):
+            return [[mpmath.mpf(row[i]) for row in rows] for i in (1, 2, 3)]
+
+    return sample
+
+
+def _legendre(top: Top, _: str) -> Sample:
+    """sn^2 by ellipj, and Legendre's third integral by Carlson's R_F and R_J.
+
+    With sn^2 counted from u1, 1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2)
+    and n = k^2 (1 +- u3)/(1 +- u1).
+    """
+    from scipy import special
+
+    motion: Any = solve(top)  # nutating, so that it has all its numbers
+    u0 = math.cos(top.tilt(math).degrees(math) * math.pi / 180)
+    r0, b, (u1, u2, u3) = float(top.r0), motion.b, (motion.u1, motion.u2, motion.u3)
+    beta = float(top.psidot0) * (1 - u0 * u0) + b * u0
+    K, T, m = motion.K, motion.T_nutation, motion.k**2
+    speed = 2 * K / T
+
+    def third(sign: int, w: Array) -> Array:
+        at_u1, at_u3 = 1 + sign * u1, 1 + sign * u3
+        n = m * at_u3 / at_u1
+        turns = np.rint(w / (2 * K))
+        sn, cn, dn, _ = special.ellipj(w - turns * 2 * K, m)
+        whole = K + n / 3 * special.elliprj(0.0, 1 - m, 1.0, 1 - n)
+        part = special.elliprf(cn * cn, dn * dn, 1.0)
+        part += n / 3 * sn * sn * special.elliprj(cn * cn, dn * dn, 1.0, 1 - n * sn * sn)
+        integral = 2 * turns * whole + sn * part
+        result: Array = (w / at_u3 + (1 / at_u1 - 1 / at_u3) * integral) / speed
+        return result
+
+    def halves(w: Array) -> tuple[Array, Array]:
+        return (beta + b) / 2 * third(1, w), (beta - b) / 2 * third(-1, w)
+
+    start = 0.0
+    if top.thetadot0 or abs(u0 - u2) < abs(u0 - u1):
+        sn2 = (u1 - u0) * (u3 - u2) / ((u3 - u0) * (u1 - u2))
+        start = float(special.ellipkinc(math.asin(math.sqrt(min(max(sn2, 0), 1))), m))
+        start = math.copysign(start, top.thetadot0)
+    first = halves(np.array(start))
+
+    def sample(t: Array) -> Sampled:
+        w = start + speed * t
+        plus, minus = (now - then for now, then in zip(halves(w), first, strict=True))
+        sn, _, dn, _ = special.ellipj(w - np.rint(w / (2 * K)) * 2 * K, m)
+        u = u1 - (u1 - u2) * (1 - m) * (sn / dn) ** 2  # (4,20)
+        return np.arccos(u), (r0 - b) * t + plus - minus, plus + minus
+
+    return sample
+
+
+class _Paper(NamedTuple):
+    """The constants of sections 4 to 7."""
+
+    u1: float
+    u3: float
+    k_prime: float
+    T: float
+    q: float
+    y: float
+    sigma: int
+    mean_spin: float
+    mean_precession: float
+
+
+def _paper(top: Top) -> _Paper:
+    if not top.is_released:
+        raise NotApplicableError("the paper's formulas are for a top released from rest")
+    ar = many_digits(17)  # for the tables of elliptic integrals; all else is in doubles
+    a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
+    r0, b = float(top.r0), float(top.C) * float(top.r0) / float(top.A)
+    u1, sigma = top.tilt(math).cos, 1 if r0 > 0 else -1
+    root = math.sqrt(b**4 - 4 * a * b * b * u1 + 4 * a * a)
+    u2, u3 = (b * b - root) / (2 * a), (b * b + root) / (2 * a)  # (4,11)
+    m, mc = (u1 - u2) / (u3 - u2), (u3 - u1) / (u3 - u2)  # (4,19), (4,21)
+    K, E = float(ar.ellipk(m)), float(ar.ellipe(m))
+    T = 4 * K / math.sqrt(a * (u3 - u2))  # (5,1)
+    amplitude = math.asin(math.sqrt((u3 - u2) / (u3 + 1)))  # (7,2)
+    alpha, E_amplitude = float(ar.ellipf(amplitude, mc)), float(ar.ellipe(amplitude, mc))
+    bracket = K * E_amplitude - (K - E) * alpha - math.pi / 4
+    return _Paper(
+        u1=u1,
+        u3=u3,
+        k_prime=math.sqrt(mc),
+        T=T,
+        q=math.exp(-math.pi * float(ar.ellipk(mc)) / K),
+        y=math.pi * alpha / (2 * K),
+        sigma=sigma,
+        mean_spin=r0 - b / 2 + sigma * math.pi / T,  # (6,3)
+        mean_precession=a / (2 * b) * (2 - u3 + u2) + sigma * 4 / T * bracket,  # (7,3)
+    )
+
+
+def _phase(p: _Paper, t: Array) -> Array:
+    """pi t/T, less whole turns."""
+    periods = t / p.T
+    return np.pi * (periods - np.rint(periods))
+
+
+def _tilt(p: _Paper, x: Array, terms: int) -> Array:
+    """(4,20), with dn^2 = k' (theta3/theta4)^2 from so many terms of the theta functions."""
+    theta3, theta4 = np.ones_like(x), np.ones_like(x)
+    for h in range(1, terms + 1):
+        wave = 2 * p.q ** (h * h) * np.cos(2 * h * x)
+        theta3 += wave
+        theta4 += -wave if h % 2 else wave
+    return np.arccos(p.u3 - (p.u3 - p.u1) * (theta4 / theta3) ** 2 / p.k_prime)
+
+
+def _mean_rates(top: Top, _: str) -> Sample:
+    """(6,3) and (7,3) without the periodic remainders."""
+    p = _paper(top)
+    return lambda t: (_tilt(p, _phase(p, t), 3), p.mean_spin * t, p.mean_precession * t)
+
+
+def _theta_series(top: Top, terms: int) -> Sample:
+    """(6,1) and (7,1) in their form for all times, the sums over h cut after so many terms."""
+    p = _paper(top)
+    z = math.exp(-2 * p.y)
+
+    def sample(t: Array) -> Sampled:
+        x = _phase(p, t)
+        sin, cos = np.sin(2 * x), np.cos(2 * x)
+        front = np.arctan2(z * sin, 1 - z * cos)
+        spin, precession = np.zeros_like(x), np.zeros_like(x)
+        for h in range(1, terms + 1):
+            sign, twice = (1 if h % 2 else -1), 2 * p.q**h
+            below = 1 + p.q ** (2 * h) + sign * twice * cos * math.cosh(2 * p.y)
+            wave = np.arctan(twice * sin * math.sinh(2 * p.y) / below)
+            spin += wave
+            precession += sign * wave
+        return (
+            _tilt(p, x, terms),
+            p.mean_spin * t + p.sigma * (front - spin),
+            p.mean_precession * t - p.sigma * (front + precession),
+        )
+
+    return sample
+
+
+CLOSED_FORMS: dict[str, Method] = {
+    "lagtop": Method(["double"], _ours),
+    "lagtop-digits": Method([20, 30, 50], _ours_in_digits, costly=True),
+    "scipy.special": Method(["double"], _legendre, package="scipy.special"),
+    "mean-rates": Method(["double"], _mean_rates),
+    "theta-series": Method([1, 2, 3, 6, 12], _theta_series),
+}

@@ -1,0 +1,104 @@
+"""`lagtop bench`: error against run time."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import LagtopError
+from ..options import (
+    COUNT,
+    NUMBER,
+    ExamplesFirst,
+    exclude,
+    output_options,
+    scene_options,
+    solved,
+    with_steps,
+    write_report,
+)
+
+if TYPE_CHECKING:
+    from ..findings import Findings
+
+SAMPLES, LONG_SAMPLES = 10_000, 1000
+PERIODS = 20.3
+"""No end at a turning point, where approximations are at their best."""
+MOST_SAMPLES = 10_000_000
+
+
+@click.command(
+    "bench",
+    cls=ExamplesFirst,
+    examples="""
+        lagtop bench
+        lagtop bench sample_inputs/stiff-top.toml --plot work-precision.svg
+        lagtop bench --methods lagtop,DOP853-quaternion --t-max 100 --n 1e5 --format csv
+        lagtop bench --long --plot drift.png
+    """,
+)
+@scene_options
+@click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
+@click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
+@click.option("--methods", metavar="NAMES", help="Only these, with commas between.")
+@click.option(
+    "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
+)
+@click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
+@click.option("--plot", type=click.Path(), metavar="FILE", help="Draw it too: FILE.svg or .png.")
+@output_options("table", "csv", "json")
+def command(  # noqa: PLR0917 - click passes them by name
+    scene: str | None,
+    rad: bool,
+    t_max: Fraction | None,
+    count: int | None,
+    methods: str | None,
+    limit: Fraction,
+    is_long: bool,
+    plot: str | None,
+    style: str,
+    output: str,
+    **options: Any,
+) -> None:
+    """Error against run time: closed forms and integrators at the same times.
+
+    Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
+    timed on one thread.  Needs the extra `bench` for scipy and heyoka; without them their rows say
+    so.  A * marks the Pareto front: no other run is both faster and more accurate.
+    """
+    from ..machine import use_one_thread
+
+    use_one_thread()
+    from .. import bench, drift
+    from ..diagrams import check_plot, draw_drift, draw_work_precision
+
+    exclude({"--long": is_long or None, "--t-max": t_max})
+    _check(t_max, count, limit)
+    check_plot(plot)
+    chosen = bench.chosen_methods(methods, float(limit))
+    motion = solved(scene, rad, False, options)
+    bench.check_scene(motion)
+    how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
+    end = float(PERIODS * bench.period_of(motion) if t_max is None else t_max)
+
+    def find() -> Findings:
+        if is_long:
+            found = drift.report(motion, count or LONG_SAMPLES, chosen, **how)
+        else:
+            found = bench.report(motion, end, count or SAMPLES, chosen, **how)
+        if plot:
+            (draw_drift if is_long else draw_work_precision)(found, plot)
+        return found
+
+    write_report(find, style, output)
+
+
+def _check(t_max: Fraction | None, count: int | None, limit: Fraction) -> None:
+    if t_max == 0:
+        raise LagtopError("--t-max must be other than 0: nothing has moved by then")
+    if count is not None and not 1 <= count <= MOST_SAMPLES:
+        raise LagtopError(f"--n must be in [1, {MOST_SAMPLES}], got {count}")
+    if not limit > 0:
+        raise LagtopError(f"--limit must be > 0, got {float(limit)}")

@@ -1,0 +1,124 @@
+"""Pictures of the reports, by matplotlib: work and precision, drift, error by stratum."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .bench import is_done
+from .errors import LagtopError
+from .findings import Findings
+from .sink import CannotWriteError, sink
+from .stability import CONTRACT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+KINDS = (".svg", ".png")
+LEAST_ERROR = 1e-17
+"""Where an error of 0 is drawn."""
+
+
+def check_plot(path: str | None) -> None:
+    """Raise LagtopError for a kind of file that is not drawn, or where matplotlib is missing.
+
+    Raises CannotWriteError where there is no such directory.
+    """
+    if path is None:
+        return
+    if Path(path).suffix.lower() not in KINDS:
+        raise LagtopError(f"--plot must end in {' or '.join(KINDS)}, got {path!r}")
+    if find_spec("matplotlib") is None:
+        raise LagtopError("--plot needs matplotlib: pip install 'lagtop[plot]'")
+    if not Path(path).resolve().parent.is_dir():
+        raise CannotWriteError(f"cannot write {path}: no such directory")
+
+
+def draw_work_precision(findings: Findings, path: str) -> None:
+    """Log-log, error on x and time on y, a line for each method over its settings."""
+    figure, (axes,) = _figure(1)
+    rows = [row for row in findings.rows if is_done(row)]
+    for i, name in enumerate(sorted({row.method for row in rows}, key=_order(rows))):
+        points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
+        _line(axes, i, name, points)
+    axes.set(xlabel="greatest error (rad)", ylabel="time a sample (ns)")
+    axes.set_title(f"Error against run time\ntimes: {findings.conditions['times']}", fontsize=9)
+    _save(figure, path)
+
+
+def draw_drift(findings: Findings, path: str) -> None:
+    """Error, and time, against the span."""
+    figure, (above, below) = _figure(2)
+    rows = [row for row in findings.rows if is_done(row)]
+    for i, name in enumerate(dict.fromkeys(row.method for row in rows)):
+        mine = [row for row in rows if row.method == name]
+        _line(above, i, name, [(row.periods, row.units_max) for row in mine])
+        _line(below, i, name, [(row.periods, row.ns_min) for row in mine])
+    above.set(xlabel="nutation periods", ylabel="greatest error (units)")
+    below.set(xlabel="nutation periods", ylabel="time a sample (ns)")
+    title = f"Error and time against the span\ntimes: {findings.conditions['times']}"
+    above.set_title(title, fontsize=9)
+    _save(figure, path)
+
+
+def draw_stability(findings: Findings, path: str) -> None:
+    """Worst error in units by stratum, ours and the others'."""
+    figure, (axes,) = _figure(1)
+    strata = [row.stratum for row in findings.rows]
+    marks = {
+        "lagtop": ("o", "black", [row.angle_units for row in findings.rows]),
+        "scipy.special": ("s", "C0", [row.scipy_units for row in findings.rows]),
+        "DOP853": ("^", "C1", [row.dop853_units for row in findings.rows]),
+    }
+    for name, (marker, color, units) in marks.items():
+        known = [(x, i) for i, x in enumerate(units) if x]
+        if known:
+            axes.plot(*zip(*known, strict=True), marker, color=color, label=name)
+    axes.axvline(CONTRACT, color="0.5", lw=0.8, label="contract")
+    axes.set(yscale="linear", xlabel="worst error (units)", yticks=range(len(strata)))
+    axes.set_yticklabels(strata)
+    axes.invert_yaxis()
+    axes.set_title(f"Error by stratum\nscenes: {findings.conditions['scenes']}", fontsize=9)
+    _save(figure, path)
+
+
+def _order(rows: Sequence[Any]) -> Any:
+    """Methods by their least error."""
+    return lambda name: (min(row.error_max for row in rows if row.method == name), name)
+
+
+def _figure(panels: int) -> tuple[Figure, Any]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 1 + 4 * panels), layout="constrained")
+    axes = figure.subplots(panels, 1, squeeze=False)[:, 0]
+    for each in axes:
+        each.set(xscale="log", yscale="log")
+        each.grid(True, which="major", linewidth=0.4, color="0.85")
+    return figure, axes
+
+
+def _line(axes: Axes, i: int, name: str, points: Sequence[tuple[float, float]]) -> None:
+    """Our own in black and thicker."""
+    mine = name.startswith("lagtop")
+    color = "black" if mine else f"C{i % 10}"
+    style = "--" if name.endswith("euler") else "-"
+    x, y = ([max(value, LEAST_ERROR) for value in axis] for axis in zip(*points, strict=True))
+    marker = "os^Dv<>pP*X"[i % 11]
+    axes.plot(x, y, style, marker=marker, ms=5, color=color, lw=2 if mine else 1, label=name)
+
+
+def _save(figure: Figure, path: str) -> None:
+    """The same file for the same findings: no date, no random names."""
+    import matplotlib
+
+    for axes in figure.axes[:1]:
+        axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
+    kind = Path(path).suffix.lower()[1:]
+    metadata = {"Date": None} if kind == "svg" else {"Software": None}
+    settings: Any = {"svg.hashsalt": "lagtop", "svg.fonttype": "path"}
+    with matplotlib.rc_context(settings), sink(path) as stream:
+        figure.savefig(stream, format=kind, metadata=metadata, dpi=150)

@@ -1,0 +1,47 @@
+"""What the reports compare: ways to compute the angles of a top, all behind one small interface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from typing import Any, NamedTuple
+
+from .top import Top
+from .twofold import Array
+
+Sampled = Sequence[Any]
+"""Tilt, spin and precession (radians), each an array or a list in the length of the times."""
+
+Sample = Callable[[Array], Sampled]
+"""The angles at times that run away from 0."""
+
+
+class NotApplicableError(Exception):
+    """A method cannot do this scene, or not here; the message says why."""
+
+
+class FailedError(Exception):
+    """A method began and did not end well; the message says how."""
+
+
+class Method(NamedTuple):
+    """A way to compute the angles, with the settings it is tried at."""
+
+    settings: Sequence[Any]
+    prepare: Callable[[Top, Any], Sample]
+    """Set-up: from a top and a setting to what samples.
+
+    It may raise NotApplicableError; what it returns may raise FailedError.
+    """
+    package: str = ""
+    """The module it needs beyond lagtop itself."""
+    whole_turns: bool = True
+    """Whether it counts the turns of spin and precession; if not, they are known modulo 2 pi."""
+    costly: bool = False
+    """A millisecond a sample: timed at the judged times only."""
+
+    def check_package(self) -> None:
+        """Raise NotApplicableError where the package is missing."""
+        name = self.package.partition(".")[0]
+        if name and find_spec(name) is None:
+            raise NotApplicableError(f"needs {name}: pip install 'lagtop[bench]'")

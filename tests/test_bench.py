@@ -1,0 +1,264 @@
+"""`lagtop bench`: methods, errors, front, failures and pictures."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import oracle
+import pytest
+from conftest import ROOT, Lagtop, assert_one_line
+
+from lagrange_cli import LagtopError, Top, bench, diagrams, drift, methods, solve
+from lagrange_cli.bench import Row, conclusions, measure, task, with_front
+from lagrange_cli.closed_forms import CLOSED_FORMS
+from lagrange_cli.findings import Findings
+from lagrange_cli.integrators import integrators
+
+LOOPING = Top(psidot0=-4)
+METHODS = CLOSED_FORMS | integrators(10)
+
+
+@cache
+def work_on(top: Top) -> bench.Task:
+    motion = solve(top)
+    return task(motion, 3.3 * bench.period_of(motion), 40, judged=10)
+
+
+def run(top: Top, name: str, setting: Any) -> Row:
+    return measure(work_on(top), name, METHODS[name], setting)
+
+
+def error(row: Row) -> float:
+    assert row.error_max is not None, row.remark
+    return row.error_max
+
+
+@pytest.mark.parametrize("name", integrators(10))
+def test_integrators_agree_with_the_reference_the_better_the_tighter(name: str) -> None:
+    """Worst seen at the tightest tolerance: 1.2e-6 rad (Radau, quaternion)."""
+    coarse, fine = (error(run(LOOPING, name, METHODS[name].settings[i])) for i in (1, -1))
+    assert fine < coarse / 10
+    assert fine < 2e-5
+
+
+@pytest.mark.parametrize("start", [{"r0": -50}, {"thetadot0": -2, "psidot0": 3}, {"r0": 200}])
+@pytest.mark.parametrize("name", ["lagtop", "scipy.special", "DOP853-quaternion", "Taylor-euler"])
+def test_other_starts(name: str, start: dict[str, float]) -> None:
+    assert error(run(Top(**start), name, METHODS[name].settings[-1])) < 1e-10
+
+
+@pytest.mark.parametrize("r0", [50, -50])
+def test_series_of_the_paper_gain_with_every_term(r0: float) -> None:
+    errors = [error(run(Top(r0=r0), "theta-series", terms)) for terms in (1, 2, 3, 6, 12)]
+    assert errors[0] < 2e-2
+    assert all(later < sooner / 4 for sooner, later in pairwise(errors))
+    assert errors[-1] < 1e-13
+    assert 0.1 < error(run(Top(r0=r0), "mean-rates", "double")) < 1
+
+
+@pytest.mark.parametrize("digits", [20, 30, 50])
+def test_digits_are_judged_with_more_of_them(digits: int) -> None:
+    row = run(Top(), "lagtop-digits", digits)
+    assert 0 < error(row) < 50 * 10.0**-digits  # of angles of up to 70 rad
+
+
+def test_the_judge_is_the_paper_in_many_digits() -> None:
+    work = task(solve(Top()), 3.0, 5)
+    for t, exact in zip(work.times.tolist(), work.exact, strict=True):
+        true = oracle.angles(oracle.Scene(), t)
+        assert max(abs(x - y) for x, y in zip(exact[:3], true, strict=True)) < 1e-45
+    assert work.agreement < 1e-45
+
+
+def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
+    work = task(solve(Top()), -2.5, 1)
+    assert work.times.tolist() == [-2.5]
+    assert error(measure(work, "lagtop", METHODS["lagtop"], "double")) < 1e-14
+    assert error(measure(work, "Taylor-euler", METHODS["Taylor-euler"], 1e-16)) < 1e-12
+
+
+def row(method: str, error_max: float | None, ns_min: float | None, **more: Any) -> Row:
+    return Row(method, "", 1.0, error_max=error_max, ns_min=ns_min, units_max=9.0, **more)
+
+
+def test_front_and_what_it_says() -> None:
+    rows = [row("slow", 1e-9, 9.0), row("lagtop", 1e-15, 2.0), row("rough", 1e-3, 1.0)]
+    rows += [row("none", None, None, remark="failed: stopped"), row("half", 1e-16, None)]
+    marked = with_front(rows)
+    assert [x.method for x in marked] == ["half", "lagtop", "slow", "rough", "none"]
+    assert [x.method for x in marked if x.front] == ["lagtop", "rough"]
+    assert list(conclusions(marked)) == [
+        "No method is both faster and more accurate than lagtop.",
+        "Without a result: 2 (see the remarks).",
+    ]
+    better = list(conclusions(with_front([*rows, row("better", 1e-16, 1.5)])))
+    assert better[0].startswith("better at  beats lagtop: 1.0e-16 rad in 2 ns against 1.0e-15 rad")
+
+
+def test_what_fails_is_told() -> None:
+    quick = integrators(1e-4)
+    work = task(solve(Top()), 8.0, 100, judged=3)
+    for name in ("RK45-euler", "LSODA-quaternion", "Radau-euler"):
+        remark = measure(work, name, quick[name], 1e-7).remark
+        assert remark == "failed: took more than 0.0001 s"
+    assert measure(work, "x", quick["Taylor-euler"], 1e-16).remark == (
+        "failed: took more than 10 steps"
+    )
+    nothing = methods.Method(["x"], lambda _, __: lambda t: [np.full_like(t, np.nan)] * 3)
+    lost = measure(work, "x", nothing, "x")
+    assert lost.remark == "failed: gave what is not a number"
+    assert lost.ns_min is not None
+    lost = run(Top(r0=1e-3, theta0_deg=179.9999999), "scipy.special", "double")
+    assert lost.remark == "failed: float division by zero"
+    start = "not applicable: the paper's formulas are for a top released from rest"
+    assert run(LOOPING, "mean-rates", "double").remark == start
+
+
+def test_euler_angles_on_the_vertical() -> None:
+    with pytest.raises(methods.NotApplicableError, match="singular on the vertical"):
+        METHODS["RK45-euler"].prepare(Top(theta0_deg=0, thetadot0=1), 1e-3)
+
+
+SMALL = ["--methods", "lagtop,theta-series,DOP853-euler", "--n", 10]
+
+
+def test_formats_hold_the_same(lagtop: Lagtop) -> None:
+    whole = json.loads(lagtop("bench", *SMALL, "--format", "json").stdout)
+    listed = lagtop("bench", *SMALL, "--format", "csv")
+    rows = list(csv.DictReader(io.StringIO(listed.stdout)))
+    assert list(whole["rows"][0]) == list(rows[0])
+    assert len(whole["rows"]) == len(rows) == 1 + 5 + 4
+    exact = {(x["method"], str(x["setting"])): x["error_max"] for x in whole["rows"]}
+    assert {(x["method"], x["setting"]): float(x["error_max"]) for x in rows} == exact
+    assert set(whole["conditions"]) <= set(re.findall(r"^(\w+):", listed.stderr, re.MULTILINE))
+    table = lagtop("bench", *SMALL).stdout
+    assert "with 50 digits it differs by" in " ".join(table.split())
+    assert all(name in table for name in ("lagtop", "theta-series", "DOP853-euler"))
+    errors = [x["error_max"] for x in whole["rows"]]
+    assert errors == sorted(errors)
+
+
+def test_missing_packages_are_rows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(methods, "find_spec", lambda _: None)
+    names = "lagtop,scipy.special,RK45-euler,Taylor-euler"
+    result = lagtop("bench", "--methods", names, "--n", 5, "--format", "json")
+    assert result.exit_code == 0
+    rows = json.loads(result.stdout)["rows"]
+    assert len(rows) == 4  # one for a method, not one for each of its settings
+    remarks = {x["method"]: x["remark"] for x in rows}
+    assert remarks["lagtop"] is None
+    for name, package in {"scipy.special": "scipy", "Taylor-euler": "heyoka"}.items():
+        assert remarks[name] == (f"not applicable: needs {package}: pip install 'lagtop[bench]'")
+
+
+BAD = {
+    "--methods euler": "--methods must be among lagtop, ",
+    "--methods ,": "--methods must be among lagtop, ",
+    "--n 0": "--n must be in [1, 10000000], got 0",
+    "--n 2e7": "--n must be in [1, 10000000], got 20000000",
+    "--t-max 0": "--t-max must be other than 0",
+    "--limit 0": "--limit must be > 0, got 0.0",
+    "--plot x.pdf": "--plot must end in .svg or .png, got 'x.pdf'",
+    "--long --t-max 1": "--long and --t-max exclude each other",
+    "--t-max 1e30": "t must be finite and within 2^50 periods",
+    "--theta0 0": "the scene must be one that nutates, got sleeping",
+    "--g 0": "the scene must be one that nutates, got torque-free",
+    "--theta0 0 --thetadot0 1": "theta0 must be off the vertical",
+    "--r0 0": "r0 or psidot0 must be other than 0",
+}
+
+
+@pytest.mark.parametrize("line", BAD)
+def test_bad_input_is_one_line(line: str, lagtop: Lagtop) -> None:
+    assert_one_line(lagtop("bench", *line.split()), 2, BAD[line])
+
+
+def test_plots_without_matplotlib(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(diagrams, "find_spec", lambda _: None)
+    result = lagtop("bench", "--plot", "x.svg")
+    assert result.exit_code == 2
+    assert result.stderr == "Error: --plot needs matplotlib: pip install 'lagtop[plot]'\n"
+
+
+def test_what_cannot_be_written_is_known_before_the_work(lagtop: Lagtop, tmp_path: Path) -> None:
+    for option, name in (("-o", "x.csv"), ("--plot", "x.svg")):
+        result = lagtop("bench", "--n", "1e7", option, tmp_path / "none" / name)
+        assert result.exit_code == 74
+        assert result.stderr.startswith(f"Error: cannot write {tmp_path}")
+
+
+def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
+    rows = with_front([row("lagtop", 1e-15, 2.0), row("x-euler", 1e-3, 9.0), row("y", None, None)])
+    found = Findings({"times": "5", "scenes": "3"}, bench.FIELDS, rows, [])
+    draws: dict[str, Callable[[Findings, str], None]] = {
+        "work": diagrams.draw_work_precision,
+        "drift": diagrams.draw_drift,
+    }
+    for name, draw in draws.items():
+        pair = [tmp_path / f"{name}{i}.svg" for i in range(2)]
+        for path in pair:
+            draw(found, str(path))
+        assert pair[0].read_bytes() == pair[1].read_bytes()
+        assert pair[0].read_text().count("<!-- x-euler -->") == 1
+    target = tmp_path / "real.png"
+    assert lagtop("bench", "--methods", "lagtop", "--n", 4, "--plot", target).exit_code == 0
+    assert target.read_bytes().startswith(b"\x89PNG")
+
+
+def test_long_view_stops_a_method_that_has_failed(
+    lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drift, "SPANS", [1.3, 200.3, 1000.3])
+    names = "lagtop,mean-rates,DOP853-quaternion"
+    line = ["--long", "--n", 50, "--limit", 0.3, "--methods", names]
+    found = json.loads(lagtop("bench", *line, "--format", "json").stdout)
+    by_method: dict[str, list[Any]] = {name: [] for name in names.split(",")}
+    for each in found["rows"]:
+        by_method[each["method"]].append(each)
+    assert [round(x["periods"], 1) for x in by_method["lagtop"]] == [1.3, 200.3, 1000.3]
+    assert all(x["units_max"] < 4 for x in by_method["lagtop"])
+    assert [x["remark"] for x in by_method["DOP853-quaternion"]] == [
+        None,
+        "failed: took more than 0.3 s",
+        "not run: it failed over a shorter span",
+    ]
+    assert any(line.startswith("lagtop: error in units") for line in found["conclusions"])
+    shown = lagtop("bench", *line).stdout
+    assert "periods" in shown
+    assert "1.3" not in shown.split("method")[0]
+
+
+def test_samples_are_taken_in_one_thread_and_scipy_stays_out_of_solve() -> None:
+    code = (
+        "import os, sys\nfrom click.testing import CliRunner\nfrom lagrange_cli.cli import main\n"
+        "CliRunner().invoke(main, 'bench --n 3 --methods lagtop'.split())\n"
+        "print(os.environ['OMP_NUM_THREADS'], {'scipy', 'heyoka', 'matplotlib'} & set(sys.modules))"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, cwd=ROOT)
+    assert shown.stdout == b"1 set()\n"
+
+
+def test_a_time_out_of_reach_is_refused_by_task() -> None:
+    with pytest.raises(LagtopError, match="within 2\\^50 periods"):
+        task(solve(Top()), 1e40, 3)
+    assert math.isfinite(np.float64(task(solve(Top()), 1e9, 2).agreement))
+
+
+@pytest.mark.parametrize("scene", ["stiff-top", "slow-top", "near-separatrix", "chrapan-1952"])
+def test_sample_scenes(scene: str, lagtop: Lagtop) -> None:
+    path = ROOT / "sample_inputs" / f"{scene}.toml"
+    result = lagtop("bench", path, "--methods", "lagtop", "--n", 20, "--format", "json")
+    (found,) = json.loads(result.stdout)["rows"]
+    assert found["units_max"] < 4
