@@ -26,6 +26,9 @@ from .twofold import Array
 PHASES = 48
 """Samples per half period, before `refined` adds where a curve is steep."""
 
+_STRAIGHT, _VISIBLE = math.cos(math.radians(10)), 5e-4
+"""Where `refined` lets a polygon pass for a curve: its corners, and its steps over the range."""
+
 MOST_PERIODS = 1000
 """More nods are a blot, not a curve."""
 
@@ -140,21 +143,29 @@ def _between(t: Array, t_max: float) -> Array:
 
 
 def refined(t: Array, curve: Callable[[Array], Array], most: float = 0.02) -> Array:
-    """More times where a curve (a row a time) jumps by more than that part of its range.
+    """More times where a curve (a row a time) jumps by more than that part of its range, or turns
+    by more than 10 degrees in a step that can be seen.
 
-    At most four times as many: where an angle leaps, or all is rounding, there is no end to it.
+    At most eight times as many: where an angle leaps, or all is rounding, there is no end to it.
     """
-    enough = 4 * t.size
+    enough = 8 * t.size
     while t.size < enough:
         points = curve(t)
         extent = np.ptp(points, axis=0)
-        jumps = np.abs(np.diff(points, axis=0)) > most * np.where(extent > 0.0, extent, np.inf)
-        wide = np.flatnonzero(jumps.any(axis=1))
-        middle = t[wide] + (t[wide + 1] - t[wide]) / 2
-        new = (middle > t[wide]) & (middle < t[wide + 1])
+        steps = np.diff(points, axis=0) / np.where(extent > 0.0, extent, np.inf)
+        wide = abs(steps).max(axis=1) > most
+        size = np.linalg.norm(steps, axis=1)
+        along = np.sum(steps[1:] * steps[:-1], axis=1)
+        sharp = along < _STRAIGHT * size[1:] * size[:-1]
+        sharp &= np.minimum(size[1:], size[:-1]) > _VISIBLE
+        wide[1:] |= sharp
+        wide[:-1] |= sharp
+        left = np.flatnonzero(wide)
+        middle = t[left] + (t[left + 1] - t[left]) / 2
+        new = (middle > t[left]) & (middle < t[left + 1])
         if not new.any():
             break
-        t = np.insert(t, wide[new] + 1, middle[new])
+        t = np.insert(t, left[new] + 1, middle[new])
     return t
 
 

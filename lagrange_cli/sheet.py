@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
 
 import matplotlib
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure, FigureBase, SubFigure
 
 from .curves import NothingToDraw
 from .errors import LagtopError
@@ -115,8 +115,27 @@ def page_bytes(page: Page, file_style: str, dpi: float) -> bytes:
     with styled(page.style, page.lettering()):
         figure = Figure(figsize=page.inches(), layout="constrained")
         draw_page(figure, page)
+        _settle_layout(figure)
         figure.savefig(buffer, format=file_style, dpi=dpi, metadata=METADATA[file_style])
     return buffer.getvalue()
+
+
+def _settle_layout(figure: Figure) -> None:
+    """Lay out now, and round: the solver's last digits depend on the addresses of its variables."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    _round_boxes(figure)
+    for axes in figure.axes:
+        x, y, width, height = (round(z, 5) for z in axes.get_position().bounds)
+        axes.set_aspect("auto")  # it has been applied
+        axes.set_position((x, y, width, height))
+
+
+def _round_boxes(figure: FigureBase) -> None:
+    for part in figure.subfigs:
+        box = part.bbox_relative
+        box.p0, box.p1 = box.p0.round(5), box.p1.round(5)
+        _round_boxes(part)
 
 
 def show_page(page: Page) -> None:

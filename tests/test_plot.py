@@ -84,7 +84,8 @@ def test_the_path_is_smooth(path: Path) -> None:
     T = curves.period(scene)
     assert T
     away = np.abs(course.t[1:-1] / T - np.round(course.t[1:-1] / T)) > 0.02
-    assert turn[away].min() > math.cos(math.radians(15))
+    seen = np.minimum(size[1:], size[:-1]) > 2e-3  # smaller ones are not visible
+    assert turn[away & seen].min(initial=1.0) > math.cos(math.radians(15))
 
 
 @pytest.mark.parametrize("sign", [1, -1])
