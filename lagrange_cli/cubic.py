@@ -29,6 +29,8 @@ class Start(NamedTuple):
     """psidot0 sin^2 theta0 + b cos theta0 (4,5): angular momentum about the vertical, over A."""
     beta_plus_b: Real
     beta_minus_b: Real
+    drift: Real
+    """r0 - b, the spin rate less what the poles add to it."""
 
 
 def start(ar: Arithmetic, top: Top) -> Start:
@@ -48,6 +50,7 @@ def start(ar: Arithmetic, top: Top) -> Start:
         beta=beta,
         beta_plus_b=beta + inv.b,
         beta_minus_b=beta - inv.b,
+        drift=number(ar, top.r0) - inv.b,
     )
 
 
@@ -58,6 +61,10 @@ class Place(NamedTuple):
     u_u2: Real
     u3_u: Real
     """1 without torque, as in `Roots`."""
+    momentum_u1: Real
+    """beta - b u of (4,7) at u1."""
+    momentum_u2: Real
+    """And at u2."""
 
 
 def roots_from_start(ar: Arithmetic, begin: Start) -> tuple[Roots, Place]:
@@ -72,7 +79,8 @@ def roots_from_start(ar: Arithmetic, begin: Start) -> tuple[Roots, Place]:
     else:
         u2, u1, u3 = _cubic_roots(ar, begin)
     to_u3 = ar.mpf(1) if u3 is None else _gap(ar, u3, begin.u)
-    place = Place(_gap(ar, u1, begin.u), _gap(ar, begin.u, u2), to_u3)
+    momenta = (begin.beta - begin.b * u for u in (u1, u2))
+    place = Place(_gap(ar, u1, begin.u), _gap(ar, begin.u, u2), to_u3, *momenta)
     return _gaps(ar, u1, u2, u3), place
 
 

@@ -10,11 +10,11 @@ from .elliptic import Arithmetic, Real
 from .general import (
     Solution,
     analyse,
-    general_record,
     separatrix_swing,
     steady_rates,
     theta_constants,
 )
+from .general_record import general_record
 from .record import Regime
 from .released import released_record
 from .series import ThetaConstants, evaluate, theta_series

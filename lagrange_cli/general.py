@@ -1,30 +1,30 @@
-"""Any start: tilt, spin and both rates given.  In an mpmath context; the paper's case included.
+"""Any start: tilt, spin and both rates given; the paper's case included.
 
 The roots come from the cubic (4,9) in enough digits to take the gaps between them as differences;
-everything later needs the gaps only.  Equation numbers in parentheses are Chrapan's; what is
-without number continues him to starts that are not at rest.
+everything later needs the gaps only, in any arithmetic.  Equation numbers in parentheses are
+Chrapan's; what is without number continues him to starts that are not at rest.
 """
 
 from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from .cubic import Place, Start, roots_from_start, start
 from .elliptic import (
     Arithmetic,
     Real,
     carlson_rf,
-    complete_e,
     complete_k,
+    everywhere,
     many_digits,
-    nome,
     period_mean,
+    where,
 )
 from .errors import LagtopError
-from .record import Record, Regime, constant_rates, period_of
-from .released import complement, modulus, phase_rate, u_quarter
+from .record import Regime
+from .released import complement, modulus, phase_rate
 from .roots import Roots
 from .series import Swing, ThetaConstants
 from .top import Number, Top
@@ -109,9 +109,6 @@ def _classify(top: Top, roots: Roots) -> Regime:
     return Regime.NO_SPIN if top.r0 == 0 else Regime.REGULAR
 
 
-# Parameters and mean rates.
-
-
 def eta_plus(ar: Arithmetic, roots: Roots) -> Real:
     """F of sn^2 = (1 + u2)/(1 + u1), modulus k': the distance of X from its zero at the bottom."""
     middle = roots.u1_u2 * (roots.below_u3 / roots.u3_u2)
@@ -126,43 +123,30 @@ def eta_minus(ar: Arithmetic, roots: Roots) -> Real:
     )
 
 
-def advances(ar: Arithmetic, solution: Solution) -> tuple[Real, Real]:
+def advances(
+    ar: Arithmetic, begin: Start, roots: Roots, k_prime: Real, T: Real
+) -> tuple[Real, Real]:
     """Growth of spin and precession over a period: a drift, and what the two poles add."""
-    begin, roots, T = solution.start, solution.roots, solution.period
-    south = sign_of(begin.beta_plus_b) * _pole_advance(
-        ar, solution, abs(begin.beta_plus_b), roots.below_u1, roots.below_u2
-    )
-    north = sign_of(begin.beta_minus_b) * _pole_advance(
-        ar, solution, abs(begin.beta_minus_b), roots.above_u1, roots.above_u2
-    )
-    return (begin.r0 - begin.b) * T + south - north, south + north
+
+    def pole(momentum: Real, from_u1: Real, from_u2: Real) -> Real:
+        """T/2 times the mean of (beta +- b)/(1 +- u).
+
+        Half a turn where the axis meets the pole, and where there is no torque (k = 0).
+        """
+        if roots.u3 is None or not everywhere((from_u1 > 0) & (from_u2 > 0)):
+            return sign_of(momentum) * ar.pi
+        mc = k_prime * k_prime
+        mean = period_mean(ar, k_prime, mc * from_u2 / from_u1, 1, mc) / from_u1
+        return momentum * mean * T / 2
+
+    south = pole(begin.beta_plus_b, roots.below_u1, roots.below_u2)
+    north = pole(begin.beta_minus_b, roots.above_u1, roots.above_u2)
+    return begin.drift * T + south - north, south + north
 
 
-def _pole_advance(
-    ar: Arithmetic, solution: Solution, momentum: Real, from_u1: Real, from_u2: Real
-) -> Real:
-    """T/2 times the mean of |beta +- b| / (1 +- u).
-
-    Half a turn where the axis meets the pole, and where there is no torque (k = 0).
-    """
-    if not (from_u1 and from_u2) or solution.roots.u3 is None:
-        return +ar.pi
-    mc = solution.k_prime**2
-    mean = period_mean(ar, solution.k_prime, mc * from_u2 / from_u1, 1, mc) / from_u1
-    return momentum * mean * solution.period / 2
-
-
-def sign_of(value: Real) -> int:
+def sign_of(value: Real) -> Real:
     """The sign, and 1 for 0 (the limit is the same from both sides)."""
-    return -1 if value < 0 else 1
-
-
-def rates(begin: Start, below: Real, above: Real) -> tuple[Real | None, Real | None]:
-    """Spin rate (4,8) and precession rate (4,7) from 1 + u and 1 - u; None over a pole."""
-    if not (below and above):
-        return None, None
-    plus, minus = begin.beta_plus_b / (2 * below), begin.beta_minus_b / (2 * above)
-    return begin.r0 - begin.b + plus - minus, plus + minus
+    return where(value < 0, -1, 1)
 
 
 def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
@@ -174,11 +158,6 @@ def periods_since_top(ar: Arithmetic, solution: Solution) -> Real:
     cn2 = roots.u3_u1 * place.u_u2 / (place.u3_u * roots.u1_u2)
     w = ar.sqrt(sn2) * carlson_rf(ar, cn2, roots.u3_u1 / place.u3_u, ar.mpf(1))
     return sign_of(begin.theta_rate) * w / (2 * complete_k(ar, solution.k_prime))
-
-
-def start_rates(top: Top, begin: Start) -> tuple[Real | None, Real | None]:
-    """Rates of spin and precession at t = 0; none on the vertical."""
-    return (None, None) if top.pole else steady_rates(begin)
 
 
 def _starts_at_u1(solution: Solution) -> bool:
@@ -204,7 +183,7 @@ def theta_constants(ar: Arithmetic, solution: Solution) -> ThetaConstants:
     """What the theta series need."""
     begin, roots, T = solution.start, solution.roots, solution.period
     K = complete_k(ar, solution.k_prime)
-    spin, precession = advances(ar, solution)
+    spin, precession = advances(ar, begin, roots, solution.k_prime, T)
     return ThetaConstants(
         period=T,
         quarter=K,
@@ -221,89 +200,3 @@ def theta_constants(ar: Arithmetic, solution: Solution) -> ThetaConstants:
         rises=sign_of(begin.theta_rate),
         nutation=8 * K**2 * roots.u1_u2 * solution.k_prime**2 / (ar.pi * T),
     )
-
-
-# The record.
-
-
-def general_record(ar: Arithmetic, top: Top) -> Record:
-    """The record of any start, in an mpmath context."""
-    solution = analyse(ar, top)
-    begin, roots, degree = solution.start, solution.roots, ar.pi / 180
-    upright = ar.sqrt(roots.above_u1), ar.sqrt(roots.below_u1)
-    lowest = ar.sqrt(roots.above_u2), ar.sqrt(roots.below_u2)
-    record = Record(
-        top=top,
-        regime=solution.regime,
-        a=begin.a,
-        b=begin.b,
-        u1=roots.u1,
-        u2=roots.u2,
-        u3=roots.u3,
-        theta_min_deg=2 * ar.atan2(*upright) / degree,
-        theta_max_deg=2 * ar.atan2(*lowest) / degree,
-        path=_path(ar, begin, roots),
-    )
-    spin_rate, precession_rate = start_rates(top, begin)
-    if solution.regime is Regime.SEPARATRIX:
-        return record._replace(
-            k=solution.k,
-            k_prime=solution.k_prime,
-            modular_angle_deg=ar.mpf(90),
-            nome=ar.mpf(1),
-            K_prime=ar.pi / 2,
-            E=ar.mpf(1),
-            spin_rate_start=spin_rate,
-            precession_rate_start=precession_rate,
-            remark="rises to the vertical in infinite time",
-        )
-    integrals: dict[str, Any] = _integrals(ar, solution)
-    record = record._replace(T_nutation=solution.period, **integrals)
-    if not solution.nutates:
-        tilt = top.tilt(ar).degrees(ar)
-        return record._replace(**constant_rates(tilt, spin_rate, precession_rate, 2 * ar.pi))
-    record = record._replace(spin_rate_start=spin_rate, precession_rate_start=precession_rate)
-    return _with_mean_rates(ar, record, solution)
-
-
-def _integrals(ar: Arithmetic, solution: Solution) -> dict[str, Real | None]:
-    k, k_prime = solution.k, solution.k_prime
-    return {
-        "k": k,
-        "k_prime": k_prime,
-        "modular_angle_deg": ar.atan2(k, k_prime) * 180 / ar.pi,
-        "nome": nome(ar, m=k * k, k_prime=k_prime),
-        "K": complete_k(ar, k_prime),
-        "K_prime": complete_k(ar, k) if k else None,
-        "E": complete_e(ar, k_prime),
-    }
-
-
-def _with_mean_rates(ar: Arithmetic, record: Record, solution: Solution) -> Record:
-    begin, roots = solution.start, solution.roots
-    spin, precession = (advance / solution.period for advance in advances(ar, solution))
-    place, at_u1 = solution.place, not solution.place.u1_u
-    above_half = roots.above_u1 + place.u_u2 * roots.u3_u1 / place.u3_u
-    below_half = roots.below_u2 + place.u1_u * roots.u3_u2 / place.u3_u
-    spin_half, precession_half = rates(begin, below_half, above_half)
-    return record._replace(
-        T_spin=period_of(spin, 2 * ar.pi),
-        T_precession=period_of(precession, 2 * ar.pi),
-        u_quarter=u_quarter(roots, solution.k_prime) if at_u1 else None,
-        mean_spin_rate=spin,
-        mean_precession_rate=precession,
-        spin_rate_half=spin_half,
-        precession_rate_half=precession_half,
-    )
-
-
-def _path(ar: Arithmetic, begin: Start, roots: Roots) -> str | None:
-    """Where the precession stands still, u = beta/b, lies on u1, between the roots or outside."""
-    if not roots.u1_u2 or not (begin.b or begin.beta):
-        return None
-    if not begin.b or not roots.above_u1:  # over the upper pole there is no cusp
-        return "wavy"
-    still = begin.beta / begin.b
-    if abs(still - roots.u1) <= ar.mpf(10) ** (-(ar.dps // 2)) * roots.u1_u2:
-        return "cusped"
-    return "looping" if roots.u2 < still < roots.u1 else "wavy"

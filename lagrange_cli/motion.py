@@ -48,7 +48,8 @@ def solve(top: Top) -> Motion:
     if top.is_released:
         with localcontext(decimals.context()):
             return _rounded(released_record(decimals, top))
-    from .general import digits_for_record, general_record
+    from .general import digits_for_record
+    from .general_record import general_record
 
     return _rounded(general_record(many_digits(digits_for_record(top)), top))
 

@@ -1,8 +1,9 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
-Tops released from rest go through the formulas of `released` as arrays of doubles; what is not
-usual (a general start, a size beyond 1e+-30, lambda within 2^-44 of 1) goes through `solve`, one by
-one, and a top that cannot be gets an error in place of its numbers.
+Tops released from rest go through the formulas of `released` as arrays of doubles, others through
+those of `general_record`.  What is not usual (a size beyond 1e+-30, lambda within 2^-44 of 1, roots
+of a general start that nearly meet) goes through `solve`, one by one, and a top that cannot be gets
+an error in place of its numbers.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from .errors import LagtopError
 from .motion import solve
 from .record import NUMBER_KEYS, Regime
 from .released import STILL, Nutation, remark, unmoved
+from .starts import starts
 from .top import Top
 from .tops import Mask, Tops
 from .twofold import Array
@@ -96,6 +98,7 @@ def records(
         if (rows := found & left).any():
             block.fill(rows, regime)
             left &= ~rows
+    left = block.fill_moving(left)
     for row in np.flatnonzero(left).tolist():
         block.solve(row)
     return {key: block.columns[key] for key in keys}
@@ -141,6 +144,27 @@ class _Block:
                 value = np.radians(value)
             if value is not None:
                 self.columns[key][chosen] = value
+
+    def fill_moving(self, left: Mask) -> Mask:
+        """Rows that start with other rates, by the formulas of any start; returns what is left."""
+        rows = np.flatnonzero(left & self.tops.moving())
+        if not rows.size:
+            return left
+        found = starts(self.tops.part(rows))
+        rows, motion = rows[found.clear], found.nutation()
+        texts = {
+            "regime": np.where(self.tops.r0[rows] == 0, Regime.NO_SPIN.value, Regime.REGULAR.value),
+            "path": motion.path,
+        }
+        for key in self.texts:
+            self.columns[key][rows] = texts.get(key)
+        for key in self.numbers:
+            value = getattr(motion, key.replace("_rad", "_deg"))
+            if value is not None:
+                self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
+        still = left.copy()
+        still[rows] = False
+        return still
 
     def solve(self, row: int) -> None:
         """One row, by itself."""

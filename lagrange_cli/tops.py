@@ -78,8 +78,36 @@ class Tops(NamedTuple):
                 left = left & ~rows
         return found
 
+    def moving(self) -> Mask:
+        """Tops of usual sizes, with a torque and off the vertical, that start with other rates."""
+        with np.errstate(all="ignore"):
+            usual = self._usual_sizes() & (self.g > 0) & (self.s > 0)
+            for rate in (self.thetadot0, self.psidot0):
+                usual &= (rate == 0) | (abs(rate) >= _SMALL) & (abs(rate) <= _LARGE)
+            tilt = np.where(np.isnan(self.theta0_deg), self.theta0_rad, self.theta0_deg)
+            usual &= (tilt != 0) & (self.theta0_deg != 180)
+            usual &= (self.thetadot0 != 0) | (self.psidot0 != 0)
+            return usual
+
+    def arc_from_pole(self) -> tuple[Twofold, Mask]:
+        """Angle between the axis and the nearer pole, in radians, and whether that is the lower."""
+        in_radians = ~np.isnan(self.theta0_rad)
+        down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
+        degrees = np.where(down, 180 - self.theta0_deg, self.theta0_deg)
+        arc = Twofold(degrees) * _DEGREE
+        given = Twofold(np.where(in_radians, self.theta0_rad, 0.0))
+        other = Twofold(np.full_like(given.high, 180.0)) * _DEGREE - given
+        high = np.where(in_radians, np.where(down, other.high, given.high), arc.high)
+        low = np.where(in_radians, np.where(down, other.low, given.low), arc.low)
+        return Twofold(high, low), down
+
     def _usual(self) -> Mask:
-        usual: Mask = (self.thetadot0 == 0) & (self.psidot0 == 0) & (2 * self.A >= self.C)
+        usual = self._usual_sizes()
+        usual &= (self.thetadot0 == 0) & (self.psidot0 == 0)
+        return usual
+
+    def _usual_sizes(self) -> Mask:
+        usual: Mask = 2 * self.A >= self.C
         for x in (self.m, self.A, self.C):
             usual &= (x >= _SMALL) & (x <= _LARGE)
         for x in (self.s, self.g, abs(self.r0)):

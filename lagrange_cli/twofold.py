@@ -6,6 +6,8 @@ time exactly, however far away it is.
 
 from __future__ import annotations
 
+from math import frexp
+from math import sqrt as math_sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -73,7 +75,11 @@ def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
 
 
 class Twofold:
-    """The numbers high + low, where high is the double nearest to the sum."""
+    """The numbers high + low, where high is the double nearest to the sum.
+
+    Sums, products, quotients and square roots are good to a few units of 2^-104, of the larger part
+    in a sum.  This module is an arithmetic for the formulas of `elliptic` and `general_record`.
+    """
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
         self.high = high
@@ -83,18 +89,59 @@ class Twofold:
         """Times a power of two, exactly."""
         return Twofold(self.high * power, self.low * power)
 
-    def __mul__(self, other: Twofold) -> Twofold:
-        """The product, to a few units of 2^-104."""
+    def _like(self, other: Twofold | float) -> Twofold:
+        return other if isinstance(other, Twofold) else Twofold(np.full_like(self.high, other))
+
+    def __add__(self, other: Twofold | float) -> Twofold:
+        other = self._like(other)
+        high, error = two_sum(self.high, other.high)
+        low, rest = two_sum(self.low, other.low)
+        total = _renormalised(high, error + low)
+        return _renormalised(total.high, total.low + rest)
+
+    def __neg__(self) -> Twofold:
+        return Twofold(-self.high, -self.low)
+
+    def __abs__(self) -> Twofold:
+        sign = np.where(self.high < 0, -1.0, 1.0)
+        return Twofold(self.high * sign, self.low * sign)
+
+    def __sub__(self, other: Twofold | float) -> Twofold:
+        return self + -self._like(other)
+
+    def __rsub__(self, other: float) -> Twofold:
+        return self._like(other) - self
+
+    def __mul__(self, other: Twofold | float) -> Twofold:
+        other = self._like(other)
         high, low = two_product(self.high, other.high)
         low += self.high * other.low + self.low * other.high
         return _renormalised(high, low)
 
-    def __truediv__(self, other: Twofold) -> Twofold:
-        """The quotient, to a few units of 2^-104."""
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __truediv__(self, other: Twofold | float) -> Twofold:
+        if not isinstance(other, Twofold) and frexp(other)[0] == 0.5:
+            return self.scaled(1 / other)
+        other = self._like(other)
         high = self.high / other.high
         product, error = two_product(high, other.high)
         rest = (self.high - product) - error + self.low - high * other.low
         return _renormalised(high, rest / other.high)
+
+    def __gt__(self, other: Twofold | float) -> NDArray[np.bool_]:
+        return self.high > self._like(other).high
+
+    def __le__(self, other: Twofold | float) -> NDArray[np.bool_]:
+        return self.high <= self._like(other).high
+
+
+eps = 2.0**-104
+
+
+def sqrt(x: Twofold | float) -> Any:
+    """The square root of a number >= 0."""
+    return _renormalised(*sqrt_pair(x.high, x.low)) if isinstance(x, Twofold) else math_sqrt(x)
 
 
 def _renormalised(high: Array, low: Array) -> Twofold:
