@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .errors import LagtopError
-from .motion import Motion, solve
+from .motion import Motion
 from .record import Record
+from .sweeps import sweep
 from .top import Top, parse_number
 from .twofold import Array
 
@@ -100,8 +101,16 @@ def key_map(
 
 
 def _values(tops: list[Top], key: str) -> Array:
-    # The one place that computes a sweep: one solve() a top, until the package has `sweep`.
-    return np.array([getattr(solve(top), key) for top in tops], dtype=np.float64)
+    """A row of the map.  Raises LagtopError for a top that cannot be."""
+    columns = zip(*tops, strict=True)
+    inputs: dict[str, Any] = {
+        name: [math.nan if x is None else float(x) for x in column]
+        for name, column in zip(Top._fields, columns, strict=True)
+    }
+    found = sweep(keys=[key, "error"], **inputs)
+    for error in filter(None, found["error"]):
+        raise LagtopError(str(error))
+    return np.asarray(found[key], dtype=np.float64)
 
 
 def _changed(top: Top, inputs: dict[str, float]) -> Top:

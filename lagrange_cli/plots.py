@@ -102,7 +102,7 @@ def draw_cubic(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> Non
     """f(u), its roots, and the band in which the motion takes place."""
     cubic = cubic_curve(motion)
     axes = panel.subplots()
-    axes.set_title("The cubic f(u) = u̇² (4,9); shaded: where the motion is")
+    axes.set_title("The cubic f(u) = u̇² (4,9), the motion shaded")
     axes.set(xlabel="u = cos ϑ", ylabel="f(u) (1/time²)")
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
     axes.axhline(0.0, color=style.quiet, lw=0.9)

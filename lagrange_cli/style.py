@@ -59,6 +59,7 @@ def settings(style: Look, size: float = 1.0) -> dict[str, Any]:
         "axes.facecolor": style.paper,
         "axes.formatter.limits": (-4, 5),
         "axes.formatter.use_mathtext": True,
+        "axes.formatter.useoffset": False,
         "axes.labelcolor": style.ink,
         "axes.spines.right": False,
         "axes.spines.top": False,
