@@ -23,13 +23,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .elliptic.arithmetic import blocks, polynomial
 from .errors import LagtopError
 from .phase import Growth, Growths
 from .series import Component, Frame, Polynomial
 from .twofold import Array, Pair, reduce_phase
-
-BLOCK = 16384
-"""Samples at a time, so that the work arrays stay in the cache."""
 
 MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
@@ -121,8 +119,7 @@ class Sampler:
 
     def attitudes(self, t: Array, *, rate: bool = False) -> Iterator[tuple[slice, Attitude]]:
         """The attitude block by block; with the nutation rate where `rate` asks for it."""
-        for start in range(0, t.size, BLOCK):
-            part = slice(start, start + BLOCK)
+        for part in blocks(t.size):
             yield part, self.attitude(t[part], rate)
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
@@ -243,7 +240,7 @@ def _hyperbolic(x: Array) -> tuple[Array, Array, Array]:
 
 def _component(component: Component, S: Array, C: Array | None, s: Array) -> tuple[Array, Array]:
     """Real and imaginary part."""
-    real, imag = _polynomial(component.real, s), _polynomial(component.imag, s)
+    real, imag = polynomial(component.real, s), polynomial(component.imag, s)
     imag *= S
     if C is not None:
         scaled = imag if component.even else real
@@ -251,20 +248,11 @@ def _component(component: Component, S: Array, C: Array | None, s: Array) -> tup
     return real, imag
 
 
-def _rate(polynomial: Polynomial, S: Array, C: Array | None, s: Array) -> Array:
-    rate = _polynomial(polynomial, s)
+def _rate(coefficients: Polynomial, S: Array, C: Array | None, s: Array) -> Array:
+    rate: Array = polynomial(coefficients, s)
     rate *= S
     rate *= C if C is not None else 1.0 + S * S
     return rate
-
-
-def _polynomial(coefficients: Polynomial, s: Array) -> Array:
-    value: Array = s * coefficients[-1]
-    for coefficient in coefficients[-2:0:-1]:
-        value += coefficient
-        value *= s
-    value += coefficients[0]
-    return value
 
 
 def _polar(real: Array, imag: Array) -> tuple[Array, Array]:

@@ -15,7 +15,6 @@ from .options import ExamplesFirst, complain
 from .sink import CannotWriteError, Terminated
 
 COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
-EXIT_USAGE, EXIT_CANNOT_WRITE = 2, 74
 
 
 class LagtopGroup(ExamplesFirst, click.Group):
@@ -42,15 +41,12 @@ class LagtopGroup(ExamplesFirst, click.Group):
         except click.ClickException as error:
             complain(f"Error: {error.format_message()}")
             sys.exit(error.exit_code)
-        except LagtopError as error:
+        except (LagtopError, CannotWriteError) as error:
             complain(f"Error: {error}")
-            sys.exit(getattr(error, "exit_code", EXIT_USAGE))
-        except CannotWriteError as error:
-            complain(f"Error: {error}")
-            sys.exit(EXIT_CANNOT_WRITE)
+            sys.exit(error.exit_code)
         except OSError as error:  # of the help itself; the writers raise CannotWriteError
             complain(f"Error: cannot write standard output: {error.strerror}")
-            os._exit(EXIT_CANNOT_WRITE)  # the interpreter would try to flush it once more
+            os._exit(CannotWriteError.exit_code)  # the interpreter would try to flush it once more
         except click.Abort:
             _die_by("SIGINT")
 

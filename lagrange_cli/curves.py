@@ -16,10 +16,10 @@ import numpy as np
 from .columns import Sample, column_constants
 from .elliptic import carlson_rf, complete_k, many_digits
 from .errors import LagtopError
-from .general import periods_since_top
+from .general import periods_since_top, separatrix_swing
 from .motion import Motion
 from .record import Regime
-from .samplers import WORKING_DIGITS, solution_of
+from .samplers import solution_of
 from .top import Number
 from .twofold import Array
 
@@ -82,15 +82,13 @@ def checked_span(motion: Motion, t_max: Number | None) -> float | None:
 
 def _periods_before(motion: Motion) -> float:
     """Nutation periods from the last highest point to t = 0."""
-    return float(periods_since_top(many_digits(WORKING_DIGITS), solution_of(motion.top)))
+    return float(periods_since_top(many_digits(), solution_of(motion.top)))
 
 
 def _time_of_start(motion: Motion) -> float:
     """On the separatrix: how long before t = 0, if at all, the axis was lowest."""
-    from .general import separatrix_swing
-
     solution = solution_of(motion.top)
-    swing = separatrix_swing(many_digits(WORKING_DIGITS), solution)
+    swing = separatrix_swing(many_digits(), solution)
     return -float(swing.offset / solution.speed)
 
 
@@ -146,7 +144,8 @@ def refined(t: Array, curve: Callable[[Array], Array], most: float = 0.02) -> Ar
     """More times where a curve (a row a time) jumps by more than that part of its range, or turns
     by more than 10 degrees in a step that can be seen.
 
-    At most eight times as many: where an angle leaps, or all is rounding, there is no end to it.
+    No more once they are eight times as many: where an angle leaps, or all is rounding, there is no
+    end to it.
     """
     enough = 8 * t.size
     while t.size < enough:
@@ -216,15 +215,18 @@ class AngleCurves(NamedTuple):
         return self.phi - self.spin_rate * self.t, self.psi - self.precession_rate * self.t
 
 
+def _angles_at(motion: Motion, t: Array) -> AngleCurves:
+    rates = motion.mean_spin_rate, motion.mean_precession_rate
+    return AngleCurves(t, *motion.angles(t), *rates)
+
+
 def angle_curves(motion: Motion, t_max: float) -> AngleCurves:
     """The three angles from 0 to t_max."""
 
     def angles(t: Array) -> Array:
         return np.stack(motion.angles(t), axis=1)
 
-    t = refined(phase_times(motion, t_max), angles)
-    rates = motion.mean_spin_rate, motion.mean_precession_rate
-    return AngleCurves(t, *motion.angles(t), *rates)
+    return _angles_at(motion, refined(phase_times(motion, t_max), angles))
 
 
 def remainder_curves(motion: Motion, t_max: float) -> AngleCurves:
@@ -233,10 +235,6 @@ def remainder_curves(motion: Motion, t_max: float) -> AngleCurves:
         raise NothingToDraw(f"no remainders: {motion.regime.value} has no nutation period")
 
     def remainders(t: Array) -> Array:
-        parts = AngleCurves(
-            t, *motion.angles(t), motion.mean_spin_rate, motion.mean_precession_rate
-        )
-        return np.stack(parts.remainders(), axis=1)
+        return np.stack(_angles_at(motion, t).remainders(), axis=1)
 
-    t = refined(phase_times(motion, t_max), remainders)
-    return AngleCurves(t, *motion.angles(t), motion.mean_spin_rate, motion.mean_precession_rate)
+    return _angles_at(motion, refined(phase_times(motion, t_max), remainders))

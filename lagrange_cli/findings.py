@@ -1,9 +1,7 @@
-"""What a report has found: conditions, rows and conclusions; as CSV and as JSON."""
+"""What a report has found: conditions, rows and conclusions."""
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -17,7 +15,7 @@ class Field(NamedTuple):
 
     key: str
     heading: str = ""
-    """None: not in the table."""
+    """Empty: not in the table."""
     show: Callable[[Any], str] = str
     is_text: bool = False
 
@@ -48,14 +46,6 @@ class Findings(NamedTuple):
             "conclusions": self.conclusions,
         }
         return orjson.dumps(whole, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE)
-
-    def as_csv(self) -> bytes:
-        """The rows alone, with a header."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow([field.key for field in self.fields])
-        writer.writerows(row.values() for row in self.values())
-        return text.getvalue().encode()
 
 
 def short(value: float) -> str:

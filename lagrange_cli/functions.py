@@ -13,7 +13,8 @@ from .elliptic.jacobi import jacobi
 from .elliptic.modulus import Modulus, constants, modulus
 from .elliptic.theta import Complex, omega, pi_function, theta_of, zeta
 from .errors import LagtopError
-from .settle import settle
+from .numerals import double_text
+from .settle import settle, settled_or_rounded
 from .top import number
 from .twofold import pair
 
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from .settle import NumberText
     from .times import Times
     from .twofold import Array
-
-WORKING_DIGITS = 50
-"""Of what is rounded to doubles."""
 
 ONE_ARGUMENT = {"theta": theta_of, "zeta": zeta}
 TWO_ARGUMENTS = {"omega": omega, "pi": pi_function}
@@ -79,10 +77,7 @@ def constants_in(ar: Arithmetic, given: Given) -> dict[str, Real]:
 
 def constants_record(given: Given, digits: int | None = None) -> dict[str, Any]:
     """The record, each number the nearest double or to so many significant digits."""
-    if digits is not None:
-        return settle(lambda ar: constants_in(ar, given), digits)
-    exact = constants_in(many_digits(WORKING_DIGITS), given)
-    return {key: None if value is None else float(value) for key, value in exact.items()}
+    return settled_or_rounded(lambda ar: constants_in(ar, given), digits)
 
 
 def values(ar: Arithmetic, u: Real, of: Modulus, request: Request) -> dict[str, Real]:
@@ -118,7 +113,7 @@ def rows(arguments: Times, request: Request) -> tuple[list[str], Iterator[Array]
     """The header, and blocks of rows in doubles.  Raises LagtopError before the first block."""
     import numpy as np
 
-    exact = request.given.modulus(many_digits(WORKING_DIGITS))
+    exact = request.given.modulus(many_digits())
     of = Modulus(float(exact.k), *pair(exact.k_prime))
 
     def columns(u: Array) -> dict[str, Array]:
@@ -155,7 +150,7 @@ def series_rows(given: Given, u: Fraction | None, terms: int) -> tuple[list[str]
 
     Raises LagtopError for k = 0 and k = 1, where the series are limits.
     """
-    ar = many_digits(WORKING_DIGITS)
+    ar = many_digits()
     of = given.modulus(ar)
     if not (of.k and of.k_prime):
         raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(of.k)}")
@@ -177,7 +172,7 @@ def series_rows(given: Given, u: Fraction | None, terms: int) -> tuple[list[str]
     for n, row in enumerate(zip(*(parts for parts, _ in sums.values()), strict=False), 1):
         pairs = zip(row, exact, strict=True)
         cells = (x for part, true in pairs for x in (part, abs(part - true)))
-        table.append([str(n), *(repr(float(x)) for x in cells)])
+        table.append([str(n), *(double_text(float(x)) for x in cells)])
         if n == terms:
             break
     return header, table

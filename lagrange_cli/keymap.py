@@ -10,9 +10,9 @@ import numpy as np
 
 from .errors import LagtopError
 from .motion import Motion
-from .record import Record
+from .record import NUMBER_KEYS
 from .sweeps import sweep
-from .top import Top, parse_number
+from .top import Top, overridden, parse_number
 from .twofold import Array
 
 INPUTS = {
@@ -28,7 +28,6 @@ INPUTS = {
 }
 """The inputs that can vary, and what they are."""
 
-KEYS = [key for key in Record._fields[2:-2] if key not in ("a", "b")] + ["a", "b"]
 MOST_CELLS = 1_000_000
 DEFAULT_COUNTS = 64, 48
 
@@ -90,37 +89,38 @@ def key_map(
     motion: Motion, key: str, x: Axis, y: Axis, watch: Watch = lambda rows, _: rows
 ) -> KeyMap:
     """The key over the grid, the other inputs as in the motion.  Raises LagtopError."""
-    if key not in KEYS:
-        raise LagtopError(f"--key must be among {' '.join(KEYS)}, got {key!r}")
+    if key not in NUMBER_KEYS:
+        raise LagtopError(f"--key must be among {' '.join(NUMBER_KEYS)}, got {key!r}")
     if x.name == y.name:
         raise LagtopError(f"--x and --y must be different inputs, got {x.name} twice")
-    tops = [[_changed(motion.top, {x.name: p, y.name: q}) for p in x.values] for q in y.values]
-    rows = (_values(row, key) for row in tops)
-    values = np.stack(list(watch(rows, len(tops) * len(tops[0]))))
-    return KeyMap(key, x, y, values, np.array([[_sleeping(top) for top in row] for row in tops]))
+    if x.values.size * y.values.size > MOST_CELLS:
+        cells = x.values.size * y.values.size
+        raise LagtopError(f"a map has at most 1e6 cells, this one would have {cells}")
+    own = {name: value for name, value in motion.top._asdict().items() if value is not None}
+
+    def over(x_values: Array, y_values: Array | float) -> dict[str, Any]:
+        return overridden(own, {_input(x.name): x_values, _input(y.name): y_values})
+
+    rows = (_values(over(x.values, value), key) for value in y.values.tolist())
+    values = np.stack(list(watch(rows, x.values.size * y.values.size)))
+    return KeyMap(key, x, y, values, _sleeping(over(*np.meshgrid(x.values, y.values)), values))
 
 
-def _values(tops: list[Top], key: str) -> Array:
-    """A row of the map.  Raises LagtopError for a top that cannot be."""
-    columns = zip(*tops, strict=True)
-    inputs: dict[str, Any] = {
-        name: [math.nan if x is None else float(x) for x in column]
-        for name, column in zip(Top._fields, columns, strict=True)
-    }
+def _input(name: str) -> str:
+    return "theta0_deg" if name == "theta0" else name
+
+
+def _values(inputs: dict[str, Any], key: str) -> Array:
     found = sweep(keys=[key, "error"], **inputs)
     for error in filter(None, found["error"]):
-        raise LagtopError(str(error))
+        raise LagtopError(error)
     return np.asarray(found[key], dtype=np.float64)
 
 
-def _changed(top: Top, inputs: dict[str, float]) -> Top:
-    given = {key: value for key, value in top._asdict().items() if value is not None}
-    if "theta0" in inputs:
-        given.pop("theta0_rad", None)
-    renamed = {"theta0_deg" if key == "theta0" else key: x for key, x in inputs.items()}
-    return Top(**(given | renamed))
-
-
-def _sleeping(top: Top) -> float:
-    torque = float(4 * top.A * top.m * top.g * top.s)
-    return abs(float(top.C * top.r0)) / math.sqrt(torque) if torque else math.inf
+def _sleeping(inputs: dict[str, Any], like: Array) -> Array:
+    m, A, C, s, g, r0 = (
+        inputs[name] + np.zeros_like(like) for name in ("m", "A", "C", "s", "g", "r0")
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = abs(C * r0) / np.sqrt(4 * A * m * g * s)
+    return np.where(m * g * s > 0, ratio, np.inf)

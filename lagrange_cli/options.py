@@ -14,10 +14,11 @@ from . import __version__
 from .errors import LagtopError
 from .motion import Motion, solve
 from .output import write_findings
-from .top import Number, build_top, parse_number
+from .top import Number, build_top, overridden, parse_number
 
 if TYPE_CHECKING:
     from .findings import Findings
+    from .times import Grid
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -27,53 +28,34 @@ T = TypeVar("T")
 V = TypeVar("V")
 
 
-class DecimalType(click.ParamType):  # type: ignore[type-arg]
-    """A decimal number, kept exact."""
+class Parsed(click.ParamType):  # type: ignore[type-arg]
+    """What a function makes of a text; its LagtopError goes on from the name of the option."""
 
-    name = "number"
+    def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
+        self.name, self.parse = name, parse
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Fraction:
-        """The exact value of the text."""
-        if isinstance(value, Fraction):
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The value, which click may hand in a second time when it is no text any more."""
+        if not isinstance(value, str):
             return value
         try:
-            return parse_number(str(value))
+            return self.parse(value)
         except LagtopError as error:
-            raise click.UsageError(f"{_option(param)} {error}", ctx) from None
+            raise click.UsageError(f"{param.opts[0] if param else 'value'} {error}", ctx) from None
 
 
-class CountType(DecimalType):
+def _parse_count(text: str) -> int:
     """A whole number, also as 1e6."""
-
-    name = "integer"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The integer."""
-        exact = super().convert(value, param, ctx)
-        if exact.denominator != 1:
-            raise click.UsageError(f"{_option(param)} must be a whole number, got {value}", ctx)
-        return int(exact)
+    exact = parse_number(text)
+    if exact.denominator != 1:
+        raise LagtopError(f"must be a whole number, got {text}")
+    return int(exact)
 
 
-class RangeType(click.ParamType):  # type: ignore[type-arg]
-    """A:B:N, so many numbers from A to B."""
+def _parse_range(text: str) -> Grid:
+    from .times import parse_range
 
-    name = "A:B:N"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The grid."""
-        from .times import parse_range
-
-        try:
-            return parse_range(value) if isinstance(value, str) else value
-        except LagtopError as error:
-            raise click.UsageError(f"{_option(param)} {error}", ctx) from None
-
-
-def _option(param: click.Parameter | None) -> str:
-    return param.opts[0] if param else "value"
+    return parse_range(text)
 
 
 class ExamplesFirst(click.Command):
@@ -111,10 +93,8 @@ def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
     from .scene import SceneFile
 
     file = SceneFile(scene)
-    tilt_given = any(key.startswith("theta0_") for key in given)
-    inputs = {x: y for x, y in file.inputs.items() if not (tilt_given and x.startswith("theta0_"))}
     try:
-        return solve(build_top(inputs | given, exact=exact))
+        return solve(build_top(overridden(file.inputs, given), exact=exact))
     except LagtopError as error:
         raise error if error.key in given else file.error(error) from None
 
@@ -174,7 +154,9 @@ def complain(line: str) -> None:
         click.echo(" ".join(line.split()), err=True)
 
 
-NUMBER, COUNT, RANGE = DecimalType(), CountType(), RangeType()
+NUMBER = Parsed("number", parse_number)
+COUNT = Parsed("integer", _parse_count)
+RANGE = Parsed("A:B:N", _parse_range)
 
 _SCENE_OPTIONS = [
     ("--m", "Mass."),

@@ -50,10 +50,14 @@ def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "
     elif style == "csv":
         text = f"{','.join(record)}\n{','.join(map(value_text, record.values()))}\n".encode()
     else:
-        members = (f'"{key}": {_json_value(value)}' for key, value in record.items())
-        text = f"{{{', '.join(members)}}}\n".encode()
+        text = _object((key, _json_value(value)) for key, value in record.items()) + b"\n"
     with sink(path) as stream:
         stream.write(text)
+
+
+def _object(members: Iterable[tuple[str, str]]) -> bytes:
+    inside = ", ".join(f'"{name}": {text}' for name, text in members)
+    return f"{{{inside}}}".encode()
 
 
 def _json_value(value: Any) -> str:
@@ -183,23 +187,17 @@ def csv_text(value: Any) -> str:
 
 def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str, path: str) -> None:
     """Rows of numbers written out, in the same three styles; an empty text stands for none."""
-    with sink(path) as stream:
-        if style == "table":
-            from .report import rows_table
+    if style == "table":
+        from .report import rows_table
 
+        with sink(path) as stream:
             terminal, encoding = _is_terminal(path), _encoding(path)
             stream.write(rows_table(names, rows, terminal=terminal, encoding=encoding))
-        elif style == "csv":
-            for row in chain([names], rows):
-                stream.write(",".join(row).encode() + b"\n")
-        else:
-            separator = b"["
-            for row in rows:
-                pairs = zip(names, row, strict=True)
-                members = (f'"{name}": {text or "null"}' for name, text in pairs)
-                stream.write(separator + f"{{{', '.join(members)}}}".encode())
-                separator = b",\n"
-            stream.write(b"]\n")
+    elif style == "csv":
+        write_text_blocks(style, names, (f"{','.join(row)}\n".encode() for row in rows), path)
+    else:
+        objects = (_object(zip(names, (x or "null" for x in row), strict=True)) for row in rows)
+        write_text_blocks(style, names, objects, path)
 
 
 def write_findings(find: Callable[[], Findings], style: str, path: str) -> Findings:
@@ -215,5 +213,11 @@ def write_findings(find: Callable[[], Findings], style: str, path: str) -> Findi
             terminal, encoding = _is_terminal(path), _encoding(path)
             stream.write(findings_table(findings, terminal=terminal, encoding=encoding))
         else:
-            stream.write(findings.as_csv() if style == "csv" else findings.as_json())
+            stream.write(_findings_csv(findings) if style == "csv" else findings.as_json())
     return findings
+
+
+def _findings_csv(findings: Findings) -> bytes:
+    """The rows alone, with a header."""
+    lines = [[field.key for field in findings.fields], *(x.values() for x in findings.values())]
+    return "".join(",".join(map(csv_text, line)) + "\n" for line in lines).encode()

@@ -22,7 +22,7 @@ Block = tuple[int, range | Lines]
 """The number of a part, and the points of the grid or the lines of the file that it is made of."""
 
 
-class FailedError(LagtopError):
+class SomeFailedError(LagtopError):
     """Some tops have an error, which stands in their rows."""
 
     exit_code = 1
@@ -133,7 +133,7 @@ class Tally:
         self.first = ""
 
     def passing(self, parts: Iterable[Part]) -> Iterator[Part]:
-        """The parts.  With `fail_fast`, raises FailedError at the first one with an error."""
+        """The parts.  With `fail_fast`, raises SomeFailedError at the first one with an error."""
         for part in parts:
             self.count, self.failed = self.count + part.tops, self.failed + part.failed
             self.first = self.first or part.first_error
@@ -146,10 +146,10 @@ class Tally:
         return (part.text for part in self.passing(parts))
 
     def check(self) -> None:
-        """Raise FailedError if there was any error."""
+        """Raise SomeFailedError if there was any error."""
         if self.failed and self.fail_fast:
-            raise FailedError(self.first)
+            raise SomeFailedError(self.first)
         if self.failed:
-            raise FailedError(
+            raise SomeFailedError(
                 f"{self.failed} of {self.count} tops have an error; the first: {self.first}"
             )

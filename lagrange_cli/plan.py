@@ -10,7 +10,7 @@ from .errors import LagtopError
 from .parts import Block, Sweep
 from .rowfile import open_rows
 from .sweeps import BLOCK_ROWS, check_keys, record_keys
-from .top import Number, Top, build_top
+from .top import Number, Top, build_top, overridden
 
 
 class Plan(NamedTuple):
@@ -69,9 +69,7 @@ def shared_inputs(scene: str | None, given: Mapping[str, Number]) -> dict[str, f
         except LagtopError as error:
             raise file.error(error) from None
     inputs = {name: float(x) for name, x in top._asdict().items() if x is not None}
-    if any(name.startswith("theta0_") for name in given):
-        inputs = {name: x for name, x in inputs.items() if not name.startswith("theta0_")}
-    return inputs | {name: float(x) for name, x in given.items()}
+    return overridden(inputs, {name: float(x) for name, x in given.items()})
 
 
 def _check_shared(

@@ -134,10 +134,9 @@ _ASCII = str.maketrans(
 def record_table(record: Mapping[str, Any], kind: str, *, terminal: bool, encoding: str) -> bytes:
     """A record by the groups of its kind, a line for each key that has a value; its remark last."""
     angle = "rad" if any(key.endswith("_rad") for key in record) else "deg"
-    spelling = {} if encoding.lower().startswith("utf") else _ASCII
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for heading in ("Symbol", "Name", "Value", "Unit", "Equation"):
-        table.add_column(heading, justify="right" if heading == "Value" else "left", no_wrap=True)
+    spelling = _spelling(encoding)
+    headings = ("Symbol", "Name", "Value", "Unit", "Equation")
+    table = _table((heading, heading == "Value") for heading in headings)
     for group, rows in LAYOUTS[kind].items():
         shown = [
             [cell.translate(spelling) for cell in line]
@@ -165,9 +164,7 @@ def rows_table(
     names: Sequence[str], rows: Iterable[Iterable[str]], *, terminal: bool, encoding: str
 ) -> bytes:
     """A column for each name, a line for each row."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for name in names:
-        table.add_column(name, justify="right", no_wrap=True)
+    table = _table((name, True) for name in names)
     for row in rows:
         table.add_row(*row)
     return _rendered(table, terminal, encoding)
@@ -175,17 +172,27 @@ def rows_table(
 
 def findings_table(findings: Findings, *, terminal: bool, encoding: str) -> bytes:
     """The conditions as lines, the rows as a table of short numbers, and the conclusions."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     shown = [field for field in findings.fields if field.heading]
-    for field in shown:
-        table.add_column(field.heading, justify="left" if field.is_text else "right", no_wrap=True)
+    table = _table((field.heading, not field.is_text) for field in shown)
     for row in findings.rows:
         table.add_row(*(field.cell(getattr(row, field.key)) for field in shown))
-    spelling = {} if encoding.lower().startswith("utf") else _ASCII
+    spelling = _spelling(encoding)
     heads = (_condition(name, text) for name, text in findings.conditions.items())
     above = "\n".join(heads).translate(spelling) + "\n\n"
     below = "".join(f"\n{line}" for line in findings.conclusions).translate(spelling)
     return above.encode() + _rendered(table, terminal, encoding) + f"{below}\n".encode()
+
+
+def _table(columns: Iterable[tuple[str, bool]]) -> Table:
+    """No rows yet; each column by its heading, and whether it holds numbers."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for heading, numeric in columns:
+        table.add_column(heading, justify="right" if numeric else "left", no_wrap=True)
+    return table
+
+
+def _spelling(encoding: str) -> dict[int, str]:
+    return {} if encoding.lower().startswith("utf") else _ASCII
 
 
 def _condition(name: str, text: str) -> str:

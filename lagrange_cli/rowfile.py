@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from .errors import LagtopError
 from .numerals import json_text
-from .top import Top, parse_number
+from .top import Top, overridden, parse_number
 
 INPUTS = Top._fields
 
@@ -40,11 +40,7 @@ class Row(NamedTuple):
     def completed(self, given: Mapping[str, float]) -> Mapping[str, float]:
         """The inputs, with those given where the row lacks them; those that could be read where
         there is an error."""
-        if self.error:
-            return self.inputs
-        tilted = "theta0_deg" in self.inputs or "theta0_rad" in self.inputs
-        others = {x: y for x, y in given.items() if not (tilted and x.startswith("theta0_"))}
-        return {**others, **self.inputs}
+        return self.inputs if self.error else overridden(given, self.inputs)
 
 
 class RowFile(NamedTuple):

@@ -19,16 +19,13 @@ from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluat
 from .top import Tilt, Top
 from .twofold import pair
 
-WORKING_DIGITS = 50
-"""Digits of the constants; 34 would do, the rest is margin."""
-
 _NEGLIGIBLE = 2.0**-60
 
 
 @lru_cache(maxsize=128)
 def sampler_of(top: Top) -> Sampler:
     """What gives the angles of a top at any time.  Raises LagtopError as `solve` does."""
-    ar, solution = many_digits(WORKING_DIGITS), solution_of(top)
+    ar, solution = many_digits(), solution_of(top)
     if solution.regime is Regime.SEPARATRIX:
         begin = solution.start
         swing = separatrix_swing(ar, solution)
@@ -41,7 +38,7 @@ def sampler_of(top: Top) -> Sampler:
 @lru_cache(maxsize=128)
 def solution_of(top: Top) -> Solution:
     """The motion in many digits."""
-    return analyse(many_digits(WORKING_DIGITS), top)
+    return analyse(many_digits(), top)
 
 
 def theta_sampler(ar: Arithmetic, c: ThetaConstants) -> ThetaSampler:

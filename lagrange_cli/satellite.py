@@ -18,7 +18,7 @@ from .elliptic import Arithmetic, Real, agm, many_digits, where
 from .elliptic.jacobi import jacobi
 from .elliptic.modulus import Modulus
 from .errors import LagtopError
-from .settle import settle
+from .settle import settle, settled_or_rounded
 from .top import number
 
 if TYPE_CHECKING:
@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from .settle import NumberText
     from .times import Times
     from .twofold import Array
-
-WORKING_DIGITS = 50
-"""Of what is rounded to doubles."""
 
 
 class Quadrature(NamedTuple):
@@ -131,10 +128,7 @@ def record(of: Quadrature, digits: int | None = None) -> dict[str, Any]:
     Raises LagtopError as `Quadrature.check` does.
     """
     of.check()
-    if digits is not None:
-        return settle(lambda ar: _record_in(ar, of), digits)
-    exact = _record_in(many_digits(WORKING_DIGITS), of)
-    return {key: x if x is None or isinstance(x, str) else float(x) for key, x in exact.items()}
+    return settled_or_rounded(lambda ar: _record_in(ar, of), digits)
 
 
 def _record_in(ar: Arithmetic, of: Quadrature) -> dict[str, Any]:
@@ -214,7 +208,7 @@ def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterato
     from .twofold import pair, reduce_phase
 
     of.check()
-    exact = many_digits(WORKING_DIGITS)
+    exact = many_digits()
     constants_exact = constants(exact, of)
     rate = pair(1 / constants_exact.period)
     offset = number(exact, c3) / constants_exact.period

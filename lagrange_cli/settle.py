@@ -38,6 +38,16 @@ def settle(compute: Callable[[Arithmetic], Mapping[Any, Any]], digits: int) -> d
     raise LagtopError(f"{digits} digits did not settle with {working} to work with")
 
 
+def settled_or_rounded(
+    compute: Callable[[Arithmetic], Mapping[Any, Any]], digits: int | None
+) -> dict[Any, Any]:
+    """Settled to so many digits; without them each number the nearest double."""
+    if digits is not None:
+        return settle(compute, digits)
+    exact = compute(many_digits())
+    return {key: x if x is None or isinstance(x, str) else float(x) for key, x in exact.items()}
+
+
 def _precisions(digits: int) -> Iterator[int]:
     """By half as much again each time."""
     working = digits + 15

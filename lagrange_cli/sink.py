@@ -15,6 +15,8 @@ from typing import Any, BinaryIO, NoReturn
 class CannotWriteError(Exception):
     """The output could not be written; the message says where and why."""
 
+    exit_code = 74
+
 
 class Terminated(BaseException):
     """A signal to end, raised so that a temporary file is removed on the way out."""

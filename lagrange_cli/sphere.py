@@ -32,9 +32,7 @@ def draw_path_on_sphere(
     narrow = 0 < path.greatest - path.least < NARROW
     axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
     view = best_view(path.axis)
-    axes[0].set_title(
-        " ".join(["Figure axis on the unit sphere:", path.kind or motion.regime.value])
-    )
+    axes[0].set_title(f"Figure axis on the unit sphere: {path.kind or motion.regime.value}")
     draw_globe(axes[0], view, path, radians, style)
     lines = draw_path(axes[0], view, path, style)
     bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)

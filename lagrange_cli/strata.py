@@ -154,7 +154,7 @@ def units(rng: random.Random) -> Scene:
 
 
 def far_times(rng: random.Random) -> Scene:
-    """Any of the other strata, at 10^11 to 10^12 periods (see `times`)."""
+    """Any of the other strata, at 10^11 to 10^12 periods (see `scene_and_times`)."""
     return rng.choice([generic, fast, slow, upright_below, hanging, bottom_pass, tiny_nutation])(
         rng
     )

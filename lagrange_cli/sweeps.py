@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import LagtopError
+from .errors import LagtopError, check_names
 from .motion import solve
 from .record import NUMBER_KEYS, Regime
 from .released import STILL, Nutation, remark, unmoved
@@ -73,12 +73,7 @@ def sweep(
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
     """The keys.  Raises LagtopError for one that no record has, or that comes twice."""
-    known = record_keys(radians=radians)
-    for key in keys or [""]:
-        if key not in known:
-            raise LagtopError(f"--keys must be among {' '.join(known)}, got {key!r}")
-    if len(set(keys)) < len(keys):
-        raise LagtopError(f"--keys must name each key once, got {' '.join(keys)}")
+    check_names("--keys", keys, record_keys(radians=radians))
     return keys
 
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from .errors import LagtopError
+from .errors import LagtopError, check_names
 from .motion import Motion
 from .times import Grid, Times, even_grid
 
@@ -78,11 +78,7 @@ def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
     """The header of some columns.  Raises LagtopError for an unknown one."""
     from .columns import COLUMNS
 
-    for name in columns or [""]:
-        if name not in COLUMNS:
-            raise LagtopError(f"--columns must be among {' '.join(COLUMNS)}, got {name!r}")
-    if len(set(columns)) < len(columns):
-        raise LagtopError(f"--columns must name each column once, got {' '.join(columns)}")
+    check_names("--columns", columns, COLUMNS)
     unit = "rad" if radians else "deg"
     return [text.replace("*", unit) for name in columns for text in COLUMNS[name].headings]
 

@@ -42,12 +42,9 @@ class Tables(NamedTuple):
 
     def parts(self) -> Iterator[Part]:
         """Blocks of rows as text; a top that has no table has one row with its error."""
-        number = 0
         for some in self.lines:
             for row in self.source.rows(some):
-                for part in self._table(row):
-                    yield part._replace(number=number)
-                    number += 1
+                yield from self._table(row)
 
     def _table(self, row: Row) -> Iterator[Part]:
         try:

@@ -6,20 +6,23 @@ import math
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
+from . import decimals
 from .elliptic import Arithmetic, Real
 from .errors import LagtopError
 
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
 
+N = TypeVar("N")
+
 _DECIMAL = set("0123456789.eE+-")
 _MOST_CHARACTERS = 2000
 _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
-_PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
+_PI = Fraction(decimals.pi)
 
 
 def parse_number(text: str) -> Fraction:
@@ -168,11 +171,6 @@ class Top(_Inputs):
             return 1
         return -1 if self.theta0_deg == 180 else 0
 
-    def sleeps_stably(self) -> bool:
-        """Whether lambda = C^2 r0^2 / 4Amgs >= 1, so that the upright top stays up."""
-        m, A, C, s, g, r0 = (Fraction(x) for x in (self.m, self.A, self.C, self.s, self.g, self.r0))
-        return (C * r0) ** 2 >= 4 * A * m * g * s
-
     def caveat(self) -> str | None:
         """One line on a body that can be computed but not built, or None."""
         offset = Fraction(self.m) * Fraction(self.s) ** 2
@@ -239,6 +237,13 @@ def _shown(value: Number) -> str:
     if isinstance(value, float) or float(value) == value:
         return str(float(value))
     return str(Decimal(value.numerator) / Decimal(value.denominator))
+
+
+def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
+    """The inputs with those given in their place; a tilt takes the place of one in either unit."""
+    tilted = any(key.startswith("theta0_") for key in given)
+    kept = {x: y for x, y in inputs.items() if not (tilted and x.startswith("theta0_"))}
+    return kept | dict(given)
 
 
 def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:

@@ -18,9 +18,9 @@ import orjson
 from scipy import special
 
 from lagrange_cli import Top, solve
-from lagrange_cli.angles import BLOCK
 from lagrange_cli.closed_forms import CLOSED_FORMS
 from lagrange_cli.elliptic import carlson_rf
+from lagrange_cli.elliptic.arithmetic import BLOCK
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus

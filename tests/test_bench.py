@@ -25,6 +25,7 @@ from lagrange_cli.bench import Row, conclusions, measure, task, with_front
 from lagrange_cli.closed_forms import CLOSED_FORMS
 from lagrange_cli.findings import Findings
 from lagrange_cli.integrators import integrators
+from lagrange_cli.numerals import value_text
 
 LOOPING = Top(psidot0=-4)
 METHODS = CLOSED_FORMS | integrators(10)
@@ -140,7 +141,7 @@ def test_formats_hold_the_same(lagtop: Lagtop) -> None:
     rows = list(csv.DictReader(io.StringIO(listed.stdout)))
     assert list(whole["rows"][0]) == list(rows[0])
     assert len(whole["rows"]) == len(rows) == 1 + 5 + 4
-    exact = {(x["method"], str(x["setting"])): x["error_max"] for x in whole["rows"]}
+    exact = {(x["method"], value_text(x["setting"])): x["error_max"] for x in whole["rows"]}
     assert {(x["method"], x["setting"]): float(x["error_max"]) for x in rows} == exact
     assert set(whole["conditions"]) <= set(re.findall(r"^(\w+):", listed.stderr, re.MULTILINE))
     table = lagtop("bench", *SMALL).stdout

@@ -292,7 +292,7 @@ def test_series_of_the_command(lagtop: Lagtop) -> None:
         ("--k 0.5 --u 1 --u-range 0:1:3", "exclude each other"),
         ("--k 0.5 --theta", "--theta needs --u or --u-range"),
         ("--k 0.5 --u 1 --pi", "--omega and --pi need --param"),
-        ("--k 0.5 --u 1 --param 2", "exclude each other"),
+        ("--k 0.5 --u 1 --param 2", "--param needs --omega or --pi"),
         ("--k 0.5 --u 1 --pi --param x", "must be a finite decimal number"),
         ("--k 0.5 --u 1 --pi --param 3i", "must be smaller than K'"),
         ("--k 1 --u 1 --theta", "k must be below 1 for theta functions"),

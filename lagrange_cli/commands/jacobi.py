@@ -92,6 +92,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     arguments = _arguments(single, grid)
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
+        exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
         _write_series(given, arguments, terms, style, output)
         return
     if arguments is None:
@@ -113,7 +114,8 @@ def _arguments(single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:
     """The value of --param, and whether it is imaginary."""
     if not {"omega", "pi"} & set(families):
-        exclude({"--param": param, "no --omega or --pi": True})
+        if param is not None:
+            raise LagtopError("--param needs --omega or --pi")
         return Fraction(0), False
     if param is None:
         raise LagtopError("--omega and --pi need --param, as 0.7 or, imaginary, as 0.7i")

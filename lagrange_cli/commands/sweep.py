@@ -2,46 +2,38 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from ..errors import LagtopError
-from ..options import ExamplesFirst, by_key, exclude, input_options, output_options, with_progress
+from ..options import (
+    ExamplesFirst,
+    Parsed,
+    by_key,
+    exclude,
+    input_options,
+    output_options,
+    with_progress,
+)
 from ..output import write_parts, write_text_blocks
 
 if TYPE_CHECKING:
     from ..axes import Axis
 
 
-class AxisType(click.ParamType):  # type: ignore[type-arg]
-    """A number, a list of numbers, or a range of them."""
+def _parse_axis(text: str) -> Axis:
+    from ..axes import parse_axis
 
-    name = "range"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Axis:
-        """The values."""
-        from ..axes import parse_axis
-
-        try:
-            return parse_axis(value)
-        except LagtopError as error:
-            raise click.UsageError(f"{param.opts[0] if param else ''} {error}", ctx) from None
+    return parse_axis(text)
 
 
-class ShardType(click.ParamType):  # type: ignore[type-arg]
+def _parse_shard(text: str) -> tuple[int, int]:
     """I/N, the I-th of N."""
-
-    name = "I/N"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        """The two numbers."""
-        which, _, count = str(value).partition("/")
-        if which.isdecimal() and count.isdecimal() and 1 <= int(which) <= int(count):
-            return int(which), int(count)
-        raise click.UsageError(f"--shard must be I/N with 1 <= I <= N, got {value}", ctx)
+    which, _, count = text.partition("/")
+    if which.isdecimal() and count.isdecimal() and 1 <= int(which) <= int(count):
+        return int(which), int(count)
+    raise LagtopError(f"must be I/N with 1 <= I <= N, got {text}")
 
 
 @click.command(
@@ -56,12 +48,14 @@ class ShardType(click.ParamType):  # type: ignore[type-arg]
     """,
 )
 @click.argument("files", nargs=-1, type=click.Path(), metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
-@input_options(AxisType())
+@input_options(Parsed("range", _parse_axis))
 @click.option(
     "--keys", metavar="NAMES", help="Compute and print only these keys of the record, with commas."
 )
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
-@click.option("--shard", type=ShardType(), help="Only every N-th part, from the I-th on.")
+@click.option(
+    "--shard", type=Parsed("I/N", _parse_shard), help="Only every N-th part, from the I-th on."
+)
 @click.option(
     "--dask", "cluster", metavar="ADDRESS|local", help="Compute the parts on a Dask cluster."
 )

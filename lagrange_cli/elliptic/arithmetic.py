@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import wraps
 from typing import Any
 
@@ -33,8 +33,11 @@ def where(condition: Any, yes: Real, no: Real) -> Real:
     return yes if condition else no
 
 
-def many_digits(digits: int) -> Arithmetic:
-    """An mpmath context of its own: nobody else's precision is touched."""
+def many_digits(digits: int = 50) -> Arithmetic:
+    """An mpmath context of its own: nobody else's precision is touched.
+
+    By default for constants that are rounded to doubles; 34 digits would do, the rest is margin.
+    """
     import mpmath
 
     context = mpmath.mp.clone()
@@ -54,6 +57,16 @@ BLOCK = 16384
 def blocks(size: int) -> Iterator[slice]:
     """Slices that cover an array of so many elements; one of them where it is empty."""
     return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
+
+
+def polynomial(coefficients: Sequence[Real], x: Real) -> Real:
+    """Its value at an array x, two coefficients at least, the lowest power first."""
+    value = coefficients[-1] * x
+    for coefficient in coefficients[-2:0:-1]:
+        value += coefficient
+        value *= x
+    value += coefficients[0]
+    return value
 
 
 def blockwise(function: Callable[..., Real]) -> Callable[..., Real]:

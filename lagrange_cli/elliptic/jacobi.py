@@ -8,13 +8,12 @@ nome in use is at most exp(-pi) and four terms are enough, however close k is to
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..twofold import Array, Pair, reduce_phase
-from .arithmetic import Arithmetic, Real, blocks, has_arrays
+from .arithmetic import Arithmetic, Real, blocks, has_arrays, polynomial
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
 from .theta import theta
@@ -155,16 +154,7 @@ def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
     else:
         f = np.sinh(np.clip(y, -_LARGEST_ARGUMENT, _LARGEST_ARGUMENT))
         x = series.q * f * f
-    return f * _polynomial(series.above, x), _polynomial(series.below, x)
-
-
-def _polynomial(coefficients: Polynomial, x: Array) -> Array:
-    value: NDArray[Any] = coefficients[-1] * x
-    for coefficient in coefficients[-2:0:-1]:
-        value += coefficient
-        value *= x
-    value += coefficients[0]
-    return value
+    return f * polynomial(series.above, x), polynomial(series.below, x)
 
 
 def _by_theta(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
