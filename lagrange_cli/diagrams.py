@@ -19,11 +19,13 @@ if TYPE_CHECKING:
 
 KINDS = (".svg", ".png")
 LEAST_ERROR = 1e-17
+LEAST_UNITS = 1e-2
 """Where an error of 0 is drawn."""
 
 
-def check_plot(path: str | None) -> None:
-    """Raise LagtopError for a kind of file that is not drawn, or where matplotlib is missing.
+def check_plot(path: str | None, output: str) -> None:
+    """Raise LagtopError for a kind of file that is not drawn, where matplotlib is missing, or where
+    the report would replace the picture.
 
     Raises CannotWriteError where there is no such directory.
     """
@@ -31,6 +33,8 @@ def check_plot(path: str | None) -> None:
         return
     if Path(path).suffix.lower() not in KINDS:
         raise LagtopError(f"--plot must end in {' or '.join(KINDS)}, got {path!r}")
+    if Path(path).resolve() == Path(output).resolve():
+        raise LagtopError(f"--plot and --output must be different files, got {path!r} twice")
     if find_spec("matplotlib") is None:
         raise LagtopError("--plot needs matplotlib: pip install 'lagtop[plot]'")
     if not Path(path).resolve().parent.is_dir():
@@ -68,17 +72,18 @@ def draw_stability(findings: Findings, path: str) -> None:
     """Worst error in units by stratum, ours and the others'."""
     figure, (axes,) = _figure(1)
     strata = [row.stratum for row in findings.rows]
+    axes.set(yscale="linear", yticks=range(len(strata)))
     marks = {
         "lagtop": ("o", "black", [row.angle_units for row in findings.rows]),
         "scipy.special": ("s", "C0", [row.scipy_units for row in findings.rows]),
         "DOP853": ("^", "C1", [row.dop853_units for row in findings.rows]),
     }
     for name, (marker, color, units) in marks.items():
-        known = [(x, i) for i, x in enumerate(units) if x]
+        known = [(max(x, LEAST_UNITS), i) for i, x in enumerate(units) if x is not None]
         if known:
             axes.plot(*zip(*known, strict=True), marker, color=color, label=name)
     axes.axvline(CONTRACT, color="0.5", lw=0.8, label="contract")
-    axes.set(yscale="linear", xlabel="worst error (units)", yticks=range(len(strata)))
+    axes.set(xlim=(LEAST_UNITS / 2, None), xlabel="worst error (units)")
     axes.set_yticklabels(strata)
     axes.invert_yaxis()
     axes.set_title(f"Error by stratum\nscenes: {findings.conditions['scenes']}", fontsize=9)

@@ -7,6 +7,7 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from .angles import MAX_PERIODS, MAX_TIME
 from .elliptic import Arithmetic, Real, complete_k, many_digits
 from .elliptic.fourier import am_sums, cn_sums, k_sums, sn_sums
 from .elliptic.jacobi import jacobi
@@ -14,7 +15,8 @@ from .elliptic.modulus import Modulus, constants, modulus
 from .elliptic.theta import Complex, omega, pi_function, theta_of, zeta
 from .errors import LagtopError
 from .numerals import double_text
-from .settle import settle, settled_or_rounded
+from .settle import require_digits, settle, settled_or_rounded
+from .times import check_reach
 from .top import number
 from .twofold import pair
 
@@ -115,6 +117,10 @@ def rows(arguments: Times, request: Request) -> tuple[list[str], Iterator[Array]
 
     exact = request.given.modulus(many_digits())
     of = Modulus(float(exact.k), *pair(exact.k_prime))
+    if exact.k_prime > 0 and not of.k_prime:
+        raise LagtopError("k' is too small for doubles: give --digits")
+    limit = MAX_PERIODS * 2 * float(complete_k(np, of.k_prime)) if of.k_prime else MAX_TIME
+    check_reach("u", arguments, min(limit, MAX_TIME))
 
     def columns(u: Array) -> dict[str, Array]:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -136,9 +142,11 @@ def digit_rows(
     """The header, and rows to so many significant digits."""
 
     def at(u: Fraction) -> dict[str, NumberText]:
-        return settle(
-            lambda ar: values(ar, number(ar, u), request.given.modulus(ar), request), digits
-        )
+        def compute(ar: Arithmetic) -> dict[str, Real]:
+            require_digits(ar, digits, abs(number(ar, u)))
+            return values(ar, number(ar, u), request.given.modulus(ar), request)
+
+        return settle(compute, digits)
 
     header = list(at(next(arguments.decimals())))
     return header, (list(at(u).values()) for u in arguments.decimals())

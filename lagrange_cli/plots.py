@@ -106,8 +106,10 @@ def draw_cubic(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> Non
     axes.set(xlabel="u = cos ϑ", ylabel="f(u) (1/time²)")
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
     axes.axhline(0.0, color=style.quiet, lw=0.9)
-    inside = (cubic.u >= cubic.u2) & (cubic.u <= cubic.u1)
-    axes.axvspan(cubic.u2, cubic.u1, color=style.faint, zorder=0)
+    low, high = float(motion.u2 or 0), float(motion.u1 or 0)
+    inside = (cubic.u >= low) & (cubic.u <= high)
+    if low < high:
+        axes.axvspan(low, high, color=style.faint, zorder=0)
     axes.fill_between(
         cubic.u, 0.0, cubic.f, where=inside, color=style.lines[0], alpha=0.3, linewidth=0
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -158,13 +159,15 @@ def open_rows(path: str, computed: Collection[str], size: int) -> tuple[RowFile,
         blocks = _blocks(chain([(start, first)], lines), size)
         head = next(blocks)
         carried = [x for x in _names(head) if x not in computed]
+        _check_spelling(carried, name)
         return RowFile(None, carried, frozenset(computed)), chain([head], blocks)
     try:
         columns = [cell.strip() for cell in split_cells(_decoded(first))]
     except LagtopError as error:
         raise LagtopError(f"{name}, line {start}: {error}") from None
-    _check_header(columns, name)
     carried = [x for x in columns if x not in INPUTS and x not in computed]
+    _check_spelling(carried, name)
+    _check_header(columns, name)
     return RowFile(columns, carried, frozenset(computed)), _blocks(lines, size)
 
 
@@ -193,9 +196,20 @@ def _names(head: Lines) -> list[str]:
     return [name for name in names if name not in INPUTS]
 
 
+def _check_spelling(carried: Sequence[str], name: str) -> None:
+    """Raise LagtopError for a column that is not read but looks like an input."""
+    for column in carried:
+        for known in INPUTS:
+            if _plain(column) == _plain(known):
+                raise LagtopError(f"{name}: the column {column} must be spelt {known}")
+
+
+def _plain(column: str) -> str:
+    """Without what is easily mistaken: case, underscores, the 0 of theta0, the unit."""
+    return re.sub("_|0|deg$|rad$", "", column.lower()) or column
+
+
 def _check_header(columns: Sequence[str], name: str) -> None:
-    if "theta0" in columns:
-        raise LagtopError(f"{name}: the column theta0 must be theta0_deg or theta0_rad")
     if twice := [x for i, x in enumerate(columns) if x in columns[:i]]:
         raise LagtopError(f"{name} must name each column once, got {twice[0]!r} twice")
     if not set(columns) & set(INPUTS):

@@ -14,11 +14,13 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from .angles import MAX_PERIODS, MAX_TIME
 from .elliptic import Arithmetic, Real, agm, many_digits, where
 from .elliptic.jacobi import jacobi
 from .elliptic.modulus import Modulus
 from .errors import LagtopError
-from .settle import settle, settled_or_rounded
+from .settle import require_digits, settle, settled_or_rounded
+from .times import check_reach
 from .top import number
 
 if TYPE_CHECKING:
@@ -189,11 +191,13 @@ def eta_and_rate(ar: Arithmetic, v: Real, c: Constants, of: Band) -> tuple[Real,
     (3.2.12) after a halving of the argument: both distances keep their digits.
     """
     _, sn, cn, dn = jacobi(ar, v, Modulus(c.k1, c.k1_prime, 0 * c.k1))
-    up, down = of.g * (c.m2 * sn) ** 2, (c.sigma1 * cn * dn) ** 2
+    up, down = abs(ar.sqrt(of.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
+    larger = where(up < down, down, up)  # so that no square leaves the range
+    up, down = (up / larger) ** 2, (down / larger) ** 2
     risen, left = of.width * up / (up + down), of.width * down / (up + down)
     eta = where(risen < left, of.lower + risen, of.upper - left)
     gaps = [gap + risen for gap in of.below] + [gap + left for gap in of.above]
-    size = ar.sqrt(of.g * risen * left * prod(gaps))
+    size = prod(map(ar.sqrt, (of.g, risen, left, *gaps)))
     return eta, where(sn * cn < 0, -size, size)
 
 
@@ -214,6 +218,7 @@ def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterato
     offset = number(exact, c3) / constants_exact.period
     shift = float(offset - exact.nint(offset))
     c, ends = Constants(*map(float, constants_exact)), band(np, of)
+    check_reach("tau", times, min(MAX_PERIODS * c.period, MAX_TIME))
     half_period = 2 * complete_k(np, np.float64(c.k1_prime))
 
     def block(tau: Array) -> Array:
@@ -232,6 +237,7 @@ def digit_rows(
     def at(tau: Fraction) -> list[NumberText]:
         def compute(ar: Arithmetic) -> dict[str, Real]:
             c, time = constants(ar, of), number(ar, tau + c3)
+            require_digits(ar, digits, abs(time / c.period))
             eta, rate = eta_and_rate(ar, c.sigma1 * time / 2, c, band(ar, of))
             return {"tau": number(ar, tau), "eta": eta, "etadot": rate}
 

@@ -20,6 +20,13 @@ class TooFewDigitsError(Exception):
     """A number has not the digits that are asked for."""
 
 
+def require_digits(ar: Arithmetic, digits: int, size: Any) -> None:
+    """Raise TooFewDigitsError where so many digits behind the point of a number of this size are
+    more than the context has."""
+    if size > 1 and ar.log10(size) + digits + 5 > ar.dps:
+        raise TooFewDigitsError
+
+
 def settle(compute: Callable[[Arithmetic], Mapping[Any, Any]], digits: int) -> dict[Any, Any]:
     """Ziv's strategy: raise the precision until two in a row print alike.
 

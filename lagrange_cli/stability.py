@@ -116,7 +116,7 @@ def chosen_strata(names: str | None) -> list[str]:
     for name in chosen:
         if name not in STRATA:
             raise LagtopError(f"--strata must be among {', '.join(STRATA)}, got {name!r}")
-    return chosen
+    return list(dict.fromkeys(chosen))
 
 
 def report(strata: Sequence[str], samples: int, seed: int, steps: Steps) -> Findings:

@@ -49,7 +49,10 @@ def grid(
     else:
         count = n or (DEFAULT_ROWS if t_max > t_min else 1)
         step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
-    return even_grid(t_min, step, count)
+    try:
+        return even_grid(t_min, step, count)
+    except LagtopError as error:
+        raise LagtopError(f"the grid of times {error}") from None
 
 
 def rows(

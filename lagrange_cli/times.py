@@ -22,13 +22,11 @@ MAX_ROWS = 10**9
 
 @dataclass(frozen=True)
 class Grid:
-    """The times start + i step, i = 0 ... count - 1, each formed from its own i."""
+    """The times start + i step, i = 0 ... count - 1, each from its own i, rounded once."""
 
-    start: float
-    step: float
     count: int
     exact: tuple[Fraction, Fraction]
-    """Start and step as the decimals they were given as."""
+    """Start and step, as the decimals they were given as."""
 
     def decimals(self) -> Iterator[Fraction]:
         """The times in exact arithmetic."""
@@ -39,13 +37,19 @@ class Grid:
         """The times, a block at a time."""
         import numpy as np
 
+        from .twofold import pair, two_product, two_sum
+
+        start, step = map(pair, self.exact)
         for first in range(0, self.count, BLOCK_ROWS):
             i = np.arange(first, min(first + BLOCK_ROWS, self.count), dtype=np.float64)
-            yield self.start + i * self.step
+            product, rest = two_product(i, step.high)
+            total, error = two_sum(product, start.high)
+            yield total + (error + rest + i * step.low + start.low)
 
     def bounds(self) -> list[float]:
         """The first and the last time."""
-        return [self.start, self.start + (self.count - 1) * self.step]
+        start, step = self.exact
+        return [float(start), float(start + (self.count - 1) * step)]
 
 
 @dataclass(frozen=True)
@@ -83,14 +87,24 @@ class TimeList:
 Times = Grid | TimeList
 
 
+def check_reach(name: str, times: Times, limit: float) -> None:
+    """Raise LagtopError where a time is farther from 0 than the limit."""
+    farthest = max(times.bounds(), key=abs)
+    if abs(farthest) > limit:
+        raise LagtopError(
+            f"{name} must be within 2^50 periods = {limit:.3g} of 0, got {farthest} "
+            "(or give --digits)"
+        )
+
+
 def even_grid(start: Fraction, step: Fraction, count: int) -> Grid:
     """The grid, if it is not too long: raises LagtopError beyond 1e9 rows."""
     if count > MAX_ROWS:
         raise LagtopError(
-            f"a grid has at most 1e9 rows, this one would have {Decimal(count):.4g} "
+            f"must have at most 1e9 rows, got {Decimal(count):.4g} "
             "(take a larger step or a smaller count)"
         )
-    return Grid(float(start), float(step), count, (start, step))
+    return Grid(count, (start, step))
 
 
 def parse_range(text: str) -> Grid:

@@ -32,7 +32,7 @@ def columns(motion: Motion, names: str, t: Array) -> list[Array]:
     from fractions import Fraction
 
     step = float(t[1] - t[0])
-    grid = Grid(float(t[0]), step, t.size, (Fraction(float(t[0])), Fraction(step)))
+    grid = Grid(t.size, (Fraction(float(t[0])), Fraction(step)))
     _, blocks = rows(motion, grid, names.split(), radians=True)
     return list(np.concatenate(list(blocks)).T)
 

@@ -418,7 +418,7 @@ def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -
         ("", "must begin with a header"),
         ("x,y\n1,2\n", "must begin with a header that names inputs"),
         ("r0,r0\n1,2\n", "must name each column once, got 'r0' twice"),
-        ("theta0\n1\n", "the column theta0 must be theta0_deg or theta0_rad"),
+        ("theta0\n1\n", "the column theta0 must be spelt theta0_deg"),
         ('r0,"x\n1,2\n', "wrong quote"),
     ],
 )

@@ -76,7 +76,7 @@ def command(  # noqa: PLR0917 - click passes them by name
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)
-    check_plot(plot)
+    check_plot(plot, output)
     chosen = bench.chosen_methods(methods, float(limit))
     motion = solved(scene, rad, False, options)
     bench.check_scene(motion)

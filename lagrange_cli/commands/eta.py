@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .. import __version__
 from ..errors import LagtopError
 from ..options import (
     MOST_TABLE_DIGITS,
@@ -36,14 +37,23 @@ if TYPE_CHECKING:
         lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
     """,
 )
+@click.version_option(__version__, prog_name="lagtop")
 @click.option("--delta", type=NUMBER, required=True, help="Upper end of the band.")
 @click.option("--delta-star", type=NUMBER, required=True, help="Lower end of the band.")
 @click.option("--p", type=NUMBER, help="Middle of the two outer roots p - q and p + q.")
 @click.option("--q", type=NUMBER, help="Half their distance.")
 @click.option("--gap-above", type=NUMBER, help="From delta up to an outer root, instead.")
 @click.option("--gap-below", type=NUMBER, help="From delta* down to an outer root, instead.")
-@click.option("--g", type=NUMBER, default="1", help="Leading coefficient, -2 alpha1 c^2 > 0.")
-@click.option("--c3", type=NUMBER, default="0", help="eta = delta* at tau = -c3.")
+@click.option(
+    "--g",
+    type=NUMBER,
+    default="1",
+    show_default=True,
+    help="Leading coefficient, -2 alpha1 c^2.",
+)
+@click.option(
+    "--c3", type=NUMBER, default="0", show_default=True, help="eta = delta* at tau = -c3."
+)
 @click.option("--tau", "single", type=NUMBER, multiple=True, help="Time; may be repeated.")
 @click.option("--tau-range", "grid", type=RANGE, help="N times from A to B.")
 @digits_option(MOST_TABLE_DIGITS)

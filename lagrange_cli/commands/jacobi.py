@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .. import __version__
 from ..errors import LagtopError
 from ..options import (
     COUNT,
@@ -20,6 +21,7 @@ from ..options import (
     with_progress,
 )
 from ..output import write_record, write_rows, write_texts
+from ..top import parse_number
 
 if TYPE_CHECKING:
     from ..functions import Given, Request
@@ -40,6 +42,7 @@ MOST_TERMS = 10_000
         lagtop jacobi --k 0.99 --u 1 --series 10
     """,
 )
+@click.version_option(__version__, prog_name="lagtop")
 @click.option("--k", type=NUMBER, help="Modulus, 0 to 1.")
 @click.option("--k-prime", type=NUMBER, help="Its complement, for k close to 1.")
 @click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")
@@ -77,8 +80,8 @@ def command(  # noqa: PLR0917 - click passes them by name
 ) -> None:
     """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
 
-    Without --u the constants; with it am, sn, cn, dn of every u, and what else is asked for, right
-    to an ulp or two as close to k = 1 as --k-prime can say, or to --digits digits.
+    Without --u the constants; with it am, sn, cn, dn of every u, right to an ulp or two as close to
+    k = 1 as --k-prime can say, and what else is asked for, to a few roundings of 1.
     """
     from ..functions import Given, Request, constants_record
 
@@ -120,7 +123,10 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, 
     if param is None:
         raise LagtopError("--omega and --pi need --param, as 0.7 or, imaginary, as 0.7i")
     text = param.strip()
-    return NUMBER.convert(text.removesuffix("i"), None, None), text.endswith("i")
+    try:
+        return parse_number(text.removesuffix("i")), text.endswith("i")
+    except LagtopError as error:
+        raise LagtopError(f"--param {error}; an imaginary one is written 0.7i") from None
 
 
 def _write_rows(

@@ -57,7 +57,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     from .. import stability
     from ..diagrams import check_plot, draw_stability
 
-    check_plot(plot)
+    check_plot(plot, output)
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)
 
     def find() -> Findings:

@@ -1,10 +1,11 @@
 """The functions of both sources: elliptic integrals, Jacobi's functions, theta functions and nomes.
 
-Every function takes the arithmetic as its first argument: our module `decimals` (40 digits), an
-mpmath context (any number of digits; complex arguments), the module `math` (floats) or `numpy`
-(arrays).  Conventions: modulus k, complement k', parameter m = k^2, nome q = exp(-pi K'/K), always
-named in the call (`modulus(np, k_prime=1e-9)`), so that they cannot be confused.  The complement is
-passed in beside the modulus; 1 - k^2 is never formed, so nothing is lost as k -> 1.
+Every function takes the arithmetic as its first argument: an mpmath context (any number of digits;
+complex arguments) or `numpy` (arrays); what is here also our module `decimals` (40 digits) and the
+module `math` (floats).  Conventions: modulus k, complement k', parameter m = k^2, nome
+q = exp(-pi K'/K), always named in the call (`modulus(np, k_prime=1e-9)`), so that they cannot be
+confused.  The complement is passed in beside the modulus; 1 - k^2 is never formed, so nothing is
+lost as k -> 1.
 
 What start-up needs is here; `modulus`, `incomplete`, `jacobi`, `theta` and `fourier` are modules.
 """

@@ -24,6 +24,12 @@ def everywhere(condition: Any) -> bool:
     return condition.all() if hasattr(condition, "all") else bool(condition)
 
 
+def anywhere(condition: Any) -> bool:
+    """Whether a condition holds, or holds for some element of an array; loops that go on while it
+    does end for NaN."""
+    return bool(condition.any()) if hasattr(condition, "any") else bool(condition)
+
+
 def where(condition: Any, yes: Real, no: Real) -> Real:
     """Choose between two numbers, or element by element between two arrays."""
     if hasattr(condition, "all"):

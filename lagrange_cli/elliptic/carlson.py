@@ -1,6 +1,7 @@
 """Carlson's symmetric elliptic integrals R_F, R_C, R_D, R_J by duplication (DLMF 19.36(i)).
 
-Real arguments as stated, or complex ones off the negative axis in mpmath.  Each step replaces the
+Real arguments as stated, from 1e-100 to 1e100 in doubles, or complex ones off the negative axis in
+mpmath.  Each step replaces the
 arguments by others four times closer to their mean; the rest is a Taylor series about the mean.
 """
 
@@ -11,7 +12,16 @@ from collections.abc import Callable
 from functools import reduce
 from typing import Any
 
-from .arithmetic import Arithmetic, Real, blockwise, epsilon, everywhere, has_arrays, where
+from .arithmetic import (
+    Arithmetic,
+    Real,
+    anywhere,
+    blockwise,
+    epsilon,
+    everywhere,
+    has_arrays,
+    where,
+)
 
 Roots = tuple[Real, Real, Real, Real]
 Gain = Callable[[Roots, Real, Real], Real]
@@ -28,7 +38,7 @@ def carlson_rf(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
     """
     mean = (x + y + z) / 3
     spread = _spread(ar, mean, x, y, z)
-    while not everywhere(spread <= abs(mean)):
+    while anywhere(spread > abs(mean)):
         root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x
         x, y, z, spread = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, spread / 4
@@ -46,10 +56,13 @@ def carlson_rc(ar: Arithmetic, x: Real, y: Real) -> Real:
     """R_C(x, y) = R_F(x, y, y) for x >= 0, y > 0 (DLMF 19.2.17); on arrays by arctan and log."""
     if not has_arrays(ar):
         return carlson_rf(ar, x, y, y)
-    difference = y - x
+    difference, root_x = y - x, ar.sqrt(x)
     root = ar.sqrt(abs(ar.where(difference == 0, 1.0, difference)))
-    sum_of_roots = ar.sqrt(x) + root
-    circular, hyperbolic = ar.arctan2(root, ar.sqrt(x)), ar.log1p(2 * root * sum_of_roots / y) / 2
+    far = x > 4 * y  # where the quotient of the other form could overflow
+    circular = ar.arctan2(root, root_x)
+    logarithm = ar.log((root_x + root) / ar.sqrt(y))
+    near_one = ar.log1p(2 * root * (root_x + root) / ar.where(far, x, y)) / 2
+    hyperbolic = ar.where(far, logarithm, near_one)
     integral = ar.where(difference > 0, circular, hyperbolic) / root
     return ar.where(difference == 0, 1 / ar.sqrt(y), integral)
 
@@ -92,7 +105,7 @@ def _rc_from_one(ar: Arithmetic, y: Real) -> Real:
     """R_C(1, y), for arrays by its Taylor series where all of it is close to 1."""
     e = 1 - y
     largest = float(ar.max(abs(e), initial=_TINY)) if has_arrays(ar) else 1.0
-    if largest > _NEAR_ONE:
+    if not largest <= _NEAR_ONE:
         return carlson_rc(ar, ar.sqrt(1), y)
     last = int(math.log(_TINY) / math.log(largest))
     return reduce(lambda value, n: value * e + 1 / (2 * n + 1), range(last, -1, -1), 0 * e)

@@ -5,13 +5,13 @@ Every loop adds and multiplies positive numbers only, so each result is good to 
 
 from __future__ import annotations
 
-from .arithmetic import Arithmetic, Real, epsilon, everywhere, where
+from .arithmetic import Arithmetic, Real, anywhere, epsilon, where
 
 
 def agm(ar: Arithmetic, a: Real, b: Real) -> Real:
     """Arithmetic-geometric mean of a > 0 and b > 0 (quadratic convergence, DLMF 19.8.1)."""
     tolerance = ar.sqrt(epsilon(ar))
-    while not everywhere(abs(a - b) <= tolerance * a):
+    while anywhere(abs(a - b) > tolerance * a):
         a, b = (a + b) / 2, ar.sqrt(a * b)
     return (a + b) / 2
 
@@ -35,7 +35,7 @@ def period_mean(ar: Arithmetic, k_prime: Real, p: Real, a: Real, b: Real) -> Rea
         product = mean * geometric
         a, b = (a + b / p) / 2, (b + a * (product / p)) / 2
         p = (p + product / p) / 2
-        close = everywhere(abs(mean - geometric) <= tolerance * mean)
+        close = not anywhere(abs(mean - geometric) > tolerance * mean)
         mean, geometric = (mean + geometric) / 2, ar.sqrt(product)
     return (a * mean + b) / (mean + p)
 
@@ -54,7 +54,7 @@ def nome(ar: Arithmetic, *, m: Real, k_prime: Real) -> Real:
     tolerance = 2 * (epsilon(ar) / 20910) ** (ar.sqrt(1) / 20)
     a, b = (1 + k_prime) / 2, ar.sqrt(k_prime)
     c, squarings = m / (4 * a), []
-    while not everywhere(c <= tolerance * a):
+    while anywhere(c > tolerance * a):
         far = c > tolerance * a
         squarings.append(far)
         mean = (a + b) / 2

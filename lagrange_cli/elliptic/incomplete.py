@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..twofold import two_product
+from ..twofold import two_product, two_sum
 from .arithmetic import Arithmetic, Real, has_arrays
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
@@ -17,8 +17,7 @@ def incomplete_f(ar: Arithmetic, phi: Real, given: Modulus) -> Real:
     phi is any real amplitude in radians, of numpy or an mpmath context; |phi| <= pi/2 costs no
     digit, however close k is to 1.
     """
-    half_turns, rest = _reduced(ar, phi)
-    sine, cosine2, delta2 = _parts(ar, rest, given)
+    half_turns, sine, cosine2, delta2 = _parts(ar, phi, given)
     within = sine * carlson_rf(ar, cosine2, delta2, 1 + 0 * sine)
     return half_turns * 2 * complete_k(ar, given.k_prime) + within
 
@@ -28,8 +27,7 @@ def incomplete_e(ar: Arithmetic, phi: Real, given: Modulus) -> Real:
 
     As a sum of positive terms (DLMF 19.25.10).
     """
-    half_turns, rest = _reduced(ar, phi)
-    sine, cosine2, delta2 = _parts(ar, rest, given)
+    half_turns, sine, cosine2, delta2 = _parts(ar, phi, given)
     one, complement = 1 + 0 * sine, given.k_prime * given.k_prime
     first = carlson_rf(ar, cosine2, delta2, one)
     second = (given.k * sine) ** 2 * carlson_rd(ar, cosine2, one, delta2) / 3
@@ -38,17 +36,21 @@ def incomplete_e(ar: Arithmetic, phi: Real, given: Modulus) -> Real:
     return half_turns * 2 * complete_e(ar, given.k_prime) + within
 
 
-def _parts(ar: Arithmetic, phi: Real, given: Modulus) -> tuple[Real, Real, Real]:
-    """sin phi, cos^2 phi, and 1 - k^2 sin^2 phi as a sum of squares."""
-    sine, cosine2 = ar.sin(phi), ar.cos(phi) ** 2
-    return sine, cosine2, cosine2 + given.k_prime * given.k_prime * (1 - cosine2)
+def _parts(ar: Arithmetic, phi: Real, given: Modulus) -> tuple[Real, Real, Real, Real]:
+    """Half turns in phi and, of the rest, sin, cos^2, and 1 - k^2 sin^2 as a sum of squares."""
+    half_turns, rest, low = _reduced(ar, phi)
+    sine, cosine = ar.sin(rest), ar.cos(rest)
+    sine, cosine = sine + low * cosine, cosine - low * sine
+    cosine2 = cosine * cosine
+    return half_turns, sine, cosine2, cosine2 + given.k_prime * given.k_prime * (1 - cosine2)
 
 
-def _reduced(ar: Arithmetic, phi: Real) -> tuple[Real, Real]:
-    """Half turns and the rest, which is phi itself up to a quarter turn."""
+def _reduced(ar: Arithmetic, phi: Real) -> tuple[Real, Real, Real]:
+    """Half turns, the rest, and what rounding takes from that; up to a quarter turn phi itself."""
     if not has_arrays(ar):
         half_turns = ar.nint(ar.re(phi) / ar.pi)
-        return half_turns, phi - half_turns * ar.pi
+        return half_turns, phi - half_turns * ar.pi, 0 * phi
     half_turns = ar.rint(phi / ar.pi)
     product, error = two_product(half_turns, _PI[0])
-    return half_turns, (phi - product) - (error + half_turns * _PI[1])
+    rest, low = two_sum(phi - product, -(error + half_turns * _PI[1]))
+    return half_turns, rest, low

@@ -76,19 +76,18 @@ def constants(ar: Arithmetic, given: Modulus) -> Constants:
 
 
 def rate_of_half_periods(ar: Arithmetic, k_prime: Real, rest: Real) -> Pair:
-    """agm(1, k')/pi = 1/(2K), the rate of half periods, for k' > 0 in (0, 1], to 25 digits."""
+    """agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
     a, a_low = two_sum(ar.asarray(k_prime) / 2, 0.5)
     a_low += rest / 2
     b, b_low = sqrt_pair(ar.asarray(k_prime), ar.asarray(rest))
-    while not (abs(a - b) <= 2.0**-13 * a).all():
+    while (abs(a - b) > 2.0**-26 * a).any():
         total, total_error = two_sum(a, b)
         product, product_error = two_product(a, b)
         product_error += a * b_low + b * a_low
         a, a_low = total / 2, (total_error + a_low + b_low) / 2
         b, b_low = sqrt_pair(product, product_error)
     mean, mean_low = two_sum(a / 2, b / 2)
-    x2 = ((a - b + (a_low - b_low)) / (2 * mean)) ** 2
-    mean_low += (a_low + b_low) / 2 - mean * (x2 * (0.25 + x2 * (5 / 64)))  # agm(1 + x, 1 - x)
+    mean_low += (a_low + b_low) / 2 - (a - b) ** 2 / (16 * mean)  # agm(1 + x, 1 - x) = 1 - x^2/4
     high, low = two_product(mean, _INVERSE_PI[0])
     low += mean_low * _INVERSE_PI[0] + mean * _INVERSE_PI[1]
     return Pair(*two_sum(high, low))
@@ -124,6 +123,8 @@ def _from_q(ar: Arithmetic, q: Real) -> Modulus:
         n += 1
         power = small ** (n * n)
         theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
+    if has_arrays(ar) and (root == 0)[large].any():
+        raise LagtopError("q must be at most 0.9934 in doubles, whose range k' leaves beyond")
     one, other = root * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
     return Modulus(where(large, other, one), where(large, one, other), 0 * q)
 

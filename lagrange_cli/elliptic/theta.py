@@ -34,13 +34,13 @@ class Place(NamedTuple):
 def theta(ar: Arithmetic, ij: str, x: Complex, given: Modulus) -> Complex:
     """theta_ij(x, iK'/K) of section 1, `ij` one of 01, 00, 11, 10."""
     _check(ij, given)
-    return _with_slope(ar, ij, _place(ar, x), given)[0]
+    return _size(ar, ij, given) * _with_slope(ar, ij, _place(ar, x), given)[0]
 
 
 def theta_of(ar: Arithmetic, ij: str, v: Complex, given: Modulus) -> Complex:
     """Theta_ij(v) = theta_ij(v/2K), which keeps its digits at large real v."""
     _check(ij, given)
-    return _with_slope(ar, ij, _in_periods(ar, v, given), given)[0]
+    return _size(ar, ij, given) * _with_slope(ar, ij, _in_periods(ar, v, given), given)[0]
 
 
 def zeta(ar: Arithmetic, ij: str, v: Complex, given: Modulus) -> Complex:
@@ -122,7 +122,7 @@ def _shifted(ar: Arithmetic, ij: str, x: Place) -> Place:
 
 
 def _with_slope(ar: Arithmetic, ij: str, x: Place, given: Modulus) -> tuple[Complex, Complex]:
-    """theta_ij(x) and its derivative."""
+    """theta_ij(x) and its derivative, both over `_size`."""
     turns, rest = _shifted(ar, ij, x)
     odd = ij[0] == "1"
     circular = given.k <= given.k_prime
@@ -141,16 +141,24 @@ def _with_slope(ar: Arithmetic, ij: str, x: Place, given: Modulus) -> tuple[Comp
     return sign * value, sign * slope
 
 
+def _size(ar: Arithmetic, ij: str, given: Modulus) -> Real:
+    """What all terms of a series have in common; it falls out of Zeta, Omega and Pi."""
+    q = nome(ar, m=given.k * given.k, k_prime=given.k_prime)
+    fourier = ar.sqrt(ar.sqrt(q)) if ij[0] == "1" else 1 + 0 * q
+    gauss = ar.sqrt(complete_k(ar, given.k_prime) / _quarter_period(ar, given.k))
+    return where(given.k <= given.k_prime, fourier, gauss)
+
+
 def _fourier(ar: Arithmetic, odd: bool, x: Complex, given: Modulus) -> tuple[Complex, Complex]:
     """The series of section 1 in q, and its derivative, for q <= exp(-pi).
 
-    1 + 2 sum (-1)^h q^(h^2) cos 2 pi h x  and  2 sum (-1)^h q^((h+1/2)^2) sin 2 pi (h+1/2) x.
+    1 + 2 sum (-1)^h q^(h^2) cos 2 pi h x, and over q^(1/4)
+    2 sum (-1)^h q^(h(h+1)) sin 2 pi (h+1/2) x.
     """
     q = nome(ar, m=given.k * given.k, k_prime=given.k_prime)
     value, slope = (0 * x, 0 * x) if odd else (1 + 0 * x, 0 * x)
-    root = ar.sqrt(ar.sqrt(q)) if odd else 1
     for h in range(0 if odd else 1, _fourier_terms(ar, x, given)):
-        weight = 2 * (-1) ** h * root * q ** (h * (h + 1) if odd else h * h)
+        weight = 2 * (-1) ** h * q ** (h * (h + 1) if odd else h * h)
         rate = (2 * h + odd) * ar.pi
         sine, cosine = ar.sin(rate * x), ar.cos(rate * x)
         value = value + weight * (sine if odd else cosine)
@@ -159,8 +167,9 @@ def _fourier(ar: Arithmetic, odd: bool, x: Complex, given: Modulus) -> tuple[Com
 
 
 def _gaussians(ar: Arithmetic, odd: bool, x: Complex, given: Modulus) -> tuple[Complex, Complex]:
-    """The same for q >= exp(-pi): sqrt(K/K') sum (+-1)^n exp(-pi (x - n)^2 K/K'), n half-integers.
+    """The same for q >= exp(-pi), over sqrt(K/K'): sum (+-1)^n exp(-pi (x - n)^2 K/K').
 
+    n are the half-integers.
     A Gaussian and its mirror image are taken together, so that nothing cancels near x = 0.
     """
     ratio = complete_k(ar, given.k_prime) / complete_k(ar, given.k)
@@ -176,9 +185,8 @@ def _gaussians(ar: Arithmetic, odd: bool, x: Complex, given: Modulus) -> tuple[C
             total, difference = difference, total
         value = value + total
         slope = slope - 2 * c * (x * total - n * difference)
-    size = ar.sqrt(ratio)
     turn = where(left, -1, 1)
-    return size * value * (turn if odd else 1), size * slope * (1 if odd else turn)
+    return value * (turn if odd else 1), slope * (1 if odd else turn)
 
 
 def _fourier_terms(ar: Arithmetic, x: Complex, given: Modulus) -> int:
