@@ -35,30 +35,31 @@ def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:
                 ("k", 1 - 10 ** rng.uniform(-15, -1)),
                 ("k_prime", rng.random()),
                 ("k_prime", 10 ** rng.uniform(-150, 0)),
+                ("k_prime", 10 ** rng.uniform(-300, -150)),
                 ("m", rng.random()),
             ]
         )
 
 
 def arguments(rng: random.Random, K: float) -> float:
-    """Within K, up to 1e6 K, close to the zeros of sn and of cn."""
+    """Within K, up to 1e12 K, close to the zeros of sn and of cn."""
     close = (
         2 * rng.randrange(10**6)
         + rng.choice([0, 1])
         + rng.choice([-1, 1]) * 10 ** rng.uniform(-12, -3)
     )
-    parts = [rng.random(), 10 ** rng.uniform(-12, 0), 10 ** rng.uniform(0, 6), close]
+    parts = [rng.random(), 10 ** rng.uniform(-12, 0), 10 ** rng.uniform(0, 12), close]
     return rng.choice([-1, 1]) * K * rng.choice(parts)
 
 
 def errors(name: str, value: float, u: float) -> list[float]:
     """Of am, sn, cn, dn in units."""
     ours = jacobi(np, u, modulus(np, **{name: value}))
-    with mpmath.workdps(400):
+    with mpmath.workdps(700):
         x = mpmath.mpf(value)
         m = {"k": x**2, "k_prime": 1 - x**2, "m": x}[name]
         K = mpmath.pi / 2 / mpmath.agm(1, mpmath.sqrt(1 - m))
-    with mpmath.workdps(60 if 1 - m > 1e-20 else 340):
+    with mpmath.workdps(60 if 1 - m > 1e-20 else 680):
         halves = mpmath.nint(u / (2 * K))
         tau = u - 2 * K * halves
         sn, cn, dn = (mpmath.ellipfun(f, tau, m=m) for f in ("sn", "cn", "dn"))
@@ -143,6 +144,39 @@ def test_theta_and_zeta_on_arrays() -> None:
                 assert units(float(zeta(np, ij, v, given)), scale * ratio, rate, v) <= 3
 
 
+def test_odd_and_imaginary_parameters_and_mixed_moduli() -> None:
+    """Omega_11 and Omega_10 below zero, over periods, at k = 0; values of mixed moduli."""
+    ar = many_digits(40)
+    eta = np.linspace(-7, 7, 29)
+    for k, alpha in ((0.3, -0.4), (0.95, -0.4), (0.0, 2.5)):
+        for ij in ("11", "10"):
+            exact = [
+                complex(omega(ar, ij, ar.mpf(x), ar.mpc(0, alpha), modulus(ar, k=k))) for x in eta
+            ]
+            ours = omega(np, ij, eta, 1j * alpha, modulus(np, k=k))
+            np.testing.assert_allclose(ours, exact, atol=2e-14)
+    mixed = modulus(np, k=np.array([[0.3], [0.95]]))
+    for i, k in enumerate((0.3, 0.95)):
+        for function in (theta, zeta):
+            alone = function(np, "11", eta + 0.1, modulus(np, k=k))
+            together = function(np, "11", eta + 0.1, mixed)[i]
+            np.testing.assert_allclose(together, alone, rtol=1e-13)
+
+
+def test_complex_arguments() -> None:
+    """Far from the real axis, where the largest term is not the first."""
+    ar = many_digits(40)
+    for k in (0.1, 0.9):
+        m = ar.mpf(k) ** 2
+        q = ar.exp(-ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
+        for ij, n in {"01": 4, "00": 3, "11": 1, "10": 2}.items():
+            exact = ar.jtheta(n, ar.pi * ar.mpc(0.3, 2.6), q)
+            there = theta(ar, ij, ar.mpc(0.3, 2.6), modulus(ar, k=k))
+            assert abs(there / exact - 1) < 1e-37
+            ours = theta(np, ij, 0.3 + 2.6j, modulus(np, k=k))
+            assert abs(complex(ours) / complex(exact) - 1) < 1e-13
+
+
 def test_omega_on_arrays() -> None:
     """Real and imaginary parameters, both families of moduli in one array, against many digits."""
     ar = many_digits(40)
@@ -178,6 +212,33 @@ def test_carlson() -> None:
             assert relative(carlson_rj(np, x, y, z, p), mpmath.elliprj(*many)) <= 3.5
 
 
+def test_carlson_at_equal_arguments_and_over_the_range() -> None:
+    x = np.array([0.5, 2.0, 1e60, 1e-60])
+    np.testing.assert_allclose(carlson_rc(np, x, x), 1 / np.sqrt(x), rtol=2 * EPS)
+    np.testing.assert_allclose(carlson_rj(np, x, x, x, x), x**-1.5, rtol=4 * EPS)
+    wide = np.array([1e100]), np.array([1e-100])
+    assert relative(carlson_rc(np, *wide)[0], mpmath.elliprc(1e100, 1e-100)) <= 2
+
+
+def test_many_digits_of_carlson() -> None:
+    ar = many_digits(60)
+    x, y, z, p = (ar.mpf(text) for text in ("0.3", "0.2", "5", "0.01"))
+    assert abs(carlson_rj(ar, x, y, z, p) / ar.elliprj(x, y, z, p) - 1) < 1e-57
+    assert abs(carlson_rd(ar, x, y, z) / ar.elliprd(x, y, z) - 1) < 1e-57
+
+
+def test_no_number_ends() -> None:
+    """Loops that wait for convergence do not wait for NaN."""
+    nan = np.array([1.0, math.nan])
+    with np.errstate(all="ignore"):
+        for values in (
+            carlson_rf(np, nan, 1.0, 2.0),
+            carlson_rj(np, nan, 1.0, 2.0, 3.0),
+            complete_k(np, nan),
+        ):
+            assert np.isnan(values).tolist() == [False, True]
+
+
 def test_carlson_in_blocks() -> None:
     """Arrays longer than a block, of elements that need different numbers of steps."""
     x, y, z, p = np.exp(np.random.default_rng(3).normal(0, 4, (4, 40_000)))
@@ -201,6 +262,15 @@ def test_incomplete_integrals() -> None:
             m, exact = 1 - mpmath.mpf(k_prime) ** 2, mpmath.mpf(phi)
             assert relative(incomplete_f(np, phi, given), mpmath.ellipf(exact, m)) <= 3
             assert relative(incomplete_e(np, phi, given), mpmath.ellipe(exact, m)) <= 3
+
+
+def test_incomplete_integrals_next_to_an_odd_quarter_turn() -> None:
+    """Where phi less half turns must keep the digits that it loses."""
+    for phi in (1.570796326808052, 4.71238898038469, -7.853981633974):
+        given = modulus(np, k_prime=1.3e-10)
+        with mpmath.workdps(60):
+            exact = mpmath.ellipf(mpmath.mpf(phi), 1 - mpmath.mpf(1.3e-10) ** 2)
+            assert relative(incomplete_f(np, np.float64(phi), given), exact) <= 8
 
 
 def test_incomplete_integrals_beyond_a_quarter_turn() -> None:
@@ -267,6 +337,26 @@ def test_poles_are_empty(lagtop: Lagtop) -> None:
     for digits in ([], ["--digits", "20"]):
         shown = lagtop("jacobi", "--k", "0.8", "--u", "0", "--zeta", "--format", "json", *digits)
         assert json.loads(shown.stdout)[0]["zeta11"] is None
+
+
+@pytest.mark.parametrize("u", ["1e25", "1e50", "1e300"])
+def test_digits_of_far_arguments(u: str, lagtop: Lagtop) -> None:
+    """The precision grows with the argument; two that are too low could agree on a wrong number."""
+    shown = lagtop("jacobi", "--k", "0.5", "--u", u, "--digits", "3", "--format", "csv").stdout
+    with mpmath.workdps(400):
+        exact = mpmath.ellipfun("sn", mpmath.mpf(u), m=mpmath.mpf("0.25"))
+    assert float(shown.splitlines()[1].split(",")[2]) == pytest.approx(float(exact), abs=6e-4)
+    refused = lagtop("jacobi", "--k", "0.5", "--u", u)
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "u must be within 2^50 periods" in refused.stderr
+
+
+def test_at_zero_modulus_zeta_has_a_limit(lagtop: Lagtop) -> None:
+    for digits in ([], ["--digits", "20"]):
+        args = ["--k", "0", "--u", "1", "--zeta", "--format", "json", *digits]
+        row = json.loads(lagtop("jacobi", *args).stdout)[0]
+        assert row["zeta11"] == pytest.approx(1 / math.tan(1), rel=1e-15)
+        assert row["zeta10"] == pytest.approx(-math.tan(1), rel=1e-15)
 
 
 def test_series_of_the_command(lagtop: Lagtop) -> None:

@@ -144,6 +144,36 @@ def test_energy_and_ends(
     assert rate**2 == pytest.approx(float(radicand), rel=1e-6, abs=1e-11)
 
 
+def test_far_times(lagtop: Lagtop) -> None:
+    """More digits for them, or a refusal; c3 of many periods is as good as the rest of it."""
+    args = "--delta 0.7 --delta-star 0.2 --gap-above 1 --gap-below 1".split()
+    shown = lagtop("eta", *args, "--tau", "1e60", "--digits", "17", "--format", "csv").stdout
+    assert shown.splitlines()[1] == "1.0e+60,0.46542969581402027,-0.31188048026682578"
+    assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
+    of = ORBITS["generic"]
+    period = constants(many_digits(60), of).period
+    shifted = next(rows(of, TimeList([Fraction(1)]), rational(10**15 * period))[1])
+    assert shifted == pytest.approx(
+        next(rows(of, TimeList([Fraction(1)]), Fraction(0))[1]), abs=1e-14
+    )
+
+
+def test_digits_close_to_the_ends() -> None:
+    """Next to a turning point eta is reckoned from there."""
+    of = Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2)))
+    ((_, eta, _),) = next(rows(of, TimeList([Fraction("1e-9")]), Fraction(0))[1]).tolist()
+    assert eta == pytest.approx(0.5e-18, rel=1e-12)
+
+
+def test_the_order_of_the_outer_roots_is_free() -> None:
+    one, other = Quadrature(LOW, HIGH, (OUT, IN)), Quadrature(LOW, HIGH, (IN, OUT))
+    assert record(one) == record(other)
+    assert record(one)["q"] == 1.4
+
+
+LOW, HIGH, OUT, IN = (Fraction(x) for x in ("-0.5", "0.6", "-1.3", "1.5"))
+
+
 def test_digits_agree_with_doubles() -> None:
     of, times = ORBITS["generic"], TimeList([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
     block = next(rows(of, times, Fraction("0.4"))[1])

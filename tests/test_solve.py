@@ -205,3 +205,15 @@ def test_tops_can_be_copied_pickled_and_compared() -> None:
     assert copy.deepcopy(top) == pickle.loads(pickle.dumps(top)) == top
     assert pickle.loads(pickle.dumps(solve(top))) == solve(top)
     assert len({top, Top(theta0_rad=1.0, r0=3), Top()}) == 2
+
+
+def test_regimes_that_do_not_nutate_by_their_numbers() -> None:
+    free = solve(Top(g=0.0))
+    assert free.T_nutation == pytest.approx(2 * math.pi * 39032 / (17458 * 50), rel=1e-15)
+    assert (solve(Top(theta0_deg=180.0)).remark or "").startswith(
+        "only phi - psi is defined; stable"
+    )
+    assert (solve(Top(theta0_deg=0.0)).remark or "").startswith(
+        "only phi + psi is defined; unstable"
+    )
+    assert solve(Top(r0=0.0)).path is None

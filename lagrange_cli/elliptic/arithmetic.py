@@ -80,9 +80,11 @@ def blockwise(function: Callable[..., Real]) -> Callable[..., Real]:
 
     @wraps(function)
     def evaluate(ar: Arithmetic, *arguments: Real) -> Real:
-        if not has_arrays(ar) or max(map(ar.size, arguments)) <= BLOCK:
+        if not has_arrays(ar):
             return function(ar, *arguments)
         arrays = ar.broadcast_arrays(*arguments)
+        if arrays[0].size <= BLOCK:
+            return function(ar, *arrays)
         flat = [array.ravel() for array in arrays]
         parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
         return ar.concatenate(parts).reshape(arrays[0].shape)

@@ -41,6 +41,9 @@ def _parts(ar: Arithmetic, phi: Real, given: Modulus) -> tuple[Real, Real, Real,
     half_turns, rest, low = _reduced(ar, phi)
     sine, cosine = ar.sin(rest), ar.cos(rest)
     sine, cosine = sine + low * cosine, cosine - low * sine
+    if has_arrays(ar):  # the rest may lie beyond a quarter turn by its rounding
+        beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)
+        half_turns, sine = half_turns + beyond, ar.where(cosine < 0, -sine, sine)
     cosine2 = cosine * cosine
     return half_turns, sine, cosine2, cosine2 + given.k_prime * given.k_prime * (1 - cosine2)
 

@@ -87,7 +87,8 @@ def rate_of_half_periods(ar: Arithmetic, k_prime: Real, rest: Real) -> Pair:
         a, a_low = total / 2, (total_error + a_low + b_low) / 2
         b, b_low = sqrt_pair(product, product_error)
     mean, mean_low = two_sum(a / 2, b / 2)
-    mean_low += (a_low + b_low) / 2 - (a - b) ** 2 / (16 * mean)  # agm(1 + x, 1 - x) = 1 - x^2/4
+    apart = (a - b) + (a_low - b_low)
+    mean_low += (a_low + b_low) / 2 - apart * apart / (16 * mean)  # agm(1 + x, 1 - x) = 1 - x^2/4
     high, low = two_product(mean, _INVERSE_PI[0])
     low += mean_low * _INVERSE_PI[0] + mean * _INVERSE_PI[1]
     return Pair(*two_sum(high, low))
