@@ -1,6 +1,6 @@
 """The record of one motion: its regime and its numbers, under their keys."""
 
-from __future__ import annotations
+# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
 
 import math
 from enum import Enum

@@ -4,7 +4,7 @@ Everything later is a formula in the gaps, and each gap is computed so that it k
 accuracy.  Equation numbers in parentheses are those of Chrapan (1952).
 """
 
-from __future__ import annotations
+# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
 
 from fractions import Fraction
 from typing import NamedTuple
