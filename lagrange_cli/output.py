@@ -101,6 +101,16 @@ def write_text_blocks(style: str, names: Sequence[str], blocks: Iterable[bytes],
         stream.write(b"]\n" if style == "json" else b"")
 
 
+def check_parts(folder: str, style: str, count: int) -> None:
+    """Raise CannotWriteError where a folder holds a part that a sweep of so many parts does not
+    have (0: it is not known how many), and that would be taken for one of its own."""
+    for name in sorted(os.listdir(folder)) if os.path.isdir(folder) and count else []:
+        number = name.removeprefix("part-").removesuffix(f".{style}")
+        if number.isdigit() and int(number) >= count:
+            path = os.path.join(folder, name)
+            raise CannotWriteError(f"cannot write {folder}: {path} is of another, longer sweep")
+
+
 def write_parts(
     style: str, names: Sequence[str], parts: Iterable[tuple[int, bytes]], folder: str
 ) -> None:

@@ -521,3 +521,12 @@ def test_parts_that_cannot_be(tmp_path: Path, lagtop: Lagtop) -> None:
     assert lagtop("sweep", "--parts", tmp_path / "file").exit_code == 74
     assert lagtop("sweep", "--parts", tmp_path, "-o", "x").exit_code == 2
     assert lagtop("sweep", "--parts", tmp_path, "--format", "json").exit_code == 2
+
+
+def test_parts_of_a_longer_sweep_are_not_mixed_in(tmp_path: Path, lagtop: Lagtop) -> None:
+    args = ["--parts", str(tmp_path), "--keys", "r0"]
+    assert lagtop("sweep", "--r0", "1:2:5000", *args).exit_code == 0
+    shorter = lagtop("sweep", "--r0", "1:2:10", *args)
+    assert shorter.exit_code == 74
+    assert "part-000001.csv is of another, longer sweep" in shorter.stderr
+    assert lagtop("sweep", "--r0", "1:3:5000", *args).exit_code == 0

@@ -16,7 +16,7 @@ from ..options import (
     output_options,
     with_progress,
 )
-from ..output import write_parts, write_text_blocks
+from ..output import check_parts, write_parts, write_text_blocks
 
 if TYPE_CHECKING:
     from ..axes import Axis
@@ -84,6 +84,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     from ..parquet import check_parquet
     from ..parts import Tally, shard_of
     from ..plan import plan
+    from ..sweeps import BLOCK_ROWS
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
     if folder is not None and style == "json":
@@ -99,6 +100,7 @@ def command(  # noqa: PLR0917 - click passes them by name
             tally.passing(parts), size // (shard or (1, 1))[1], 1_000_000, lambda part: part.tops
         )
         if folder is not None:
+            check_parts(folder, style, -(-size // BLOCK_ROWS))
             write_parts(style, sweep.header, ((part.number, part.text) for part in passing), folder)
         else:
             write_text_blocks(style, sweep.header, (part.text for part in passing), output)
