@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from .elliptic.arithmetic import blocks, polynomial
 from .errors import LagtopError
-from .phase import Growth, Growths
+from .growth import Growth, Growths
 from .series import Component, Frame, Polynomial
 from .twofold import Array, Pair, reduce_phase
 

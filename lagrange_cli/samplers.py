@@ -13,7 +13,7 @@ from .general import (
     steady_rates,
     theta_constants,
 )
-from .phase import growths
+from .growth import growths
 from .record import Regime
 from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
 from .top import Tilt, Top

@@ -1,8 +1,4 @@
-"""Times reduced to phases without loss, and the angles that grow with them.
-
-A double times a constant held as two doubles gives the whole steps that have passed and the rest,
-exactly (Dekker's product); so an angle is as good at a time 1e12 periods away as at the next one.
-"""
+"""How spin and precession grow: so much with each step of the phase, and a series within it."""
 
 from __future__ import annotations
 
