@@ -17,7 +17,7 @@ def check_parquet() -> None:
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:
-        raise LagtopError("--format parquet needs: pip install 'lagtop[parquet]'") from None
+        raise LagtopError("--format parquet needs pyarrow: pip install 'lagtop[parquet]'") from None
 
 
 def arrow_block(columns: Sequence[Any], names: Sequence[str]) -> bytes:

@@ -81,6 +81,7 @@ def draw_remainders(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -
 def _finish_time_axes(axes: Any, motion: Motion, t: Array) -> None:
     """Time below; whole nutation periods as ticks above and as thin lines through all panels."""
     axes[-1].set_xlabel("time t")
+    axes[-1].locator_params(axis="x", nbins=6)  # small steps have long labels
     axes[-1].set_xlim(t[0], t[-1])
     T = curves.period(motion)
     if not T or t[-1] < T * (1 - 1e-9):
@@ -153,6 +154,7 @@ def draw_phase(panel: SubFigure, motion: Motion, wish: Wish, style: Look) -> Non
     axes = panel.subplots()
     axes.set_title("Nutation in the phase plane")
     axes.set(xlabel=f"tilt ϑ ({unit})", ylabel="tilt rate ϑ̇ (rad/time)")
+    axes.locator_params(axis="x", nbins=5)
     axes.axhline(0.0, color=style.quiet, lw=0.9)
     axes.plot(portrait.theta * factor, portrait.rate, color=style.lines[0], label="this motion")
     mark_start(axes, portrait.start[0] * factor, portrait.start[1], style)

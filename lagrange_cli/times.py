@@ -16,7 +16,7 @@ from .top import parse_number
 if TYPE_CHECKING:
     from .twofold import Array
 
-BLOCK_ROWS = 1 << 16
+BLOCK_ROWS = 1 << 14
 MAX_ROWS = 10**9
 
 
