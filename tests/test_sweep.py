@@ -168,6 +168,7 @@ SPECIAL: list[dict[str, Any]] = [
     {"theta0_rad": 0, "r0": 40},
     {"psidot0": 3},
     {"thetadot0": -2, "psidot0": 1},
+    {"theta0_rad": 3.141592, "thetadot0": -2, "psidot0": 1},
     {"psidot0": 14.268273570855769, "theta0_deg": 73.92162879062151},
     {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 1},
     {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": math.nextafter(2, 3), "theta0_deg": 0},
