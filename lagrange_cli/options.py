@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
+from time import monotonic
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -128,6 +129,19 @@ def with_progress(
         for part in parts:
             yield part
             bar.update(size(part))
+
+
+def with_count(parts: Iterable[P], label: str) -> Iterator[P]:
+    """The same for nobody knows how many; after a second, a bar that counts."""
+    parts, begun = iter(parts), monotonic()
+    for part in parts:
+        yield part
+        if monotonic() - begun > 1 and sys.stderr.isatty():
+            break
+    else:
+        return
+    with click.progressbar(parts, label=label, file=sys.stderr, show_pos=True) as bar:
+        yield from bar
 
 
 def with_steps(items: Sequence[T], label: str) -> Iterator[T]:

@@ -14,6 +14,7 @@ from ..options import (
     exclude,
     input_options,
     output_options,
+    with_count,
     with_progress,
 )
 from ..output import check_parts, write_parts, write_text_blocks
@@ -96,9 +97,12 @@ def command(  # noqa: PLR0917 - click passes them by name
     sweep, blocks, size = plan(files, inputs, keys=names, radians=rad, style=style)
     tally = Tally(fail_fast=fail_fast)
     with computed(sweep, shard_of(blocks, shard), cluster) as parts:
-        passing = with_progress(
-            tally.passing(parts), size // (shard or (1, 1))[1], 1_000_000, lambda part: part.tops
-        )
+        passing = tally.passing(parts)
+        if size:
+            share = size // (shard or (1, 1))[1]
+            passing = with_progress(passing, share, 1_000_000, lambda part: part.tops)
+        else:
+            passing = with_count(passing, "parts")
         if folder is not None:
             check_parts(folder, style, -(-size // BLOCK_ROWS))
             write_parts(style, sweep.header, ((part.number, part.text) for part in passing), folder)
