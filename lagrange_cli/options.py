@@ -19,7 +19,7 @@ from .top import Number, build_top, overridden, parse_number
 
 if TYPE_CHECKING:
     from .findings import Findings
-    from .times import Grid
+    from .times import Grid, Times
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -105,6 +105,14 @@ def exclude(options: dict[str, Any]) -> None:
     given = [name for name, value in options.items() if value is not None]
     if len(given) > 1:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
+
+
+def listed(name: str, single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
+    """The numbers of --NAME, or those of --NAME-range, if any.  Raises LagtopError for both."""
+    from .times import TimeList
+
+    exclude({f"--{name}": single or None, f"--{name}-range": grid})
+    return grid or (TimeList(list(single)) if single else None)
 
 
 def given(name: str) -> bool:

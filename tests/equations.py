@@ -41,6 +41,16 @@ class Register:
 
         return register
 
+    def check(self, number: str, tolerance: float = 1e-40) -> None:
+        """The sides of an equation agree."""
+        for left, right in self.holds[number]():
+            assert gap(left, right) < tolerance
+
+    def check_as_printed(self, number: str) -> None:
+        """The sides as printed do not."""
+        for left, right in self.fails[number]():
+            assert gap(left, right) > 1e-3
+
 
 def gap(left: Any, right: Any) -> float:
     """How far two sides are apart, in the size of the right one or 1."""

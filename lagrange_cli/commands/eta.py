@@ -15,7 +15,7 @@ from ..options import (
     RANGE,
     ExamplesFirst,
     digits_option,
-    exclude,
+    listed,
     output_options,
     with_progress,
 )
@@ -79,11 +79,9 @@ def command(  # noqa: PLR0917 - click passes them by name
     is at infinity, as for Lagrange's top.
     """
     from ..satellite import digit_rows, record, rows
-    from ..times import TimeList
 
-    exclude({"--tau": single or None, "--tau-range": grid})
+    times = listed("tau", single, grid)
     of = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
-    times = grid or (TimeList(list(single)) if single else None)
     if times is None:
         write_record(record(of, digits), style, output, "eta")
     elif digits is None:

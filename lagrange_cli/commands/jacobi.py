@@ -17,6 +17,7 @@ from ..options import (
     ExamplesFirst,
     digits_option,
     exclude,
+    listed,
     output_options,
     with_progress,
 )
@@ -92,7 +93,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     given = Given(*chosen[0], radians=rad)
     flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
     families = tuple(name for name, wanted in flags.items() if wanted)
-    arguments = _arguments(single, grid)
+    arguments = listed("u", single, grid)
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
         exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
@@ -105,13 +106,6 @@ def command(  # noqa: PLR0917 - click passes them by name
         return
     request = Request(given, families, *_parameter(param, families), radians=rad)
     _write_rows(arguments, request, digits, style, output)
-
-
-def _arguments(single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
-    from ..times import TimeList
-
-    exclude({"--u": single or None, "--u-range": grid})
-    return grid or (TimeList(list(single)) if single else None)
 
 
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:

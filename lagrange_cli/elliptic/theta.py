@@ -108,8 +108,9 @@ def _place(ar: Arithmetic, x: Complex) -> Place:
 def _in_periods(ar: Arithmetic, v: Complex, given: Modulus) -> Place:
     """v/2K; real arrays keep their digits far away."""
     if has_arrays(ar) and ar.isrealobj(v):
-        v, k_prime, rest = ar.broadcast_arrays(ar.asarray(v, dtype=float), *given[1:])
-        return Place(*reduce_phase(v, rate_of_half_periods(ar, k_prime, rest)))
+        rate = rate_of_half_periods(ar, given.k_prime, given.rest)
+        v, _ = ar.broadcast_arrays(ar.asarray(v, dtype=float), given.k_prime)
+        return Place(*reduce_phase(v, rate))
     return _place(ar, v / (2 * complete_k(ar, given.k_prime)))
 
 
