@@ -14,13 +14,13 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from . import curves
+from .arithmetic.double_double import Array
 from .errors import LagtopError
 from .globe import best_view, runs, seen_top
 from .motion import Motion
 from .sheet import Page, styled
 from .sphere import draw_globe
 from .style import scale
-from .twofold import Array
 
 FRAMES, FRAMES_PER_SECOND = 144, 24
 SIZE = 4.8, 5.0

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .accuracy import Exact, Reference, angle_differences, angle_units
+from .arithmetic.double_double import Array
 from .closed_forms import CLOSED_FORMS
 from .errors import LagtopError
 from .findings import Field, Findings, as_options, short
@@ -21,7 +22,6 @@ from .machine import machine, versions, warm_allocator
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
 from .motion import Motion
 from .record import Regime
-from .twofold import Array
 
 JUDGED = 201
 """So many of the times, the last among them, are compared with the reference."""

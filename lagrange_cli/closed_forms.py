@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .arithmetic.double_double import Array
 from .elliptic import many_digits
 from .methods import Method, NotApplicableError, Sample, Sampled
 from .motion import solve
 from .top import Top
-from .twofold import Array
 
 
 def _ours(top: Top, _: str) -> Sample:

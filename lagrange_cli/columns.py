@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .angles import Attitude
+from .arithmetic.double_double import Array
 from .cubic import Start
 from .top import Top
-from .twofold import Array
 
 
 class ColumnConstants(NamedTuple):

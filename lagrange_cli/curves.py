@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .arithmetic.double_double import Array
 from .columns import Sample, column_constants
 from .elliptic import carlson_rf, complete_k, many_digits
 from .errors import LagtopError
@@ -21,7 +22,6 @@ from .motion import Motion
 from .record import Regime
 from .samplers import solution_of
 from .top import Number
-from .twofold import Array
 
 PHASES = 48
 """Samples per half period, before `refined` adds where a curve is steep."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from .arithmetic.correct_digits import NumberText, TooFewDigitsError, settle
 from .elliptic import Arithmetic, Real
 from .general import (
     Solution,
@@ -18,7 +19,6 @@ from .general_record import general_record
 from .record import Regime
 from .released import released_record
 from .series import ThetaConstants, evaluate, theta_series
-from .settle import NumberText, TooFewDigitsError, settle
 from .top import Number, Top, number
 
 

@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .arithmetic.double_double import Array
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
 from .top import Top
-from .twofold import Array
 
 TIGHTEST = 3e-14
 """As tight as scipy lets a relative tolerance be."""

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .arithmetic.double_double import Array
 from .errors import LagtopError
 from .motion import Motion
 from .record import NUMBER_KEYS
 from .sweeps import sweep
 from .top import Top, overridden, parse_number
-from .twofold import Array
 
 INPUTS = {
     "m": "mass m",

@@ -6,7 +6,7 @@ import math
 from decimal import localcontext
 from typing import TYPE_CHECKING, Any
 
-from . import decimals
+from .arithmetic import decimals
 from .elliptic import Real, many_digits
 from .errors import LagtopError
 from .record import Record

@@ -18,8 +18,8 @@ from .output import write_findings
 from .top import Number, build_top, overridden, parse_number
 
 if TYPE_CHECKING:
+    from .arithmetic.points import Grid, Times
     from .findings import Findings
-    from .times import Grid, Times
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -54,7 +54,7 @@ def _parse_count(text: str) -> int:
 
 
 def _parse_range(text: str) -> Grid:
-    from .times import parse_range
+    from .arithmetic.points import parse_range
 
     return parse_range(text)
 
@@ -109,7 +109,7 @@ def exclude(options: dict[str, Any]) -> None:
 
 def listed(name: str, single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
     """The numbers of --NAME, or those of --NAME-range, if any.  Raises LagtopError for both."""
-    from .times import TimeList
+    from .arithmetic.points import TimeList
 
     exclude({f"--{name}": single or None, f"--{name}-range": grid})
     return grid or (TimeList(list(single)) if single else None)

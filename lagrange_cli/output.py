@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from .numerals import json_text, value_text
+from .arithmetic.text import json_text, value_text
 from .sink import CannotWriteError, sink
 
 if TYPE_CHECKING:
+    from .arithmetic.double_double import Array
     from .findings import Findings
-    from .twofold import Array
 
 MAX_TABLE_ROWS = 10_000
 """A rich table of more rows is neither read nor quickly made."""

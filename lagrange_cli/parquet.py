@@ -8,8 +8,8 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from .arithmetic.text import json_text
 from .errors import LagtopError
-from .numerals import json_text
 
 
 def check_parquet() -> None:

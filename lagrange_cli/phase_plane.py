@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .arithmetic.double_double import Array
 from .curves import PHASES, phase_times, refined, sample, span
 from .motion import Motion
 from .samplers import solution_of
-from .twofold import Array
 
 
 class Cubic(NamedTuple):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from .angles import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
+from .arithmetic.double_double import pair
 from .elliptic import Arithmetic, Real, many_digits
 from .general import (
     Solution,
@@ -17,7 +18,6 @@ from .growth import growths
 from .record import Regime
 from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
 from .top import Tilt, Top
-from .twofold import pair
 
 _NEGLIGIBLE = 2.0**-60
 

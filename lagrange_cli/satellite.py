@@ -15,20 +15,20 @@ from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .angles import MAX_PERIODS, MAX_TIME
+from .arithmetic.correct_digits import require_digits, settle, settled_or_rounded
+from .arithmetic.points import check_reach
 from .elliptic import Arithmetic, Real, agm, many_digits, where
 from .elliptic.jacobi import jacobi
 from .elliptic.modulus import Modulus
 from .errors import LagtopError
-from .settle import require_digits, settle, settled_or_rounded
-from .times import check_reach
 from .top import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from .settle import NumberText
-    from .times import Times
-    from .twofold import Array
+    from .arithmetic.correct_digits import NumberText
+    from .arithmetic.double_double import Array
+    from .arithmetic.points import Times
 
 
 class Quadrature(NamedTuple):
@@ -208,8 +208,8 @@ def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterato
     """
     import numpy as np
 
+    from .arithmetic.double_double import pair, reduce_phase
     from .elliptic import complete_k
-    from .twofold import pair, reduce_phase
 
     of.check()
     exact = many_digits()

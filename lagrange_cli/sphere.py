@@ -12,10 +12,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import SubFigure
 
 from . import curves
+from .arithmetic.double_double import Array
 from .globe import Near, View, best_view, parallel, runs
 from .motion import Motion
 from .style import Look, mark_start, scale
-from .twofold import Array
 
 NARROW = math.radians(6.0)
 """A band of tilts that a circle on the globe hides: it is shown magnified as well."""

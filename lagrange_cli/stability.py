@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 
 from .accuracy import EPS, Exact, Reference, angle_units
+from .arithmetic.points import TimeList
 from .bench import Steps
 from .closed_forms import CLOSED_FORMS
 from .errors import LagtopError
@@ -21,7 +22,6 @@ from .methods import FailedError, Method, NotApplicableError
 from .motion import Motion, solve
 from .strata import STRATA, scene_and_times
 from .table import rows
-from .times import TimeList
 from .top import Top
 
 CONTRACT = 4.0

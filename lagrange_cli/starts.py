@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import twofold
+from .arithmetic import double_double as twofold
+from .arithmetic.double_double import Array, Twofold
 from .cubic import Place, Start
 from .elliptic import complete_k
 from .general import Solution
@@ -26,7 +27,6 @@ from .record import Regime
 from .released import complement, modulus, phase_rate
 from .roots import Roots
 from .tops import Mask, Tops
-from .twofold import Array, Twofold
 
 _CLEAR = 2.0**-40
 """Of its parts at least, so that a difference of pairs has the digits of a double."""

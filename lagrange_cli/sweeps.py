@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arithmetic.double_double import Array
 from .errors import LagtopError, check_names
 from .motion import solve
 from .record import NUMBER_KEYS, Regime
@@ -23,7 +24,6 @@ from .released import STILL, Nutation, remark, unmoved
 from .starts import starts
 from .top import Top
 from .tops import Mask, Tops
-from .twofold import Array
 
 Column = Array | NDArray[np.object_]
 """Numbers, NaN where a regime has none; or texts, None where there is none."""

@@ -7,15 +7,15 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from .arithmetic.points import Grid, Times, even_grid
 from .errors import LagtopError, check_names
 from .motion import Motion
-from .times import Grid, Times, even_grid
 
 if TYPE_CHECKING:
     from .angles import Sampler
+    from .arithmetic.correct_digits import NumberText
+    from .arithmetic.double_double import Array
     from .columns import Column, Sample
-    from .settle import NumberText
-    from .twofold import Array
 
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256

@@ -7,15 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .arithmetic.double_double import Array
+from .arithmetic.points import Times
 from .errors import LagtopError
 from .motion import Motion, solve
 from .output import block_text
 from .parts import Part
 from .rowfile import Lines, Row, RowFile, open_rows
 from .table import headings, rows
-from .times import Times
 from .top import Top
-from .twofold import Array
 
 _TOPS_AT_ONCE = 64
 

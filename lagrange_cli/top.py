@@ -8,7 +8,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from . import decimals
+from .arithmetic import decimals
 from .elliptic import Arithmetic, Real
 from .errors import LagtopError
 

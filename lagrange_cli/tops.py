@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .arithmetic.double_double import Array, Twofold, two_sum
 from .record import Regime
 from .roots import Invariants
 from .top import Tilt
-from .twofold import Array, Twofold, two_sum
 
 Mask = NDArray[np.bool_]
 

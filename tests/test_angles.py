@@ -11,7 +11,7 @@ import pytest
 from scenes import NAMED, random_scene, random_times
 
 from lagrange_cli import LagtopError, Motion, Top, solve
-from lagrange_cli.elliptic.arithmetic import BLOCK
+from lagrange_cli.arithmetic.generic import BLOCK
 
 
 def period(motion: Motion) -> float:

@@ -17,8 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic.text import double_text, value_text
 from lagrange_cli.cli import main
-from lagrange_cli.numerals import double_text, value_text
 from lagrange_cli.output import block_text, csv_text, opening
 from lagrange_cli.top import parse_number
 

@@ -12,7 +12,8 @@ import oracle
 import pytest
 from scenes import NAMED, random_scene
 
-from lagrange_cli import LagtopError, Top, decimals, solve
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic import decimals
 from lagrange_cli.elliptic import many_digits
 from lagrange_cli.record import Regime
 from lagrange_cli.released import released_record

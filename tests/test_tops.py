@@ -10,7 +10,7 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import Top, solve
-from lagrange_cli.numerals import value_text
+from lagrange_cli.arithmetic.text import value_text
 
 
 @pytest.mark.parametrize("key", ["T_nutation", "regime", "theta0_deg", "path"])

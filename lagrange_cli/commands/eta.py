@@ -22,8 +22,8 @@ from ..options import (
 from ..output import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
+    from ..arithmetic.points import Grid
     from ..satellite import Quadrature
-    from ..times import Grid
 
 
 @click.command(

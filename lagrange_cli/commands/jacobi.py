@@ -25,8 +25,8 @@ from ..output import write_record, write_rows, write_texts
 from ..top import parse_number
 
 if TYPE_CHECKING:
+    from ..arithmetic.points import Grid, Times
     from ..functions import Given, Request
-    from ..times import Grid, Times
 
 MOST_TERMS = 10_000
 

@@ -25,8 +25,8 @@ from ..options import (
 from ..output import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
 
 if TYPE_CHECKING:
+    from ..arithmetic.points import Times
     from ..motion import Motion
-    from ..times import Times
 
 
 @click.command(
@@ -88,8 +88,8 @@ def command(  # noqa: PLR0917 - click passes them by name
     Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
     nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
+    from ..arithmetic.points import read_times
     from ..table import DEFAULT_COLUMNS, digit_rows, grid, rows
-    from ..times import read_times
 
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})

@@ -10,7 +10,7 @@ lost as k -> 1.
 What start-up needs is here; `modulus`, `incomplete`, `jacobi`, `theta` and `fourier` are modules.
 """
 
-from .arithmetic import Arithmetic, Real, epsilon, everywhere, many_digits, where
+from ..arithmetic.generic import Arithmetic, Real, epsilon, everywhere, many_digits, where
 from .carlson import carlson_rf
 from .complete import agm, complete_e, complete_k, nome, period_mean
 

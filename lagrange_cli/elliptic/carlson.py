@@ -12,7 +12,7 @@ from collections.abc import Callable
 from functools import reduce
 from typing import Any
 
-from .arithmetic import (
+from ..arithmetic.generic import (
     Arithmetic,
     Real,
     anywhere,

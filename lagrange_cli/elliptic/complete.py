@@ -5,7 +5,7 @@ Every loop adds and multiplies positive numbers only, so each result is good to 
 
 from __future__ import annotations
 
-from .arithmetic import Arithmetic, Real, anywhere, epsilon, where
+from ..arithmetic.generic import Arithmetic, Real, anywhere, epsilon, where
 
 
 def agm(ar: Arithmetic, a: Real, b: Real) -> Real:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import accumulate, count
 
-from .arithmetic import Arithmetic, Real
+from ..arithmetic.generic import Arithmetic, Real
 from .complete import complete_k, nome
 from .modulus import Modulus
 

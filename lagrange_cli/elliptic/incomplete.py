@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..twofold import two_product, two_sum
-from .arithmetic import Arithmetic, Real, has_arrays
+from ..arithmetic.double_double import two_product, two_sum
+from ..arithmetic.generic import Arithmetic, Real, has_arrays
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
 from .modulus import Modulus

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..arithmetic.double_double import Pair, sqrt_pair, two_product, two_sum
+from ..arithmetic.generic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
 from ..errors import LagtopError
-from ..twofold import Pair, sqrt_pair, two_product, two_sum
-from .arithmetic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
 from .complete import complete_e, complete_k, nome
 
 _INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17

@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..arithmetic.double_double import reduce_phase
+from ..arithmetic.generic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
 from ..errors import LagtopError
-from ..twofold import reduce_phase
-from .arithmetic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from .elliptic import Arithmetic, many_digits
-from .errors import LagtopError
-from .top import number
+from ..elliptic import Arithmetic, many_digits
+from ..errors import LagtopError
+from ..top import number
 
 
 class NumberText(str):

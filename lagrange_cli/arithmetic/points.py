@@ -10,11 +10,11 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from .errors import LagtopError
-from .top import parse_number
+from ..errors import LagtopError
+from ..top import parse_number
 
 if TYPE_CHECKING:
-    from .twofold import Array
+    from .double_double import Array
 
 BLOCK_ROWS = 1 << 14
 MAX_ROWS = 10**9
@@ -37,7 +37,7 @@ class Grid:
         """The times, a block at a time."""
         import numpy as np
 
-        from .twofold import pair, two_product, two_sum
+        from .double_double import pair, two_product, two_sum
 
         start, step = map(pair, self.exact)
         for first in range(0, self.count, BLOCK_ROWS):
