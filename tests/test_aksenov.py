@@ -10,16 +10,16 @@ import pytest
 from equations import Register, Sides, ar
 
 from lagrange_cli.elliptic import complete_k, nome
-from lagrange_cli.elliptic.fourier import am_sums, cn_sums, k_sums, sn_sums
-from lagrange_cli.elliptic.incomplete import incomplete_f
-from lagrange_cli.elliptic.jacobi import jacobi
-from lagrange_cli.elliptic.modulus import modulus
-from lagrange_cli.satellite import (
+from lagrange_cli.elliptic.eta import (
     Quadrature,
     band,
     constants,
     eta_and_rate,
 )
+from lagrange_cli.elliptic.incomplete import incomplete_f
+from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.elliptic.nome_series import am_sums, cn_sums, k_sums, sn_sums
 
 aksenov = Register()
 equation, as_printed = aksenov.equation, aksenov.as_printed

@@ -23,7 +23,7 @@ from ..output import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Grid
-    from ..satellite import Quadrature
+    from ..elliptic.eta import Quadrature
 
 
 @click.command(
@@ -78,7 +78,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     Without --tau the constants; with it eta and its rate.  With one gap alone the other outer root
     is at infinity, as for Lagrange's top.
     """
-    from ..satellite import digit_rows, record, rows
+    from ..elliptic.eta import digit_rows, record, rows
 
     times = listed("tau", single, grid)
     of = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
@@ -100,7 +100,7 @@ def _quadrature(
     g: Fraction,
 ) -> Quadrature:
     """The roots from either way to give the outer ones; the rest is checked where it is used."""
-    from ..satellite import Quadrature
+    from ..elliptic.eta import Quadrature
 
     p, q = middle.values()
     above, below = gaps

@@ -26,7 +26,7 @@ from ..top import parse_number
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Grid, Times
-    from ..functions import Given, Request
+    from ..elliptic.function_table import Given, Request
 
 MOST_TERMS = 10_000
 
@@ -84,7 +84,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     Without --u the constants; with it am, sn, cn, dn of every u, right to an ulp or two as close to
     k = 1 as --k-prime can say, and what else is asked for, to a few roundings of 1.
     """
-    from ..functions import Given, Request, constants_record
+    from ..elliptic.function_table import Given, Request, constants_record
 
     named = {"k": k, "k_prime": k_prime, "angle": angle, "q": q}
     chosen = [(name, value) for name, value in named.items() if value is not None]
@@ -126,7 +126,7 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, 
 def _write_rows(
     arguments: Times, request: Request, digits: int | None, style: str, output: str
 ) -> None:
-    from ..functions import digit_rows, rows
+    from ..elliptic.function_table import digit_rows, rows
 
     if digits is None:
         header, blocks = rows(arguments, request)
@@ -139,7 +139,7 @@ def _write_rows(
 def _write_series(
     given: Given, arguments: Times | None, terms: int, style: str, output: str
 ) -> None:
-    from ..functions import series_rows
+    from ..elliptic.function_table import series_rows
 
     if not 1 <= terms <= MOST_TERMS:
         raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")

@@ -14,21 +14,21 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .angles import MAX_PERIODS, MAX_TIME
-from .arithmetic.correct_digits import require_digits, settle, settled_or_rounded
-from .arithmetic.points import check_reach
-from .elliptic import Arithmetic, Real, agm, many_digits, where
-from .elliptic.jacobi import jacobi
-from .elliptic.modulus import Modulus
-from .errors import LagtopError
-from .top import number
+from ..angles import MAX_PERIODS, MAX_TIME
+from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
+from ..arithmetic.points import check_reach
+from ..errors import LagtopError
+from ..top import number
+from . import Arithmetic, Real, agm, many_digits, where
+from .jacobi import jacobi
+from .modulus import Modulus
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from .arithmetic.correct_digits import NumberText
-    from .arithmetic.double_double import Array
-    from .arithmetic.points import Times
+    from ..arithmetic.correct_digits import NumberText
+    from ..arithmetic.double_double import Array
+    from ..arithmetic.points import Times
 
 
 class Quadrature(NamedTuple):
@@ -208,8 +208,8 @@ def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterato
     """
     import numpy as np
 
-    from .arithmetic.double_double import pair, reduce_phase
-    from .elliptic import complete_k
+    from ..arithmetic.double_double import pair, reduce_phase
+    from . import complete_k
 
     of.check()
     exact = many_digits()

@@ -7,23 +7,23 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .angles import MAX_PERIODS, MAX_TIME
-from .arithmetic.correct_digits import require_digits, settle, settled_or_rounded
-from .arithmetic.double_double import pair
-from .arithmetic.points import check_reach
-from .arithmetic.text import double_text
-from .elliptic import Arithmetic, Real, complete_k, many_digits
-from .elliptic.fourier import am_sums, cn_sums, k_sums, sn_sums
-from .elliptic.jacobi import jacobi
-from .elliptic.modulus import Modulus, constants, modulus
-from .elliptic.theta import Complex, omega, pi_function, theta_of, zeta
-from .errors import LagtopError
-from .top import number
+from ..angles import MAX_PERIODS, MAX_TIME
+from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
+from ..arithmetic.double_double import pair
+from ..arithmetic.points import check_reach
+from ..arithmetic.text import double_text
+from ..errors import LagtopError
+from ..top import number
+from . import Arithmetic, Real, complete_k, many_digits
+from .jacobi import jacobi
+from .modulus import Modulus, constants, modulus
+from .nome_series import am_sums, cn_sums, k_sums, sn_sums
+from .theta import Complex, omega, pi_function, theta_of, zeta
 
 if TYPE_CHECKING:
-    from .arithmetic.correct_digits import NumberText
-    from .arithmetic.double_double import Array
-    from .arithmetic.points import Times
+    from ..arithmetic.correct_digits import NumberText
+    from ..arithmetic.double_double import Array
+    from ..arithmetic.points import Times
 
 ONE_ARGUMENT = {"theta": theta_of, "zeta": zeta}
 TWO_ARGUMENTS = {"omega": omega, "pi": pi_function}
