@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 from .errors import LagtopError
+from .inputs.top import Top
 from .motion import Motion, solve
 from .record import Regime
-from .top import Top
 
 if TYPE_CHECKING:
     from .sweeps import sweep

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import mpmath
 
 from .errors import LagtopError
-from .top import Top
+from .inputs.top import Top
 
 EPS = 2.0**-52
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from .arithmetic.double_double import Array
 from .elliptic import many_digits
+from .inputs.top import Top
 from .methods import Method, NotApplicableError, Sample, Sampled
 from .motion import solve
-from .top import Top
 
 
 def _ours(top: Top, _: str) -> Sample:

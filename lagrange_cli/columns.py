@@ -16,7 +16,7 @@ import numpy as np
 from .angles import Attitude
 from .arithmetic.double_double import Array
 from .cubic import Start
-from .top import Top
+from .inputs.top import Top
 
 
 class ColumnConstants(NamedTuple):

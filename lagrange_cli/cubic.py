@@ -9,8 +9,8 @@ from functools import partial
 from typing import NamedTuple
 
 from .elliptic import Arithmetic, Real
+from .inputs.top import Top, number
 from .roots import Roots, invariants
-from .top import Top, number
 
 
 class Start(NamedTuple):

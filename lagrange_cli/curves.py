@@ -18,10 +18,10 @@ from .columns import Sample, column_constants
 from .elliptic import carlson_rf, complete_k, many_digits
 from .errors import LagtopError
 from .general import periods_since_top, separatrix_swing
+from .inputs.top import Number
 from .motion import Motion
 from .record import Regime
 from .samplers import solution_of
-from .top import Number
 
 PHASES = 48
 """Samples per half period, before `refined` adds where a curve is steep."""

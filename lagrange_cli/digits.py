@@ -16,10 +16,10 @@ from .general import (
     theta_constants,
 )
 from .general_record import general_record
+from .inputs.top import Number, Top, number
 from .record import Regime
 from .released import released_record
 from .series import ThetaConstants, evaluate, theta_series
-from .top import Number, Top, number
 
 
 def settled_record(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:

@@ -23,11 +23,11 @@ from .elliptic import (
     where,
 )
 from .errors import LagtopError
+from .inputs.top import Number, Top
 from .record import Regime
 from .released import complement, modulus, phase_rate
 from .roots import Roots
 from .series import Swing, ThetaConstants
-from .top import Number, Top
 
 
 class Solution(NamedTuple):

@@ -17,10 +17,10 @@ from .elliptic import (
     where,
 )
 from .general import Solution, advances, analyse, steady_rates
+from .inputs.top import Top
 from .record import NUMBER_KEYS, Record, Regime, constant_rates
 from .released import Nutation, u_quarter
 from .roots import Roots
-from .top import Top
 
 
 class GeneralNutation(Nutation):

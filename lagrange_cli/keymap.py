@@ -10,10 +10,10 @@ import numpy as np
 
 from .arithmetic.double_double import Array
 from .errors import LagtopError
+from .inputs.top import Top, overridden, parse_number
 from .motion import Motion
 from .record import NUMBER_KEYS
 from .sweeps import sweep
-from .top import Top, overridden, parse_number
 
 INPUTS = {
     "m": "mass m",

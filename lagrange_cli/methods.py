@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 from .arithmetic.double_double import Array
-from .top import Top
+from .inputs.top import Top
 
 Sampled = Sequence[Any]
 """Tilt, spin and precession (radians), each an array or a list in the length of the times."""

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from .arithmetic import decimals
 from .elliptic import Real, many_digits
 from .errors import LagtopError
+from .inputs.top import Top
 from .record import Record
 from .released import released_record
-from .top import Top
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -13,9 +13,9 @@ import click
 
 from . import __version__
 from .errors import LagtopError
+from .inputs.top import Number, build_top, overridden, parse_number
 from .motion import Motion, solve
 from .output import write_findings
-from .top import Number, build_top, overridden, parse_number
 
 if TYPE_CHECKING:
     from .arithmetic.points import Grid, Times
@@ -91,7 +91,7 @@ def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
 
 
 def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
-    from .scene import SceneFile
+    from .inputs.scene_file import SceneFile
 
     file = SceneFile(scene)
     try:

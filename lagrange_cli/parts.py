@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .axes import Grid
 from .errors import LagtopError
+from .inputs.ranges import Grid
+from .inputs.tops_file import Lines, RowFile
 from .output import Columns, block_text
-from .rowfile import Lines, RowFile
 from .sweeps import Column, records
 from .tops import Tops
 

@@ -7,7 +7,7 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 from .elliptic import Arithmetic, Real, where
-from .top import Top
+from .inputs.top import Top
 
 
 class Regime(Enum):

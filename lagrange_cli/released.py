@@ -18,9 +18,9 @@ from .elliptic import (
     period_mean,
     where,
 )
+from .inputs.top import Tilt, Top, number
 from .record import NUMBER_KEYS, Record, Regime, constant_rates, period_of
 from .roots import Invariants, Roots, invariants, roots_from_rest
-from .top import Tilt, Top, number
 
 
 def released_record(ar: Arithmetic, top: Top) -> Record:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from .elliptic import Arithmetic, Real, where
-from .top import Tilt, Top, number
+from .inputs.top import Tilt, Top, number
 
 
 class Invariants(NamedTuple):

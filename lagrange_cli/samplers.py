@@ -15,9 +15,9 @@ from .general import (
     theta_constants,
 )
 from .growth import growths
+from .inputs.top import Tilt, Top
 from .record import Regime
 from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
-from .top import Tilt, Top
 
 _NEGLIGIBLE = 2.0**-60
 

@@ -16,13 +16,13 @@ from .bench import Steps
 from .closed_forms import CLOSED_FORMS
 from .errors import LagtopError
 from .findings import Field, Findings, as_options, short
+from .inputs.top import Top
 from .integrators import TIGHTEST, integrators
 from .machine import machine, versions
 from .methods import FailedError, Method, NotApplicableError
 from .motion import Motion, solve
 from .strata import STRATA, scene_and_times
 from .table import rows
-from .top import Top
 
 CONTRACT = 4.0
 """Units of an angle, and eps of a key of the record, that are promised."""

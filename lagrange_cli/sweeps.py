@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic.double_double import Array
 from .errors import LagtopError, check_names
+from .inputs.top import Top
 from .motion import solve
 from .record import NUMBER_KEYS, Regime
 from .released import STILL, Nutation, remark, unmoved
 from .starts import starts
-from .top import Top
 from .tops import Mask, Tops
 
 Column = Array | NDArray[np.object_]

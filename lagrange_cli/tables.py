@@ -10,12 +10,12 @@ import numpy as np
 from .arithmetic.double_double import Array
 from .arithmetic.points import Times
 from .errors import LagtopError
+from .inputs.top import Top
+from .inputs.tops_file import Lines, Row, RowFile, open_rows
 from .motion import Motion, solve
 from .output import block_text
 from .parts import Part
-from .rowfile import Lines, Row, RowFile, open_rows
 from .table import headings, rows
-from .top import Top
 
 _TOPS_AT_ONCE = 64
 

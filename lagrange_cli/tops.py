@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic.double_double import Array, Twofold, two_sum
+from .inputs.top import Tilt
 from .record import Regime
 from .roots import Invariants
-from .top import Tilt
 
 Mask = NDArray[np.bool_]
 

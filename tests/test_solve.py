@@ -79,7 +79,7 @@ def test_the_formulas_hold_on_arrays() -> None:
     invs: list[Any] = [invariants(math, top) for top in tops]
     columns = [(*inv[2:4], *top.tilt(math)) for inv, top in zip(invs, tops, strict=True)]
     lam, lam_minus_1, *tilt = (np.array(column) for column in zip(*columns, strict=True))
-    from lagrange_cli.top import Tilt
+    from lagrange_cli.inputs.top import Tilt
 
     together = roots_from_rest(np, lam, lam_minus_1, Tilt(*tilt))
     for i, (inv, top) in enumerate(zip(invs, tops, strict=True)):

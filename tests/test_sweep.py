@@ -22,7 +22,7 @@ from scenes import random_scene
 
 from lagrange_cli import LagtopError, Motion, Top, solve, sweeps
 from lagrange_cli.arithmetic import decimals
-from lagrange_cli.axes import parse_axis
+from lagrange_cli.inputs.ranges import parse_axis
 from lagrange_cli.record import NUMBER_KEYS, Regime
 from lagrange_cli.roots import invariants
 from lagrange_cli.starts import starts

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..elliptic import Arithmetic, many_digits
 from ..errors import LagtopError
-from ..top import number
+from ..inputs.top import number
 
 
 class NumberText(str):

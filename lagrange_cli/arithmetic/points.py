@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
-from ..top import parse_number
+from ..inputs.top import parse_number
 
 if TYPE_CHECKING:
     from .double_double import Array

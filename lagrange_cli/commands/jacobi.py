@@ -9,6 +9,7 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
+from ..inputs.top import parse_number
 from ..options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -22,7 +23,6 @@ from ..options import (
     with_progress,
 )
 from ..output import write_record, write_rows, write_texts
-from ..top import parse_number
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Grid, Times

@@ -20,11 +20,11 @@ from ..options import (
 from ..output import check_parts, write_parts, write_text_blocks
 
 if TYPE_CHECKING:
-    from ..axes import Axis
+    from ..inputs.ranges import Axis
 
 
 def _parse_axis(text: str) -> Axis:
-    from ..axes import parse_axis
+    from ..inputs.ranges import parse_axis
 
     return parse_axis(text)
 

@@ -18,7 +18,7 @@ from ..angles import MAX_PERIODS, MAX_TIME
 from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
 from ..arithmetic.points import check_reach
 from ..errors import LagtopError
-from ..top import number
+from ..inputs.top import number
 from . import Arithmetic, Real, agm, many_digits, where
 from .jacobi import jacobi
 from .modulus import Modulus

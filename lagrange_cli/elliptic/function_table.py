@@ -13,7 +13,7 @@ from ..arithmetic.double_double import pair
 from ..arithmetic.points import check_reach
 from ..arithmetic.text import double_text
 from ..errors import LagtopError
-from ..top import number
+from ..inputs.top import number
 from . import Arithmetic, Real, complete_k, many_digits
 from .jacobi import jacobi
 from .modulus import Modulus, constants, modulus

@@ -7,7 +7,7 @@ import tomllib
 from fractions import Fraction
 from typing import Any
 
-from .errors import LagtopError
+from ..errors import LagtopError
 from .top import Top, parse_number
 
 _MOST_BYTES = 1 << 20

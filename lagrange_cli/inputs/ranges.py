@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arithmetic.double_double import Array
-from .errors import LagtopError
+from ..arithmetic.double_double import Array
+from ..errors import LagtopError
 from .top import parse_number
 
 MAX_ROWS = 10**9

@@ -8,9 +8,9 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from .arithmetic import decimals
-from .elliptic import Arithmetic, Real
-from .errors import LagtopError
+from ..arithmetic import decimals
+from ..elliptic import Arithmetic, Real
+from ..errors import LagtopError
 
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""

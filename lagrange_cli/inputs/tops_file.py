@@ -15,8 +15,8 @@ from contextlib import suppress
 from itertools import chain, islice
 from typing import Any, NamedTuple
 
-from .arithmetic.text import json_text
-from .errors import LagtopError
+from ..arithmetic.text import json_text
+from ..errors import LagtopError
 from .top import Top, overridden, parse_number
 
 INPUTS = Top._fields

@@ -1,0 +1,1 @@
+"""What is given: tops, scene files, ranges and files of tops."""
