@@ -16,11 +16,11 @@ from .accuracy import Exact, Reference, angle_differences, angle_units
 from .arithmetic.double_double import Array
 from .closed_forms import CLOSED_FORMS
 from .errors import LagtopError
-from .findings import Field, Findings, as_options, short
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import machine, versions, warm_allocator
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
 from .motion import Motion
+from .output.findings import Field, Findings, as_options, short
 from .record import Regime
 
 JUDGED = 201

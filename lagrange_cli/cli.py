@@ -12,7 +12,7 @@ import click
 from . import __version__
 from .errors import LagtopError
 from .options import ExamplesFirst, complain
-from .sink import CannotWriteError, Terminated
+from .output.destination import CannotWriteError, Terminated
 
 COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from .bench import is_done
 from .errors import LagtopError
-from .findings import Findings
-from .sink import CannotWriteError, sink
+from .output.destination import CannotWriteError, sink
+from .output.findings import Findings
 from .stability import CONTRACT
 
 if TYPE_CHECKING:

@@ -15,11 +15,11 @@ from . import __version__
 from .errors import LagtopError
 from .inputs.top import Number, build_top, overridden, parse_number
 from .motion import Motion, solve
-from .output import write_findings
+from .output.write import write_findings
 
 if TYPE_CHECKING:
     from .arithmetic.points import Grid, Times
-    from .findings import Findings
+    from .output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 

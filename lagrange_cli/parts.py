@@ -14,7 +14,7 @@ import numpy as np
 from .errors import LagtopError
 from .inputs.ranges import Grid
 from .inputs.tops_file import Lines, RowFile
-from .output import Columns, block_text
+from .output.write import Columns, block_text
 from .sweeps import Column, records
 from .tops import Tops
 

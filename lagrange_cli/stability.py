@@ -15,12 +15,12 @@ from .arithmetic.points import TimeList
 from .bench import Steps
 from .closed_forms import CLOSED_FORMS
 from .errors import LagtopError
-from .findings import Field, Findings, as_options, short
 from .inputs.top import Top
 from .integrators import TIGHTEST, integrators
 from .machine import machine, versions
 from .methods import FailedError, Method, NotApplicableError
 from .motion import Motion, solve
+from .output.findings import Field, Findings, as_options, short
 from .strata import STRATA, scene_and_times
 from .table import rows
 

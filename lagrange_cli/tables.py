@@ -13,7 +13,7 @@ from .errors import LagtopError
 from .inputs.top import Top
 from .inputs.tops_file import Lines, Row, RowFile, open_rows
 from .motion import Motion, solve
-from .output import block_text
+from .output.write import block_text
 from .parts import Part
 from .table import headings, rows
 

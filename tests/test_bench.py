@@ -24,8 +24,8 @@ from lagrange_cli import LagtopError, Top, bench, diagrams, drift, methods, solv
 from lagrange_cli.arithmetic.text import value_text
 from lagrange_cli.bench import Row, conclusions, measure, task, with_front
 from lagrange_cli.closed_forms import CLOSED_FORMS
-from lagrange_cli.findings import Findings
 from lagrange_cli.integrators import integrators
+from lagrange_cli.output.findings import Findings
 
 LOOPING = Top(psidot0=-4)
 METHODS = CLOSED_FORMS | integrators(10)

@@ -15,7 +15,7 @@ import pytest
 from conftest import ROOT, Lagtop
 
 from lagrange_cli import Motion, Top, options, solve
-from lagrange_cli.report import LAYOUTS
+from lagrange_cli.output.layouts import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
 SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))

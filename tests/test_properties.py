@@ -20,7 +20,7 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import double_text, value_text
 from lagrange_cli.cli import main
 from lagrange_cli.inputs.top import parse_number
-from lagrange_cli.output import block_text, csv_text, opening
+from lagrange_cli.output.write import block_text, csv_text, opening
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)
 spins = st.floats(-1e6, 1e6)

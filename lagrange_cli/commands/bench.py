@@ -21,7 +21,7 @@ from ..options import (
 )
 
 if TYPE_CHECKING:
-    from ..findings import Findings
+    from ..output.findings import Findings
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
 PERIODS = 20.3

@@ -19,7 +19,7 @@ from ..options import (
     output_options,
     with_progress,
 )
-from ..output import write_record, write_rows, write_texts
+from ..output.write import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Grid

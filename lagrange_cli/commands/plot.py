@@ -13,7 +13,7 @@ import click
 
 from ..errors import LagtopError
 from ..options import NUMBER, ExamplesFirst, scene_options, solved, with_progress
-from ..output import write_bytes
+from ..output.write import write_bytes
 from ..style import look, require_matplotlib
 
 KINDS = ("sphere", "angles", "remainders", "cubic", "phase", "map")

@@ -17,7 +17,7 @@ from ..options import (
     scene_options,
     solved,
 )
-from ..output import write_record, write_value
+from ..output.write import write_record, write_value
 
 
 @click.command(

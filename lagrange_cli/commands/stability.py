@@ -11,7 +11,7 @@ from ..errors import LagtopError
 from ..options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
 
 if TYPE_CHECKING:
-    from ..findings import Findings
+    from ..output.findings import Findings
 
 SAMPLES, THOROUGH, MOST_SAMPLES = 8, 200, 100_000
 SEED = 1952

@@ -17,7 +17,7 @@ from ..options import (
     with_count,
     with_progress,
 )
-from ..output import check_parts, write_parts, write_text_blocks
+from ..output.write import check_parts, write_parts, write_text_blocks
 
 if TYPE_CHECKING:
     from ..inputs.ranges import Axis
@@ -82,7 +82,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     that cannot be solved has its `error` in its row, and the exit code is 1.
     """
     from ..cluster import computed
-    from ..parquet import check_parquet
+    from ..output.parquet import check_parquet
     from ..parts import Tally, shard_of
     from ..plan import plan
     from ..sweeps import BLOCK_ROWS

@@ -22,7 +22,7 @@ from ..options import (
     solved,
     with_progress,
 )
-from ..output import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
+from ..output.write import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Times

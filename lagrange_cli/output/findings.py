@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import orjson
 
-from .inputs.top import Top
+from ..inputs.top import Top
 
 
 class Field(NamedTuple):

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .arithmetic.text import value_text
+from ..arithmetic.text import value_text
 
 if TYPE_CHECKING:
     from .findings import Findings

@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from .arithmetic.text import json_text, value_text
-from .sink import CannotWriteError, sink
+from ..arithmetic.text import json_text, value_text
+from .destination import CannotWriteError, sink
 
 if TYPE_CHECKING:
-    from .arithmetic.double_double import Array
+    from ..arithmetic.double_double import Array
     from .findings import Findings
 
 MAX_TABLE_ROWS = 10_000
@@ -44,7 +44,7 @@ def write_bytes(path: str, make: Callable[[], bytes]) -> None:
 def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "top") -> None:
     """One record as a rich `table` of its kind, as `csv` (header and row) or as `json` (a line)."""
     if style == "table":
-        from .report import record_table
+        from .layouts import record_table
 
         text = record_table(record, kind, terminal=_is_terminal(path), encoding=_encoding(path))
     elif style == "csv":
@@ -198,7 +198,7 @@ def csv_text(value: Any) -> str:
 def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str, path: str) -> None:
     """Rows of numbers written out, in the same three styles; an empty text stands for none."""
     if style == "table":
-        from .report import rows_table
+        from .layouts import rows_table
 
         with sink(path) as stream:
             terminal, encoding = _is_terminal(path), _encoding(path)
@@ -218,7 +218,7 @@ def write_findings(find: Callable[[], Findings], style: str, path: str) -> Findi
     with sink(path) as stream:
         findings = find()
         if style == "table":
-            from .report import findings_table
+            from .layouts import findings_table
 
             terminal, encoding = _is_terminal(path), _encoding(path)
             stream.write(findings_table(findings, terminal=terminal, encoding=encoding))

@@ -8,8 +8,8 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from .arithmetic.text import json_text
-from .errors import LagtopError
+from ..arithmetic.text import json_text
+from ..errors import LagtopError
 
 
 def check_parquet() -> None:

@@ -1,0 +1,1 @@
+"""What is written: formats, tables and files."""
