@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import LagtopError
 from .inputs.top import Top
-from .motion import Motion, solve
-from .record import Regime
+from .motion.record import Regime
+from .motion.solve import Motion, solve
 
 if TYPE_CHECKING:
     from .sweeps import sweep

@@ -17,7 +17,7 @@ from . import curves
 from .arithmetic.double_double import Array
 from .errors import LagtopError
 from .globe import best_view, runs, seen_top
-from .motion import Motion
+from .motion.solve import Motion
 from .sheet import Page, styled
 from .sphere import draw_globe
 from .style import scale

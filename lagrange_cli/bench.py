@@ -19,9 +19,9 @@ from .errors import LagtopError
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import machine, versions, warm_allocator
 from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
-from .motion import Motion
+from .motion.record import Regime
+from .motion.solve import Motion
 from .output.findings import Field, Findings, as_options, short
-from .record import Regime
 
 JUDGED = 201
 """So many of the times, the last among them, are compared with the reference."""

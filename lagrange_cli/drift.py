@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .bench import FIELDS, Row, Steps, Task, conditions, is_done, is_out, measure, period_of, task
 from .methods import Method
-from .motion import Motion
+from .motion.solve import Motion
 from .output.findings import Field, Findings
 
 SPANS = [10.0**power + 0.3 for power in range(7)]

@@ -11,8 +11,8 @@ import numpy as np
 from .arithmetic.double_double import Array
 from .errors import LagtopError
 from .inputs.top import Top, overridden, parse_number
-from .motion import Motion
-from .record import NUMBER_KEYS
+from .motion.record import NUMBER_KEYS
+from .motion.solve import Motion
 from .sweeps import sweep
 
 INPUTS = {

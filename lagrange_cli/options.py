@@ -14,7 +14,7 @@ import click
 from . import __version__
 from .errors import LagtopError
 from .inputs.top import Number, build_top, overridden, parse_number
-from .motion import Motion, solve
+from .motion.solve import Motion, solve
 from .output.write import write_findings
 
 if TYPE_CHECKING:

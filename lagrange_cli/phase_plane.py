@@ -12,8 +12,8 @@ import numpy as np
 
 from .arithmetic.double_double import Array
 from .curves import PHASES, phase_times, refined, sample, span
-from .motion import Motion
-from .samplers import solution_of
+from .motion.make_sampler import solution_of
+from .motion.solve import Motion
 
 
 class Cubic(NamedTuple):

@@ -15,9 +15,9 @@ from matplotlib.ticker import LogLocator, NullLocator
 from . import curves
 from .arithmetic.double_double import Array
 from .keymap import INPUTS, Axis, KeyMap, Watch, default_axes, key_map
-from .motion import Motion
+from .motion.record import Regime
+from .motion.solve import Motion
 from .phase_plane import Cubic, cubic_curve, phase_portrait
-from .record import Regime
 from .sphere import draw_path_on_sphere
 from .style import Look, mark_start, scale
 

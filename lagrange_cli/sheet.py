@@ -14,7 +14,7 @@ from matplotlib.figure import Figure, FigureBase, SubFigure
 
 from .curves import NothingToDraw
 from .errors import LagtopError
-from .motion import Motion
+from .motion.solve import Motion
 from .plots import KINDS, Wish
 from .style import Look, settings
 

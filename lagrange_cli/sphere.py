@@ -14,7 +14,7 @@ from matplotlib.figure import SubFigure
 from . import curves
 from .arithmetic.double_double import Array
 from .globe import Near, View, best_view, parallel, runs
-from .motion import Motion
+from .motion.solve import Motion
 from .style import Look, mark_start, scale
 
 NARROW = math.radians(6.0)

@@ -19,10 +19,10 @@ from .inputs.top import Top
 from .integrators import TIGHTEST, integrators
 from .machine import machine, versions
 from .methods import FailedError, Method, NotApplicableError
-from .motion import Motion, solve
+from .motion.solve import Motion, solve
+from .motion.table import rows
 from .output.findings import Field, Findings, as_options, short
 from .strata import STRATA, scene_and_times
-from .table import rows
 
 CONTRACT = 4.0
 """Units of an angle, and eps of a key of the record, that are promised."""

@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 
 from .arithmetic import double_double as twofold
 from .arithmetic.double_double import Array, Twofold
-from .cubic import Place, Start
 from .elliptic import complete_k
-from .general import Solution
-from .general_record import GeneralNutation, half_rates, mean_rates
-from .record import Regime
-from .released import complement, modulus, phase_rate
-from .roots import Roots
+from .motion.cubic import Place, Start
+from .motion.general import Solution
+from .motion.general_record import GeneralNutation, half_rates, mean_rates
+from .motion.record import Regime
+from .motion.released import complement, modulus, phase_rate
+from .motion.roots import Roots
 from .tops import Mask, Tops
 
 _CLEAR = 2.0**-40

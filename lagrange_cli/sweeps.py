@@ -19,9 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 from .arithmetic.double_double import Array
 from .errors import LagtopError, check_names
 from .inputs.top import Top
-from .motion import solve
-from .record import NUMBER_KEYS, Regime
-from .released import STILL, Nutation, remark, unmoved
+from .motion.record import NUMBER_KEYS, Regime
+from .motion.released import STILL, Nutation, remark, unmoved
+from .motion.solve import solve
 from .starts import starts
 from .tops import Mask, Tops
 

@@ -12,10 +12,10 @@ from .arithmetic.points import Times
 from .errors import LagtopError
 from .inputs.top import Top
 from .inputs.tops_file import Lines, Row, RowFile, open_rows
-from .motion import Motion, solve
+from .motion.solve import Motion, solve
+from .motion.table import headings, rows
 from .output.write import block_text
 from .parts import Part
-from .table import headings, rows
 
 _TOPS_AT_ONCE = 64
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from .arithmetic.double_double import Array, Twofold, two_sum
 from .inputs.top import Tilt
-from .record import Regime
-from .roots import Invariants
+from .motion.record import Regime
+from .motion.roots import Invariants
 
 Mask = NDArray[np.bool_]
 

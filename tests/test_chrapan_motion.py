@@ -14,11 +14,11 @@ import pytest
 from equations import Register, Sides
 
 from lagrange_cli import Top
-from lagrange_cli.digits import angles_in
 from lagrange_cli.elliptic import many_digits
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.elliptic.theta import pi_function
-from lagrange_cli.released import released_record
+from lagrange_cli.motion.digits import angles_in
+from lagrange_cli.motion.released import released_record
 
 chrapan = Register()
 equation, as_printed = chrapan.equation, chrapan.as_printed

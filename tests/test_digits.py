@@ -13,7 +13,7 @@ from conftest import Lagtop
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.accuracy import Reference
-from lagrange_cli.digits import settled_record, settled_rows
+from lagrange_cli.motion.digits import settled_record, settled_rows
 
 UNIT: dict[str, Any] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 

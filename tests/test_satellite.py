@@ -17,7 +17,7 @@ from lagrange_cli.accuracy import units
 from lagrange_cli.arithmetic.points import TimeList
 from lagrange_cli.elliptic import many_digits
 from lagrange_cli.elliptic.eta import Quadrature, constants, digit_rows, record, rows
-from lagrange_cli.released import released_record
+from lagrange_cli.motion.released import released_record
 
 ORBITS = {
     "generic": Quadrature(Fraction("-0.5"), Fraction("0.6"), (Fraction("-1.3"), Fraction("1.5"))),

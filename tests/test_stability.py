@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 
-from lagrange_cli import Top, methods, samplers, solve, stability
+from lagrange_cli import Top, methods, solve, stability
 from lagrange_cli.accuracy import EPS, Reference
-from lagrange_cli.general import theta_constants
+from lagrange_cli.motion import make_sampler as samplers
+from lagrange_cli.motion.general import theta_constants
 from lagrange_cli.strata import STRATA, scene_and_times
 
 

@@ -23,8 +23,8 @@ from scenes import random_scene
 from lagrange_cli import LagtopError, Motion, Top, solve, sweeps
 from lagrange_cli.arithmetic import decimals
 from lagrange_cli.inputs.ranges import parse_axis
-from lagrange_cli.record import NUMBER_KEYS, Regime
-from lagrange_cli.roots import invariants
+from lagrange_cli.motion.record import NUMBER_KEYS, Regime
+from lagrange_cli.motion.roots import invariants
 from lagrange_cli.starts import starts
 from lagrange_cli.strata import STRATA
 from lagrange_cli.sweeps import record_keys, sweep

@@ -54,7 +54,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     if digits is None:
         record = motion.record(radians=rad)
     else:
-        from ..digits import settled_record
+        from ..motion.digits import settled_record
 
         record = settled_record(motion.top, digits, radians=rad)
     if key is None:

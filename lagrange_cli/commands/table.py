@@ -26,7 +26,7 @@ from ..output.write import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Times
-    from ..motion import Motion
+    from ..motion.solve import Motion
 
 
 @click.command(
@@ -89,7 +89,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
     from ..arithmetic.points import read_times
-    from ..table import DEFAULT_COLUMNS, digit_rows, grid, rows
+    from ..motion.table import DEFAULT_COLUMNS, digit_rows, grid, rows
 
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})

@@ -14,11 +14,11 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..angles import MAX_PERIODS, MAX_TIME
 from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
 from ..arithmetic.points import check_reach
 from ..errors import LagtopError
 from ..inputs.top import number
+from ..motion.samplers import MAX_PERIODS, MAX_TIME
 from . import Arithmetic, Real, agm, many_digits, where
 from .jacobi import jacobi
 from .modulus import Modulus

@@ -7,13 +7,13 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..angles import MAX_PERIODS, MAX_TIME
 from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
 from ..arithmetic.double_double import pair
 from ..arithmetic.points import check_reach
 from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from ..inputs.top import number
+from ..motion.samplers import MAX_PERIODS, MAX_TIME
 from . import Arithmetic, Real, complete_k, many_digits
 from .jacobi import jacobi
 from .modulus import Modulus, constants, modulus

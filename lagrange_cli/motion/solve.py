@@ -6,17 +6,17 @@ import math
 from decimal import localcontext
 from typing import TYPE_CHECKING, Any
 
-from .arithmetic import decimals
-from .elliptic import Real, many_digits
-from .errors import LagtopError
-from .inputs.top import Top
+from ..arithmetic import decimals
+from ..elliptic import Real, many_digits
+from ..errors import LagtopError
+from ..inputs.top import Top
 from .record import Record
 from .released import released_record
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from .angles import Angles, Sampler
+    from .samplers import Angles, Sampler
 
 
 class Motion(Record):
@@ -34,7 +34,7 @@ class Motion(Record):
 
     def sampler(self) -> Sampler:
         """The series behind `angles`."""
-        from .samplers import sampler_of
+        from .make_sampler import sampler_of
 
         return sampler_of(self.top)
 

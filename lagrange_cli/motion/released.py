@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from .elliptic import (
+from ..elliptic import (
     Arithmetic,
     Real,
     carlson_rf,
@@ -18,7 +18,7 @@ from .elliptic import (
     period_mean,
     where,
 )
-from .inputs.top import Tilt, Top, number
+from ..inputs.top import Tilt, Top, number
 from .record import NUMBER_KEYS, Record, Regime, constant_rates, period_of
 from .roots import Invariants, Roots, invariants, roots_from_rest
 

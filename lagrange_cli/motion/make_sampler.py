@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from .angles import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
-from .arithmetic.double_double import pair
-from .elliptic import Arithmetic, Real, many_digits
+from ..arithmetic.double_double import pair
+from ..elliptic import Arithmetic, Real, many_digits
+from ..inputs.top import Tilt, Top
+from .attitude import growths
 from .general import (
     Solution,
     analyse,
@@ -14,10 +15,17 @@ from .general import (
     steady_rates,
     theta_constants,
 )
-from .growth import growths
-from .inputs.top import Tilt, Top
 from .record import Regime
-from .series import Component, Frame, Polynomial, Swing, ThetaConstants, evaluate, theta_series
+from .samplers import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
+from .theta_series import (
+    Component,
+    Frame,
+    Polynomial,
+    Swing,
+    ThetaConstants,
+    evaluate,
+    theta_series,
+)
 
 _NEGLIGIBLE = 2.0**-60
 

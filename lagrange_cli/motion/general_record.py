@@ -5,8 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-from .cubic import Place, Start
-from .elliptic import (
+from ..elliptic import (
     Arithmetic,
     Real,
     complete_e,
@@ -16,8 +15,9 @@ from .elliptic import (
     period_mean,
     where,
 )
+from ..inputs.top import Top
+from .cubic import Place, Start
 from .general import Solution, advances, analyse, steady_rates
-from .inputs.top import Top
 from .record import NUMBER_KEYS, Record, Regime, constant_rates
 from .released import Nutation, u_quarter
 from .roots import Roots

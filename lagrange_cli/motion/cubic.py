@@ -8,8 +8,8 @@ from __future__ import annotations
 from functools import partial
 from typing import NamedTuple
 
-from .elliptic import Arithmetic, Real
-from .inputs.top import Top, number
+from ..elliptic import Arithmetic, Real
+from ..inputs.top import Top, number
 from .roots import Roots, invariants
 
 

@@ -11,8 +11,7 @@ import math
 from fractions import Fraction
 from typing import NamedTuple
 
-from .cubic import Place, Start, roots_from_start, start
-from .elliptic import (
+from ..elliptic import (
     Arithmetic,
     Real,
     carlson_rf,
@@ -22,12 +21,13 @@ from .elliptic import (
     period_mean,
     where,
 )
-from .errors import LagtopError
-from .inputs.top import Number, Top
+from ..errors import LagtopError
+from ..inputs.top import Number, Top
+from .cubic import Place, Start, roots_from_start, start
 from .record import Regime
 from .released import complement, modulus, phase_rate
 from .roots import Roots
-from .series import Swing, ThetaConstants
+from .theta_series import Swing, ThetaConstants
 
 
 class Solution(NamedTuple):

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .arithmetic.correct_digits import NumberText, TooFewDigitsError, settle
-from .elliptic import Arithmetic, Real
+from ..arithmetic.correct_digits import NumberText, TooFewDigitsError, settle
+from ..elliptic import Arithmetic, Real
+from ..inputs.top import Number, Top, number
 from .general import (
     Solution,
     analyse,
@@ -16,10 +17,9 @@ from .general import (
     theta_constants,
 )
 from .general_record import general_record
-from .inputs.top import Number, Top, number
 from .record import Regime
 from .released import released_record
-from .series import ThetaConstants, evaluate, theta_series
+from .theta_series import ThetaConstants, evaluate, theta_series
 
 
 def settled_record(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:

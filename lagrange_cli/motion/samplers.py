@@ -23,11 +23,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arithmetic.double_double import Array, Pair, reduce_phase
-from .arithmetic.generic import blocks, polynomial
-from .errors import LagtopError
-from .growth import Growth, Growths
-from .series import Component, Frame, Polynomial
+from ..arithmetic.double_double import Array, Pair, reduce_phase
+from ..arithmetic.generic import blocks, polynomial
+from ..errors import LagtopError
+from .attitude import Growth, Growths
+from .theta_series import Component, Frame, Polynomial
 
 MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array, Pair, pair, reduce_phase
-from .elliptic import Arithmetic, Real
+from ..arithmetic.double_double import Array, Pair, pair, reduce_phase
+from ..elliptic import Arithmetic, Real
 
 
 class Growth(NamedTuple):

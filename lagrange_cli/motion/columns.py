@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .angles import Attitude
-from .arithmetic.double_double import Array
+from ..arithmetic.double_double import Array
+from ..inputs.top import Top
 from .cubic import Start
-from .inputs.top import Top
+from .samplers import Attitude
 
 
 class ColumnConstants(NamedTuple):

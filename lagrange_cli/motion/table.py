@@ -7,15 +7,15 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from .arithmetic.points import Grid, Times, even_grid
-from .errors import LagtopError, check_names
-from .motion import Motion
+from ..arithmetic.points import Grid, Times, even_grid
+from ..errors import LagtopError, check_names
+from .solve import Motion
 
 if TYPE_CHECKING:
-    from .angles import Sampler
-    from .arithmetic.correct_digits import NumberText
-    from .arithmetic.double_double import Array
+    from ..arithmetic.correct_digits import NumberText
+    from ..arithmetic.double_double import Array
     from .columns import Column, Sample
+    from .samplers import Sampler
 
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256
@@ -90,7 +90,7 @@ def _samples(
     motion: Motion, sampler: Sampler, times: Times, rate: bool, wrap: bool
 ) -> Iterator[Sample]:
     from .columns import Sample, column_constants
-    from .samplers import solution_of
+    from .make_sampler import solution_of
 
     constants = column_constants(motion.top, solution_of(motion.top).start)
     for t in times.blocks():

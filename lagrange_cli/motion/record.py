@@ -6,8 +6,8 @@ import math
 from enum import Enum
 from typing import Any, NamedTuple
 
-from .elliptic import Arithmetic, Real, where
-from .inputs.top import Top
+from ..elliptic import Arithmetic, Real, where
+from ..inputs.top import Top
 
 
 class Regime(Enum):
