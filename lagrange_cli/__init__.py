@@ -8,7 +8,7 @@ from .motion.record import Regime
 from .motion.solve import Motion, solve
 
 if TYPE_CHECKING:
-    from .sweeps import sweep
+    from .sweeps.records import sweep
 
 __version__ = "0.1.0"
 __all__ = ["LagtopError", "Motion", "Regime", "Top", "__version__", "solve", "sweep"]
@@ -18,6 +18,6 @@ def __getattr__(name: str) -> Any:
     """`sweep`, which needs NumPy, when it is asked for."""
     if name != "sweep":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .sweeps import sweep
+    from .sweeps.records import sweep
 
     return sweep

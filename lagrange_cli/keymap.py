@@ -13,7 +13,7 @@ from .errors import LagtopError
 from .inputs.top import Top, overridden, parse_number
 from .motion.record import NUMBER_KEYS
 from .motion.solve import Motion
-from .sweeps import sweep
+from .sweeps.records import sweep
 
 INPUTS = {
     "m": "mass m",

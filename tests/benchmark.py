@@ -26,8 +26,8 @@ from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.integrators import integrators
-from lagrange_cli.sweeps import BLOCK_ROWS, Column, record_keys, records, sweep
-from lagrange_cli.tops import Tops
+from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records, sweep
+from lagrange_cli.sweeps.top_arrays import Tops
 
 COUNT = 1_000_000
 TOP = {name: np.nan if x is None else float(x) for name, x in Top()._asdict().items()}

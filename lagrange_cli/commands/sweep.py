@@ -81,11 +81,11 @@ def command(  # noqa: PLR0917 - click passes them by name
     what a row lacks comes from the options and the scene, other columns are carried through.  A top
     that cannot be solved has its `error` in its row, and the exit code is 1.
     """
-    from ..cluster import computed
     from ..output.parquet import check_parquet
-    from ..parts import Tally, shard_of
-    from ..plan import plan
-    from ..sweeps import BLOCK_ROWS
+    from ..sweeps.cluster import computed
+    from ..sweeps.parts import Tally, shard_of
+    from ..sweeps.plan import plan
+    from ..sweeps.records import BLOCK_ROWS
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
     if folder is not None and style == "json":

@@ -108,9 +108,9 @@ def command(  # noqa: PLR0917 - click passes them by name
     if tops is not None:
         if style == "table":
             raise LagtopError("--format table shows one top: with --tops take csv or json")
-        from ..parts import Tally
-        from ..plan import shared_inputs
-        from ..tables import open_tables
+        from ..sweeps.parts import Tally
+        from ..sweeps.plan import shared_inputs
+        from ..sweeps.tables import open_tables
 
         given = shared_inputs(scene, by_key(options, radians=rad))
         tables = open_tables(tops, given, names, times_of, radians=rad, wrap=wrap, style=style)

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .arithmetic.double_double import Array, Twofold, two_sum
-from .inputs.top import Tilt
-from .motion.record import Regime
-from .motion.roots import Invariants
+from ..arithmetic.double_double import Array, Twofold, two_sum
+from ..inputs.top import Tilt
+from ..motion.record import Regime
+from ..motion.roots import Invariants
 
 Mask = NDArray[np.bool_]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from .errors import LagtopError
-from .inputs.ranges import Axis, Grid
-from .inputs.top import Number, Top, build_top, overridden
-from .inputs.tops_file import open_rows
+from ..errors import LagtopError
+from ..inputs.ranges import Axis, Grid
+from ..inputs.top import Number, Top, build_top, overridden
+from ..inputs.tops_file import open_rows
 from .parts import Block, Sweep
-from .sweeps import BLOCK_ROWS, check_keys, record_keys
+from .records import BLOCK_ROWS, check_keys, record_keys
 
 
 class Plan(NamedTuple):
@@ -61,7 +61,7 @@ def shared_inputs(scene: str | None, given: Mapping[str, Number]) -> dict[str, f
     """Inputs by key: those given, over those of a scene file, over the worked example."""
     top = Top()
     if scene is not None:
-        from .inputs.scene_file import SceneFile
+        from ..inputs.scene_file import SceneFile
 
         file = SceneFile(scene)
         try:

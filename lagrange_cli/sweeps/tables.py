@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array
-from .arithmetic.points import Times
-from .errors import LagtopError
-from .inputs.top import Top
-from .inputs.tops_file import Lines, Row, RowFile, open_rows
-from .motion.solve import Motion, solve
-from .motion.table import headings, rows
-from .output.write import block_text
+from ..arithmetic.double_double import Array
+from ..arithmetic.points import Times
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..inputs.tops_file import Lines, Row, RowFile, open_rows
+from ..motion.solve import Motion, solve
+from ..motion.table import headings, rows
+from ..output.write import block_text
 from .parts import Part
 
 _TOPS_AT_ONCE = 64

@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .errors import LagtopError
-from .inputs.ranges import Grid
-from .inputs.tops_file import Lines, RowFile
-from .output.write import Columns, block_text
-from .sweeps import Column, records
-from .tops import Tops
+from ..errors import LagtopError
+from ..inputs.ranges import Grid
+from ..inputs.tops_file import Lines, RowFile
+from ..output.write import Columns, block_text
+from .records import Column, records
+from .top_arrays import Tops
 
 Block = tuple[int, range | Lines]
 """The number of a part, and the points of the grid or the lines of the file that it is made of."""

@@ -17,16 +17,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .arithmetic import double_double as twofold
-from .arithmetic.double_double import Array, Twofold
-from .elliptic import complete_k
-from .motion.cubic import Place, Start
-from .motion.general import Solution
-from .motion.general_record import GeneralNutation, half_rates, mean_rates
-from .motion.record import Regime
-from .motion.released import complement, modulus, phase_rate
-from .motion.roots import Roots
-from .tops import Mask, Tops
+from ..arithmetic import double_double as twofold
+from ..arithmetic.double_double import Array, Twofold
+from ..elliptic import complete_k
+from ..motion.cubic import Place, Start
+from ..motion.general import Solution
+from ..motion.general_record import GeneralNutation, half_rates, mean_rates
+from ..motion.record import Regime
+from ..motion.released import complement, modulus, phase_rate
+from ..motion.roots import Roots
+from .top_arrays import Mask, Tops
 
 _CLEAR = 2.0**-40
 """Of its parts at least, so that a difference of pairs has the digits of a double."""

@@ -11,7 +11,7 @@ from contextlib import closing, contextmanager
 from itertools import chain, repeat
 from typing import TYPE_CHECKING
 
-from .errors import LagtopError
+from ..errors import LagtopError
 from .parts import Block, Part, Sweep
 
 if TYPE_CHECKING:
