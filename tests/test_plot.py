@@ -21,14 +21,18 @@ from conftest import ROOT, Lagtop, process
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from lagrange_cli import LagtopError, Motion, Regime, Top, animation, curves, globe, keymap, solve
+from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.double_double import Array
 from lagrange_cli.commands.plot import KINDS as NAMES
 from lagrange_cli.options import solved as motion_of
-from lagrange_cli.phase_plane import cubic_curve, phase_portrait, separatrix
-from lagrange_cli.plots import KINDS, Wish
-from lagrange_cli.sheet import Page, draw_page, page_bytes, styled
-from lagrange_cli.style import DARK, LIGHT, Look
+from lagrange_cli.plot import curves
+from lagrange_cli.plot import film as animation
+from lagrange_cli.plot import key_map as keymap
+from lagrange_cli.plot import view as globe
+from lagrange_cli.plot.kinds import KINDS, Wish
+from lagrange_cli.plot.page import Page, draw_page, page_bytes, styled
+from lagrange_cli.plot.phase import cubic_curve, phase_portrait, separatrix
+from lagrange_cli.plot.style import DARK, LIGHT, Look
 
 SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
 UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}

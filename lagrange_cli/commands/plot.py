@@ -14,7 +14,7 @@ import click
 from ..errors import LagtopError
 from ..options import NUMBER, ExamplesFirst, scene_options, solved, with_progress
 from ..output.write import write_bytes
-from ..style import look, require_matplotlib
+from ..plot.style import look, require_matplotlib
 
 KINDS = ("sphere", "angles", "remainders", "cubic", "phase", "map")
 ON_THE_SHEET = KINDS[:4]
@@ -92,10 +92,10 @@ def command(  # noqa: PLR0917 - click passes them by name
     inches = _inches(size)
     dots = _dots(dpi, inches)
     require_matplotlib()
-    from ..curves import checked_span
-    from ..keymap import parse_axis
-    from ..plots import Wish
-    from ..sheet import Page, page_bytes, show_page
+    from ..plot.curves import checked_span
+    from ..plot.key_map import parse_axis
+    from ..plot.kinds import Wish
+    from ..plot.page import Page, page_bytes, show_page
 
     motion = solved(path, rad, False, options)
     wish = Wish(
@@ -110,7 +110,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     if output is not None:
         write_bytes(output, lambda: page_bytes(page, written, dots or 150))
     if animate is not None:
-        from ..animation import film_bytes
+        from ..plot.film import film_bytes
 
         watch = partial(with_progress, long=1, label="frames")
         write_bytes(animate, lambda: film_bytes(page, animate, dots or 100, watch))

@@ -12,12 +12,12 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import SubFigure
 from matplotlib.ticker import LogLocator, NullLocator
 
+from ..arithmetic.double_double import Array
+from ..motion.record import Regime
+from ..motion.solve import Motion
 from . import curves
-from .arithmetic.double_double import Array
-from .keymap import INPUTS, Axis, KeyMap, Watch, default_axes, key_map
-from .motion.record import Regime
-from .motion.solve import Motion
-from .phase_plane import Cubic, cubic_curve, phase_portrait
+from .key_map import INPUTS, Axis, KeyMap, Watch, default_axes, key_map
+from .phase import Cubic, cubic_curve, phase_portrait
 from .sphere import draw_path_on_sphere
 from .style import Look, mark_start, scale
 

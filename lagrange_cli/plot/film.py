@@ -13,14 +13,14 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
+from ..arithmetic.double_double import Array
+from ..errors import LagtopError
+from ..motion.solve import Motion
 from . import curves
-from .arithmetic.double_double import Array
-from .errors import LagtopError
-from .globe import best_view, runs, seen_top
-from .motion.solve import Motion
-from .sheet import Page, styled
+from .page import Page, styled
 from .sphere import draw_globe
 from .style import scale
+from .view import best_view, runs, seen_top
 
 FRAMES, FRAMES_PER_SECOND = 144, 24
 SIZE = 4.8, 5.0

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array
+from ..arithmetic.double_double import Array
+from ..motion.make_sampler import solution_of
+from ..motion.solve import Motion
 from .curves import PHASES, phase_times, refined, sample, span
-from .motion.make_sampler import solution_of
-from .motion.solve import Motion
 
 
 class Cubic(NamedTuple):

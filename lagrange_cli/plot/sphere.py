@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import SubFigure
 
+from ..arithmetic.double_double import Array
+from ..motion.solve import Motion
 from . import curves
-from .arithmetic.double_double import Array
-from .globe import Near, View, best_view, parallel, runs
-from .motion.solve import Motion
 from .style import Look, mark_start, scale
+from .view import Near, View, best_view, parallel, runs
 
 NARROW = math.radians(6.0)
 """A band of tilts that a circle on the globe hides: it is shown magnified as well."""

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array
-from .errors import LagtopError
-from .inputs.top import Top, overridden, parse_number
-from .motion.record import NUMBER_KEYS
-from .motion.solve import Motion
-from .sweeps.records import sweep
+from ..arithmetic.double_double import Array
+from ..errors import LagtopError
+from ..inputs.top import Top, overridden, parse_number
+from ..motion.record import NUMBER_KEYS
+from ..motion.solve import Motion
+from ..sweeps.records import sweep
 
 INPUTS = {
     "m": "mass m",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .errors import LagtopError
+from ..errors import LagtopError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,10 +12,10 @@ from typing import Any, NamedTuple, cast
 import matplotlib
 from matplotlib.figure import Figure, FigureBase, SubFigure
 
+from ..errors import LagtopError
+from ..motion.solve import Motion
 from .curves import NothingToDraw
-from .errors import LagtopError
-from .motion.solve import Motion
-from .plots import KINDS, Wish
+from .kinds import KINDS, Wish
 from .style import Look, settings
 
 SIZES = {"sphere": (6.4, 6.0), "remainders": (7.0, 5.0), "angles": (7.0, 6.0)}

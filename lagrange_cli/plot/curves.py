@@ -13,15 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array
-from .elliptic import carlson_rf, complete_k, many_digits
-from .errors import LagtopError
-from .inputs.top import Number
-from .motion.columns import Sample, column_constants
-from .motion.general import periods_since_top, separatrix_swing
-from .motion.make_sampler import solution_of
-from .motion.record import Regime
-from .motion.solve import Motion
+from ..arithmetic.double_double import Array
+from ..elliptic import carlson_rf, complete_k, many_digits
+from ..errors import LagtopError
+from ..inputs.top import Number
+from ..motion.columns import Sample, column_constants
+from ..motion.general import periods_since_top, separatrix_swing
+from ..motion.make_sampler import solution_of
+from ..motion.record import Regime
+from ..motion.solve import Motion
 
 PHASES = 48
 """Samples per half period, before `refined` adds where a curve is steep."""
