@@ -20,12 +20,12 @@ from scipy import special
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.double_double import Array
 from lagrange_cli.arithmetic.generic import BLOCK
-from lagrange_cli.closed_forms import CLOSED_FORMS
+from lagrange_cli.bench.closed_forms import CLOSED_FORMS
+from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.elliptic import carlson_rf
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
-from lagrange_cli.integrators import integrators
 from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records, sweep
 from lagrange_cli.sweeps.top_arrays import Tops
 

@@ -20,11 +20,15 @@ import oracle
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
 
-from lagrange_cli import LagtopError, Top, bench, diagrams, drift, methods, solve
+from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import value_text
-from lagrange_cli.bench import Row, conclusions, measure, task, with_front
-from lagrange_cli.closed_forms import CLOSED_FORMS
-from lagrange_cli.integrators import integrators
+from lagrange_cli.bench import diagrams
+from lagrange_cli.bench import long_spans as drift
+from lagrange_cli.bench import method as methods
+from lagrange_cli.bench import work_precision as bench
+from lagrange_cli.bench.closed_forms import CLOSED_FORMS
+from lagrange_cli.bench.integrators import integrators
+from lagrange_cli.bench.work_precision import Row, conclusions, measure, task, with_front
 from lagrange_cli.output.findings import Findings
 
 LOOPING = Top(psidot0=-4)

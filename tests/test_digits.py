@@ -12,7 +12,7 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.accuracy import Reference
+from lagrange_cli.bench.reference import Reference
 from lagrange_cli.motion.digits import settled_record, settled_rows
 
 UNIT: dict[str, Any] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}

@@ -13,11 +13,11 @@ import oracle
 import pytest
 
 from lagrange_cli import Motion, Regime, Top, solve
-from lagrange_cli.accuracy import Reference, angle_units
 from lagrange_cli.arithmetic.double_double import Array
 from lagrange_cli.arithmetic.points import Grid
+from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic
+from lagrange_cli.bench.reference import Reference, angle_units
 from lagrange_cli.motion.table import rows
-from lagrange_cli.strata import STRATA, Scene, generic
 
 UNIT: Scene = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 """A spherical top with a = 2, b = r0 and lambda = r0^2/4."""

@@ -15,11 +15,13 @@ import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 
-from lagrange_cli import Top, methods, solve, stability
-from lagrange_cli.accuracy import EPS, Reference
+from lagrange_cli import Top, solve
+from lagrange_cli.bench import method as methods
+from lagrange_cli.bench import stability
+from lagrange_cli.bench.hard_scenes import STRATA, scene_and_times
+from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion import make_sampler as samplers
 from lagrange_cli.motion.general import theta_constants
-from lagrange_cli.strata import STRATA, scene_and_times
 
 
 @pytest.mark.parametrize("stratum", STRATA)

@@ -22,10 +22,10 @@ from scenes import random_scene
 
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic import decimals
+from lagrange_cli.bench.hard_scenes import STRATA
 from lagrange_cli.inputs.ranges import parse_axis
 from lagrange_cli.motion.record import NUMBER_KEYS, Regime
 from lagrange_cli.motion.roots import invariants
-from lagrange_cli.strata import STRATA
 from lagrange_cli.sweeps import records as sweeps
 from lagrange_cli.sweeps.records import record_keys, sweep
 from lagrange_cli.sweeps.start_arrays import starts

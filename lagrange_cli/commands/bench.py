@@ -68,11 +68,12 @@ def command(  # noqa: PLR0917 - click passes them by name
     timed on one thread.  Needs the extra `bench` for scipy and heyoka; without them their rows say
     so.  A * marks the Pareto front: no other run is both faster and more accurate.
     """
-    from ..machine import use_one_thread
+    from ..bench.machine import use_one_thread
 
     use_one_thread()
-    from .. import bench, drift
-    from ..diagrams import check_plot, draw_drift, draw_work_precision
+    from ..bench import long_spans as drift
+    from ..bench import work_precision as bench
+    from ..bench.diagrams import check_plot, draw_drift, draw_work_precision
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)

@@ -54,8 +54,8 @@ def command(  # noqa: PLR0917 - click passes them by name
     exclude({"--samples": samples, "--thorough": thorough or None})
     if samples is not None and not 1 <= samples <= MOST_SAMPLES:
         raise LagtopError(f"--samples must be in [1, {MOST_SAMPLES}], got {samples}")
-    from .. import stability
-    from ..diagrams import check_plot, draw_stability
+    from ..bench import stability
+    from ..bench.diagrams import check_plot, draw_stability
 
     check_plot(plot, output)
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)

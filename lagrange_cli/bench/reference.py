@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import mpmath
 
-from .errors import LagtopError
-from .inputs.top import Top
+from ..errors import LagtopError
+from ..inputs.top import Top
 
 EPS = 2.0**-52
 

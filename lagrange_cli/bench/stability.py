@@ -10,19 +10,19 @@ from typing import Any, NamedTuple
 import mpmath
 import numpy as np
 
-from .accuracy import EPS, Exact, Reference, angle_units
-from .arithmetic.points import TimeList
-from .bench import Steps
+from ..arithmetic.points import TimeList
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..motion.solve import Motion, solve
+from ..motion.table import rows
+from ..output.findings import Field, Findings, as_options, short
 from .closed_forms import CLOSED_FORMS
-from .errors import LagtopError
-from .inputs.top import Top
+from .hard_scenes import STRATA, scene_and_times
 from .integrators import TIGHTEST, integrators
 from .machine import machine, versions
-from .methods import FailedError, Method, NotApplicableError
-from .motion.solve import Motion, solve
-from .motion.table import rows
-from .output.findings import Field, Findings, as_options, short
-from .strata import STRATA, scene_and_times
+from .method import FailedError, Method, NotApplicableError
+from .reference import EPS, Exact, Reference, angle_units
+from .work_precision import Steps
 
 CONTRACT = 4.0
 """Units of an angle, and eps of a key of the record, that are promised."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
-from .arithmetic.double_double import Array
-from .inputs.top import Top
+from ..arithmetic.double_double import Array
+from ..inputs.top import Top
 
 Sampled = Sequence[Any]
 """Tilt, spin and precession (radians), each an array or a list in the length of the times."""

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
-from .bench import FIELDS, Row, Steps, Task, conditions, is_done, is_out, measure, period_of, task
-from .methods import Method
-from .motion.solve import Motion
-from .output.findings import Field, Findings
+from ..motion.solve import Motion
+from ..output.findings import Field, Findings
+from .method import Method
+from .work_precision import (
+    FIELDS,
+    Row,
+    Steps,
+    Task,
+    conditions,
+    is_done,
+    is_out,
+    measure,
+    period_of,
+    task,
+)
 
 SPANS = [10.0**power + 0.3 for power in range(7)]
 """In nutation periods; none ends at a turning point, where approximations are at their best."""

@@ -12,16 +12,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .accuracy import Exact, Reference, angle_differences, angle_units
-from .arithmetic.double_double import Array
+from ..arithmetic.double_double import Array
+from ..errors import LagtopError
+from ..motion.record import Regime
+from ..motion.solve import Motion
+from ..output.findings import Field, Findings, as_options, short
 from .closed_forms import CLOSED_FORMS
-from .errors import LagtopError
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import machine, versions, warm_allocator
-from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
-from .motion.record import Regime
-from .motion.solve import Motion
-from .output.findings import Field, Findings, as_options, short
+from .method import FailedError, Method, NotApplicableError, Sample, Sampled
+from .reference import Exact, Reference, angle_differences, angle_units
 
 JUDGED = 201
 """So many of the times, the last among them, are compared with the reference."""

@@ -7,11 +7,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .bench import is_done
-from .errors import LagtopError
-from .output.destination import CannotWriteError, sink
-from .output.findings import Findings
+from ..errors import LagtopError
+from ..output.destination import CannotWriteError, sink
+from ..output.findings import Findings
 from .stability import CONTRACT
+from .work_precision import is_done
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,15 +11,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array
-from .elliptic import many_digits
-from .inputs.top import Top
-from .methods import Method, NotApplicableError, Sample, Sampled
-from .motion.solve import solve
+from ..arithmetic.double_double import Array
+from ..elliptic import many_digits
+from ..inputs.top import Top
+from ..motion.solve import solve
+from .method import Method, NotApplicableError, Sample, Sampled
 
 
 def _ours(top: Top, _: str) -> Sample:
-    from .motion.make_sampler import sampler_of, solution_of
+    from ..motion.make_sampler import sampler_of, solution_of
 
     sampler_of.cache_clear()  # or the set-up would be timed once and found ready ever after
     solution_of.cache_clear()
@@ -29,7 +29,7 @@ def _ours(top: Top, _: str) -> Sample:
 def _ours_in_digits(top: Top, digits: int) -> Sample:
     import mpmath
 
-    from .motion.digits import settled_rows
+    from ..motion.digits import settled_rows
 
     def sample(t: Array) -> Sampled:
         rows = settled_rows(top, t.tolist(), digits, radians=True)

@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arithmetic.double_double import Array
-from .inputs.top import Top
-from .methods import FailedError, Method, NotApplicableError, Sample, Sampled
+from ..arithmetic.double_double import Array
+from ..inputs.top import Top
+from .method import FailedError, Method, NotApplicableError, Sample, Sampled
 
 TIGHTEST = 3e-14
 """As tight as scipy lets a relative tolerance be."""
