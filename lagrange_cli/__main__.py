@@ -1,5 +1,5 @@
 """`python -m lagrange_cli`, the same as `lagtop`."""
 
-from .cli import main
+from .cli.group import main
 
 main(prog_name="lagtop")

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from lagrange_cli.cli import main
+from lagrange_cli.cli.group import main
 
 ROOT = Path(__file__).parent.parent
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]

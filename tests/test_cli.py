@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 from conftest import ROOT, Lagtop
 
-from lagrange_cli import Motion, Top, options, solve
+from lagrange_cli import Motion, Top, solve
+from lagrange_cli.cli import options
 from lagrange_cli.output.layouts import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
@@ -335,7 +336,7 @@ def test_help_starts_with_examples(command: str, lagtop: Lagtop) -> None:
 
 
 def test_examples_of_the_help_run(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
-    from lagrange_cli.cli import main
+    from lagrange_cli.cli.group import main
 
     monkeypatch.chdir(ROOT)
     for command in main.commands.values():

@@ -23,8 +23,8 @@ from matplotlib.figure import Figure
 
 from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.double_double import Array
-from lagrange_cli.commands.plot import KINDS as NAMES
-from lagrange_cli.options import solved as motion_of
+from lagrange_cli.cli.options import solved as motion_of
+from lagrange_cli.cli.plot import KINDS as NAMES
 from lagrange_cli.plot import curves
 from lagrange_cli.plot import film as animation
 from lagrange_cli.plot import key_map as keymap

@@ -14,7 +14,7 @@ import click
 import pytest
 from errata import errata_table
 
-from lagrange_cli.cli import main
+from lagrange_cli.cli.group import main
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"

@@ -7,7 +7,8 @@ from typing import Any
 import click
 
 from ..errors import LagtopError
-from ..options import (
+from ..output.write import write_record, write_value
+from .options import (
     MOST_RECORD_DIGITS,
     ExamplesFirst,
     digits_option,
@@ -17,7 +18,6 @@ from ..options import (
     scene_options,
     solved,
 )
-from ..output.write import write_record, write_value
 
 
 @click.command(

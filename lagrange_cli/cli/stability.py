@@ -8,7 +8,7 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
-from ..options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
+from .options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
 
 if TYPE_CHECKING:
     from ..output.findings import Findings

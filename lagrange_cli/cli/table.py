@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
-from ..options import (
+from ..output.write import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
+from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
@@ -22,7 +23,6 @@ from ..options import (
     solved,
     with_progress,
 )
-from ..output.write import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Times

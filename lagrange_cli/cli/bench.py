@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
-from ..options import (
+from .options import (
     COUNT,
     NUMBER,
     ExamplesFirst,

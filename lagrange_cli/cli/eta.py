@@ -9,7 +9,8 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
-from ..options import (
+from ..output.write import write_record, write_rows, write_texts
+from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
     RANGE,
@@ -19,7 +20,6 @@ from ..options import (
     output_options,
     with_progress,
 )
-from ..output.write import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Grid

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from . import __version__
-from .errors import LagtopError
-from .inputs.top import Number, build_top, overridden, parse_number
-from .motion.solve import Motion, solve
-from .output.write import write_findings
+from .. import __version__
+from ..errors import LagtopError
+from ..inputs.top import Number, build_top, overridden, parse_number
+from ..motion.solve import Motion, solve
+from ..output.write import write_findings
 
 if TYPE_CHECKING:
-    from .arithmetic.points import Grid, Times
-    from .output.findings import Findings
+    from ..arithmetic.points import Grid, Times
+    from ..output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -54,7 +54,7 @@ def _parse_count(text: str) -> int:
 
 
 def _parse_range(text: str) -> Grid:
-    from .arithmetic.points import parse_range
+    from ..arithmetic.points import parse_range
 
     return parse_range(text)
 
@@ -91,7 +91,7 @@ def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
 
 
 def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
-    from .inputs.scene_file import SceneFile
+    from ..inputs.scene_file import SceneFile
 
     file = SceneFile(scene)
     try:
@@ -109,7 +109,7 @@ def exclude(options: dict[str, Any]) -> None:
 
 def listed(name: str, single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
     """The numbers of --NAME, or those of --NAME-range, if any.  Raises LagtopError for both."""
-    from .arithmetic.points import TimeList
+    from ..arithmetic.points import TimeList
 
     exclude({f"--{name}": single or None, f"--{name}-range": grid})
     return grid or (TimeList(list(single)) if single else None)

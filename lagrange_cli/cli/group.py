@@ -9,10 +9,10 @@ from typing import Any, NoReturn
 
 import click
 
-from . import __version__
-from .errors import LagtopError
+from .. import __version__
+from ..errors import LagtopError
+from ..output.destination import CannotWriteError, Terminated
 from .options import ExamplesFirst, complain
-from .output.destination import CannotWriteError, Terminated
 
 COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
 
@@ -28,7 +28,7 @@ class LagtopGroup(ExamplesFirst, click.Group):
         """The command, whose module is loaded only now: start-up pays for one command, not all."""
         if cmd_name not in COMMANDS:
             return None
-        command: click.Command = import_module(f".commands.{cmd_name}", __package__).command
+        command: click.Command = import_module(f".{cmd_name}", __package__).command
         return command
 
     def main(self, *args: Any, **extra: Any) -> Any:

@@ -12,9 +12,9 @@ from typing import Any
 import click
 
 from ..errors import LagtopError
-from ..options import NUMBER, ExamplesFirst, scene_options, solved, with_progress
 from ..output.write import write_bytes
 from ..plot.style import look, require_matplotlib
+from .options import NUMBER, ExamplesFirst, scene_options, solved, with_progress
 
 KINDS = ("sphere", "angles", "remainders", "cubic", "phase", "map")
 ON_THE_SHEET = KINDS[:4]

@@ -10,7 +10,8 @@ import click
 from .. import __version__
 from ..errors import LagtopError
 from ..inputs.top import parse_number
-from ..options import (
+from ..output.write import write_record, write_rows, write_texts
+from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
@@ -22,7 +23,6 @@ from ..options import (
     output_options,
     with_progress,
 )
-from ..output.write import write_record, write_rows, write_texts
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Grid, Times

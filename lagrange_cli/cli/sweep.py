@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import LagtopError
-from ..options import (
+from ..output.write import check_parts, write_parts, write_text_blocks
+from .options import (
     ExamplesFirst,
     Parsed,
     by_key,
@@ -17,7 +18,6 @@ from ..options import (
     with_count,
     with_progress,
 )
-from ..output.write import check_parts, write_parts, write_text_blocks
 
 if TYPE_CHECKING:
     from ..inputs.ranges import Axis

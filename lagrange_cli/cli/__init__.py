@@ -1,0 +1,1 @@
+"""The commands: the only room that knows names of options, exit codes and click."""
