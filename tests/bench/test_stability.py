@@ -101,7 +101,7 @@ def flipped(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         constants = theta_constants(*given)
         return constants._replace(sign_minus=-constants.sign_minus)
 
-    monkeypatch.setattr("lagrange_cli.samplers.theta_constants", wrong)
+    monkeypatch.setattr("lagrange_cli.motion.make_sampler.theta_constants", wrong)
     samplers.sampler_of.cache_clear()
     yield
     samplers.sampler_of.cache_clear()
