@@ -18,8 +18,8 @@ import orjson
 from scipy import special
 
 from lagrange_cli import Top, solve
-from lagrange_cli.arithmetic.double_double import Array
 from lagrange_cli.arithmetic.generic import BLOCK
+from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.elliptic import carlson_rf

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from lagrange_cli.elliptic import many_digits
+from lagrange_cli.arithmetic.generic import many_digits
 
 ar = many_digits(60)
 """The arithmetic of the identities."""

@@ -77,15 +77,6 @@ def test_every_option_and_key_is_explained() -> None:
     assert set(Motion._fields[1:]) <= words
 
 
-def test_every_module_has_its_idea() -> None:
-    text = README.read_text()
-    table = text[text.index("| module | idea |") :]
-    package = ROOT / "lagrange_cli"
-    files = [*package.glob("*.py"), *package.glob("elliptic/*.py")]
-    modules = {path.stem for path in files if not path.stem.startswith("_")}
-    assert modules <= set(re.findall(r"`(\w+)`", table))
-
-
 def test_ci_runs_the_test_command_of_the_readme() -> None:
     assert (ROOT / ".ci" / "run").read_text().count("README.md") == 1
     assert len(re.findall(r"```sh\n(python3 -m venv .*pytest.*)\n```", README.read_text())) == 1

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from ..elliptic import Arithmetic, many_digits
 from ..errors import LagtopError
-from ..inputs.top import number
+from .generic import Arithmetic, many_digits, number
 
 
 class NumberText(str):

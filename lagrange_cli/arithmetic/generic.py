@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 from functools import wraps
 from typing import Any
 
 Arithmetic = Any
 """`decimals`, an mpmath context, `math` or `numpy`."""
+
+Number = float | Fraction
+"""An input: a double, or the exact value of a decimal."""
 
 Real = Any
 """A number of the arithmetic in use: Decimal, mpf, float or float64 array."""
@@ -54,6 +58,11 @@ def many_digits(digits: int = 50) -> Arithmetic:
 def has_arrays(ar: Arithmetic) -> bool:
     """Whether the arithmetic is numpy, rather than one of scalars."""
     return hasattr(ar, "asarray")
+
+
+def number(ar: Arithmetic, value: Number) -> Real:
+    """A number of the arithmetic, rounded once."""
+    return ar.convert(value) if hasattr(ar, "convert") else float(value)
 
 
 BLOCK = 16384

@@ -11,13 +11,19 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
-from ..inputs.top import parse_number
+from .text import parse_number
 
 if TYPE_CHECKING:
-    from .double_double import Array
+    from .types import Array
 
 BLOCK_ROWS = 1 << 14
 MAX_ROWS = 10**9
+
+MAX_PERIODS = 2.0**50
+"""Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
+
+MAX_TIME = 1e290
+"""Room for the exact product of a time and a rate."""
 
 
 @dataclass(frozen=True)

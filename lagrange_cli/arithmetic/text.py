@@ -1,8 +1,15 @@
-"""How a double is written: the same text everywhere, that of `orjson`, which writes the blocks."""
+"""Numbers read from text, exactly, and written as text: the same everywhere, as `orjson` writes."""
 
 from __future__ import annotations
 
+import math
+from fractions import Fraction
 from typing import Any
+
+from ..errors import LagtopError
+
+_DECIMAL = set("0123456789.eE+-")
+_MOST_CHARACTERS = 2000
 
 
 def value_text(value: Any) -> str:
@@ -32,3 +39,34 @@ def double_text(value: float) -> str:
         return f"{mantissa}e-{exponent}"
     sign = "-" if mantissa.startswith("-") else ""
     return f"{sign}0.0000{mantissa.lstrip('-').replace('.', '')}"
+
+
+def parse_number(text: str) -> Fraction:
+    """The exact value of a decimal such as `30`, `-1.5` or `2e-3`.
+
+    Raises LagtopError, with the remedy, for anything else and for what no double can hold.
+    """
+    text = text.strip()
+    if len(text) > _MOST_CHARACTERS:
+        raise LagtopError(f"must have at most {_MOST_CHARACTERS} characters, got {len(text)}")
+    try:
+        nearest = float(text) if set(text) <= _DECIMAL else math.nan
+    except ValueError:
+        nearest = math.nan
+    if math.isnan(nearest):
+        raise LagtopError(f"must be a finite decimal number, got {text!r}{_remedy(text)}")
+    if math.isinf(nearest):
+        raise LagtopError(f"must be at most 1.8e308 in size, got {text}")
+    if nearest == 0 and set(text.lower().partition("e")[0]) & set("123456789"):
+        raise LagtopError(f"must be 0 or at least 5e-324 in size, got {text}")
+    return Fraction(text)
+
+
+def _remedy(text: str) -> str:
+    if "," in text:
+        return " (write a decimal point, not a comma)"
+    if "_" in text:
+        return " (leave out the underscores)"
+    if any(dash in text for dash in "\u2212\u2013\u2014"):
+        return " (write the minus sign as an ASCII hyphen, -)"
+    return ""

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array
-from ..elliptic import many_digits
+from ..arithmetic.generic import many_digits
+from ..arithmetic.types import Array
 from ..inputs.top import Top
 from ..motion.solve import solve
 from .method import Method, NotApplicableError, Sample, Sampled

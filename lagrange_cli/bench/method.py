@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..inputs.top import Top
 
 Sampled = Sequence[Any]

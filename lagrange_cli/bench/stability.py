@@ -15,7 +15,7 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
 from ..motion.table import rows
-from ..output.findings import Field, Findings, as_options, short
+from ..output.findings import Field, Findings, short
 from .closed_forms import CLOSED_FORMS
 from .hard_scenes import STRATA, scene_and_times
 from .integrators import TIGHTEST, integrators
@@ -61,7 +61,7 @@ class Case(NamedTuple):
 
     def command(self) -> str:
         """A command line that shows the worst number of the scene."""
-        options = as_options(self.top)
+        options = self.top.options()
         if self.key_eps > self.angle:
             return f"lagtop solve {options} --format json  # {self.key}"
         return f"lagtop bench --methods lagtop {options} --n 1 --t-max {self.worst_time!r}"

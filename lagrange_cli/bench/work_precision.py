@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..motion.record import Regime
 from ..motion.solve import Motion
-from ..output.findings import Field, Findings, as_options, short
+from ..output.findings import Field, Findings, short
 from .closed_forms import CLOSED_FORMS
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import machine, versions, warm_allocator
@@ -280,7 +280,7 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
     return {
         "machine": machine(),
         "versions": versions(),
-        "scene": as_options(motion.top),
+        "scene": motion.top.options(),
         "regime": f"{motion.regime.value}, nutation period {motion.T_nutation}",
         "times": f"{work.times.size} from 0 to {float(work.times[-1])} "
         f"({work.periods:.6g} nutation periods)",

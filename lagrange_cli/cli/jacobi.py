@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from .. import __version__
+from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..inputs.top import parse_number
 from ..output.write import write_record, write_rows, write_texts
 from .options import (
     COUNT,

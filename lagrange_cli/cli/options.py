@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from .. import __version__
+from ..arithmetic.generic import Number
+from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..inputs.top import Number, build_top, overridden, parse_number
+from ..inputs.top import build_top, overridden
 from ..motion.solve import Motion, solve
 from ..output.write import write_findings
 

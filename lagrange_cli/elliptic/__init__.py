@@ -10,21 +10,7 @@ lost as k -> 1.
 What start-up needs is here; `modulus`, `incomplete`, `jacobi`, `theta` and `fourier` are modules.
 """
 
-from ..arithmetic.generic import Arithmetic, Real, epsilon, everywhere, many_digits, where
 from .carlson import carlson_rf
 from .complete import agm, complete_e, complete_k, nome, period_mean
 
-__all__ = [
-    "Arithmetic",
-    "Real",
-    "agm",
-    "carlson_rf",
-    "complete_e",
-    "complete_k",
-    "epsilon",
-    "everywhere",
-    "many_digits",
-    "nome",
-    "period_mean",
-    "where",
-]
+__all__ = ["agm", "carlson_rf", "complete_e", "complete_k", "nome", "period_mean"]

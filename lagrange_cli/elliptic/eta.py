@@ -15,11 +15,10 @@ from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
-from ..arithmetic.points import check_reach
+from ..arithmetic.generic import Arithmetic, Real, many_digits, number, where
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..errors import LagtopError
-from ..inputs.top import number
-from ..motion.samplers import MAX_PERIODS, MAX_TIME
-from . import Arithmetic, Real, agm, many_digits, where
+from . import agm
 from .jacobi import jacobi
 from .modulus import Modulus
 
@@ -27,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ..arithmetic.correct_digits import NumberText
-    from ..arithmetic.double_double import Array
     from ..arithmetic.points import Times
+    from ..arithmetic.types import Array
 
 
 class Quadrature(NamedTuple):

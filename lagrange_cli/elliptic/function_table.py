@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
 from ..arithmetic.double_double import pair
-from ..arithmetic.points import check_reach
+from ..arithmetic.generic import Arithmetic, Real, many_digits, number
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.text import double_text
 from ..errors import LagtopError
-from ..inputs.top import number
-from ..motion.samplers import MAX_PERIODS, MAX_TIME
-from . import Arithmetic, Real, complete_k, many_digits
+from . import complete_k
 from .jacobi import jacobi
 from .modulus import Modulus, constants, modulus
 from .nome_series import am_sums, cn_sums, k_sums, sn_sums
@@ -22,8 +21,8 @@ from .theta import Complex, omega, pi_function, theta_of, zeta
 
 if TYPE_CHECKING:
     from ..arithmetic.correct_digits import NumberText
-    from ..arithmetic.double_double import Array
     from ..arithmetic.points import Times
+    from ..arithmetic.types import Array
 
 ONE_ARGUMENT = {"theta": theta_of, "zeta": zeta}
 TWO_ARGUMENTS = {"omega": omega, "pi": pi_function}

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array, Pair, reduce_phase
+from ..arithmetic.double_double import Pair, reduce_phase
 from ..arithmetic.generic import Arithmetic, Real, blocks, has_arrays, polynomial
+from ..arithmetic.types import Array
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
 from .theta import theta

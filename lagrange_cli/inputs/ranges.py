@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.text import parse_number
+from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .top import parse_number
 
 MAX_ROWS = 10**9
 

@@ -7,8 +7,9 @@ import tomllib
 from fractions import Fraction
 from typing import Any
 
+from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from .top import Top, parse_number
+from .top import Top
 
 _MOST_BYTES = 1 << 20
 KEYS = Top._fields

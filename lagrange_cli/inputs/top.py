@@ -9,51 +9,15 @@ from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
 from ..arithmetic import decimals
-from ..elliptic import Arithmetic, Real
+from ..arithmetic.generic import Arithmetic, Number, Real, number
 from ..errors import LagtopError
-
-Number = float | Fraction
-"""An input: a double, or the exact value of a decimal."""
 
 N = TypeVar("N")
 
-_DECIMAL = set("0123456789.eE+-")
-_MOST_CHARACTERS = 2000
 _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _PI = Fraction(decimals.pi)
-
-
-def parse_number(text: str) -> Fraction:
-    """The exact value of a decimal such as `30`, `-1.5` or `2e-3`.
-
-    Raises LagtopError, with the remedy, for anything else and for what no double can hold.
-    """
-    text = text.strip()
-    if len(text) > _MOST_CHARACTERS:
-        raise LagtopError(f"must have at most {_MOST_CHARACTERS} characters, got {len(text)}")
-    try:
-        nearest = float(text) if set(text) <= _DECIMAL else math.nan
-    except ValueError:
-        nearest = math.nan
-    if math.isnan(nearest):
-        raise LagtopError(f"must be a finite decimal number, got {text!r}{_remedy(text)}")
-    if math.isinf(nearest):
-        raise LagtopError(f"must be at most 1.8e308 in size, got {text}")
-    if nearest == 0 and set(text.lower().partition("e")[0]) & set("123456789"):
-        raise LagtopError(f"must be 0 or at least 5e-324 in size, got {text}")
-    return Fraction(text)
-
-
-def _remedy(text: str) -> str:
-    if "," in text:
-        return " (write a decimal point, not a comma)"
-    if "_" in text:
-        return " (leave out the underscores)"
-    if any(dash in text for dash in "\u2212\u2013\u2014"):
-        return " (write the minus sign as an ASCII hyphen, -)"
-    return ""
 
 
 class Tilt(NamedTuple):
@@ -183,10 +147,17 @@ class Top(_Inputs):
             return None
         return f"a rigid body with its mass centre at s has {bound}; computing all the same"
 
-
-def number(ar: Arithmetic, value: Number) -> Real:
-    """A number of the arithmetic, rounded once."""
-    return ar.convert(value) if hasattr(ar, "convert") else float(value)
+    def options(self) -> str:
+        """Return the top as the options that give it to any command."""
+        words = [f"--{name} {getattr(self, name)!r}" for name in ("m", "A", "C", "s", "g", "r0")]
+        if self.theta0_rad is None:
+            words.append(f"--theta0 {self.theta0_deg!r}")
+        else:
+            words.append(f"--rad --theta0 {self.theta0_rad!r}")
+        for name in ("thetadot0", "psidot0"):
+            if getattr(self, name):
+                words.append(f"--{name} {getattr(self, name)!r}")
+        return " ".join(words)
 
 
 def _known(value: Number | None) -> Number:

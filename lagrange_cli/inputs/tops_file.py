@@ -15,9 +15,9 @@ from contextlib import suppress
 from itertools import chain, islice
 from typing import Any, NamedTuple
 
-from ..arithmetic.text import json_text
+from ..arithmetic.text import json_text, parse_number
 from ..errors import LagtopError
-from .top import Top, overridden, parse_number
+from .top import Top, overridden
 
 INPUTS = Top._fields
 

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array, Pair, pair, reduce_phase
-from ..elliptic import Arithmetic, Real
+from ..arithmetic.double_double import Pair, pair, reduce_phase
+from ..arithmetic.generic import Arithmetic, Real
+from ..arithmetic.types import Array
 
 
 class Growth(NamedTuple):

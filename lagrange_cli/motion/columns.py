@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..inputs.top import Top
 from .cubic import Start
 from .samplers import Attitude

@@ -8,8 +8,8 @@ from __future__ import annotations
 from functools import partial
 from typing import NamedTuple
 
-from ..elliptic import Arithmetic, Real
-from ..inputs.top import Top, number
+from ..arithmetic.generic import Arithmetic, Real, number
+from ..inputs.top import Top
 from .roots import Roots, invariants
 
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..arithmetic.correct_digits import NumberText, TooFewDigitsError, settle
-from ..elliptic import Arithmetic, Real
-from ..inputs.top import Number, Top, number
+from ..arithmetic.generic import Arithmetic, Number, Real, number
+from ..inputs.top import Top
 from .general import (
     Solution,
     analyse,

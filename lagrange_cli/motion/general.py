@@ -11,18 +11,10 @@ import math
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..elliptic import (
-    Arithmetic,
-    Real,
-    carlson_rf,
-    complete_k,
-    everywhere,
-    many_digits,
-    period_mean,
-    where,
-)
+from ..arithmetic.generic import Arithmetic, Number, Real, everywhere, many_digits, where
+from ..elliptic import carlson_rf, complete_k, period_mean
 from ..errors import LagtopError
-from ..inputs.top import Number, Top
+from ..inputs.top import Top
 from .cubic import Place, Start, roots_from_start, start
 from .record import Regime
 from .released import complement, modulus, phase_rate

@@ -5,16 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-from ..elliptic import (
-    Arithmetic,
-    Real,
-    complete_e,
-    complete_k,
-    everywhere,
-    nome,
-    period_mean,
-    where,
-)
+from ..arithmetic.generic import Arithmetic, Real, everywhere, where
+from ..elliptic import complete_e, complete_k, nome, period_mean
 from ..inputs.top import Top
 from .cubic import Place, Start
 from .general import Solution, advances, analyse, steady_rates

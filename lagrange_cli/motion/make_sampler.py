@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 from ..arithmetic.double_double import pair
-from ..elliptic import Arithmetic, Real, many_digits
+from ..arithmetic.generic import Arithmetic, Real, many_digits
+from ..arithmetic.points import MAX_PERIODS
 from ..inputs.top import Tilt, Top
 from .attitude import growths
 from .general import (
@@ -16,7 +17,7 @@ from .general import (
     theta_constants,
 )
 from .record import Regime
-from .samplers import MAX_PERIODS, Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
+from .samplers import Sampler, SeparatrixSampler, SteadySampler, ThetaSampler
 from .theta_series import (
     Component,
     Frame,

@@ -6,7 +6,7 @@ import math
 from enum import Enum
 from typing import Any, NamedTuple
 
-from ..elliptic import Arithmetic, Real, where
+from ..arithmetic.generic import Arithmetic, Real, where
 from ..inputs.top import Top
 
 

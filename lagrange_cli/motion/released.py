@@ -9,16 +9,9 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from ..elliptic import (
-    Arithmetic,
-    Real,
-    carlson_rf,
-    complete_k,
-    nome,
-    period_mean,
-    where,
-)
-from ..inputs.top import Tilt, Top, number
+from ..arithmetic.generic import Arithmetic, Real, number, where
+from ..elliptic import carlson_rf, complete_k, nome, period_mean
+from ..inputs.top import Tilt, Top
 from .record import NUMBER_KEYS, Record, Regime, constant_rates, period_of
 from .roots import Invariants, Roots, invariants, roots_from_rest
 

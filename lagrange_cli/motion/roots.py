@@ -9,8 +9,8 @@ accuracy.  Equation numbers in parentheses are those of Chrapan (1952).
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..elliptic import Arithmetic, Real, where
-from ..inputs.top import Tilt, Top, number
+from ..arithmetic.generic import Arithmetic, Real, number, where
+from ..inputs.top import Tilt, Top
 
 
 class Invariants(NamedTuple):

@@ -23,17 +23,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.double_double import Array, Pair, reduce_phase
+from ..arithmetic.double_double import Pair, reduce_phase
 from ..arithmetic.generic import blocks, polynomial
+from ..arithmetic.points import MAX_TIME
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from .attitude import Growth, Growths
 from .theta_series import Component, Frame, Polynomial
-
-MAX_PERIODS = 2.0**50
-"""Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
-
-MAX_TIME = 1e290
-"""Room for the exact product of a time and a rate."""
 
 
 class Angles(NamedTuple):

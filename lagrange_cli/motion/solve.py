@@ -7,7 +7,7 @@ from decimal import localcontext
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic import decimals
-from ..elliptic import Real, many_digits
+from ..arithmetic.generic import Real, many_digits
 from ..errors import LagtopError
 from ..inputs.top import Top
 from .record import Record

@@ -13,7 +13,7 @@ from .solve import Motion
 
 if TYPE_CHECKING:
     from ..arithmetic.correct_digits import NumberText
-    from ..arithmetic.double_double import Array
+    from ..arithmetic.types import Array
     from .columns import Column, Sample
     from .samplers import Sampler
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..elliptic import Arithmetic, Real
+from ..arithmetic.generic import Arithmetic, Real
 
 TERMS = 4
 """Enough for doubles."""

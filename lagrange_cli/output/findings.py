@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 
 import orjson
 
-from ..inputs.top import Top
-
 
 class Field(NamedTuple):
     """A column: the key of its values in CSV and JSON, and how a table shows it."""
@@ -51,16 +49,3 @@ class Findings(NamedTuple):
 def short(value: float) -> str:
     """Two significant digits."""
     return f"{value:.1e}"
-
-
-def as_options(top: Top) -> str:
-    """A top as the options that give it to any command."""
-    words = [f"--{name} {getattr(top, name)!r}" for name in ("m", "A", "C", "s", "g", "r0")]
-    if top.theta0_rad is None:
-        words.append(f"--theta0 {top.theta0_deg!r}")
-    else:
-        words.append(f"--rad --theta0 {top.theta0_rad!r}")
-    for name in ("thetadot0", "psidot0"):
-        if getattr(top, name):
-            words.append(f"--{name} {getattr(top, name)!r}")
-    return " ".join(words)

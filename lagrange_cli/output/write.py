@@ -15,7 +15,7 @@ from ..arithmetic.text import json_text, value_text
 from .destination import CannotWriteError, sink
 
 if TYPE_CHECKING:
-    from ..arithmetic.double_double import Array
+    from ..arithmetic.types import Array
     from .findings import Findings
 
 MAX_TABLE_ROWS = 10_000

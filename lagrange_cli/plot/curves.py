@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array
-from ..elliptic import carlson_rf, complete_k, many_digits
+from ..arithmetic.generic import Number, many_digits
+from ..arithmetic.types import Array
+from ..elliptic import carlson_rf, complete_k
 from ..errors import LagtopError
-from ..inputs.top import Number
 from ..motion.columns import Sample, column_constants
 from ..motion.general import periods_since_top, separatrix_swing
 from ..motion.make_sampler import solution_of

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..motion.solve import Motion
 from . import curves

@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.text import parse_number
+from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.top import Top, overridden, parse_number
+from ..inputs.top import Top, overridden
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion
 from ..sweeps.records import sweep

@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import SubFigure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..motion.record import Regime
 from ..motion.solve import Motion
 from . import curves

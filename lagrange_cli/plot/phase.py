@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..motion.make_sampler import solution_of
 from ..motion.solve import Motion
 from .curves import PHASES, phase_times, refined, sample, span

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import SubFigure
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 from ..motion.solve import Motion
 from . import curves
 from .style import Look, mark_start, scale

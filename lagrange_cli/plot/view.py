@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array
 
 HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
 """Of the cone that stands for the top; lengths in radii of the sphere."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from ..arithmetic.generic import Number
 from ..errors import LagtopError
 from ..inputs.ranges import Axis, Grid
-from ..inputs.top import Number, Top, build_top, overridden
+from ..inputs.top import Top, build_top, overridden
 from ..inputs.tops_file import open_rows
 from .parts import Block, Sweep
 from .records import BLOCK_ROWS, check_keys, record_keys

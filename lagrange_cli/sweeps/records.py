@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.double_double import Array
+from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError, check_names
 from ..inputs.top import Top
 from ..motion.record import NUMBER_KEYS, Regime
 from ..motion.released import STILL, Nutation, remark, unmoved
 from ..motion.solve import solve
 from .start_arrays import starts
-from .top_arrays import Mask, Tops
+from .top_arrays import Tops
 
 Column = Array | NDArray[np.object_]
 """Numbers, NaN where a regime has none; or texts, None where there is none."""

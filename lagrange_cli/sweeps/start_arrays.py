@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic import double_double as twofold
-from ..arithmetic.double_double import Array, Twofold
+from ..arithmetic.double_double import Twofold
+from ..arithmetic.types import Array, Mask
 from ..elliptic import complete_k
 from ..motion.cubic import Place, Start
 from ..motion.general import Solution
@@ -26,7 +27,7 @@ from ..motion.general_record import GeneralNutation, half_rates, mean_rates
 from ..motion.record import Regime
 from ..motion.released import complement, modulus, phase_rate
 from ..motion.roots import Roots
-from .top_arrays import Mask, Tops
+from .top_arrays import Tops
 
 _CLEAR = 2.0**-40
 """Of its parts at least, so that a difference of pairs has the digits of a double."""

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Array
 from ..arithmetic.points import Times
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, Row, RowFile, open_rows

@@ -9,14 +9,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arithmetic.double_double import Array, Twofold, two_sum
+from ..arithmetic.double_double import Twofold, two_sum
+from ..arithmetic.types import Array, Mask
 from ..inputs.top import Tilt
 from ..motion.record import Regime
 from ..motion.roots import Invariants
-
-Mask = NDArray[np.bool_]
 
 _LARGE, _SMALL = 1e30, 1e-30
 """Between these sizes no formula leaves the range of doubles."""

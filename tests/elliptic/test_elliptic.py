@@ -9,14 +9,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from lagrange_cli.elliptic import (
-    carlson_rf,
-    complete_e,
-    complete_k,
-    many_digits,
-    nome,
-    period_mean,
-)
+from lagrange_cli.arithmetic.generic import many_digits
+from lagrange_cli.elliptic import carlson_rf, complete_e, complete_k, nome, period_mean
 
 EPS = 2.0**-52
 _RANDOM = random.Random(4)

@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.arithmetic.points import TimeList
 from lagrange_cli.bench.reference import units
-from lagrange_cli.elliptic import many_digits
 from lagrange_cli.elliptic.eta import Quadrature, constants, digit_rows, record, rows
 from lagrange_cli.motion.released import released_record
 

@@ -14,8 +14,9 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import LagtopError
+from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.bench.reference import units
-from lagrange_cli.elliptic import carlson_rf, complete_k, many_digits
+from lagrange_cli.elliptic import carlson_rf, complete_k
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rj
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi

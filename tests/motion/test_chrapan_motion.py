@@ -14,7 +14,7 @@ import pytest
 from equations import Register, Sides
 
 from lagrange_cli import Top
-from lagrange_cli.elliptic import many_digits
+from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.elliptic.theta import pi_function
 from lagrange_cli.motion.digits import angles_in

@@ -13,8 +13,8 @@ import oracle
 import pytest
 
 from lagrange_cli import Motion, Regime, Top, solve
-from lagrange_cli.arithmetic.double_double import Array
 from lagrange_cli.arithmetic.points import Grid
+from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic
 from lagrange_cli.bench.reference import Reference, angle_units
 from lagrange_cli.motion.table import rows

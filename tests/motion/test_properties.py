@@ -17,9 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.arithmetic.text import double_text, value_text
+from lagrange_cli.arithmetic.text import double_text, parse_number, value_text
 from lagrange_cli.cli.group import main
-from lagrange_cli.inputs.top import parse_number
 from lagrange_cli.output.write import block_text, csv_text, opening
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)

@@ -14,7 +14,7 @@ from scenes import NAMED, random_scene
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic import decimals
-from lagrange_cli.elliptic import many_digits
+from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.motion.record import Regime
 from lagrange_cli.motion.released import released_record
 from lagrange_cli.motion.roots import invariants, roots_from_rest

@@ -22,7 +22,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from lagrange_cli import LagtopError, Motion, Regime, Top, solve
-from lagrange_cli.arithmetic.double_double import Array
+from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.cli.options import solved as motion_of
 from lagrange_cli.cli.plot import KINDS as NAMES
 from lagrange_cli.plot import curves
