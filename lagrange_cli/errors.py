@@ -1,4 +1,15 @@
-"""The one error that every bad input raises."""
+"""The errors of the package, each with the exit code that the command line ends with.
+
+| code | meaning |
+|---|---|
+| 0 | fine |
+| 1 | done, but some tops have an error, a number does not exist, or a promise is exceeded |
+| 2 | bad usage or a bad value |
+| 65 | a file that is read holds bad data |
+| 69 | a cluster or a method is not available |
+| 74 | the output cannot be written |
+| 128 + N | ended by the signal N, such as 130 for Ctrl-C and 141 for a reader that went away |
+"""
 
 from __future__ import annotations
 
@@ -6,7 +17,11 @@ from collections.abc import Iterable, Sequence
 
 
 class LagtopError(ValueError):
-    """A bad input. `key` names the input at fault where there is one."""
+    """A bad input, or the base of every other error.
+
+    `key` is the name of the argument at fault, if there is one.  A message about an argument
+    begins with its name as Python spells it; the command line turns that into its option.
+    """
 
     exit_code = 2
 
@@ -15,11 +30,50 @@ class LagtopError(ValueError):
         self.key = key
 
 
-def check_names(option: str, names: Sequence[str], known: Iterable[str]) -> None:
+class DataError(LagtopError):
+    """Bad data in a file that is read, such as a list of times or a file of tops."""
+
+    exit_code = 65
+
+
+class SceneError(DataError):
+    """A scene file that cannot be read or that describes no top."""
+
+
+class SomeFailedError(LagtopError):
+    """Some tops of a sweep could not be solved; their rows say why."""
+
+    exit_code = 1
+
+
+class AbsentError(LagtopError):
+    """A number that was asked for and that the regime of the top does not have."""
+
+    exit_code = 1
+
+
+class NothingToDrawError(LagtopError):
+    """A picture was asked for that the motion does not have."""
+
+
+class UnavailableError(LagtopError):
+    """A cluster or a method of computing that cannot be had now."""
+
+    exit_code = 69
+
+
+class CannotWriteError(LagtopError):
+    """The output cannot be written; the message says where and why."""
+
+    exit_code = 74
+
+
+def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> None:
     """Raise LagtopError for a name that is not known, for one that comes twice, and for none."""
     known = list(known)
+    argument = key.lstrip("-")
     for name in names or [""]:
         if name not in known:
-            raise LagtopError(f"{option} must be among {' '.join(known)}, got {name!r}")
+            raise LagtopError(f"{key} must be among {' '.join(known)}, got {name!r}", argument)
     if len(set(names)) < len(names):
-        raise LagtopError(f"{option} must name each one once, got {' '.join(names)}")
+        raise LagtopError(f"{key} must name each one once, got {' '.join(names)}", argument)

@@ -7,8 +7,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import LagtopError
-from ..output.destination import CannotWriteError, sink
+from ..errors import CannotWriteError, LagtopError
+from ..output.destination import sink
 from ..output.findings import Findings
 from .stability import CONTRACT
 from .work_precision import is_done

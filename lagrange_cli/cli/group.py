@@ -10,8 +10,8 @@ from typing import Any, NoReturn
 import click
 
 from .. import __version__
-from ..errors import LagtopError
-from ..output.destination import CannotWriteError, Terminated
+from ..errors import CannotWriteError, LagtopError
+from ..output.destination import Terminated
 from .options import ExamplesFirst, complain
 
 COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
@@ -41,7 +41,7 @@ class LagtopGroup(ExamplesFirst, click.Group):
         except click.ClickException as error:
             complain(f"Error: {error.format_message()}")
             sys.exit(error.exit_code)
-        except (LagtopError, CannotWriteError) as error:
+        except LagtopError as error:
             complain(f"Error: {error}")
             sys.exit(error.exit_code)
         except OSError as error:  # of the help itself; the writers raise CannotWriteError

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ..errors import LagtopError
+from ..errors import AbsentError, LagtopError
 from ..output.write import write_record, write_value
 from .options import (
     MOST_RECORD_DIGITS,
@@ -66,9 +66,3 @@ def command(  # noqa: PLR0917 - click passes them by name
     if record[key] is None:
         raise AbsentError(f"a top of the regime {record['regime']!r} has no {key}")
     write_value(record[key], output)
-
-
-class AbsentError(LagtopError):
-    """A number that was asked for, and that the regime does not have."""
-
-    exit_code = 1

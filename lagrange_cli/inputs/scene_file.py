@@ -8,17 +8,11 @@ from fractions import Fraction
 from typing import Any
 
 from ..arithmetic.text import parse_number
-from ..errors import LagtopError
+from ..errors import LagtopError, SceneError
 from .top import Top
 
 _MOST_BYTES = 1 << 20
 KEYS = Top._fields
-
-
-class SceneError(LagtopError):
-    """A scene file that is missing, broken, or holds something it should not."""
-
-    exit_code = 65
 
 
 class SceneFile:

@@ -11,11 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, BinaryIO, NoReturn
 
-
-class CannotWriteError(Exception):
-    """The output could not be written; the message says where and why."""
-
-    exit_code = 74
+from ..errors import CannotWriteError
 
 
 class Terminated(BaseException):

@@ -12,7 +12,8 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import json_text, value_text
-from .destination import CannotWriteError, sink
+from ..errors import CannotWriteError
+from .destination import sink
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

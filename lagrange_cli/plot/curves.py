@@ -16,7 +16,7 @@ import numpy as np
 from ..arithmetic.generic import Number, many_digits
 from ..arithmetic.types import Array
 from ..elliptic import carlson_rf, complete_k
-from ..errors import LagtopError
+from ..errors import LagtopError, NothingToDrawError
 from ..motion.columns import Sample, column_constants
 from ..motion.general import periods_since_top, separatrix_swing
 from ..motion.make_sampler import solution_of
@@ -31,10 +31,6 @@ _STRAIGHT, _VISIBLE = math.cos(math.radians(10)), 5e-4
 
 MOST_PERIODS = 1000
 """More nods are a blot, not a curve."""
-
-
-class NothingToDraw(LagtopError):
-    """This motion has no such curve; the message says why."""
 
 
 def sample(motion: Motion, t: Array) -> Sample:
@@ -230,9 +226,9 @@ def angle_curves(motion: Motion, t_max: float) -> AngleCurves:
 
 
 def remainder_curves(motion: Motion, t_max: float) -> AngleCurves:
-    """The same, fit for `remainders`.  Raises NothingToDraw where both are zero or undefined."""
+    """Return the curves of `remainders`.  Raises NothingToDrawError where both are undefined or 0."""
     if not period(motion):
-        raise NothingToDraw(f"no remainders: {motion.regime.value} has no nutation period")
+        raise NothingToDrawError(f"no remainders: {motion.regime.value} has no nutation period")
 
     def remainders(t: Array) -> Array:
         return np.stack(_angles_at(motion, t).remainders(), axis=1)

@@ -12,9 +12,8 @@ from typing import Any, NamedTuple, cast
 import matplotlib
 from matplotlib.figure import Figure, FigureBase, SubFigure
 
-from ..errors import LagtopError
+from ..errors import LagtopError, NothingToDrawError
 from ..motion.solve import Motion
-from .curves import NothingToDraw
 from .kinds import KINDS, Wish
 from .style import Look, settings
 
@@ -83,7 +82,7 @@ def draw_page(figure: Figure, page: Page) -> None:
     for kind, panel in zip(page.kinds, panels.flat, strict=False):
         try:
             _draw(kind, panel, page)
-        except NothingToDraw as reason:
+        except NothingToDrawError as reason:
             panel.text(0.5, 0.5, str(reason), ha="center", color=page.style.quiet, wrap=True)
 
 

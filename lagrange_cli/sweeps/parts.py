@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import LagtopError
+from ..errors import SomeFailedError
 from ..inputs.ranges import Grid
 from ..inputs.tops_file import Lines, RowFile
 from ..output.write import Columns, block_text
@@ -20,12 +20,6 @@ from .top_arrays import Tops
 
 Block = tuple[int, range | Lines]
 """The number of a part, and the points of the grid or the lines of the file that it is made of."""
-
-
-class SomeFailedError(LagtopError):
-    """Some tops have an error, which stands in their rows."""
-
-    exit_code = 1
 
 
 class Part(NamedTuple):
