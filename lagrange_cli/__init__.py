@@ -2,22 +2,38 @@
 
 from typing import TYPE_CHECKING, Any
 
-from .errors import LagtopError
-from .inputs.top import Top
-from .motion.record import Regime
-from .motion.solve import Motion, solve
-
 if TYPE_CHECKING:
+    from .errors import LagtopError
+    from .inputs.top import Top
+    from .motion.record import Regime
+    from .motion.solve import Motion, solve
     from .sweeps.records import sweep
 
 __version__ = "0.1.0"
 __all__ = ["LagtopError", "Motion", "Regime", "Top", "__version__", "solve", "sweep"]
 
+_MODULES = {
+    "LagtopError": "errors",
+    "Motion": "motion.solve",
+    "Regime": "motion.record",
+    "Top": "inputs.top",
+    "solve": "motion.solve",
+    "sweep": "sweeps.records",
+}
+"""The module of each name, which is imported when the name is asked for."""
+
 
 def __getattr__(name: str) -> Any:
-    """`sweep`, which needs NumPy, when it is asked for."""
-    if name != "sweep":
+    """Return a public name of the package."""
+    if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .sweeps.records import sweep
+    from importlib import import_module
 
-    return sweep
+    value = getattr(import_module(f".{_MODULES[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names."""
+    return sorted(__all__)

@@ -71,9 +71,8 @@ class CannotWriteError(LagtopError):
 def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> None:
     """Raise LagtopError for a name that is not known, for one that comes twice, and for none."""
     known = list(known)
-    argument = key.lstrip("-")
     for name in names or [""]:
         if name not in known:
-            raise LagtopError(f"{key} must be among {' '.join(known)}, got {name!r}", argument)
+            raise LagtopError(f"{key} must be among {' '.join(known)}, got {name!r}", key)
     if len(set(names)) < len(names):
-        raise LagtopError(f"{key} must name each one once, got {' '.join(names)}", argument)
+        raise LagtopError(f"{key} must name each one once, got {' '.join(names)}", key)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import CannotWriteError, LagtopError
-from ..output.destination import sink
+from ..output.destination import opened
 from ..output.findings import Findings
 from .stability import CONTRACT
 from .work_precision import is_done
@@ -125,5 +125,5 @@ def _save(figure: Figure, path: str) -> None:
     kind = Path(path).suffix.lower()[1:]
     metadata = {"Date": None} if kind == "svg" else {"Software": None}
     settings: Any = {"svg.hashsalt": "lagtop", "svg.fonttype": "path"}
-    with matplotlib.rc_context(settings), sink(path) as stream:
+    with matplotlib.rc_context(settings), opened(path) as stream:
         figure.savefig(stream, format=kind, metadata=metadata, dpi=150)

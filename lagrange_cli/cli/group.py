@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from importlib import import_module
-from typing import Any, NoReturn
+from typing import Any
 
 import click
 
 from .. import __version__
 from ..errors import CannotWriteError, LagtopError
-from ..output.destination import Terminated
+from ..output.signals import Terminated, die_by, interrupts
 from .options import ExamplesFirst, complain
 
 COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
@@ -21,18 +22,27 @@ class LagtopGroup(ExamplesFirst, click.Group):
     """The group of commands, with our errors (one line), exit codes and deaths by signal."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The names, in the order of the help."""
+        """Return the names, in the order of the help."""
         return COMMANDS
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """The command, whose module is loaded only now: start-up pays for one command, not all."""
+        """Return a command, whose module is loaded only now: start-up pays for one, not for all."""
         if cmd_name not in COMMANDS:
             return None
         command: click.Command = import_module(f".{cmd_name}", __package__).command
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command of the arguments.  Raises UsageError with the name that was meant."""
+        word = args[0]
+        if word not in COMMANDS and not word.startswith("-"):
+            raise click.UsageError(f"No such command {word!r}.{_suggestion(word)}", ctx)
+        return super().resolve_command(ctx, args)
+
     def main(self, *args: Any, **extra: Any) -> Any:
-        """As click's; errors are one line on standard error and an exit code."""
+        """Run like click's method, but end with one line on standard error and an exit code."""
         run: Any = super().main
         if not extra.pop("standalone_mode", True):
             return run(*args, standalone_mode=False, **extra)
@@ -48,29 +58,29 @@ class LagtopGroup(ExamplesFirst, click.Group):
             complain(f"Error: cannot write standard output: {error.strerror}")
             os._exit(CannotWriteError.exit_code)  # the interpreter would try to flush it once more
         except click.Abort:
-            _die_by("SIGINT")
+            die_by(signal.SIGINT)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command.  What ends it from outside is caught here, before click turns it into
         an exit code: a signal must kill as a signal."""
         try:
-            return super().invoke(ctx)
+            with interrupts():
+                return super().invoke(ctx)
         except BrokenPipeError:
-            _die_by("SIGPIPE")
+            number = getattr(signal, "SIGPIPE", None)
         except KeyboardInterrupt:
-            _die_by("SIGINT")
+            number = signal.SIGINT
         except Terminated as error:
-            _die_by(error.number)
+            number = error.number
+        return die_by(number)  # here, where the frames of the command are gone and have cleaned up
 
 
-def _die_by(which: str | int) -> NoReturn:
-    """End by the signal itself: only that stops the shell loop we may be running in."""
-    import signal
+def _suggestion(word: str) -> str:
+    """Return a question with the command that is spelt nearly like the word, if there is one."""
+    from difflib import get_close_matches
 
-    number = signal.Signals[which] if isinstance(which, str) else signal.Signals(which)
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
-    raise AssertionError("unreachable")
+    near = get_close_matches(word, COMMANDS, 1)
+    return f" Did you mean {near[0]!r}?" if near else ""
 
 
 @click.group(
@@ -92,7 +102,3 @@ def main(ctx: click.Context) -> None:
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
-
-
-if __name__ == "__main__":
-    main()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -17,6 +18,7 @@ from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.top import build_top, overridden
 from ..motion.solve import Motion, solve
+from ..output.terminal import one_line
 from ..output.write import write_findings
 
 if TYPE_CHECKING:
@@ -73,6 +75,29 @@ class ExamplesFirst(click.Command):
         formatter.write("Examples:\n")
         formatter.write("".join(f"  {line}\n" for line in self.examples) + "\n")
         super().format_help(ctx, formatter)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; an error about an argument names its option."""
+        try:
+            return super().invoke(ctx)
+        except LagtopError as error:
+            error.args = (_naming_options(error, self.params),)
+            raise
+
+
+def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
+    """Return the message with `--t-max` where the library says `t_max`.
+
+    That is its first word, if it is the key of the error, and any word with an underscore before
+    the value that is quoted.
+    """
+    names = [name for param in params for name in param.opts if name.startswith("--")]
+    options = {name[2:].replace("-", "_"): name for name in names}
+    said, got, value = str(error).partition(", got ")
+    if error.key in options and re.match(rf"{error.key}\b", said):
+        said = options[error.key] + said.removeprefix(error.key)
+    said = re.sub(r"(?<![-\w])[a-z]+_\w+", lambda word: options.get(word[0], word[0]), said)
+    return said + got + value
 
 
 def solved(
@@ -173,9 +198,9 @@ def write_report(find: Callable[[], Findings], style: str, output: str) -> Findi
 
 
 def complain(line: str) -> None:
-    """One line on standard error, if there is one that takes it."""
+    """Write one line to standard error, if there is one that takes it, safe for any terminal."""
     with suppress(OSError):
-        click.echo(" ".join(line.split()), err=True)
+        click.echo(one_line(line), err=True)
 
 
 NUMBER = Parsed("number", parse_number)

@@ -81,7 +81,7 @@ def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
     """The header of some columns.  Raises LagtopError for an unknown one."""
     from .columns import COLUMNS
 
-    check_names("--columns", columns, COLUMNS)
+    check_names("columns", columns, COLUMNS)
     unit = "rad" if radians else "deg"
     return [text.replace("*", unit) for name in columns for text in COLUMNS[name].headings]
 

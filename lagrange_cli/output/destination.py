@@ -3,31 +3,25 @@ whole or not at all."""
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import stat
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any, BinaryIO, NoReturn
+from contextlib import contextmanager, suppress
+from typing import BinaryIO
 
 from ..errors import CannotWriteError
-
-
-class Terminated(BaseException):
-    """A signal to end, raised so that a temporary file is removed on the way out."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
+from .signals import terminated_by
 
 
 @contextmanager
-def sink(path: str) -> Iterator[BinaryIO]:
-    """A binary stream to `path`, or to standard output for `-`.
+def opened(path: str) -> Iterator[BinaryIO]:
+    """Yield a binary stream to a file, or to standard output for `-`.
 
     An existing file is replaced when the block ends well and left alone when it does not.  Raises
-    CannotWriteError; a reader that went away raises BrokenPipeError.
+    CannotWriteError, or BrokenPipeError for a reader that went away.
     """
     try:
         with _standard_output() if path == "-" else _file(path) as stream:
@@ -35,7 +29,7 @@ def sink(path: str) -> Iterator[BinaryIO]:
     except BrokenPipeError:
         raise
     except OSError as error:
-        name = "standard output" if path == "-" else path
+        name = "standard output" if path == "-" else path or "''"
         raise CannotWriteError(f"cannot write {name}: {error.strerror or error}") from None
 
 
@@ -57,43 +51,58 @@ def _standard_output() -> Iterator[BinaryIO]:
 
 @contextmanager
 def _file(path: str) -> Iterator[BinaryIO]:
-    if os.path.exists(path) and not stat.S_ISREG(os.stat(path).st_mode):  # a device, a pipe
+    if not _is_replaceable(path):
         with open(path, "wb") as stream:
             yield stream
         return
     from tempfile import mkstemp
 
-    _catch_signals()
     target = os.path.realpath(path)
-    descriptor, temporary = mkstemp(prefix=".lagtop-", dir=os.path.dirname(target))
-    with open(descriptor, "wb") as stream:
+    folder = os.path.dirname(target)
+    with terminated_by(["SIGTERM", "SIGHUP"]):
+        descriptor, temporary = mkstemp(prefix=".lagtop-", dir=folder)
         try:
-            yield stream
-            stream.flush()
-            os.fsync(stream.fileno())
+            with open(descriptor, "wb") as stream:
+                yield stream
+                stream.flush()
+                os.fsync(stream.fileno())
             os.chmod(temporary, _mode(target))
             os.replace(temporary, target)
         except BaseException:
             os.unlink(temporary)
             raise
+    _sync_folder(folder)
+
+
+def _is_replaceable(path: str) -> bool:
+    """Return whether a path is a regular file, or nothing yet.
+
+    Raises OSError where a shell would refuse the path too.
+    """
+    if path.endswith(("/", os.sep)):
+        raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not path:
+        raise OSError(errno.ENOENT, os.strerror(errno.ENOENT))
+    try:
+        return stat.S_ISREG(os.stat(path).st_mode)
+    except FileNotFoundError:
+        return True
 
 
 def _mode(target: str) -> int:
-    """The mode of the file that is replaced, or of a new one."""
+    """Return the permissions of the file that is replaced, or of a new one."""
     if os.path.exists(target):
-        return stat.S_IMODE(os.stat(target).st_mode)
+        return os.stat(target).st_mode & 0o777
     mask = os.umask(0)
     os.umask(mask)
     return 0o666 & ~mask
 
 
-def _catch_signals() -> None:
-    """Let the signals that end us remove the temporary file first."""
-    import signal
-
-    def end(number: int, _: Any) -> NoReturn:
-        raise Terminated(number)
-
-    for name in ("SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), end)
+def _sync_folder(folder: str) -> None:
+    """Bring the new name of the file to the disk, where the system can do that."""
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

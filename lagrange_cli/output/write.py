@@ -1,4 +1,4 @@
-"""The only place that writes: rich tables, CSV, JSON and Parquet, into a `sink`.
+"""The only place that writes: rich tables, CSV, JSON and Parquet, into a `destination`.
 
 A double has the same text in all of them (see `numerals`).
 """
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import json_text, value_text
 from ..errors import CannotWriteError
-from .destination import sink
+from .destination import opened
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -32,13 +32,13 @@ none; or lists of texts and JSON values."""
 
 def write_value(value: Any, path: str) -> None:
     """One value, bare."""
-    with sink(path) as stream:
+    with opened(path) as stream:
         stream.write(f"{value_text(value)}\n".encode())
 
 
 def write_bytes(path: str, make: Callable[[], bytes]) -> None:
     """A picture, made only when it is known that there is a place for it."""
-    with sink(path) as stream:
+    with opened(path) as stream:
         stream.write(make())
 
 
@@ -52,7 +52,7 @@ def write_record(record: Mapping[str, Any], style: str, path: str, kind: str = "
         text = f"{','.join(record)}\n{','.join(map(value_text, record.values()))}\n".encode()
     else:
         text = _object((key, _json_value(value)) for key, value in record.items()) + b"\n"
-    with sink(path) as stream:
+    with opened(path) as stream:
         stream.write(text)
 
 
@@ -87,7 +87,7 @@ def write_rows(names: Sequence[str], blocks: Iterable[Array], style: str, path: 
 
 def write_text_blocks(style: str, names: Sequence[str], blocks: Iterable[bytes], path: str) -> None:
     """Texts made by `block_text`, with what stands before, between and after them."""
-    with sink(path) as stream:
+    with opened(path) as stream:
         if style == "parquet":
             from .parquet import write_parquet
 
@@ -129,7 +129,7 @@ def write_parts(
         if style == "parquet":
             write_text_blocks(style, names, [text], path)
             continue
-        with sink(path) as stream:
+        with opened(path) as stream:
             stream.write(text if number else opening(style, names) + text)
 
 
@@ -201,7 +201,7 @@ def write_texts(names: Sequence[str], rows: Iterable[Iterable[str]], style: str,
     if style == "table":
         from .layouts import rows_table
 
-        with sink(path) as stream:
+        with opened(path) as stream:
             terminal, encoding = _is_terminal(path), _encoding(path)
             stream.write(rows_table(names, rows, terminal=terminal, encoding=encoding))
     elif style == "csv":
@@ -216,7 +216,7 @@ def write_findings(find: Callable[[], Findings], style: str, path: str) -> Findi
 
     It is made when the place to write is open already: long work must not end before a closed door.
     """
-    with sink(path) as stream:
+    with opened(path) as stream:
         findings = find()
         if style == "table":
             from .layouts import findings_table

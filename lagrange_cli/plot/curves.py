@@ -226,7 +226,7 @@ def angle_curves(motion: Motion, t_max: float) -> AngleCurves:
 
 
 def remainder_curves(motion: Motion, t_max: float) -> AngleCurves:
-    """Return the curves of `remainders`.  Raises NothingToDrawError where both are undefined or 0."""
+    """Return the curves of `remainders`.; NothingToDrawError where both vanish."""
     if not period(motion):
         raise NothingToDrawError(f"no remainders: {motion.regime.value} has no nutation period")
 

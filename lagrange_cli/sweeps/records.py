@@ -73,7 +73,7 @@ def sweep(
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
     """The keys.  Raises LagtopError for one that no record has, or that comes twice."""
-    check_names("--keys", keys, record_keys(radians=radians))
+    check_names("keys", keys, record_keys(radians=radians))
     return keys
 
 

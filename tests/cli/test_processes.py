@@ -163,7 +163,7 @@ def most_memory(*args: str) -> float:
     """The most that a command had, in MB (by its own account: ru_maxrss counts its parent too)."""
     code = """if True:
         import atexit, sys
-        from lagrange_cli.cli import main
+        from lagrange_cli.__main__ import main
         atexit.register(lambda: sys.stderr.write(open("/proc/self/status").read()))
         main()
     """
