@@ -13,8 +13,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-
 
 class LagtopError(ValueError):
     """A bad input, or the base of every other error.
@@ -66,13 +64,3 @@ class CannotWriteError(LagtopError):
     """The output cannot be written; the message says where and why."""
 
     exit_code = 74
-
-
-def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> None:
-    """Raise LagtopError for a name that is not known, for one that comes twice, and for none."""
-    known = list(known)
-    for name in names or [""]:
-        if name not in known:
-            raise LagtopError(f"{key} must be among {' '.join(known)}, got {name!r}", key)
-    if len(set(names)) < len(names):
-        raise LagtopError(f"{key} must name each one once, got {' '.join(names)}", key)

@@ -1,23 +1,24 @@
-"""Where to sample: even grids and lists of decimals, kept exact, handed out in blocks."""
+"""Points on a line, evenly or logarithmically spaced or listed, kept exact and rounded once."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from decimal import Decimal
+from collections.abc import Iterator
+from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ..errors import LagtopError
-from .text import parse_number
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from .types import Array
 
-BLOCK_ROWS = 1 << 14
-MAX_ROWS = 10**9
+    Index = NDArray[np.intp]
+
+POINTS_AT_ONCE = 1 << 14
+MOST_POINTS = 10**9
 
 MAX_PERIODS = 2.0**50
 """Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
@@ -26,76 +27,131 @@ MAX_TIME = 1e290
 """Room for the exact product of a time and a rate."""
 
 
-@dataclass(frozen=True)
-class Grid:
-    """The times start + i step, i = 0 ... count - 1, each from its own i, rounded once."""
+_DIGITS_OF_LOG_POINTS = Context(
+    prec=30, rounding=ROUND_HALF_EVEN, Emin=-9999, Emax=9999, capitals=1, clamp=0, traps=[]
+)
+
+
+class Points:
+    """Points on a line; the subclasses say where they lie."""
 
     count: int
-    exact: tuple[Fraction, Fraction]
-    """Start and step, as the decimals they were given as."""
+    """The number of points; 0 where only the end of a file can tell."""
+
+    def at(self, index: Index) -> Array:
+        """Return the doubles nearest to the points with these indices."""
+        raise NotImplementedError
 
     def decimals(self) -> Iterator[Fraction]:
-        """The times in exact arithmetic."""
-        start, step = self.exact
-        return (start + i * step for i in range(self.count))
+        """Yield every point exactly."""
+        raise NotImplementedError
+
+    def bounds(self) -> list[float]:
+        """Return the two outermost points, or nothing where they are not known yet."""
+        import numpy as np
+
+        first, last = self.at(np.array([0, self.count - 1]))
+        return [float(first), float(last)]
 
     def blocks(self) -> Iterator[Array]:
-        """The times, a block at a time."""
+        """Yield all points as arrays of at most `POINTS_AT_ONCE`."""
+        import numpy as np
+
+        for first in range(0, self.count, POINTS_AT_ONCE):
+            yield self.at(np.arange(first, min(first + POINTS_AT_ONCE, self.count)))
+
+
+class EvenPoints(Points):
+    """The points start + i step for i from 0 to count - 1."""
+
+    def __init__(self, start: Fraction, step: Fraction, count: int) -> None:
+        """Raise LagtopError where there would be more than 1e9 points."""
+        if count > MOST_POINTS:
+            size = Context(prec=4, traps=[]).create_decimal(count)
+            raise LagtopError(
+                f"must have at most 1e9 rows, got {size:.4g} "
+                "(take a larger step or a smaller count)"
+            )
+        self.start, self.step, self.count = start, step, count
+
+    def at(self, index: Index) -> Array:
+        """Return start + i step for every i of `index`, each rounded once.
+
+        Pairs of doubles give them to 2^-100 of the largest; where that leaves two doubles to choose
+        from, exact fractions decide.
+        """
         import numpy as np
 
         from .double_double import pair, two_product, two_sum
 
-        start, step = map(pair, self.exact)
-        for first in range(0, self.count, BLOCK_ROWS):
-            i = np.arange(first, min(first + BLOCK_ROWS, self.count), dtype=np.float64)
+        start, step = pair(self.start), pair(self.step)
+        i = index.astype(np.float64)
+        with np.errstate(all="ignore"):
             product, rest = two_product(i, step.high)
             total, error = two_sum(product, start.high)
-            yield total + (error + rest + i * step.low + start.low)
-
-    def bounds(self) -> list[float]:
-        """The first and the last time."""
-        start, step = self.exact
-        return [float(start), float(start + (self.count - 1) * step)]
-
-
-@dataclass(frozen=True)
-class TimeList:
-    """Times that were given one by one."""
-
-    exact: list[Fraction]
-
-    @cached_property
-    def times(self) -> list[float]:
-        """The doubles nearest to them."""
-        return [float(time) for time in self.exact]
+            rest += error + i * step.low + start.low
+            margin = 2.0**-100 * max(map(abs, self.bounds())) + 1e-300
+            values: Array = total + (rest + margin)
+            unsure = np.flatnonzero(values != total + (rest - margin))
+        values[unsure] = [float(self.start + int(i) * self.step) for i in index[unsure]]
+        return values
 
     def decimals(self) -> Iterator[Fraction]:
-        """The times in exact arithmetic."""
-        return iter(self.exact)
-
-    @property
-    def count(self) -> int:
-        """How many there are."""
-        return len(self.exact)
-
-    def blocks(self) -> Iterator[Array]:
-        """The times, a block at a time."""
-        import numpy as np
-
-        for first in range(0, self.count, BLOCK_ROWS):
-            yield np.array(self.times[first : first + BLOCK_ROWS])
+        """Yield every point exactly."""
+        return (self.start + i * self.step for i in range(self.count))
 
     def bounds(self) -> list[float]:
-        """The earliest and the latest time."""
-        return [min(self.times), max(self.times)]
+        """Return the first and the last point."""
+        return [float(self.start), float(self.start + (self.count - 1) * self.step)]
 
 
-Times = Grid | TimeList
+class LogPoints(Points):
+    """Points from one end to the other, neither of them 0, with equal ratios between neighbours."""
+
+    def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
+        self.first, self.last, self.count = first, last, count
+
+    def at(self, index: Index) -> Array:
+        """Return first (last/first)^(i/(count - 1)) for every i, computed in 30 digits."""
+        import numpy as np
+
+        distinct, where = np.unique(index, return_inverse=True)
+        with localcontext(_DIGITS_OF_LOG_POINTS):
+            first, last = _decimal(self.first), _decimal(self.last)
+            growth = (last / first).ln() / max(self.count - 1, 1)
+            values = [float(first * (growth * i).exp()) for i in distinct.tolist()]
+        return np.array(values)[where]
+
+    def decimals(self) -> Iterator[Fraction]:
+        """Yield every point as the double that stands for it: the exact ones are no fractions."""
+        return (Fraction(x) for block in self.blocks() for x in block.tolist())
 
 
-def check_reach(name: str, times: Times, limit: float) -> None:
-    """Raise LagtopError where a time is farther from 0 than the limit."""
-    farthest = max(times.bounds(), key=abs)
+class ListedPoints(Points):
+    """Points that are listed one by one."""
+
+    def __init__(self, exact: list[Fraction]) -> None:
+        self.exact, self.count = exact, len(exact)
+        self.values = [float(point) for point in exact]
+
+    def at(self, index: Index) -> Array:
+        """Return the doubles nearest to the points with these indices."""
+        import numpy as np
+
+        return np.array(self.values)[index]
+
+    def decimals(self) -> Iterator[Fraction]:
+        """Yield every point exactly."""
+        return iter(self.exact)
+
+    def bounds(self) -> list[float]:
+        """Return the least and the greatest point."""
+        return [min(self.values), max(self.values)]
+
+
+def check_reach(name: str, points: Points, limit: float) -> None:
+    """Raise LagtopError where a point is farther from 0 than the limit."""
+    farthest = max(points.bounds(), key=abs)
     if abs(farthest) > limit:
         raise LagtopError(
             f"{name} must be within 2^50 periods = {limit:.3g} of 0, got {farthest} "
@@ -103,54 +159,5 @@ def check_reach(name: str, times: Times, limit: float) -> None:
         )
 
 
-def even_grid(start: Fraction, step: Fraction, count: int) -> Grid:
-    """The grid, if it is not too long: raises LagtopError beyond 1e9 rows."""
-    if count > MAX_ROWS:
-        raise LagtopError(
-            f"must have at most 1e9 rows, got {Decimal(count):.4g} "
-            "(take a larger step or a smaller count)"
-        )
-    return Grid(count, (start, step))
-
-
-def parse_range(text: str) -> Grid:
-    """The N numbers from A to B of a text `A:B:N`.  Raises LagtopError for anything else."""
-    parts = text.split(":")
-    if len(parts) != 3:
-        raise LagtopError(f"must be A:B:N, first and last number and how many, got {text!r}")
-    first, last, count = map(parse_number, parts)
-    if count.denominator != 1 or count < 1:
-        raise LagtopError(f"must have a whole number N >= 1 in A:B:N, got {text!r}")
-    steps = int(count) - 1
-    return even_grid(first, (last - first) / steps if steps else Fraction(0), int(count))
-
-
-def read_times(path: str) -> TimeList:
-    """One time a line, from a file or from standard input for `-`; # starts a comment line.
-
-    Raises LagtopError, with the line's number.
-    """
-    name = "standard input" if path == "-" else path
-    try:
-        if path == "-":
-            return TimeList(_parse_times(sys.stdin or (), name))
-        with open(path, encoding="utf-8-sig") as lines:
-            return TimeList(_parse_times(lines, name))
-    except OSError as error:
-        raise LagtopError(f"--times {name}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise LagtopError(f"--times {name} must be UTF-8 text, a time a line") from None
-
-
-def _parse_times(lines: Iterable[str], name: str) -> list[Fraction]:
-    times = []
-    for i, line in enumerate(lines, 1):
-        text = line.strip()
-        if text and not text.startswith("#"):
-            try:
-                times.append(parse_number(text))
-            except LagtopError as error:
-                raise LagtopError(f"{name}, line {i}: the time {error}") from None
-    if not times:
-        raise LagtopError(f"{name} must hold at least one time, got none")
-    return times
+def _decimal(value: Fraction) -> Decimal:
+    return value.numerator / Decimal(value.denominator)

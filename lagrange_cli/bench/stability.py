@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import mpmath
 import numpy as np
 
-from ..arithmetic.points import TimeList
-from ..errors import LagtopError
+from ..arithmetic.points import ListedPoints
+from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
 from ..motion.table import rows
@@ -110,13 +110,9 @@ FIELDS = [
 ]
 
 
-def chosen_strata(names: str | None) -> list[str]:
-    """The strata named, with commas between, or all.  Raises LagtopError for an unknown one."""
-    chosen = list(STRATA) if names is None else [name.strip() for name in names.split(",")]
-    for name in chosen:
-        if name not in STRATA:
-            raise LagtopError(f"--strata must be among {', '.join(STRATA)}, got {name!r}")
-    return list(dict.fromkeys(chosen))
+def chosen_strata(names: Sequence[str] | None) -> list[str]:
+    """Return the names of the strata, or of all.  Raises LagtopError for an unknown one."""
+    return list(STRATA) if names is None else check_names("strata", names, STRATA)
 
 
 def report(strata: Sequence[str], samples: int, seed: int, steps: Steps) -> Findings:
@@ -185,7 +181,7 @@ def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
 def drifts(motion: Motion, times: Any) -> tuple[float, float]:
     """Change of energy and vertical momentum since t = 0, over eps and the size of their terms."""
     exact = [Fraction(0), *map(Fraction, times.tolist())]
-    _, blocks = rows(motion, TimeList(exact), ("energy", "Lz"))
+    _, blocks = rows(motion, ListedPoints(exact), ("energy", "Lz"))
     top, tilt = motion.top, motion.top.tilt(math)
     around = float(top.psidot0) * tilt.sin
     swing = float(top.thetadot0) ** 2 + around**2 + motion.a * (1 + abs(tilt.cos))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.names import check_names
 from ..motion.record import Regime
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
@@ -107,14 +108,10 @@ def _silent(items: Sequence[Any], _: str) -> Iterable[Any]:
     return items
 
 
-def chosen_methods(names: str | None, limit: float) -> dict[str, Method]:
-    """The methods named, with commas between, or all.  Raises LagtopError for an unknown one."""
+def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
+    """Return the methods with these names, or all.  Raises LagtopError for an unknown one."""
     known = CLOSED_FORMS | integrators(limit)
-    chosen = list(known) if names is None else names.replace(",", " ").split()
-    for name in chosen or [""]:
-        if name not in known:
-            raise LagtopError(f"--methods must be among {', '.join(known)}, got {name!r}")
-    return {name: known[name] for name in chosen}
+    return {x: known[x] for x in (known if names is None else check_names("methods", names, known))}
 
 
 def task(

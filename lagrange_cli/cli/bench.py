@@ -10,6 +10,7 @@ import click
 from ..errors import LagtopError
 from .options import (
     COUNT,
+    NAMES,
     NUMBER,
     ExamplesFirst,
     exclude,
@@ -42,7 +43,7 @@ MOST_SAMPLES = 10_000_000
 @scene_options
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
-@click.option("--methods", metavar="NAMES", help="Only these, with commas between.")
+@click.option("--methods", type=NAMES, help="Only these, with commas between.")
 @click.option(
     "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
 )
@@ -54,7 +55,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     rad: bool,
     t_max: Fraction | None,
     count: int | None,
-    methods: str | None,
+    methods: list[str] | None,
     limit: Fraction,
     is_long: bool,
     plot: str | None,

@@ -22,7 +22,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Grid
+    from ..arithmetic.points import Points
     from ..elliptic.eta import Quadrature
 
 
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     "--c3", type=NUMBER, default="0", show_default=True, help="eta = delta* at tau = -c3."
 )
 @click.option("--tau", "single", type=NUMBER, multiple=True, help="Time; may be repeated.")
-@click.option("--tau-range", "grid", type=RANGE, help="N times from A to B.")
+@click.option("--tau-range", "grid", type=RANGE, help="Times, as [log:]start:stop:count.")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("table", "csv", "json")
 def command(  # noqa: PLR0917 - click passes them by name
@@ -68,7 +68,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     g: Fraction,
     c3: Fraction,
     single: tuple[Fraction, ...],
-    grid: Grid | None,
+    grid: Points | None,
     digits: int | None,
     style: str,
     output: str,

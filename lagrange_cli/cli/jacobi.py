@@ -25,7 +25,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Grid, Times
+    from ..arithmetic.points import Points
     from ..elliptic.function_table import Given, Request
 
 MOST_TERMS = 10_000
@@ -49,7 +49,7 @@ MOST_TERMS = 10_000
 @click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")
 @click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
 @click.option("--u", "single", type=NUMBER, multiple=True, help="Argument; may be repeated.")
-@click.option("--u-range", "grid", type=RANGE, help="N arguments from A to B.")
+@click.option("--u-range", "grid", type=RANGE, help="Arguments, as [log:]start:stop:count.")
 @click.option("--theta", is_flag=True, help="Theta functions of u, too.")
 @click.option("--zeta", is_flag=True, help="Zeta functions, too.")
 @click.option("--omega", is_flag=True, help="Omega functions of u and --param, too.")
@@ -67,7 +67,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     angle: Fraction | None,
     q: Fraction | None,
     single: tuple[Fraction, ...],
-    grid: Grid | None,
+    grid: Points | None,
     theta: bool,
     zeta: bool,
     omega: bool,
@@ -124,7 +124,7 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, 
 
 
 def _write_rows(
-    arguments: Times, request: Request, digits: int | None, style: str, output: str
+    arguments: Points, request: Request, digits: int | None, style: str, output: str
 ) -> None:
     from ..elliptic.function_table import digit_rows, rows
 
@@ -137,7 +137,7 @@ def _write_rows(
 
 
 def _write_series(
-    given: Given, arguments: Times | None, terms: int, style: str, output: str
+    given: Given, arguments: Points | None, terms: int, style: str, output: str
 ) -> None:
     from ..elliptic.function_table import series_rows
 

@@ -16,13 +16,14 @@ from .. import __version__
 from ..arithmetic.generic import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
+from ..inputs.names import split_names
 from ..inputs.top import build_top, overridden
 from ..motion.solve import Motion, solve
 from ..output.terminal import one_line
 from ..output.write import write_findings
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Grid, Times
+    from ..arithmetic.points import Points
     from ..output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
@@ -57,8 +58,8 @@ def _parse_count(text: str) -> int:
     return int(exact)
 
 
-def _parse_range(text: str) -> Grid:
-    from ..arithmetic.points import parse_range
+def _parse_range(text: str) -> Points:
+    from ..inputs.ranges import parse_range
 
     return parse_range(text)
 
@@ -134,12 +135,12 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
 
 
-def listed(name: str, single: tuple[Fraction, ...], grid: Grid | None) -> Times | None:
+def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Points | None:
     """The numbers of --NAME, or those of --NAME-range, if any.  Raises LagtopError for both."""
-    from ..arithmetic.points import TimeList
+    from ..arithmetic.points import ListedPoints
 
     exclude({f"--{name}": single or None, f"--{name}-range": grid})
-    return grid or (TimeList(list(single)) if single else None)
+    return grid or (ListedPoints(list(single)) if single else None)
 
 
 def given(name: str) -> bool:
@@ -205,7 +206,8 @@ def complain(line: str) -> None:
 
 NUMBER = Parsed("number", parse_number)
 COUNT = Parsed("integer", _parse_count)
-RANGE = Parsed("A:B:N", _parse_range)
+RANGE = Parsed("range", _parse_range)
+NAMES = Parsed("names", split_names)
 
 _SCENE_OPTIONS = [
     ("--m", "Mass."),

@@ -36,7 +36,7 @@ MOST_PIXELS = 5e7
 @click.argument("kinds", nargs=-1, metavar="[KIND]...")
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: some nutation periods]")
 @click.option("--key", default="mean_precession_rate", show_default=True, help="What map shows.")
-@click.option("--x", metavar="GRID", help="Of map: INPUT=FIRST:LAST:COUNT.  [default: over r0]")
+@click.option("--x", metavar="GRID", help="Of map: INPUT=[log:]start:stop:count.  [default: r0]")
 @click.option("--y", metavar="GRID", help="Of map.  [default: over theta0]")
 @click.option("--dark", is_flag=True, help="Light on dark.")
 @click.option("--size", metavar="WxH", help="Of the page in inches, as 8x6.")

@@ -8,7 +8,15 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
-from .options import COUNT, ExamplesFirst, exclude, output_options, with_steps, write_report
+from .options import (
+    COUNT,
+    NAMES,
+    ExamplesFirst,
+    exclude,
+    output_options,
+    with_steps,
+    write_report,
+)
 
 if TYPE_CHECKING:
     from ..output.findings import Findings
@@ -30,7 +38,7 @@ SEED = 1952
 @click.option("--samples", type=COUNT, help=f"Scenes a stratum.  [default: {SAMPLES}]")
 @click.option("--thorough", is_flag=True, help=f"The whole battery: {THOROUGH} scenes a stratum.")
 @click.option("--seed", type=COUNT, default=str(SEED), show_default=True, help="Of the scenes.")
-@click.option("--strata", metavar="NAMES", help="Only these, with commas between.")
+@click.option("--strata", type=NAMES, help="Only these, with commas between.")
 @click.option("--plot", type=click.Path(), metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @click.version_option(__version__, prog_name="lagtop")
 @output_options("table", "csv", "json")
@@ -40,7 +48,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     samples: int | None,
     thorough: bool,
     seed: int,
-    strata: str | None,
+    strata: list[str] | None,
     plot: str | None,
     style: str,
     output: str,

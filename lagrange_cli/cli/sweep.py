@@ -9,6 +9,7 @@ import click
 from ..errors import LagtopError
 from ..output.write import check_parts, write_parts, write_text_blocks
 from .options import (
+    NAMES,
     ExamplesFirst,
     Parsed,
     by_key,
@@ -20,13 +21,13 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..inputs.ranges import Axis
+    from ..arithmetic.points import Points
 
 
-def _parse_axis(text: str) -> Axis:
-    from ..inputs.ranges import parse_axis
+def _parse_values(text: str) -> Points:
+    from ..inputs.ranges import parse_values
 
-    return parse_axis(text)
+    return parse_values(text)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -49,9 +50,9 @@ def _parse_shard(text: str) -> tuple[int, int]:
     """,
 )
 @click.argument("files", nargs=-1, type=click.Path(), metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
-@input_options(Parsed("range", _parse_axis))
+@input_options(Parsed("range", _parse_values))
 @click.option(
-    "--keys", metavar="NAMES", help="Compute and print only these keys of the record, with commas."
+    "--keys", type=NAMES, help="Compute and print only these keys of the record, with commas."
 )
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
 @click.option(
@@ -65,14 +66,14 @@ def _parse_shard(text: str) -> tuple[int, int]:
 def command(  # noqa: PLR0917 - click passes them by name
     files: tuple[str, ...],
     rad: bool,
-    keys: str | None,
+    keys: list[str] | None,
     fail_fast: bool,
     shard: tuple[int, int] | None,
     cluster: str | None,
     folder: str | None,
     style: str,
     output: str,
-    **axes: Axis | None,
+    **axes: Points | None,
 ) -> None:
     """One record a top, with the keys of `solve`: over a grid, or for each row of a file.
 
@@ -92,9 +93,8 @@ def command(  # noqa: PLR0917 - click passes them by name
         raise LagtopError("--format json is one array: with --parts take csv or ndjson")
     if style == "parquet":
         check_parquet()
-    names = None if keys is None else keys.replace(",", " ").split()
     inputs = by_key(axes, radians=rad)
-    sweep, blocks, size = plan(files, inputs, keys=names, radians=rad, style=style)
+    sweep, blocks, size = plan(files, inputs, keys=keys, radians=rad, style=style)
     tally = Tally(fail_fast=fail_fast)
     with computed(sweep, shard_of(blocks, shard), cluster) as parts:
         passing = tally.passing(parts)

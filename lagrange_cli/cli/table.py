@@ -13,6 +13,7 @@ from ..output.write import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
+    NAMES,
     NUMBER,
     ExamplesFirst,
     by_key,
@@ -25,7 +26,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Times
+    from ..arithmetic.points import Points
     from ..motion.solve import Motion
 
 
@@ -54,7 +55,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--columns",
-    metavar="NAMES",
+    type=NAMES,
     help="Of t theta phi psi u thetadot phidot psidot p q r axis quaternion energy Lz, with commas "
     "between.  [default: t,theta,phi,psi]",
 )
@@ -75,7 +76,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     count: int | None,
     dt: Fraction | None,
     times: str | None,
-    columns: str | None,
+    columns: list[str] | None,
     tops: str | None,
     wrap: bool,
     digits: int | None,
@@ -88,7 +89,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
     nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
-    from ..arithmetic.points import read_times
+    from ..inputs.times_file import TimesFile
     from ..motion.table import DEFAULT_COLUMNS, digit_rows, grid, rows
 
     exclude({"--n": count, "--dt": dt})
@@ -99,12 +100,15 @@ def command(  # noqa: PLR0917 - click passes them by name
     )
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
-    listed = None if times is None else read_times(times)
+    file = None if times is None else TimesFile(times)
+    listed = None  # all tops, and the one width of a rich table, need the times more than once
+    if file and (tops is not None or style == "table"):
+        listed = file.listed(None if tops is not None else MAX_TABLE_ROWS + 1)
 
-    def times_of(motion: Motion) -> Times:
-        return listed or grid(motion, t_min, t_max, n=count, dt=dt)
+    def times_of(motion: Motion) -> Points:
+        return listed or file or grid(motion, t_min, t_max, n=count, dt=dt)
 
-    names = DEFAULT_COLUMNS if columns is None else columns.replace(",", " ").split()
+    names = DEFAULT_COLUMNS if columns is None else columns
     if tops is not None:
         if style == "table":
             raise LagtopError("--format table shows one top: with --tops take csv or json")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ..arithmetic.correct_digits import NumberText
-    from ..arithmetic.points import Times
+    from ..arithmetic.points import Points
     from ..arithmetic.types import Array
 
 
@@ -200,7 +200,7 @@ def eta_and_rate(ar: Arithmetic, v: Real, c: Constants, of: Band) -> tuple[Real,
     return eta, where(sn * cn < 0, -size, size)
 
 
-def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterator[Array]]:
+def rows(of: Quadrature, times: Points, c3: Fraction) -> tuple[list[str], Iterator[Array]]:
     """Header tau, eta, etadot and blocks of rows; eta = delta* at tau = -c3.
 
     Raises LagtopError as `Quadrature.check` does.
@@ -228,7 +228,7 @@ def rows(of: Quadrature, times: Times, c3: Fraction) -> tuple[list[str], Iterato
 
 
 def digit_rows(
-    of: Quadrature, times: Times, c3: Fraction, digits: int
+    of: Quadrature, times: Points, c3: Fraction, digits: int
 ) -> tuple[list[str], Iterator[list[NumberText]]]:
     """The same to so many significant digits."""
     of.check()

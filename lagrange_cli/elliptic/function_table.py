@@ -21,7 +21,7 @@ from .theta import Complex, omega, pi_function, theta_of, zeta
 
 if TYPE_CHECKING:
     from ..arithmetic.correct_digits import NumberText
-    from ..arithmetic.points import Times
+    from ..arithmetic.points import Points
     from ..arithmetic.types import Array
 
 ONE_ARGUMENT = {"theta": theta_of, "zeta": zeta}
@@ -110,7 +110,7 @@ def _real_column(ar: Arithmetic, name: str, value: Complex, imaginary: bool) -> 
     return {f"{name}_imag": ar.im(value) if hasattr(ar, "im") else ar.imag(value)}
 
 
-def rows(arguments: Times, request: Request) -> tuple[list[str], Iterator[Array]]:
+def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array]]:
     """The header, and blocks of rows in doubles.  Raises LagtopError before the first block."""
     import numpy as np
 
@@ -136,7 +136,7 @@ def rows(arguments: Times, request: Request) -> tuple[list[str], Iterator[Array]
 
 
 def digit_rows(
-    arguments: Times, request: Request, digits: int
+    arguments: Points, request: Request, digits: int
 ) -> tuple[list[str], Iterator[list[NumberText]]]:
     """The header, and rows to so many significant digits."""
 

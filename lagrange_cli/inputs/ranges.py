@@ -1,105 +1,76 @@
-"""Grids of inputs: ranges and lists of values, and the product of several."""
+"""The one grammar of ranges, `[log:]start:stop:count`, and products of several."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from decimal import Context, Decimal, localcontext
-from fractions import Fraction
-from math import lcm, prod
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from math import prod
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike
-
+from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from ..arithmetic.text import parse_number
-from ..arithmetic.types import Array
 from ..errors import LagtopError
 
-MAX_ROWS = 10**9
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
 
 
-class Axis(NamedTuple):
-    """The values of one input; each is formed from its own index and rounded once."""
+def parse_range(text: str) -> Points:
+    """Return the points of `start:stop:count` or, with equal ratios, `log:start:stop:count`.
 
-    ends: tuple[Fraction, ...]
-    """The values themselves, or the first and the last of a range."""
-    size: int
-    spacing: str = "list"
-    """`list`, `linear` or `log`."""
-
-    def values(self, index: ArrayLike) -> Array:
-        """The values at some indices."""
-        found, where = np.unique(index, return_inverse=True)
-        return np.array(self._at(found.tolist()), dtype=np.float64)[where]
-
-    def _at(self, index: Sequence[int]) -> list[float]:
-        if self.spacing == "list":
-            return [float(self.ends[i]) for i in index]
-        first, last = self.ends
-        steps = max(self.size - 1, 1)
-        if self.spacing == "linear":  # integers, whose quotient Python rounds once
-            scale = lcm(first.denominator, last.denominator) * steps
-            start, step = int(first * scale), int((last - first) * scale) // steps
-            return [(start + i * step) / scale for i in index]
-        with localcontext(Context(prec=30)):
-            growth = (_decimal(last) / _decimal(first)).ln()
-            powers = ((growth * i / steps).exp() for i in index)
-            return [float(_decimal(first) * power) for power in powers]
-
-
-def _decimal(value: Fraction) -> Decimal:
-    return value.numerator / Decimal(value.denominator)
-
-
-def parse_axis(text: str) -> Axis:
-    """The axis that `start:stop:count`, `log:start:stop:count` or `value,value,...` stands for.
-
-    Raises LagtopError.
+    Raises LagtopError for anything else, for a count of 1 between different ends, and for a
+    logarithmic range over 0.
     """
-    if ":" not in text:
-        values = tuple(parse_number(part) for part in text.split(","))
-        return Axis(values, len(values))
-    spacing = "log" if text.startswith("log:") else "linear"
     parts = text.removeprefix("log:").split(":")
     if len(parts) != 3:
-        raise LagtopError(
-            f"must be a number, a list 1,2,3 or a range [log:]start:stop:count, got {text!r}"
-        )
-    first, last, count = map(parse_number, parts)
-    if count.denominator != 1 or not 1 <= count <= MAX_ROWS:
+        raise LagtopError(f"must be a range [log:]start:stop:count, got {text!r}")
+    first, last, exact_count = map(parse_number, parts)
+    if exact_count.denominator != 1 or not 1 <= exact_count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {text!r}")
-    if spacing == "log" and not first * last > 0:
-        raise LagtopError(f"must have two ends of one sign, not 0, in a log: range, got {text!r}")
+    count = int(exact_count)
     if count == 1 and first != last:
         raise LagtopError(f"must have a count of 2 or more between different ends, got {text!r}")
-    return Axis((first, last), int(count), spacing)
+    if not text.startswith("log:"):
+        return EvenPoints(first, (last - first) / max(count - 1, 1), count)
+    if not first * last > 0:
+        raise LagtopError(f"must have two ends of one sign, not 0, in a log: range, got {text!r}")
+    return LogPoints(first, last, count)
 
 
-class Grid(NamedTuple):
-    """The product of axes by input, the last one fastest."""
+def parse_values(text: str) -> Points:
+    """Return the points of a number, of a list `1,2,3` or of a range.  Raises LagtopError."""
+    if ":" in text:
+        return parse_range(text)
+    return ListedPoints([parse_number(part) for part in text.split(",")])
 
-    axes: Mapping[str, Axis]
+
+class Product(NamedTuple):
+    """All combinations of the values of several inputs; the last input varies fastest."""
+
+    axes: Mapping[str, Points]
+    """The values of each input, by its name."""
 
     @property
     def size(self) -> int:
-        """How many points it has."""
-        return prod(axis.size for axis in self.axes.values())
+        """The number of combinations."""
+        return prod(axis.count for axis in self.axes.values())
 
-    def points(self, first: int, stop: int) -> dict[str, Array]:
-        """The points from one number to before another, a column for each input."""
-        left = np.arange(first, stop)
+    def columns(self, rows: range) -> dict[str, Array]:
+        """Return the values of the combinations with these numbers, an array for each input."""
+        import numpy as np
+
+        left = np.arange(rows.start, rows.stop)
         columns = {}
         for name, axis in reversed(list(self.axes.items())):
-            columns[name] = axis.values(left % axis.size)
-            left //= axis.size
+            columns[name] = axis.at(left % axis.count)
+            left //= axis.count
         return columns
 
     def blocks(self, size: int) -> Iterator[range]:
-        """The numbers of its points, so many at a time."""
+        """Yield the numbers of the combinations, `size` at a time."""
         for first in range(0, self.size, size):
             yield range(first, min(first + size, self.size))
 
     def check(self) -> None:
-        """Raise LagtopError where it has more than 1e9 points."""
-        if self.size > MAX_ROWS:
+        """Raise LagtopError where there are more than 1e9 combinations."""
+        if self.size > MOST_POINTS:
             raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")

@@ -7,8 +7,9 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from ..arithmetic.points import Grid, Times, even_grid
-from ..errors import LagtopError, check_names
+from ..arithmetic.points import EvenPoints, Points
+from ..errors import LagtopError
+from ..inputs.names import check_names
 from .solve import Motion
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def grid(
     *,
     n: int | None = None,
     dt: Fraction | None = None,
-) -> Grid:
+) -> EvenPoints:
     """n times from t_min to t_max, or as many steps dt as fit, counted in exact arithmetic.
 
     By default one nutation period (or a unit of time where there is none) from 0, 101 times.
@@ -50,14 +51,14 @@ def grid(
         count = n or (DEFAULT_ROWS if t_max > t_min else 1)
         step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
     try:
-        return even_grid(t_min, step, count)
+        return EvenPoints(t_min, step, count)
     except LagtopError as error:
         raise LagtopError(f"the grid of times {error}") from None
 
 
 def rows(
     motion: Motion,
-    times: Times,
+    times: Points,
     columns: Sequence[str] = DEFAULT_COLUMNS,
     *,
     radians: bool = False,
@@ -72,7 +73,7 @@ def rows(
     header = headings(columns, radians=radians)
     chosen = [COLUMNS[name] for name in columns]
     sampler = motion.sampler()
-    sampler.check(times.bounds())
+    sampler.check(times.bounds())  # none where times are read as they are needed
     samples = _samples(motion, sampler, times, any(column.needs_rate for column in chosen), wrap)
     return header, (_block(sample, chosen, header) for sample in samples)
 
@@ -87,13 +88,14 @@ def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
 
 
 def _samples(
-    motion: Motion, sampler: Sampler, times: Times, rate: bool, wrap: bool
+    motion: Motion, sampler: Sampler, times: Points, rate: bool, wrap: bool
 ) -> Iterator[Sample]:
     from .columns import Sample, column_constants
     from .make_sampler import solution_of
 
     constants = column_constants(motion.top, solution_of(motion.top).start)
     for t in times.blocks():
+        sampler.check(t)
         for part, attitude in sampler.attitudes(t, rate=rate):
             yield Sample(t[part], attitude, constants, wrap)
 
@@ -109,7 +111,7 @@ def _block(sample: Sample, columns: Sequence[Column], header: Sequence[str]) -> 
 
 
 def digit_rows(
-    motion: Motion, times: Times, digits: int, *, radians: bool = False, wrap: bool = False
+    motion: Motion, times: Points, digits: int, *, radians: bool = False, wrap: bool = False
 ) -> Iterator[list[list[NumberText]]]:
     """Lists of rows, t and the three angles to so many digits; times read as decimals."""
     from .digits import settled_rows

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import parse_number
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.ranges import parse_range
 from ..inputs.top import Top, overridden
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion
@@ -56,25 +56,23 @@ class KeyMap(NamedTuple):
 
 
 def parse_axis(option: str, text: str) -> Axis:
-    """`r0=10:100:40`: an input and so many values from the first to the last.
+    """`r0=10:100:40` or `r0=log:1:100:40`: an input and so many values from the first to the last.
 
     Raises LagtopError.
     """
     name, _, grid = text.partition("=")
     if name not in INPUTS:
         raise LagtopError(f"{option} must begin with one of {' '.join(INPUTS)} and =, got {text!r}")
-    parts = grid.split(":")
-    if len(parts) != 3:
-        raise LagtopError(f"{option} must be NAME=FIRST:LAST:COUNT, got {text!r}")
     try:
-        first, last, count = map(parse_number, parts)
+        points = parse_range(grid)
     except LagtopError as error:
         raise LagtopError(f"{option} {error}") from None
-    if count.denominator != 1 or not 2 <= count <= 2000:
-        raise LagtopError(f"{option} must have a COUNT in [2, 2000], got {parts[2]}")
-    if not first < last:
-        raise LagtopError(f"{option} must have FIRST < LAST, got {text!r}")
-    return Axis(name, np.linspace(float(first), float(last), int(count)))
+    if not 2 <= points.count <= 2000:
+        raise LagtopError(f"{option} must have a count in [2, 2000], got {points.count}")
+    values = next(points.blocks())
+    if not values[0] < values[-1]:
+        raise LagtopError(f"{option} must have start < stop, got {text!r}")
+    return Axis(name, values)
 
 
 def default_axes(top: Top) -> tuple[Axis, Axis]:

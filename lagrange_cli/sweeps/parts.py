@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import SomeFailedError
-from ..inputs.ranges import Grid
+from ..inputs.ranges import Product
 from ..inputs.tops_file import Lines, RowFile
 from ..output.write import Columns, block_text
 from .records import Column, records
@@ -48,7 +48,7 @@ class Inputs(NamedTuple):
 class Sweep(NamedTuple):
     """What to do with every part: where the inputs stand, what to compute, how to write it."""
 
-    source: Grid | RowFile
+    source: Product | RowFile
     given: Mapping[str, float]
     """Inputs that all tops share, or that a row may lack."""
     keys: Sequence[str]
@@ -78,9 +78,9 @@ class Sweep(NamedTuple):
         return Part(number, text, inputs.tops.m.size, len(errors), errors[0][1] if errors else "")
 
     def _inputs(self, place: range | Lines) -> Inputs:
-        if isinstance(self.source, Grid):
+        if isinstance(self.source, Product):
             assert isinstance(place, range)
-            given = {**self.given, **self.source.points(place.start, place.stop)}
+            given = {**self.given, **self.source.columns(place)}
             return Inputs(Tops(*(_column(given.get(x), len(place)) for x in Tops._fields)))
         assert isinstance(place, Lines)
         rows = list(self.source.rows(place))

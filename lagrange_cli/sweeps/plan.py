@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..arithmetic.generic import Number
+from ..arithmetic.points import Points
 from ..errors import LagtopError
-from ..inputs.ranges import Axis, Grid
+from ..inputs.ranges import Product
 from ..inputs.top import Top, build_top, overridden
 from ..inputs.tops_file import open_rows
 from .parts import Block, Sweep
@@ -25,7 +26,7 @@ class Plan(NamedTuple):
 
 def plan(
     files: Sequence[str],
-    axes: Mapping[str, Axis],
+    axes: Mapping[str, Points],
     *,
     keys: Sequence[str] | None = None,
     radians: bool = False,
@@ -39,17 +40,17 @@ def plan(
     tables = [file for file in files if file not in scenes]
     if len(scenes) > 1 or len(tables) > 1:
         raise LagtopError(f"a sweep has one scene and one file of tops, got {' '.join(files)}")
-    first = {name: axis.values([0]).item() for name, axis in axes.items()}
+    first = {name: axis.bounds()[0] for name, axis in axes.items()}
     given = shared_inputs(scenes[0] if scenes else None, first)
     known = record_keys(radians=radians)
     chosen = list(check_keys(known if keys is None else keys, radians=radians))
     if not tables:
-        grid = Grid(axes)
+        grid = Product(axes)
         grid.check()
-        _check_shared(given, [name for name, axis in axes.items() if axis.size > 1])
+        _check_shared(given, [name for name, axis in axes.items() if axis.count > 1])
         sweep = Sweep(grid, given, chosen, radians, style)
         return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size)
-    if ranges := [name for name, axis in axes.items() if axis.size > 1]:
+    if ranges := [name for name, axis in axes.items() if axis.count > 1]:
         raise LagtopError(f"a range of {ranges[0]} and a file of tops exclude each other")
     source, lines = open_rows(tables[0], {*known, *record_keys(radians=not radians)}, BLOCK_ROWS)
     _check_shared(given, given if source.columns is None else source.columns)

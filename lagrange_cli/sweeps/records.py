@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.types import Array, Mask
-from ..errors import LagtopError, check_names
+from ..errors import LagtopError
+from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion.record import NUMBER_KEYS, Regime
 from ..motion.released import STILL, Nutation, remark, unmoved
@@ -73,8 +74,7 @@ def sweep(
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
     """The keys.  Raises LagtopError for one that no record has, or that comes twice."""
-    check_names("keys", keys, record_keys(radians=radians))
-    return keys
+    return check_names("keys", keys, record_keys(radians=radians))
 
 
 def records(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.points import Times
+from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
@@ -28,7 +28,7 @@ class Tables(NamedTuple):
     given: Mapping[str, float]
     """Inputs that a row may lack."""
     columns: Sequence[str]
-    times: Callable[[Motion], Times]
+    times: Callable[[Motion], Points]
     """The times for a motion."""
     radians: bool
     wrap: bool
@@ -72,7 +72,7 @@ def open_tables(
     path: str,
     given: Mapping[str, float],
     columns: Sequence[str],
-    times: Callable[[Motion], Times],
+    times: Callable[[Motion], Points],
     *,
     radians: bool,
     wrap: bool,

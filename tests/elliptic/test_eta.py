@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.generic import many_digits
-from lagrange_cli.arithmetic.points import TimeList
+from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import units
 from lagrange_cli.elliptic.eta import Quadrature, constants, digit_rows, record, rows
 from lagrange_cli.motion.released import released_record
@@ -87,7 +87,7 @@ def test_eta(name: str) -> None:
         period = 2 * integral.tau(mpmath.pi)
         assert abs(mpmath.mpf(constants(many_digits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
-        block = next(rows(of, TimeList(times), Fraction(0))[1])
+        block = next(rows(of, ListedPoints(times), Fraction(0))[1])
         for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             tau = time - period * mpmath.nint(time / period)
@@ -115,7 +115,7 @@ def test_the_top_is_the_cubic_case() -> None:
     of = Quadrature(u2, u1, (u3,), rational(exact.a))
     times = np.linspace(-3, 400, 1001)
     block = next(
-        rows(of, TimeList([Fraction(t) for t in times]), rational(exact.T_nutation) / 2)[1]
+        rows(of, ListedPoints([Fraction(t) for t in times]), rational(exact.T_nutation) / 2)[1]
     )
     assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
     assert float(constants(many_digits(50), of).period) == solve(Top()).T_nutation
@@ -135,7 +135,7 @@ def test_energy_and_ends(
     upper = lower + width
     ends = [upper + gaps[0] if above else lower - gaps[0], lower - gaps[-1]]
     of = Quadrature(lower, upper, tuple(ends[: len(gaps)]))
-    ((_, eta, rate),) = next(rows(of, TimeList([tau]), Fraction(0))[1]).tolist()
+    ((_, eta, rate),) = next(rows(of, ListedPoints([tau]), Fraction(0))[1]).tolist()
     assert lower <= Fraction(eta) + Fraction("1e-15")
     assert Fraction(eta) <= upper + Fraction("1e-15")
     radicand = (upper - Fraction(eta)) * (Fraction(eta) - lower)
@@ -152,16 +152,16 @@ def test_far_times(lagtop: Lagtop) -> None:
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
     of = ORBITS["generic"]
     period = constants(many_digits(60), of).period
-    shifted = next(rows(of, TimeList([Fraction(1)]), rational(10**15 * period))[1])
+    shifted = next(rows(of, ListedPoints([Fraction(1)]), rational(10**15 * period))[1])
     assert shifted == pytest.approx(
-        next(rows(of, TimeList([Fraction(1)]), Fraction(0))[1]), abs=1e-14
+        next(rows(of, ListedPoints([Fraction(1)]), Fraction(0))[1]), abs=1e-14
     )
 
 
 def test_digits_close_to_the_ends() -> None:
     """Next to a turning point eta is reckoned from there."""
     of = Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2)))
-    ((_, eta, _),) = next(rows(of, TimeList([Fraction("1e-9")]), Fraction(0))[1]).tolist()
+    ((_, eta, _),) = next(rows(of, ListedPoints([Fraction("1e-9")]), Fraction(0))[1]).tolist()
     assert eta == pytest.approx(0.5e-18, rel=1e-12, abs=0)
 
 
@@ -175,7 +175,7 @@ LOW, HIGH, OUT, IN = (Fraction(x) for x in ("-0.5", "0.6", "-1.3", "1.5"))
 
 
 def test_digits_agree_with_doubles() -> None:
-    of, times = ORBITS["generic"], TimeList([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
+    of, times = ORBITS["generic"], ListedPoints([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
     block = next(rows(of, times, Fraction("0.4"))[1])
     header, texts = digit_rows(of, times, Fraction("0.4"), 30)
     assert header == ["tau", "eta", "etadot"]

@@ -13,7 +13,7 @@ import oracle
 import pytest
 
 from lagrange_cli import Motion, Regime, Top, solve
-from lagrange_cli.arithmetic.points import Grid
+from lagrange_cli.arithmetic.points import EvenPoints
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic
 from lagrange_cli.bench.reference import Reference, angle_units
@@ -32,7 +32,7 @@ def columns(motion: Motion, names: str, t: Array) -> list[Array]:
     from fractions import Fraction
 
     step = float(t[1] - t[0])
-    grid = Grid(t.size, (Fraction(float(t[0])), Fraction(step)))
+    grid = EvenPoints(Fraction(float(t[0])), Fraction(step), t.size)
     _, blocks = rows(motion, grid, names.split(), radians=True)
     return list(np.concatenate(list(blocks)).T)
 

@@ -23,7 +23,7 @@ from scenes import random_scene
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic import decimals
 from lagrange_cli.bench.hard_scenes import STRATA
-from lagrange_cli.inputs.ranges import parse_axis
+from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.record import NUMBER_KEYS, Regime
 from lagrange_cli.motion.roots import invariants
 from lagrange_cli.sweeps import records as sweeps
@@ -240,15 +240,15 @@ def test_wrong_questions(wrong: Any) -> None:
     ],
 )
 def test_values_of_an_axis(text: str, values: list[float]) -> None:
-    axis = parse_axis(text)
-    assert axis.values(range(axis.size)).tolist() == values
+    axis = parse_values(text)
+    assert axis.at(np.arange(axis.count)).tolist() == values
 
 
 @given(st.decimals(-(10**6), 10**6, places=3), st.decimals(-(10**6), 10**6, places=3))
 def test_points_of_a_range_are_rounded_once(first: Any, last: Any) -> None:
-    axis = parse_axis(f"{first}:{last}:7")
+    axis = parse_values(f"{first}:{last}:7")
     step = (Fraction(last) - Fraction(first)) / 6
-    assert axis.values(range(7)).tolist() == [float(Fraction(first) + i * step) for i in range(7)]
+    assert axis.at(np.arange(7)).tolist() == [float(Fraction(first) + i * step) for i in range(7)]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,43 @@
+"""Lists of names: how they are written, and which of them are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from ..errors import LagtopError
+
+_SHOWN = 60
+
+
+def split_names(text: str) -> list[str]:
+    """Return the names of a text in which commas stand between them."""
+    return [name.strip() for name in text.split(",")]
+
+
+def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[str]:
+    """Return the names of the argument `key` as a list.
+
+    Raises LagtopError for anything but a sequence of texts, for an empty one, and for a name that
+    is not known or comes twice.
+    """
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise LagtopError(f"{key} must be a list of names, got {repr(names)[:_SHOWN]}", key)
+    known, names = list(known), list(names)
+    for name in names or [""]:
+        if name not in known:
+            raise LagtopError(
+                f"{key} must be among {', '.join(known)}, got {repr(name)[:_SHOWN]}"
+                f"{suggestion(name, known)}",
+                key,
+            )
+    if twice := [name for i, name in enumerate(names) if name in names[:i]]:
+        raise LagtopError(f"{key} must name each one once, got {twice[0]!r} twice", key)
+    return names
+
+
+def suggestion(name: object, known: Iterable[str]) -> str:
+    """Return ` (did you mean 'x'?)` with the known name that is near a wrong one, if any is."""
+    from difflib import get_close_matches
+
+    nearest = get_close_matches(str(name)[:_SHOWN], known, 1)
+    return f" (did you mean {nearest[0]!r}?)" if nearest else ""
