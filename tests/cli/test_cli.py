@@ -301,7 +301,7 @@ def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
 
 def test_bad_line_of_times(lagtop: Lagtop) -> None:
     result = lagtop("table", "--times", "-", input="0\n1\nsoon\n")
-    assert result.exit_code == 2
+    assert result.exit_code == 65
     assert result.stdout == ""
     assert "standard input, line 3: the time must be a finite decimal number" in result.stderr
     assert "at least one time" in lagtop("table", "--times", "-", input="").stderr
