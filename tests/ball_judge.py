@@ -1,0 +1,165 @@
+"""The judge in ball arithmetic: proved enclosures of every number of a motion, as sharp as needed.
+
+`Judge` raises the precision of the formulas in `balls` until an answer tells a double from its
+neighbours, or an angle is known to a small part of its unit.  What no precision decides raises
+`Undecided`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from fractions import Fraction
+from functools import cached_property
+from typing import TypeVar
+
+from balls.angles import State
+from balls.record import Motion
+from balls.scene import Number, Scene, Undecided, ball, facts_of, scene_from
+from flint import arb, ctx
+
+EPS = 2.0**-52
+FIRST_BITS, MOST_BITS = 160, 20_000
+GOOD_BITS = 90
+"""Relative accuracy of a key that is good enough to tell a double from its neighbours."""
+
+T = TypeVar("T")
+
+
+class Judge:
+    """Enclosures of one motion, at whatever precision they take."""
+
+    def __init__(self, inputs: Mapping[str, Number | None]) -> None:
+        """Take the inputs under the names of the program, as exact numbers."""
+        self.scene = scene_from(inputs)
+        self.facts = facts_of(self.scene)
+        self._motions: dict[int, Motion] = {}
+        self._first = FIRST_BITS
+
+    def _raised(self, compute: Callable[[Motion], T], good: Callable[[T], bool], first: int) -> T:
+        """Return the first result that is good, at more and more bits.
+
+        Raises Undecided where even the most bits leave something open.
+        """
+        bits = first
+        while bits <= MOST_BITS:
+            with _precision(bits):
+                try:
+                    if bits not in self._motions:
+                        self._motions[bits] = Motion(self.scene)
+                    result = compute(self._motions[bits])
+                    if good(result):
+                        return result
+                except Undecided:
+                    self._motions.pop(bits, None)
+            bits *= 2
+        raise Undecided(f"{self.scene}")
+
+    @cached_property
+    def record(self) -> dict[str, arb | None]:
+        """The numbers of the record by key, each to 90 bits or proved to be below 2^-1100."""
+
+        def good(record: dict[str, arb | None]) -> bool:
+            return all(value is None or _sharp(value) for value in record.values())
+
+        return self._raised(Motion.record, good, FIRST_BITS)
+
+    @cached_property
+    def half_parts(self) -> tuple[arb, arb] | None:
+        """The two parts of the precession rate at T/2."""
+        return self._raised(Motion.half_parts, lambda _: True, 2 * FIRST_BITS)
+
+    def at(self, t: float | Fraction) -> State:
+        """Return the motion at a time, each angle within 2^-12 of its unit."""
+        time = Fraction(t)
+
+        def good(state: State) -> bool:
+            return all(_narrow(*pair) for pair in _with_units(state))
+
+        periods = abs(time) * Fraction(_size(self.scene))
+        far = max(0, math.ceil(math.log2(periods + 1)))
+        return self._raised(lambda motion: motion.at(time), good, FIRST_BITS + 64 * (far // 64))
+
+    def angle_errors(self, t: float, computed: tuple[float, float, float]) -> list[float]:
+        """Return the errors of theta, phi, psi (radians) in units."""
+        state = self.at(t)
+        return _errors(state, computed, _with_units(state)[:3])
+
+    def errors(self, t: float, computed: tuple[float, ...]) -> list[float]:
+        """Return the errors of theta, phi, psi and the four parts of the quaternion in units."""
+        state = self.at(t)
+        return _errors(state, computed, _with_units(state))
+
+    def ulps(self, key: str, computed: float) -> float:
+        """Return the distance of a key from its exact value, in gaps between doubles there.
+
+        At most 1/2 (and a hair, where it is midway) says that no double is nearer.
+        """
+        exact = self.record.get(key)
+        if exact is None or not math.isfinite(computed):
+            return math.inf
+        with _precision(4 * MOST_BITS):
+            away = exact - ball(Fraction(computed))
+            outward = math.nextafter(computed, math.inf if away > 0 else -math.inf)
+            gap = abs(ball(Fraction(outward)) - ball(Fraction(computed)))
+            return float((abs(away) / gap).abs_upper())
+
+    def relative(self, key: str, computed: float, scale: float = 0.0) -> float:
+        """Return the error of a key in eps of its exact value, or of a scale where that is more."""
+        exact = self.record.get(key)
+        if exact is None or not math.isfinite(computed):
+            return math.inf
+        with _precision(8 * FIRST_BITS):
+            size = max(float(abs(exact).abs_upper()), scale)
+            away = float(abs(exact - ball(Fraction(computed))).abs_upper())
+            return away / (EPS * size) if size else (math.inf if computed else 0.0)
+
+
+def _with_units(state: State) -> list[tuple[arb, arb]]:
+    """Return each judged value and eps (max(1, |value|) + |tau rate|)."""
+    rates = (state.theta_rate, state.phi_rate, state.psi_rate)
+    pairs = [
+        (value, EPS * (arb.max(arb(1), abs(value)) + abs(state.tau * rate)))
+        for value, rate in zip((state.theta, state.phi, state.psi), rates, strict=True)
+    ]
+    spread = EPS * (1 + abs(state.tau * state.quaternion_rate))
+    return pairs + [(part, spread) for part in state.quaternion]
+
+
+def _errors(state: State, computed: tuple[float, ...], pairs: list[tuple[arb, arb]]) -> list[float]:
+    """Return |computed - exact| over the unit; a NaN is infinitely wrong."""
+    with _precision(4 * FIRST_BITS):
+        return [
+            float((abs(exact - value) / unit).abs_upper()) if math.isfinite(value) else math.inf
+            for value, (exact, unit) in zip(computed, pairs, strict=True)
+        ]
+
+
+def _narrow(value: arb, unit: arb) -> bool:
+    """Return whether a ball is far smaller than its unit."""
+    return bool(value.is_finite() and unit.is_finite() and value.rad() < unit * 2.0**-12)
+
+
+def _sharp(value: arb) -> bool:
+    """Return whether a ball tells a double from its neighbours, or is sure to round to 0."""
+    if not value.is_finite():
+        return False
+    return value.rel_accuracy_bits() >= GOOD_BITS or bool(abs(value) < arb(2) ** -1100)
+
+
+def _size(scene: Scene) -> float:
+    """Return about how many radians a unit of time can be."""
+    rates = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate)
+    return math.sqrt(scene.a) + float(sum(abs(rate) for rate in rates))
+
+
+@contextmanager
+def _precision(bits: int) -> Iterator[None]:
+    """Work with so many bits for a while."""
+    before = ctx.prec
+    ctx.prec = bits
+    try:
+        yield
+    finally:
+        ctx.prec = before
