@@ -1,4 +1,4 @@
-"""`lagtop plot`: pictures of one motion."""
+"""The command `lagtop plot`: pictures of one motion."""
 
 from __future__ import annotations
 
@@ -13,17 +13,25 @@ import click
 
 from ..errors import LagtopError
 from ..output.write import write_bytes
-from ..plot.style import look, require_matplotlib
+from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
+from ..plot.style import chosen_look, require_matplotlib
 from .options import NUMBER, ExamplesFirst, scene_options, solved, with_progress
 
-KINDS = ("sphere", "angles", "remainders", "cubic", "phase", "map")
-ON_THE_SHEET = KINDS[:4]
-MOST_PIXELS = 5e7
+FORMATS = ("png", "svg", "pdf")
+PAGE_DPI, FILM_DPI = 150.0, 100.0
+HELP = """Pictures of a top; several kinds come on one page.
+
+\b
+{kinds}
+
+Needs matplotlib: pip install 'lagtop[plot]'.
+"""
 
 
 @click.command(
     "plot",
     cls=ExamplesFirst,
+    help=HELP.format(kinds="\n".join(help_lines())),
     examples="""
         lagtop plot -o top.png
         lagtop plot sample_inputs/looping-top.toml sphere -o loops.svg
@@ -35,17 +43,21 @@ MOST_PIXELS = 5e7
 @scene_options
 @click.argument("kinds", nargs=-1, metavar="[KIND]...")
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: some nutation periods]")
-@click.option("--key", default="mean_precession_rate", show_default=True, help="What map shows.")
-@click.option("--x", metavar="GRID", help="Of map: INPUT=[log:]start:stop:count.  [default: r0]")
-@click.option("--y", metavar="GRID", help="Of map.  [default: over theta0]")
+@click.option(
+    "--key", default="mean_precession_rate", show_default=True, help="Key of the record for `map`."
+)
+@click.option(
+    "--x",
+    metavar="RANGE",
+    help="Horizontal axis of `map`: INPUT=[log:]START:STOP:COUNT.  [default: over r0]",
+)
+@click.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: over theta0]")
 @click.option("--dark", is_flag=True, help="Light on dark.")
-@click.option("--size", metavar="WxH", help="Of the page in inches, as 8x6.")
-@click.option("--dpi", type=NUMBER, help="Pixels an inch, 20 to 1000.  [default: 150, film 100]")
+@click.option("--size", metavar="WxH", help="Width and height of the page in inches, as 8x6.")
+@click.option("--dpi", type=NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @click.option("--animate", metavar="FILE", help="A film of the top: FILE.gif or FILE.mp4.")
 @click.option("--show", is_flag=True, help="Open a window.")
-@click.option(
-    "--format", "style", type=click.Choice(["png", "svg", "pdf"]), help="[default: as FILE ends]"
-)
+@click.option("--format", "fmt", type=click.Choice(FORMATS), help="[default: as FILE ends]")
 @click.option(
     "-o",
     "--output",
@@ -66,103 +78,77 @@ def command(  # noqa: PLR0917 - click passes them by name
     dpi: Fraction | None,
     animate: str | None,
     show: bool,
-    style: str | None,
+    fmt: str | None,
     output: str | None,
     **options: Any,
 ) -> None:
-    """Pictures of a top; several kinds come on one page.
-
-    \b
-    sphere      the path of the figure axis on the unit sphere
-    angles      tilt, spin and precession over time
-    remainders  spin and precession less their mean growth
-    cubic       f(u), its roots, and the band of the motion
-    phase       tilt rate against tilt, and the separatrix
-    map         a key of the record over two inputs
-    all         the first four, and the numbers of the scene (the default)
-
-    Needs matplotlib: pip install 'lagtop[plot]'.
-    """
+    """Write, film and show the pictures that the options ask for."""
     if not (output or show or animate):
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
     path, chosen = _scene_and_kinds([word for word in (scene, *kinds) if word is not None])
-    written = _file_style(style, output)
-    if animate is not None:
-        _require_suffix("--animate", animate, ("gif", "mp4"))
+    written = _format_of(fmt, output)
     inches = _inches(size)
-    dots = _dots(dpi, inches)
     require_matplotlib()
     from ..plot.curves import checked_span
-    from ..plot.key_map import parse_axis
-    from ..plot.kinds import Wish
+    from ..plot.film import check_film, film_bytes
+    from ..plot.key_map import parse_input_range
     from ..plot.page import Page, page_bytes, show_page
+    from ..plot.request import PlotRequest
 
     motion = solved(path, rad, False, options)
-    wish = Wish(
+    request = PlotRequest(
         t_max=checked_span(motion, t_max),
         radians=rad,
         key=key,
-        x=parse_axis("--x", x) if x else None,
-        y=parse_axis("--y", y) if y else None,
-        watch=partial(with_progress, long=1000, label="tops"),
+        x=parse_input_range("x", x) if x else None,
+        y=parse_input_range("y", y) if y else None,
+        progress=partial(with_progress, long=1000, label="tops"),
     )
-    page = Page(motion, chosen, wish, look(dark), inches)
+    page = Page(motion, chosen, request, chosen_look(dark), inches)
+    page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))
     if output is not None:
-        write_bytes(output, lambda: page_bytes(page, written, dots or 150))
+        page.check_dpi(page_dpi, written)
     if animate is not None:
-        from ..plot.film import film_bytes
-
-        watch = partial(with_progress, long=1, label="frames")
-        write_bytes(animate, lambda: film_bytes(page, animate, dots or 100, watch))
+        check_film(page, animate, film_dpi)
+    if output is not None:
+        write_bytes(output, lambda: page_bytes(page, written, page_dpi))
+    if animate is not None:
+        frames = partial(with_progress, long=1, label="frames")
+        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, frames))
     if show:
         show_page(page)
 
 
 def _scene_and_kinds(words: Sequence[str]) -> tuple[str | None, tuple[str, ...]]:
-    """The scene file among the words, if any, and the kinds of picture."""
-    known = (*KINDS, "all")
+    """Return the scene file among the words, if any, and the kinds of picture."""
+    known = (*KINDS, SHEET)
     scenes = [word for word in words if word not in known]
     for word in scenes[1:] or [word for word in scenes if not re.search(r"[./]", word)]:
         raise LagtopError(f"KIND must be among {' '.join(known)}, got {word!r}")
-    kinds = [kind for word in words for kind in (ON_THE_SHEET if word == "all" else [word])]
+    kinds = [kind for word in words for kind in (ON_THE_SHEET if word == SHEET else [word])]
     chosen = tuple(dict.fromkeys(kind for kind in kinds if kind in KINDS))
     return scenes[0] if scenes else None, chosen or ON_THE_SHEET
 
 
-def _file_style(style: str | None, output: str | None) -> str:
-    """`png`, `svg` or `pdf`, as it was given or as the file's name ends."""
+def _format_of(fmt: str | None, output: str | None) -> str:
+    """Return `png`, `svg` or `pdf`, as it was asked for or as the file's name ends."""
     if output == "-" and sys.stdout.isatty():
         raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
-    if style or output in (None, "-"):
-        return style or "png"
-    return _require_suffix("-o", output, ("png", "svg", "pdf"))
-
-
-def _require_suffix(option: str, path: str, allowed: Sequence[str]) -> str:
-    suffix = path.rpartition(".")[2].lower()
-    if suffix not in allowed:
-        wanted = " or ".join(f".{ending}" for ending in allowed)
-        raise LagtopError(f"{option} must be a file that ends in {wanted}, got {path!r}")
+    if fmt or output in (None, "-"):
+        return fmt or "png"
+    suffix = output.rpartition(".")[2].lower()
+    if suffix not in FORMATS:
+        wanted = " or ".join(f".{ending}" for ending in FORMATS)
+        raise LagtopError(f"-o must be a file that ends in {wanted}, got {output!r}")
     return suffix
 
 
 def _inches(size: str | None) -> tuple[float, float] | None:
+    """Return the width and height that a text such as `8x6` stands for."""
     if size is None:
         return None
-    found = re.fullmatch(r"(\d+\.?\d*)[x×](\d+\.?\d*)", size)
-    width, height = map(float, found.groups()) if found else (0.0, 0.0)
+    parts = re.fullmatch(r"(\d+\.?\d*)[x×](\d+\.?\d*)", size)
+    width, height = map(float, parts.groups()) if parts else (0.0, 0.0)
     if not (2 <= width <= 50 and 2 <= height <= 50):
         raise LagtopError(f"--size must be WIDTHxHEIGHT, each in [2, 50] inches, got {size!r}")
     return width, height
-
-
-def _dots(dpi: Fraction | None, inches: tuple[float, float] | None) -> float | None:
-    if dpi is None:
-        return None
-    if not 20 <= dpi <= 1000:
-        raise LagtopError(f"--dpi must be in [20, 1000], got {float(dpi):g}")
-    width, height = inches or (1.0, 1.0)
-    if width * height * dpi**2 > MOST_PIXELS:
-        most = (MOST_PIXELS / (width * height)) ** 0.5
-        raise LagtopError(f"--dpi must be at most {most:.0f} at this --size, got {float(dpi):g}")
-    return float(dpi)

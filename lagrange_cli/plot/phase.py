@@ -1,4 +1,4 @@
-"""The cubic f(u), and the orbit of the nutation in the phase plane, as numbers.
+"""The picture `phase`: the nutation in the plane of tilt and tilt rate, and the separatrix.
 
 Equation numbers are Chrapan's.
 """
@@ -9,50 +9,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
-from ..motion.make_sampler import solution_of
 from ..motion.solve import Motion
-from .curves import PHASES, phase_times, refined, sample, span
-
-
-class Cubic(NamedTuple):
-    """f(u) of (4,9) about its roots, and u at the start.  u3 is None without torque, and out of
-    view where it is far."""
-
-    u: Array
-    f: Array
-    u1: float
-    u2: float
-    u3: float | None
-    start: float
-
-    def heights(self) -> tuple[float, float]:
-        """What of f(u) to show: its hump over the band, and as much below it."""
-        near = self.u3 is not None and self.u3 <= self.u[-1]
-        last = self.u3 if near and self.u3 is not None else self.u1
-        inside = (self.u >= self.u2) & (self.u <= last)
-        most = float(np.abs(self.f[inside]).max(initial=0.0)) or float(np.abs(self.f).max())
-        return -1.3 * most, 1.3 * most
-
-
-def cubic_curve(motion: Motion) -> Cubic:
-    """f(u) from its product form, over a window about the band u2 ... u1, and u3 if it is near."""
-    solution = solution_of(motion.top)
-    begin, roots = solution.start, solution.roots
-    u1, u2 = float(roots.u1), float(roots.u2)
-    u3 = None if roots.u3 is None else float(roots.u3)
-    band = float(roots.u1_u2)
-    near = u3 is not None and u3 - u1 <= max(4.0 * band, 0.0 if band else 2.0)
-    right = u3 if near and u3 is not None else u1
-    width = right - u2 or 0.4
-    u = np.linspace(u2 - 0.5 * width, right + 0.5 * width, 801)
-    f = (u - u1) * (u - u2)
-    if u3 is None:
-        f *= -float(begin.alpha + begin.b**2)
-    else:
-        f *= float(begin.a) * (u - u3)
-    return Cubic(u, f, u1, u2, u3, float(begin.u))
+from .curves import PHASES, phase_times, refined, span
+from .motion_facts import columns_at
+from .request import PlotRequest
+from .style import Look, mark_start
 
 
 class PhasePortrait(NamedTuple):
@@ -64,33 +28,32 @@ class PhasePortrait(NamedTuple):
     separatrix: tuple[Array, Array] | None
     """Upper half, from the upright position down; None above the sleeping threshold."""
     why: str
-    """In words, what the separatrix is, or why there is none."""
+    """What the separatrix is, or why there is none, in words."""
 
 
 def phase_portrait(motion: Motion) -> PhasePortrait:
-    """The orbit and the separatrix in the plane of tilt and tilt rate."""
+    """Return the orbit and the separatrix in the plane of tilt and tilt rate."""
 
     def orbit(t: Array) -> Array:
-        swing = sample(motion, t)
-        return np.stack([swing.attitude.theta(), swing.theta_rate], axis=1)
+        return np.stack(columns_at(motion, t, ["theta", "thetadot"]), axis=1)
 
     theta, rate = orbit(refined(phase_times(motion, span(motion, 1)), orbit)).T
-    begin = solution_of(motion.top).start
-    a, b = float(begin.a), float(begin.b)
     start = float(theta[0]), float(motion.top.thetadot0)
+    a, b = float(motion.a), float(motion.b)
     if not b * b < 2 * a:
-        why = "no torque" if a == 0 else f"λ = {b * b / (2 * a):.3g} ≥ 1"
-        why = f"no separatrix: upright it is stable, {why}"
+        reason = "no torque" if a == 0 else f"λ = {b * b / (2 * a):.3g} ≥ 1"
+        why = f"no separatrix: upright it is stable, {reason}"
         return PhasePortrait(theta, rate, start, None, why)
     return PhasePortrait(
-        theta, rate, start, separatrix(a, b), "separatrix: upright (β = b), same spin"
+        theta, rate, start, separatrix(a, b), "separatrix: an upright start with this spin"
     )
 
 
 def separatrix(a: float, b: float) -> tuple[Array, Array]:
-    """The orbit that leaves the upright position and comes back to it (b^2 < 2a): tilt and rate.
+    """Return tilt and rate on the orbit that leaves the upright position and comes back to it.
 
-    With alpha = a and beta = b in (4,9): theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2).
+    It needs b^2 < 2a.  With alpha = a and beta = b, (4,9) becomes
+    theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2).
     """
     lowest = math.acos(b * b / a - 1)
     theta = lowest * np.sin(np.linspace(0.0, math.pi / 2, 4 * PHASES + 1))
@@ -100,3 +63,22 @@ def separatrix(a: float, b: float) -> tuple[Array, Array]:
     if b:
         rate[-1] = 0.0
     return theta, rate
+
+
+def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the nutation in the plane of tilt and tilt rate, and the separatrix."""
+    portrait, factor = phase_portrait(motion), request.per_radian
+    axes = panel.subplots()
+    axes.set_title("Nutation in the phase plane")
+    axes.set(xlabel=f"tilt ϑ ({request.angle_unit})", ylabel="tilt rate ϑ̇ (rad/time)")
+    axes.locator_params(axis="x", nbins=5)
+    axes.axhline(0.0, color=look.quiet, lw=0.9)
+    axes.plot(portrait.theta * factor, portrait.rate, color=look.lines[0], label="this motion")
+    mark_start(axes, portrait.start[0] * factor, portrait.start[1], look)
+    theta, rate = portrait.separatrix or (np.empty(0), np.empty(0))
+    both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
+    dashes = {"lw": 1.4, "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
+    axes.plot(*both, color=look.lines[1], label=portrait.why, **dashes)
+    axes.ticklabel_format(axis="x", useOffset=False)
+    axes.margins(0.06)
+    panel.legend(loc="outside lower center", ncols=3, fontsize="small")

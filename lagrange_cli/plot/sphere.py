@@ -1,10 +1,10 @@
-"""The unit sphere with the path of the figure axis, drawn."""
+"""The picture `sphere`: the path of the figure axis on the unit sphere."""
 
 from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +13,10 @@ from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from . import curves
+from .angles import angle_curves
+from .curves import highest_times, phase_times, refined, span, turn_span
+from .motion_facts import axis_at
+from .request import PlotRequest
 from .style import Look, mark_start, scale
 from .view import Near, View, best_view, parallel, runs
 
@@ -24,48 +27,77 @@ PIECES = 160
 """Steps of the colour along a path."""
 
 
-def draw_path_on_sphere(
-    panel: SubFigure, motion: Motion, t_max: float | None, radians: bool, style: Look
-) -> None:
-    """The globe with the path on it; under it, magnified, a piece of a narrow path."""
-    path = curves.axis_path(motion, t_max or curves.turn_span(motion))
+class AxisPath(NamedTuple):
+    """The path of the figure axis on the unit sphere."""
+
+    t: Array
+    axis: Array
+    """Unit vectors, shape (n, 3); z is up."""
+    least: float
+    """Least tilt (radians), a circle that the path touches."""
+    greatest: float
+    """Greatest tilt (radians), a circle that the path touches."""
+    path: str | None
+    """`cusped`, `looping`, `wavy`, or None where the tilt does not swing."""
+    highest: Array
+    """The axis where it is highest, shape (m, 3): the cusps of a cusped path."""
+
+
+def axis_path(motion: Motion, t_max: float) -> AxisPath:
+    """Return the path from 0 to t_max."""
+
+    def axis(t: Array) -> Array:
+        return axis_at(motion, t)
+
+    t = refined(phase_times(motion, t_max), axis)
+    least, greatest = motion.theta_min_deg, motion.theta_max_deg
+    assert least is not None
+    assert greatest is not None
+    highest = axis(highest_times(motion, t_max))
+    return AxisPath(t, axis(t), math.radians(least), math.radians(greatest), motion.path, highest)
+
+
+def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the globe with the path on it, and under it a piece of a narrow path, magnified."""
+    path = axis_path(motion, request.t_max or turn_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
     axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
     view = best_view(path.axis)
-    axes[0].set_title(f"Figure axis on the unit sphere: {path.kind or motion.regime.value}")
-    draw_globe(axes[0], view, path, radians, style)
-    lines = draw_path(axes[0], view, path, style)
+    axes[0].set_title(f"Figure axis on the unit sphere: {path.path or motion.regime.value}")
+    draw_globe(axes[0], view, path, request, look)
+    lines = _draw_path(axes[0], view, path, look)
     bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)
     bar.outline.set_visible(False)
     bar.set_label("time t")
     if narrow:
-        _draw_magnified(axes[1], motion, path, radians, style)
+        _draw_magnified(axes[1], motion, path, request, look)
 
 
-def draw_globe(axes: Axes, view: View, path: curves.AxisPath, radians: bool, style: Look) -> None:
-    """Outline, equator, vertical and the two limiting circles; far sides dashed and paler."""
+def draw_globe(axes: Axes, view: View, path: AxisPath, request: PlotRequest, look: Look) -> None:
+    """Draw outline, equator, vertical and the limiting circles; far sides dashed and paler."""
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set(xlim=(-1.06, 1.06), ylim=(-1.06, 1.24))
     outline = np.linspace(0.0, 2 * math.pi, 361)
-    axes.fill(np.cos(outline), np.sin(outline), facecolor=style.faint, alpha=0.55, zorder=0)
-    axes.plot(np.cos(outline), np.sin(outline), color=style.quiet, lw=1.0, zorder=1)
-    _draw_circle(axes, view, math.pi / 2, color=style.quiet, lw=0.6)
+    axes.fill(np.cos(outline), np.sin(outline), facecolor=look.faint, alpha=0.55, zorder=0)
+    axes.plot(np.cos(outline), np.sin(outline), color=look.quiet, lw=1.0, zorder=1)
+    _draw_circle(axes, view, math.pi / 2, color=look.quiet, lw=0.6)
     for tilt, colour, label in (
-        (path.least, style.lines[0], "ϑ min"),
-        (path.greatest, style.lines[1], "ϑ max"),
+        (path.least, look.lines[0], "ϑ min"),
+        (path.greatest, look.lines[1], "ϑ max"),
     ):
         _draw_circle(axes, view, tilt, color=colour, lw=1.2)
-        angle = f"{tilt:.4g} rad" if radians else f"{math.degrees(tilt):.4g}°"
+        angle = f"{tilt:.4g} rad" if request.radians else f"{math.degrees(tilt):.4g}°"
         axes.plot([], [], color=colour, lw=1.2, label=f"{label} {angle}")
     hidden = view.toward[2] < 0
     feet = np.array([[0.0, 0.0, 1 / view.up[2] if hidden else 1.0], [0.0, 0.0, 1.32]])
     x, y = view.project(feet)
-    axes.plot(x, y, color=style.quiet, lw=1.0, zorder=4)
-    axes.annotate("z", (x[1], y[1]), (5, -8), textcoords="offset points", color=style.quiet)
+    axes.plot(x, y, color=look.quiet, lw=1.0, zorder=4)
+    axes.annotate("z", (x[1], y[1]), (5, -8), textcoords="offset points", color=look.quiet)
 
 
 def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
+    """Draw the circle of a tilt, its far side dashed and paler."""
     circle = parallel(tilt)
     x, y = view.project(circle)
     for part, near in runs(view.faces(circle)):
@@ -75,11 +107,11 @@ def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
         axes.plot(x[part], y[part], **(line | fade))
 
 
-def draw_path(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> LineCollection:
-    """The path, coloured by time and paler on the far side; its start, and a legend."""
+def _draw_path(axes: Axes, view: View, path: AxisPath, look: Look) -> LineCollection:
+    """Draw the path, coloured by time and paler on the far side, with its start and a legend."""
     x, y = view.project(path.axis)
     near = view.faces(path.axis)
-    colours = scale(style)
+    colours = scale(look)
     for side, alpha, width in ((False, 0.35, 1.2), (True, 1.0, 2.2)):
         pieces, times = _pieces(path.t, np.stack([x, y], axis=1), near, side)
         lines = LineCollection(
@@ -89,14 +121,14 @@ def draw_path(axes: Axes, view: View, path: curves.AxisPath, style: Look) -> Lin
         lines.set_clim(path.t[0], path.t[-1])
         lines.set_zorder(3 if side else 1)
         axes.add_collection(lines)
-    mark_start(axes, x[0], y[0], style)
+    mark_start(axes, x[0], y[0], look)
     axes.legend(loc="lower left", fontsize="small", borderaxespad=0, handlelength=1.4)
     lines.set_alpha(None)
     return lines
 
 
 def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array], Array]:
-    """The parts of the curve on one side, cut into pieces of one colour each."""
+    """Return the parts of the curve on one side, cut into pieces of one colour, and their times."""
     step = max((t[-1] - t[0]) / PIECES, 1e-300)
     pieces, times = [], []
     for part, on_near in runs(near):
@@ -112,16 +144,16 @@ def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array
 
 
 def _draw_magnified(
-    axes: Axes, motion: Motion, path: curves.AxisPath, radians: bool, style: Look
+    axes: Axes, motion: Motion, path: AxisPath, request: PlotRequest, look: Look
 ) -> None:
-    """The first two nods unrolled; a degree of precession is as long as it is on the sphere."""
-    short = curves.angle_curves(motion, min(curves.span(motion, 2), path.t[-1]))
-    unit, factor = ("rad", 1.0) if radians else ("deg", 180 / math.pi)
-    x, y = short.psi * factor, short.theta * factor
+    """Draw two nods unrolled; a degree of precession is as long as it is on the sphere."""
+    nods = angle_curves(motion, min(span(motion, 2), path.t[-1]))
+    x, y = nods.psi * request.per_radian, nods.theta * request.per_radian
     axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
-    axes.plot(x, y, color=scale(style)(0.0))
-    mark_start(axes, x[0], y[0], style)
+    axes.plot(x, y, color=scale(look)(0.0))
+    mark_start(axes, x[0], y[0], look)
     axes.set_title("the first two nods, magnified", fontsize="medium")
+    unit = request.angle_unit
     axes.set(xlabel=f"precession ψ ({unit})", ylabel=f"tilt ϑ ({unit})")
     axes.ticklabel_format(useOffset=False)
     axes.locator_params(axis="y", nbins=4)

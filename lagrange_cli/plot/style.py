@@ -1,4 +1,4 @@
-"""How pictures look: one style sheet, light and dark.
+"""The look of pictures, light and dark, and the way they become files.
 
 The colours of lines are Okabe and Ito's, made to be told apart by every kind of colour vision; time
 and keys are coloured by viridis, whose lightness grows evenly, cut where it would fade into the
@@ -7,24 +7,33 @@ background.  A test simulates the three kinds of colour blindness.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+import io
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from ..errors import LagtopError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
+    from matplotlib.figure import Figure
+
+
+POINTS = 11.0
+"""Size of ordinary letters on a page of the usual size."""
 
 
 class Look(NamedTuple):
-    """The colours of one style."""
+    """The colours of a picture on light or on dark paper."""
 
     paper: str
     ink: str
     quiet: str
-    """For what helps to read the rest: circles, axes, mean rates."""
+    """Colour of what helps to read the rest: circles, axes, mean rates."""
     faint: str
-    """For areas."""
+    """Colour of areas."""
     lines: tuple[str, str, str]
     scale: tuple[float, float]
     """The part of viridis that stands out from the paper."""
@@ -38,64 +47,93 @@ DARK = Look(
 )
 
 
+METADATA: dict[str, dict[str, Any]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+"""What matplotlib would add to each kind of file, and with it the day and the version."""
+
+
 def require_matplotlib() -> None:
-    """Raise LagtopError, with the remedy, where it is missing."""
+    """Raise LagtopError, with the remedy, where matplotlib is missing."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
         raise LagtopError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
 
 
-def look(dark: bool) -> Look:
-    """The style."""
+def figure_bytes(figure: Figure, fmt: str, dpi: float) -> bytes:
+    """Return the figure as `png`, `svg` or `pdf`: the same bytes for the same figure."""
+    import matplotlib
+
+    buffer = io.BytesIO()
+    os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # or the fonts in a PDF would carry the day
+    with matplotlib.rc_context({"svg.hashsalt": "lagtop"}):  # names inside the file do not change
+        figure.savefig(buffer, format=fmt, dpi=dpi, metadata=METADATA[fmt])
+    return buffer.getvalue()
+
+
+def chosen_look(dark: bool) -> Look:
+    """Return the dark look or the light one."""
     return DARK if dark else LIGHT
 
 
-def settings(style: Look, size: float = 1.0) -> dict[str, Any]:
-    """The style sheet, as matplotlib's settings; `size` is that of the letters and lines."""
+@contextmanager
+def styled(look: Look, size: float = 1.0) -> Iterator[None]:
+    """Set our settings and nobody else's, whatever the user's own matplotlibrc says."""
+    import matplotlib
+
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(cast(Any, settings(look, size)))  # the stub lists every key
+        yield
+
+
+def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
+    """Return the style sheet as matplotlib's settings; `size` scales letters and lines."""
     return {
         "axes.axisbelow": True,
-        "axes.edgecolor": style.quiet,
-        "axes.facecolor": style.paper,
+        "axes.edgecolor": look.quiet,
+        "axes.facecolor": look.paper,
         "axes.formatter.limits": (-4, 5),
         "axes.formatter.use_mathtext": True,
         "axes.formatter.useoffset": False,
-        "axes.labelcolor": style.ink,
+        "axes.labelcolor": look.ink,
         "axes.spines.right": False,
         "axes.spines.top": False,
         "axes.titlelocation": "left",
         "axes.titlesize": 12.0 * size,
-        "figure.facecolor": style.paper,
+        "figure.facecolor": look.paper,
         "font.family": "DejaVu Sans",  # comes with matplotlib, and has Greek
-        "font.size": 11.0 * size,
-        "hatch.color": style.quiet,
+        "font.size": POINTS * size,
+        "hatch.color": look.quiet,
         "legend.frameon": False,
         "lines.linewidth": 1.8 * size,
         "lines.solid_capstyle": "round",
         "lines.solid_joinstyle": "round",
         "mathtext.fontset": "dejavusans",
         "path.simplify": False,  # it would blunt the cusps
-        "savefig.facecolor": style.paper,
-        "svg.hashsalt": "lagtop",  # the same names inside the file every time
-        "text.color": style.ink,
-        "xtick.color": style.quiet,
-        "xtick.labelcolor": style.ink,
-        "ytick.color": style.quiet,
-        "ytick.labelcolor": style.ink,
+        "savefig.facecolor": look.paper,
+        "text.color": look.ink,
+        "xtick.color": look.quiet,
+        "xtick.labelcolor": look.ink,
+        "ytick.color": look.quiet,
+        "ytick.labelcolor": look.ink,
     }
 
 
-def scale(style: Look) -> Colormap:
-    """The colours of a quantity."""
+def scale(look: Look) -> Colormap:
+    """Return the colours that stand for the size of a quantity."""
     import numpy as np
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap
 
-    return ListedColormap(colormaps["viridis"](np.linspace(*style.scale, 256)), name="lagtop")
+    return ListedColormap(colormaps["viridis"](np.linspace(*look.scale, 256)), name="lagtop")
 
 
-def mark_start(axes: Axes, x: float, y: float, style: Look, label: str = "start") -> None:
-    """A ring at one point."""
+def mark_start(axes: Axes, x: float, y: float, look: Look, label: str = "start") -> None:
+    """Draw a ring at one point."""
     axes.plot(
-        x, y, "o", ms=7, mfc=style.paper, mec=style.ink, mew=1.6, zorder=6, label=label, ls="none"
+        x, y, "o", ms=7, mfc=look.paper, mec=look.ink, mew=1.6, zorder=6, label=label, ls="none"
     )

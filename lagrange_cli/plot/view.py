@@ -1,4 +1,4 @@
-"""The unit sphere and the top in it, seen from afar: what is in sight, and where on the page."""
+"""The view of the unit sphere and of the top in it: what is in sight, and where on the page."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ..arithmetic.types import Array
 
 HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
-"""Of the cone that stands for the top; lengths in radii of the sphere."""
+"""Height and radius (in radii of the sphere) and wedges of the cone that stands for the top."""
 
 Near = NDArray[np.bool_]
-"""Whether points are on the near side."""
+"""One boolean per point: whether it is on the near side."""
 
 
 class View(NamedTuple):
@@ -25,20 +25,20 @@ class View(NamedTuple):
     right: Array
     up: Array
     toward: Array
-    """From the centre to the eye."""
+    """Direction from the centre to the eye."""
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """x and y on the page of points of shape (n, 3)."""
+        """Return x and y on the page of points of shape (n, 3)."""
         return points @ self.right, points @ self.up
 
     def faces(self, points: Array) -> Near:
-        """Whether points of the sphere lie on the near side."""
+        """Return whether points of the sphere, of shape (n, 3), lie on the near side."""
         near: Near = points @ self.toward >= 0.0
         return near
 
 
 def view_from(azimuth: float, elevation: float) -> View:
-    """The view from a direction (radians), with z upwards on the page."""
+    """Return the view from a direction (radians), with z upwards on the page."""
     sa, ca, se, ce = (f(x) for x in (azimuth, elevation) for f in (math.sin, math.cos))
     return View(
         right=np.array([-sa, ca, 0.0]),
@@ -48,7 +48,7 @@ def view_from(azimuth: float, elevation: float) -> View:
 
 
 def best_view(path: Array) -> View:
-    """From above or from below, and from the side that the path faces most; the start in sight."""
+    """Return the view, from above or below, that a path faces most, with its start in sight."""
     start = math.atan2(path[0, 1], path[0, 0])
     views = [
         view_from(start + math.radians(azimuth), math.radians(elevation))
@@ -57,6 +57,7 @@ def best_view(path: Array) -> View:
     ]
 
     def shown(view: View) -> float:
+        """Return how well the path is seen."""
         turned = (path @ view.toward).mean()
         return float(view.faces(path).mean() + 0.5 * turned + view.faces(path[:1])[0])
 
@@ -64,14 +65,14 @@ def best_view(path: Array) -> View:
 
 
 def parallel(tilt: float) -> Array:
-    """The circle of a tilt on the unit sphere, shape (n, 3)."""
+    """Return the circle of a tilt (radians) on the unit sphere, in shape (n, 3)."""
     around = np.linspace(0.0, 2 * math.pi, 241)
     sine, cosine = math.sin(tilt), math.cos(tilt)
     return np.stack([sine * np.cos(around), sine * np.sin(around), 0 * around + cosine], axis=1)
 
 
 def runs(near: Near) -> Iterator[tuple[slice, bool]]:
-    """The pieces of a curve on either side; neighbours share the point where they meet."""
+    """Yield the pieces of a curve on either side; neighbours share the point where they meet."""
     ends = np.flatnonzero(near[1:] != near[:-1]) + 1
     bounds = [0, *ends.tolist(), near.size]
     for first, last in pairwise(bounds):
@@ -79,12 +80,13 @@ def runs(near: Near) -> Iterator[tuple[slice, bool]]:
 
 
 class Face(NamedTuple):
-    """A triangle of the top on the page, corners of shape (3, 2)."""
+    """A triangle of the top on the page."""
 
     corners: Array
+    """x and y of the corners, shape (3, 2)."""
     on_lid: bool
     light: bool
-    """Every other sixth of a turn, so that one sees the spin."""
+    """True on every other sixth of a turn, so that one sees the spin."""
 
 
 class SeenTop(NamedTuple):
@@ -93,12 +95,12 @@ class SeenTop(NamedTuple):
     faces: list[Face]
     rim: tuple[Array, Array]
     axle: tuple[Array, Array]
-    """From the lid to the sphere."""
+    """Line from the middle of the lid to the sphere."""
     lid_in_sight: bool
 
 
 def seen_top(theta: float, phi: float, psi: float, view: View) -> SeenTop:
-    """A cone on its tip at the given Euler angles (radians)."""
+    """Return a cone that stands on its tip at these Euler angles (radians)."""
     nodes = np.array([math.cos(psi), math.sin(psi), 0.0])
     axis = np.array(
         [math.sin(theta) * math.sin(psi), -math.sin(theta) * math.cos(psi), math.cos(theta)]
@@ -110,6 +112,7 @@ def seen_top(theta: float, phi: float, psi: float, view: View) -> SeenTop:
     lid_in_sight = bool(axis @ view.toward > 0)
 
     def face(j: int, tip: Array, on_lid: bool) -> Face:
+        """Return the triangle between a tip and wedge j of the rim."""
         corners = np.stack(view.project(np.stack([tip, rim[j], rim[j + 1]])), axis=1)
         return Face(corners, on_lid, light=j * 6 // WEDGES % 2 == 0)
 

@@ -1,0 +1,57 @@
+"""The picture `remainders`: spin and precession less their mean growth."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import SubFigure
+
+from ..arithmetic.types import Array
+from ..errors import NothingToDrawError
+from ..motion.solve import Motion
+from .angles import finish_time_axes
+from .curves import phase_times, refined, span
+from .motion_facts import nutation_period
+from .request import PlotRequest
+from .style import Look
+
+
+class Remainders(NamedTuple):
+    """Periodic parts (radians) of spin (6,4) and precession (7,4) over time."""
+
+    t: Array
+    spin: Array
+    precession: Array
+
+
+def remainder_curves(motion: Motion, t_max: float) -> Remainders:
+    """Return the periodic parts from 0 to t_max.
+
+    Raises NothingToDrawError where the tilt has no period, so that both are 0 or undefined.
+    """
+    spin_rate, precession_rate = motion.mean_spin_rate, motion.mean_precession_rate
+    if nutation_period(motion) is None or spin_rate is None or precession_rate is None:
+        regime = motion.regime.value
+        raise NothingToDrawError(f"no remainders: the tilt has no period ({regime})")
+
+    def remainders(t: Array) -> Array:
+        _, phi, psi = motion.angles(t)
+        return np.stack([phi - spin_rate * t, psi - precession_rate * t], axis=1)
+
+    t = refined(phase_times(motion, t_max), remainders)
+    return Remainders(t, *remainders(t).T)
+
+
+def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw what is left of spin and precession when their mean growth is taken off."""
+    curves = remainder_curves(motion, request.t_max or span(motion, 2))
+    rows = ("Δφ", curves.spin), ("Δψ", curves.precession)
+    axes = panel.subplots(2, sharex=True)
+    axes[0].set_title("Spin and precession less their mean growth, (6,4), (7,4)")
+    for ax, (symbol, remainder), colour in zip(axes, rows, look.lines[1:], strict=True):
+        ax.axhline(0.0, color=look.quiet, lw=0.9)
+        ax.plot(curves.t, remainder * request.per_radian, color=colour)
+        ax.set_ylabel(f"{symbol} ({request.angle_unit})")
+    finish_time_axes(axes, motion, curves.t)
+    panel.align_ylabels(axes)

@@ -1,0 +1,51 @@
+"""Scenes to draw, and ways to draw them, shared by the tests of the pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from conftest import ROOT
+from matplotlib.figure import Figure
+
+from lagrange_cli import Motion, Top, solve
+from lagrange_cli.inputs.scene_file import SceneFile
+from lagrange_cli.inputs.top import build_top
+from lagrange_cli.plot.page import Page, draw_page
+from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.style import LIGHT, styled
+
+SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
+_UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
+REGIMES: dict[str, dict[str, float]] = {
+    "sleeping": {"theta0_deg": 0},
+    "hanging": {"theta0_deg": 180},
+    "torque-free": {"g": 0},
+    "torque-free, nodding": {"g": 0, "psidot0": 3},
+    "plane pendulum": {"r0": 0},
+    "spherical pendulum": {"r0": 0, "psidot0": 3},
+    "over the upper pole": {"theta0_deg": 0, "thetadot0": 2, "r0": 20},
+    "over the lower pole": {"theta0_deg": 180, "thetadot0": -2, "r0": 20},
+    "separatrix": {**_UNIT, "A": 2, "theta0_deg": 90, "thetadot0": 1, "r0": 0},
+    "steady precession": {**_UNIT, "theta0_deg": 90, "r0": 1, "psidot0": 1},
+    "nothing but noise": {"r0": 1e9},
+}
+"""Inputs of one scene per way of moving."""
+
+
+def sample_motion(path: Path) -> Motion:
+    """Return the motion of a scene file."""
+    return solve(build_top(SceneFile(str(path)).inputs))
+
+
+def regime_motion(name: str) -> Motion:
+    """Return the motion of one of REGIMES."""
+    return solve(Top(**REGIMES[name]))
+
+
+def drawn(motion: Motion, kinds: Sequence[str], request: PlotRequest | None = None) -> Figure:
+    """Return the figure of some kinds, with its artists, on light paper."""
+    with styled(LIGHT):
+        figure = Figure(layout="constrained")
+        draw_page(figure, Page(motion, kinds, request or PlotRequest(), LIGHT))
+    return figure

@@ -1,0 +1,114 @@
+def test_kinds_and_scene_in_any_order(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = str(ROOT / "sample_inputs" / "looping-top.toml")
+    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
+    for words, file in (([scene, "cubic"], files[0]), (["cubic", scene], files[1])):
+        result = lagtop("plot", *words, "-o", file)
+        assert (result.exit_code, result.output) == (0, "")
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "message"),
+    [
+        ("", 2, "nothing to do: give -o FILE.png, --show or --animate FILE.gif"),
+        ("spere -o x.png", 2, "KIND must be among sphere angles"),
+        ("nowhere.toml -o x.png", 65, "nowhere.toml: No such file"),
+        ("-o x.jpg", 2, "-o must be a file that ends in .png or .svg or .pdf, got 'x.jpg'"),
+        ("-o x.png --size 8", 2, "--size must be WIDTHxHEIGHT, each in [2, 50] inches, got '8'"),
+        ("-o x.png --size 1x900", 2, "--size must be WIDTHxHEIGHT"),
+        ("-o x.png --dpi 1e9", 2, "--dpi must be in [20, 1000], got 1e+09"),
+        ("-o x.png --dpi 1000 --size 50x50", 2, "--dpi must be at most 141 at this --size"),
+        ("-o x.png --t-max 0", 2, "--t-max must be > 0, got 0"),
+        ("-o x.png --t-max 1e6", 2, "--t-max must be at most 1000 nutation periods = 429.25"),
+        ("-o no/where.png cubic", 74, "cannot write no/where.png: No such file"),
+        ("remainders --theta0 0 -o x.png", 2, "no remainders: sleeping has no nutation period"),
+        ("map --key colour -o x.png", 2, "--key must be among"),
+        ("map --x r0=1:2 -o x.png", 2, "--x must be NAME=FIRST:LAST:COUNT, got 'r0=1:2'"),
+        ("map --x q=1:2:3 -o x.png", 2, "--x must begin with one of m A C s g r0"),
+        ("map --x r0=2:1:3 -o x.png", 2, "--x must have FIRST < LAST"),
+        ("map --x r0=1:2:1 -o x.png", 2, "--x must have a COUNT in [2, 2000], got 1"),
+        ("map --x r0=1:z:9 -o x.png", 2, "--x must be a finite decimal number, got 'z'"),
+        ("map --x theta0=1:2:3 -o x.png", 2, "--x and --y must be different inputs"),
+        ("--animate x.avi", 2, "--animate must be a file that ends in .gif or .mp4, got 'x.avi'"),
+    ],
+)
+def test_bad_input(  # noqa: PLR0917
+    lagtop: Lagtop,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    line: str,
+    code: int,
+    message: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = lagtop("plot", *line.split())
+    assert result.exit_code == code
+    assert result.stdout == ""
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_help_needs_no_matplotlib_and_a_picture_says_how_to_get_it(tmp_path: Path) -> None:
+    code = "import sys; sys.modules['matplotlib'] = None; from lagrange_cli.cli import main; main()"
+    line = [sys.executable, "-c", code, "plot"]
+    helped = subprocess.run([*line, "--help"], capture_output=True, check=True)
+    assert helped.stdout.startswith(b"Examples:")
+    target = tmp_path / "x.png"
+    target.write_text("old")
+    failed = subprocess.run([*line, "-o", str(target)], capture_output=True, check=False)
+    assert failed.returncode == 2
+    assert failed.stderr == b"Error: pictures need matplotlib: pip install 'lagtop[plot]'\n"
+    assert target.read_text() == "old"
+
+
+def test_no_window_without_a_display() -> None:
+    bare = {key: x for key, x in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    for backend in ({}, {"MPLBACKEND": "tkagg"}):
+        result = process("plot", "--show", check=False, env=bare | backend)
+        assert result.returncode == 2
+        assert result.stderr.startswith(b"Error: --show")
+        assert result.stderr.count(b"\n") == 1
+
+
+def test_a_film(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from PIL import Image
+
+    monkeypatch.setattr(animation, "FRAMES", 5)
+    files = [tmp_path / "a.gif", tmp_path / "b.gif"]
+    for file in files:
+        assert lagtop("plot", "--animate", file, "--dpi", "40").output == ""
+    with Image.open(files[0]) as film:
+        assert getattr(film, "n_frames", 1) == 5
+        assert film.size == (192, 200)
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+def test_mp4_needs_ffmpeg(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    result = lagtop("plot", "--animate", tmp_path / "x.mp4")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "Error: --animate FILE.mp4 needs ffmpeg on the PATH (or write FILE.gif)\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_pictures_of_the_readme(lagtop: Lagtop, tmp_path: Path) -> None:
+    """Each is what the command beside it makes, and small."""
+    lines = re.findall(
+        r"^lagtop (plot .*-o (sample_inputs/images/\S+))$",
+        (ROOT / "README.md").read_text(),
+        re.MULTILINE,
+    )
+    assert len(lines) == 3
+    for line, name in lines:
+        words = shlex.split(line)
+        words[-1] = str(tmp_path / Path(name).name)
+        words = [str(ROOT / word) if word.endswith(".toml") else word for word in words]
+        assert lagtop(*words).exit_code == 0
+        assert (ROOT / name).stat().st_size < 150_000
+        assert f"({name})" in (ROOT / "README.md").read_text()
+        assert Path(words[-1]).stat().st_size == pytest.approx(
+            (ROOT / name).stat().st_size, rel=0.3
+        )

@@ -1,0 +1,179 @@
+"""The times at which pictures sample a motion, and the facts about it that they use."""
+
+from __future__ import annotations
+
+import ast
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from pictures import REGIMES, SAMPLES, regime_motion, sample_motion
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.plot.angles import angle_curves
+from lagrange_cli.plot.curves import (
+    checked_span,
+    highest_times,
+    phase_times,
+    refined,
+    span,
+    turn_span,
+)
+from lagrange_cli.plot.motion_facts import (
+    axis_at,
+    columns_at,
+    nutation_period,
+    periods_since_highest,
+    separatrix_swing,
+    start_of,
+)
+from lagrange_cli.plot.sphere import axis_path
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_the_path_is_on_the_sphere_and_touches_both_circles(path: Path) -> None:
+    scene = sample_motion(path)
+    course = axis_path(scene, turn_span(scene))
+    tilt = np.arctan2(np.hypot(course.axis[:, 0], course.axis[:, 1]), course.axis[:, 2])
+    assert np.abs(np.linalg.norm(course.axis, axis=1) - 1).max() < 1e-15 * 4
+    assert tilt.min() == pytest.approx(course.least, abs=1e-14)
+    assert tilt.max() == pytest.approx(course.greatest, abs=1e-14)
+    assert (np.diff(course.t) > 0).all()
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_the_path_is_smooth(path: Path) -> None:
+    """No corner of the polygon is sharp but the cusps: what is drawn is the curve."""
+    scene = sample_motion(path)
+    course = axis_path(scene, span(scene, 2))
+    steps = np.diff(course.axis, axis=0)
+    size = np.linalg.norm(steps, axis=1)
+    assert size.max() < 0.06
+    turn = np.sum(steps[1:] * steps[:-1], axis=1) / (size[1:] * size[:-1])
+    T = nutation_period(scene)
+    assert T
+    away = np.abs(course.t[1:-1] / T - np.round(course.t[1:-1] / T)) > 0.02
+    seen = np.minimum(size[1:], size[:-1]) > 2e-3  # smaller ones are not visible
+    assert turn[away & seen].min(initial=1.0) > math.cos(math.radians(15))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_cusps_point_up_and_loops_turn_back(sign: int) -> None:
+    cusped = solve(Top(r0=sign * 50.0))
+    T = nutation_period(cusped)
+    assert T
+    times = highest_times(cusped, 2 * T)
+    assert times.tolist() == pytest.approx([0, T, 2 * T], abs=1e-15)
+    course = axis_path(cusped, 2 * T)
+    i = int(np.argmin(np.abs(course.t - T)))
+    assert course.t[i] == pytest.approx(T, abs=1e-15)
+    before, cusp, after = course.axis[i - 1 : i + 2]
+    assert before[2] < cusp[2] > after[2]
+    into, out = cusp - before, after - cusp
+    assert into @ out / np.linalg.norm(into) / np.linalg.norm(out) < -0.99  # it turns on the spot
+    assert cusp == pytest.approx(course.highest[1], abs=1e-14)
+    looping = solve(Top(r0=sign * 50.0, psidot0=sign * -4.0))
+    psi = angle_curves(looping, T).psi * sign
+    assert np.diff(psi).min() < 0 < np.diff(psi).max()
+
+
+def test_samples_are_even_in_the_amplitude_and_hold_the_turning_points() -> None:
+    scene = solve(Top(r0=0.5, theta0_deg=20.0))
+    T = nutation_period(scene)
+    assert T
+    t = phase_times(scene, 2 * T)
+    for turning in (0.0, T / 2, T, 1.5 * T, 2 * T):
+        assert np.abs(t - turning).min() < 1e-15
+    (u,) = columns_at(scene, t, ["u"])
+    assert np.abs(np.diff(u)).max() < 0.08  # evenly spaced times would leave gaps of 0.09 and more
+    (even,) = columns_at(scene, np.linspace(0, 2 * T, t.size), ["u"])
+    assert np.abs(np.diff(even)).max() > np.abs(np.diff(u)).max()
+
+
+@pytest.mark.parametrize("rate", [2.0, -2.0, 1e-9, -1e-9, 60.0])
+@pytest.mark.parametrize("around", [1.0, -3.0])
+def test_the_highest_points_of_any_start(rate: float, around: float) -> None:
+    """There the tilt is the least one, and the tilt rate turns from rising to falling."""
+    scene = solve(Top(thetadot0=rate, psidot0=around))
+    T = nutation_period(scene)
+    assert T
+    times = highest_times(scene, 3 * T)
+    assert times.size == 3
+    assert np.degrees(scene.angles(times).theta) == pytest.approx(scene.theta_min_deg, abs=1e-12)
+    before = columns_at(scene, times - T / 100, ["thetadot"])[0]
+    after = columns_at(scene, times + T / 100, ["thetadot"])[0]
+    assert (before < 0).all()
+    assert (after > 0).all()
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_the_tilt_comes_back_after_a_period_if_it_has_one(name: str) -> None:
+    scene = regime_motion(name)
+    T, tilts = nutation_period(scene), (scene.theta_min_deg, scene.theta_max_deg)
+    steady = "sleeping", "hanging", "torque-free", "separatrix", "steady precession"
+    assert (T is None) == (name in steady)
+    if T is None:
+        with pytest.raises(ValueError, match="has no phase"):
+            periods_since_highest(scene)
+        return
+    first = -periods_since_highest(scene) * T
+    theta = np.degrees(scene.angles(first + T * np.array([0.0, 0.5, 1.0])).theta)
+    assert theta == pytest.approx([tilts[0], tilts[1], tilts[0]], abs=1e-7)
+
+
+def test_the_swing_on_the_separatrix() -> None:
+    """Lowest at its own time, and u = u2 + (1 - u2) tanh^2 everywhere."""
+    scene = regime_motion("separatrix")
+    swing = separatrix_swing(scene)
+    assert swing.lowest > 0  # it starts downwards
+    t = np.linspace(0, 4, 9)
+    u = 2 * np.tanh(swing.speed * (t - swing.lowest)) ** 2 - 1
+    assert columns_at(scene, t, ["u"])[0] == pytest.approx(u, abs=1e-14)
+    back = solve(Top(**REGIMES["separatrix"] | {"thetadot0": -1}))
+    assert separatrix_swing(back).lowest == pytest.approx(-swing.lowest, rel=1e-14)
+    assert phase_times(scene, 4.0)[[0, -1]].tolist() == [0.0, 4.0]
+
+
+def test_the_numbers_of_the_start() -> None:
+    scene = solve(Top(theta0_deg=60.0, thetadot0=0.5, psidot0=2.0))
+    start = start_of(scene)
+    assert start.u == pytest.approx(0.5, rel=1e-15)
+    assert start.alpha == pytest.approx(0.25 + 4 * 0.75 + scene.a / 2, rel=1e-15)
+    assert axis_at(scene, np.zeros(1)) == pytest.approx(np.array([[0, -math.sqrt(0.75), 0.5]]))
+
+
+def test_points_are_added_where_a_curve_is_steep_but_not_for_ever() -> None:
+    t = np.linspace(0.0, 1.0, 11)
+
+    def leap(t: np.ndarray) -> np.ndarray:
+        return np.where(t < 0.5, 0.0, 1.0)[:, None] * np.ones(2)
+
+    def step(t: np.ndarray) -> np.ndarray:
+        return np.stack([t, np.tanh(20 * (t - 0.5))], axis=1)
+
+    fine = refined(t, step)
+    assert set(t) < set(fine)
+    assert np.abs(np.diff(step(fine), axis=0) / np.ptp(step(fine), axis=0)).max() <= 0.02
+    assert refined(t, leap).size < 16 * t.size
+
+
+def test_a_span_of_too_many_periods_is_refused() -> None:
+    scene = solve(Top())
+    assert checked_span(scene, None) is None
+    assert checked_span(scene, 429) == 429.0
+    for t_max, message in ((0, "t_max must be > 0, got 0"), (430, "t_max must be at most 1000")):
+        with pytest.raises(LagtopError, match=message) as error:
+            checked_span(scene, t_max)
+        assert error.value.key == "t_max"
+
+
+def test_pictures_ask_a_motion_only_what_everybody_sees() -> None:
+    """The record, the angles, and in one file the columns: nothing of how a motion is solved."""
+    for path in (ROOT / "lagrange_cli" / "plot").glob("*.py"):
+        if path.stem == "motion_facts":
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("motion."):
+                assert node.module in {"motion.solve", "motion.record"}, path

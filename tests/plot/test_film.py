@@ -1,0 +1,111 @@
+"""The view of the globe and of the top on it, and the film of the two."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Lagtop
+from pictures import SAMPLES, sample_motion
+
+from lagrange_cli import Top, solve
+from lagrange_cli.plot import film, view
+from lagrange_cli.plot.curves import turn_span
+from lagrange_cli.plot.page import Page
+from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.sphere import axis_path
+from lagrange_cli.plot.style import LIGHT, styled
+
+
+def test_the_view_is_a_rotation_and_the_start_is_in_sight() -> None:
+    for path in SAMPLES:
+        scene = sample_motion(path)
+        axis = axis_path(scene, turn_span(scene)).axis
+        seen = view.best_view(axis)
+        assert np.stack(seen) @ np.stack(seen).T == pytest.approx(np.eye(3), abs=1e-15)
+        assert np.cross(seen.right, seen.up) == pytest.approx(seen.toward, abs=1e-15)
+        assert seen.up[2] > 0
+        assert seen.faces(axis)[0]
+
+
+def test_the_top_of_the_film_stands_on_its_axis() -> None:
+    seen = view.view_from(0.3, 0.4)
+    top = view.seen_top(0.5, 1.0, 2.0, seen)
+    axis = np.array([math.sin(0.5) * math.sin(2), -math.sin(0.5) * math.cos(2), math.cos(0.5)])
+    assert np.stack(top.axle, axis=1)[1] == pytest.approx(np.stack(seen.project(axis)))
+    assert top.lid_in_sight
+    assert sum(face.on_lid for face in top.faces) == view.WEDGES
+    away = view.seen_top(math.pi - 0.5, 1.0, 2.0, view.view_from(0.3, 1.4))
+    assert not away.lid_in_sight
+
+
+def _lid(phi: float) -> list[tuple[float, ...]]:
+    """Return the corners of the light wedges of the lid at an angle of spin."""
+    top = view.seen_top(0.5, phi, 2.0, view.view_from(0.3, 0.4))
+    light = [face.corners for face in top.faces if face.on_lid and face.light]
+    return sorted(tuple(np.round(corners, 12).ravel().tolist()) for corners in light)
+
+
+def test_the_spin_is_seen_on_the_lid() -> None:
+    """A sixth of a turn swaps light and dark, a third brings the same picture again."""
+    assert _lid(1.0) != _lid(1.0 + math.pi / 3)
+    assert set(_lid(1.0)).isdisjoint(_lid(1.0 + math.pi / 3))
+    assert np.array(_lid(1.0)) == pytest.approx(np.array(_lid(1.0 + 2 * math.pi / 3)), abs=1e-11)
+    assert len(_lid(1.0)) == view.WEDGES / 2
+
+
+def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
+    page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.0), LIGHT)
+    with styled(LIGHT):
+        moving = film.Film(page)
+        for i in (0, 71, 143):
+            moving.show(i)
+            theta, _, psi = page.motion.angles(moving.times[i])
+            axis = np.array([np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)])
+            tip = [float(np.asarray(x)[1]) for x in moving.axle.get_data()]
+            assert tip == pytest.approx([float(x) for x in moving.view.project(axis)], abs=1e-12)
+            drawn = [np.isfinite(np.asarray(x.get_xdata())) for x in (moving.near, moving.far)]
+            passed = moving.path.t <= moving.times[i]
+            assert (drawn[0] | drawn[1]).sum() == passed.sum()
+            assert moving.clock.get_text() == f"t = {moving.times[i]:.4g}"
+    assert moving.times[-1] == 1.0
+
+
+@pytest.mark.slow
+def test_a_film(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from PIL import Image, ImageChops
+
+    monkeypatch.setattr(film, "FRAMES", 5)
+    files = [tmp_path / "a.gif", tmp_path / "b.gif"]
+    for file in files:
+        assert lagtop("plot", "--animate", file, "--dpi", "40").output == ""
+    frames = []
+    with Image.open(files[0]) as shown:
+        assert getattr(shown, "n_frames", 1) == 5
+        assert shown.size == (192, 200)
+        for i in range(5):
+            shown.seek(i)
+            frames.append(shown.convert("RGB"))
+    for one, next_one in zip(frames, frames[1:], strict=False):
+        assert ImageChops.difference(one, next_one).getbbox()
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(2.0, 2.0), (2.0, 50.0), (50.0, 2.0)])
+def test_the_smallest_films(size: tuple[float, float], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(film, "FRAMES", 2)
+    page = Page(solve(Top()), ["sphere"], PlotRequest(), LIGHT, size)
+    assert film.film_bytes(page, "x.gif", 20).startswith(b"GIF8")
+
+
+def test_mp4_needs_ffmpeg(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    result = lagtop("plot", "--animate", tmp_path / "x.mp4")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "Error: --animate FILE.mp4 needs ffmpeg on the PATH (or write FILE.gif)\n"
+    )
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,304 @@
+"""The numbers that each picture shows, and that it shows them."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import oracle
+import pytest
+from conftest import ROOT
+from matplotlib.collections import LineCollection
+from pictures import REGIMES, SAMPLES, drawn, regime_motion, sample_motion
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.errors import NothingToDrawError
+from lagrange_cli.plot.cubic import cubic_curve
+from lagrange_cli.plot.curves import span, turn_span
+from lagrange_cli.plot.key_map import key_map, parse_input_range
+from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, help_lines
+from lagrange_cli.plot.motion_facts import nutation_period
+from lagrange_cli.plot.phase import phase_portrait, separatrix
+from lagrange_cli.plot.remainders import remainder_curves
+from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.sphere import axis_path
+from lagrange_cli.plot.view import best_view
+
+# The registry.
+
+
+def test_every_kind_is_a_file_with_a_function_draw() -> None:
+    for name, kind in KINDS.items():
+        assert kind.name == name
+        assert list(inspect.signature(kind.draw).parameters) == [
+            *("panel", "motion", "request", "look")
+        ]
+        assert kind.help
+    files = (ROOT / "lagrange_cli" / "plot").glob("*.py")
+    drawing = {path.stem for path in files if "\ndef draw(" in path.read_text()}
+    assert drawing == {kind.file for kind in KINDS.values()}
+
+
+def test_the_sheet_is_what_the_rows_say() -> None:
+    assert ON_THE_SHEET == ("sphere", "angles", "remainders", "cubic")
+    assert [line.split()[0] for line in help_lines()] == [*KINDS, "all"]
+    assert "sphere, angles, remainders and cubic" in help_lines()[-1]
+
+
+# The angles and what is left of them.
+
+
+@pytest.mark.parametrize("radians", [False, True])
+def test_the_angles_are_drawn_as_they_are(radians: bool) -> None:
+    scene, factor = solve(Top()), 1.0 if radians else 180 / math.pi
+    figure = drawn(scene, ["angles"], PlotRequest(radians=radians, t_max=1.0))
+    for i, rate in enumerate((None, scene.mean_spin_rate, scene.mean_precession_rate)):
+        axes = figure.axes[i]
+        curve = next(line for line in axes.lines if line.get_lw() == 1.8)
+        t, shown = (np.asarray(x) for x in curve.get_data())
+        assert (t[0], t[-1]) == (0.0, 1.0)
+        assert shown == pytest.approx(scene.angles(t)[i] * factor, rel=1e-15)
+        means = [line for line in axes.lines if line.get_lw() == 0.9]
+        assert len(means) == (rate is not None)
+        if rate is not None:
+            end = np.asarray(means[0].get_ydata())[-1]
+            assert end == pytest.approx(rate * factor, rel=1e-15)
+        assert ("rad" if radians else "deg") in axes.get_ylabel()
+    marks = figure.axes[0].child_axes[0].get_xticks()
+    assert marks == pytest.approx([nutation_period(scene), 2 * (nutation_period(scene) or 0)])
+
+
+def test_a_vertical_top_has_no_precession_to_draw() -> None:
+    axes = drawn(regime_motion("sleeping"), ["angles"]).axes[2]
+    assert not axes.lines
+    assert [text.get_text() for text in axes.texts] == ["not defined: all is spin"]
+
+
+@pytest.mark.parametrize("scene", [(50.0, 30.0), (-50.0, 30.0), (20.0, 120.0)])
+def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
+    """They agree with (6,4) and (7,4) in 50 digits, and are what is drawn."""
+    r0, tilt = scene
+    top = solve(Top(r0=r0, theta0_deg=tilt))
+    course = remainder_curves(top, span(top, 2))
+    judge = oracle.Scene(r0=r0, theta0_deg=tilt)
+    constants = oracle.constants(judge)
+    for i in range(0, course.t.size, 37):
+        t = float(course.t[i])
+        _, phi, psi = oracle.angles(judge, t)
+        spin = float(phi - constants["mean_spin_rate"] * t)
+        assert course.spin[i] == pytest.approx(spin, abs=1e-13)
+        exact = float(psi - constants["mean_precession_rate"] * t)
+        assert course.precession[i] == pytest.approx(exact, abs=1e-13)
+    figure = drawn(top, ["remainders"])
+    for axes, curve in zip(figure.axes, (course.spin, course.precession), strict=False):
+        shown = next(line for line in axes.lines if line.get_lw() == 1.8)
+        assert shown.get_ydata() == pytest.approx(np.degrees(curve), rel=1e-15)
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_remainders_need_a_period(name: str) -> None:
+    scene = regime_motion(name)
+    if nutation_period(scene):
+        assert np.ptp(remainder_curves(scene, span(scene, 1)).spin) < 2 * math.pi
+        return
+    with pytest.raises(NothingToDrawError, match=r"^no remainders: the tilt has no period \("):
+        remainder_curves(scene, 1.0)
+
+
+# The cubic.
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_the_cubic_is_that_of_the_paper_and_the_roots_sit_on_its_zeros(path: Path) -> None:
+    """f(u) drawn from its product form, judged by (4,9) from the start."""
+    scene = sample_motion(path)
+    top, cubic = scene.top, cubic_curve(scene)
+    u0 = math.cos(top.theta0_rad or math.radians(top.theta0_deg or 0))
+    m, A, C, s, g, r0, rate = (
+        float(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.psidot0)
+    )
+    a, b, around = 2 * m * g * s / A, C * r0 / A, rate * (1 - u0 * u0)
+    alpha, beta = around * rate + a * u0, around + b * u0
+
+    def f(u: Any) -> Any:
+        return (1 - u * u) * (alpha - a * u) - (beta - b * u) ** 2
+
+    size = 1e-14 * (alpha + a + (abs(beta) + abs(b)) ** 2)
+    assert np.abs(cubic.f - f(cubic.u)).max() < size * max(1, np.abs(cubic.u).max() ** 3)
+    for root in (cubic.u1, cubic.u2):
+        assert abs(f(root)) < size
+    band = (cubic.u > cubic.u2) & (cubic.u < cubic.u1)
+    assert band.sum() > 100
+    assert (cubic.f[band] > 0).all()
+    axes = drawn(scene, ["cubic"]).axes[0]
+    dots = next(line for line in axes.lines if line.get_marker() == "o")
+    shown = [cubic.u1, cubic.u2]
+    assert cubic.u3
+    if cubic.u3 <= cubic.u[-1]:
+        shown.append(cubic.u3)
+        assert abs(f(cubic.u3)) < 4 * size
+    assert dots.get_xdata() == pytest.approx(shown)
+    assert not np.any(dots.get_ydata())
+
+
+def test_the_cubic_without_torque_is_a_parabola() -> None:
+    """(4,9) with a = 0 and psidot0 = 3: f = (1 - u^2) alpha - (beta - b u)^2."""
+    scene = regime_motion("torque-free, nodding")
+    cubic = cubic_curve(scene)
+    u0, b = math.sqrt(0.75), scene.b
+    alpha, beta = 9 * 0.25, 3 * 0.25 + b * u0
+    assert cubic.u3 is None
+    f = (1 - cubic.u**2) * alpha - (beta - b * cubic.u) ** 2
+    assert cubic.f == pytest.approx(f, abs=1e-11)
+
+
+# The phase plane.
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_the_orbit_in_the_phase_plane_keeps_the_energy(path: Path) -> None:
+    scene = sample_motion(path)
+    portrait = phase_portrait(scene)
+    assert portrait.theta.min() == pytest.approx(math.radians(scene.theta_min_deg or 0), abs=1e-14)
+    assert portrait.theta.max() == pytest.approx(math.radians(scene.theta_max_deg or 0), abs=1e-14)
+    assert portrait.rate.max() == pytest.approx(-portrait.rate.min(), rel=1e-3)
+    assert portrait.rate[1] > 0  # released from rest it falls
+    stable = (scene.b**2) / (2 * scene.a) >= 1
+    assert (portrait.separatrix is None) == stable
+    assert ("≥ 1" in portrait.why) == stable
+    u, top = np.cos(portrait.theta), scene.top
+    around = float(top.psidot0) * math.sin(portrait.start[0]) ** 2
+    beta = around + scene.b * u[0]
+    energy = portrait.rate**2 + ((beta - scene.b * u) / np.sin(portrait.theta)) ** 2 + scene.a * u
+    assert energy == pytest.approx(energy[0], rel=1e-12)
+
+
+def test_the_separatrix_is_where_upright_tops_go() -> None:
+    """A top at rest 1e-7 degrees off the vertical follows it."""
+    near = solve(Top(r0=30.0, theta0_deg=1e-7))
+    theta, rate = separatrix(near.a, near.b)
+    assert theta[0] == rate[0] == 0
+    assert theta[-1] == pytest.approx(math.radians(near.theta_max_deg or 0), abs=1e-12)
+    orbit = phase_portrait(near)
+    lowest = int(np.argmax(orbit.theta))
+    falling = np.interp(theta, orbit.theta[: lowest + 1], orbit.rate[: lowest + 1])
+    inner = (theta > 0.01) & (theta < 0.99 * theta[-1])
+    assert inner.sum() > 100
+    assert rate[inner] == pytest.approx(falling[inner], rel=2e-3)
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_the_phase_picture_shows_the_orbit_and_the_start(name: str) -> None:
+    scene = regime_motion(name)
+    portrait, lines = phase_portrait(scene), drawn(scene, ["phase"]).axes[0].lines
+    shown = {str(line.get_label()): line for line in lines}
+    orbit = np.asarray(shown["this motion"].get_data())
+    assert orbit == pytest.approx(np.stack([np.degrees(portrait.theta), portrait.rate]))
+    start = np.asarray(shown["start"].get_data()).ravel()
+    assert start == pytest.approx([float(scene.top.theta0_deg or 0), float(scene.top.thetadot0)])
+    assert bool(np.size(shown[portrait.why].get_xdata())) == (portrait.separatrix is not None)
+
+
+# The map.
+
+
+def test_the_map_holds_what_solve_says() -> None:
+    x, y = parse_input_range("x", "r0=20:100:5"), parse_input_range("y", "theta0=10:90:3")
+    chart = key_map(solve(Top()), "T_nutation", x, y)
+    assert chart.values.shape == (3, 5)
+    assert chart.values[2, 1] == solve(Top(r0=40.0, theta0_deg=90.0)).T_nutation
+    threshold = math.sqrt(4 * 39032 * 1587 * 981 * 4) / 17458
+    assert chart.sleeping[0] == pytest.approx(x.values / threshold, rel=1e-14)
+    figure = drawn(solve(Top()), ["map"], PlotRequest(key="T_nutation", x=x, y=y))
+    axes = figure.axes[0]
+    contour = axes.collections[-1].get_paths()[0].vertices
+    assert np.asarray(contour)[:, 0] == pytest.approx(threshold, rel=1e-6)
+    values = np.asarray(axes.collections[0].get_array())
+    assert np.array_equal(values.reshape(3, 5), chart.values)
+    ring = next(line for line in axes.lines if line.get_label() == "this scene")
+    assert [*np.ravel(ring.get_xdata()), *np.ravel(ring.get_ydata())] == [50.0, 30.0]
+
+
+def test_the_map_of_a_scene_in_radians() -> None:
+    top = solve(Top(theta0_rad=0.05))
+    x, y = parse_input_range("x", "r0=20:100:2"), parse_input_range("y", "theta0=10:90:2")
+    chart = key_map(top, "theta_min_deg", x, y)
+    assert chart.values.tolist() == [[10, 10], [90, 90]]
+
+
+def test_a_map_over_equal_factors() -> None:
+    """The axes are logarithmic, and each value is in the middle of its cell there."""
+    x, y = parse_input_range("x", "r0=log:1:10000:3"), parse_input_range("y", "theta0=10:90:2")
+    assert x.values == pytest.approx([1, 100, 10000], rel=1e-15)
+    axes = drawn(solve(Top()), ["map"], PlotRequest(x=x, y=y)).axes[0]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    mesh: Any = axes.collections[0]
+    edges = mesh.get_coordinates()
+    assert edges[0, :, 0] == pytest.approx([0.1, 10, 1000, 100000])
+    assert edges[:, 0, 1] == pytest.approx([-30, 50, 130])
+
+
+def test_the_progress_of_a_map_is_told_in_tops() -> None:
+    seen: list[int] = []
+
+    def progress(parts: Any, count: int) -> Iterator[Any]:
+        seen.append(count)
+        for part in parts:
+            seen.append(len(part))
+            yield part
+
+    x, y = parse_input_range("x", "r0=20:100:5"), parse_input_range("y", "theta0=10:90:3")
+    key_map(solve(Top()), "K", x, y, progress)
+    assert seen == [15, 5, 5, 5]
+
+
+@pytest.mark.parametrize(
+    ("key", "x", "y", "message"),
+    [
+        ("K", "r0=1:2:1001", "theta0=1:2:1000", "x and y must have at most 1e6 cells"),
+        ("K", "r0=1:2:3", "r0=1:2:3", "x and y must be different inputs, got r0 twice"),
+        ("regime", "r0=1:2:3", "g=1:2:3", "key must be among a b u1"),
+        ("K", "r0=1:2:3", "theta0=100:200:3", r"theta0_deg must be in \[0, 180\]"),
+        ("K", "r0=1:2:2001", "g=1:2:3", r"x must have a count in \[2, 2000\], got 'r0=1:2:2001'"),
+        ("K", "r0=2,2", "g=1:2:3", "x must have values that increase, got 'r0=2,2'"),
+    ],
+)
+def test_maps_that_cannot_be(key: str, x: str, y: str, message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        key_map(solve(Top()), key, parse_input_range("x", x), parse_input_range("y", y))
+
+
+# The sphere.
+
+
+def test_the_drawn_path_is_the_path() -> None:
+    """Every piece lies on the page where the axis is; the far side is drawn paler."""
+    scene = solve(Top())
+    path = axis_path(scene, turn_span(scene))
+    view = best_view(path.axis)
+    lines = drawn(scene, ["sphere"]).axes[0].collections
+    far, near = (x for x in lines if isinstance(x, LineCollection))
+    assert far.get_alpha() == 0.35
+    points = np.stack(view.project(path.axis), axis=1)
+    shown = np.concatenate(
+        [np.asarray(x.get_segments()[i]) for x in (far, near) for i in range(len(x.get_segments()))]
+    )
+    assert {tuple(p) for p in shown.tolist()} == {tuple(p) for p in points.tolist()}
+    assert np.hypot(*points.T).max() <= 1 + 1e-15
+
+
+def test_a_narrow_path_is_magnified() -> None:
+    """The inset shows the first two nods in the angles themselves."""
+    assert len(drawn(solve(Top()), ["sphere"]).axes) == 2  # the globe and the bar of colours
+    scene = solve(Top(r0=1000.0))
+    T = nutation_period(scene)
+    assert T
+    _, inset, _ = drawn(scene, ["sphere"]).axes
+    psi, theta = (np.asarray(x) for x in inset.lines[0].get_data())
+    assert theta[0] == pytest.approx(30)
+    assert theta.max() == pytest.approx(scene.theta_max_deg, abs=1e-12)
+    assert psi[-1] == pytest.approx(np.degrees(scene.angles(2 * T).psi), rel=1e-12)
