@@ -54,7 +54,11 @@ Needs matplotlib: pip install 'lagtop[plot]'.
 @click.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: over theta0]")
 @click.option("--dark", is_flag=True, help="Light on dark.")
 @click.option("--size", metavar="WxH", help="Width and height of the page in inches, as 8x6.")
-@click.option("--dpi", type=NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
+@click.option(
+    "--dpi",
+    type=NUMBER,
+    help="Pixels per inch, 20 to 1000; small letters need more than 20.  [default: 150, film 100]",
+)
 @click.option("--animate", metavar="FILE", help="A film of the top: FILE.gif or FILE.mp4.")
 @click.option("--show", is_flag=True, help="Open a window.")
 @click.option("--format", "fmt", type=click.Choice(FORMATS), help="[default: as FILE ends]")

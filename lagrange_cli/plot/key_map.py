@@ -93,10 +93,10 @@ def key_map(
     if key not in NUMBER_KEYS:
         raise LagtopError(f"key must be among {' '.join(NUMBER_KEYS)}, got {key!r}", "key")
     if x.name == y.name:
-        raise LagtopError(f"x and y must be different inputs, got {x.name} twice", "x")
+        raise LagtopError(f"x must be another input than y, got {x.name} twice", "x")
     cells = x.values.size * y.values.size
     if cells > MOST_CELLS:
-        raise LagtopError(f"x and y must have at most 1e6 cells together, got {cells}", "x")
+        raise LagtopError(f"x must have at most 1e6 cells together with y, got {cells}", "x")
 
     def over(x_values: Array, y_values: Array | float) -> dict[str, Any]:
         return motion.top.inputs() | {_input(x.name): x_values, _input(y.name): y_values}

@@ -12,6 +12,7 @@ from conftest import ROOT
 from pictures import REGIMES, SAMPLES, regime_motion, sample_motion
 
 from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.plot.angles import angle_curves
 from lagrange_cli.plot.curves import (
     checked_span,
@@ -100,7 +101,7 @@ def test_the_highest_points_of_any_start(rate: float, around: float) -> None:
     T = nutation_period(scene)
     assert T
     times = highest_times(scene, 3 * T)
-    assert times.size == 3
+    assert times.size == 3 + (abs(rate) < 1)  # those that start highest come back three times
     assert np.degrees(scene.angles(times).theta) == pytest.approx(scene.theta_min_deg, abs=1e-12)
     before = columns_at(scene, times - T / 100, ["thetadot"])[0]
     after = columns_at(scene, times + T / 100, ["thetadot"])[0]
@@ -145,13 +146,13 @@ def test_the_numbers_of_the_start() -> None:
 
 
 def test_points_are_added_where_a_curve_is_steep_but_not_for_ever() -> None:
-    t = np.linspace(0.0, 1.0, 11)
+    t = np.linspace(0.0, 1.0, 41)
 
-    def leap(t: np.ndarray) -> np.ndarray:
+    def leap(t: Array) -> Array:
         return np.where(t < 0.5, 0.0, 1.0)[:, None] * np.ones(2)
 
-    def step(t: np.ndarray) -> np.ndarray:
-        return np.stack([t, np.tanh(20 * (t - 0.5))], axis=1)
+    def step(t: Array) -> Array:
+        return np.stack([t, np.tanh(6 * (t - 0.5))], axis=1)
 
     fine = refined(t, step)
     assert set(t) < set(fine)

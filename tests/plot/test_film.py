@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +64,9 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
         for i in (0, 71, 143):
             moving.show(i)
             theta, _, psi = page.motion.angles(moving.times[i])
-            axis = np.array([np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)])
+            axis = np.array(
+                [np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)]
+            )
             tip = [float(np.asarray(x)[1]) for x in moving.axle.get_data()]
             assert tip == pytest.approx([float(x) for x in moving.view.project(axis)], abs=1e-12)
             drawn = [np.isfinite(np.asarray(x.get_xdata())) for x in (moving.near, moving.far)]
@@ -88,7 +91,7 @@ def test_a_film(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         for i in range(5):
             shown.seek(i)
             frames.append(shown.convert("RGB"))
-    for one, next_one in zip(frames, frames[1:], strict=False):
+    for one, next_one in pairwise(frames):
         assert ImageChops.difference(one, next_one).getbbox()
     assert files[0].read_bytes() == files[1].read_bytes()
 

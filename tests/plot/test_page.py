@@ -1,30 +1,170 @@
-@pytest.mark.parametrize(
-    ("path", "style"), [*((path, LIGHT) for path in SAMPLES), (SAMPLES[0], DARK)]
+"""The page: its files, its letters, the sizes at which it can be drawn, and its colours."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.figure import Figure
+from pictures import REGIMES, SAMPLES, drawn, regime_motion, sample_motion
+
+from lagrange_cli import LagtopError, Regime, Top, solve
+from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.plot.key_map import parse_input_range
+from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET
+from lagrange_cli.plot.motion_facts import nutation_period
+from lagrange_cli.plot.page import (
+    LEAST_LETTERS,
+    MOST_PIXELS,
+    Page,
+    check_pixels,
+    draw_page,
+    page_bytes,
 )
-def test_every_kind_of_every_sample(path: Path, style: Look) -> None:
-    """Warnings are errors, those of missing glyphs and of failed layouts too."""
-    x, y = keymap.parse_axis("--x", "r0=20:100:4"), keymap.parse_axis("--y", "theta0=10:90:3")
-    page = Page(sample_motion(path), list(KINDS), PlotRequest(x=x, y=y, radians=style is DARK), style)
-    assert page_bytes(page, "png", 40).startswith(b"\x89PNG")
+from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.style import DARK, LIGHT, POINTS, Look, styled
+
+X, Y = parse_input_range("x", "r0=20:100:4"), parse_input_range("y", "theta0=10:90:3")
 
 
+def png(page: Page, dpi: float) -> Array:
+    """Return the pixels of a page, shape (height, width, 3)."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(page_bytes(page, "png", dpi))) as picture:
+        return np.asarray(picture.convert("RGB"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("path", "look"), [*((path, LIGHT) for path in SAMPLES), (SAMPLES[0], DARK)]
+)
+def test_every_kind_of_every_sample(path: Path, look: Look) -> None:
+    """A smoke test: warnings are errors, those of missing glyphs and of failed layouts too.
+
+    Each of the six panels has ink, and the margin is paper.
+    """
+    page = Page(sample_motion(path), list(KINDS), PlotRequest(x=X, y=Y, radians=look is DARK), look)
+    pixels = png(page, 40)
+    width, height = page.inches()
+    assert pixels.shape == (round(height * 40), round(width * 40), 3)
+    paper = np.array([int(look.paper[i : i + 2], 16) for i in (1, 3, 5)])
+    inked = (np.abs(pixels.astype(int) - paper) > 40).any(axis=2)
+    assert not inked[:2].any()
+    for row in np.array_split(inked, 2):
+        for panel in np.array_split(row[:, round(3.1 * 40) :], 3, axis=1):
+            assert panel.mean() > 0.02
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", REGIMES)
 def test_every_regime(name: str) -> None:
-    scene = solve(Top(**REGIMES[name]))
+    """A smoke test: no kind of motion gives a warning, and only remainders may be missing."""
+    scene = regime_motion(name)
     assert name == scene.regime.value or name not in {regime.value for regime in Regime}
     page = Page(scene, ["sphere", "angles", "remainders", "cubic", "phase"], PlotRequest(), LIGHT)
-    assert page_bytes(page, "png", 40).startswith(b"\x89PNG")
-    if not nutation_period(scene):
-        with pytest.raises(LagtopError, match=r"no remainders: .* has no nutation period"):
-            page_bytes(page._replace(kinds=["remainders"]), "png", 40)
+    assert png(page, 40).min() < 64
+    with styled(LIGHT):
+        figure = Figure(layout="constrained")
+        draw_page(figure, page)
+    missing = [text.get_text() for text in figure.subfigs[1].subfigs[2].texts]
+    assert [text[:14] for text in missing] == [
+        "no remainders:" for _ in range(nutation_period(scene) is None)
+    ]
+
+
+# Sizes.
+
+
+KIND_LISTS = [*([kind] for kind in KINDS), ON_THE_SHEET, ("cubic", "phase"), tuple(KINDS)]
+
+
+@given(
+    kinds=st.sampled_from(KIND_LISTS),
+    size=st.none() | st.tuples(st.floats(2, 50), st.floats(2, 50)),
+    dpi=st.floats(20, 1000),
+)
+def test_each_page_is_drawable_or_refused(
+    kinds: Sequence[str], size: tuple[float, float] | None, dpi: float
+) -> None:
+    """What passes has letters of a pixel and not too many pixels; a refusal names what passes."""
+    page = Page(solve(Top()), kinds, PlotRequest(), LIGHT, size)
+    width, height = page.inches()
+    try:
+        page.check_dpi(dpi, "png")
+    except LagtopError as error:
+        bounds = re.search(r"dpi must be in \[(\d+), (\d+)\]", str(error))
+        assert bounds
+        for bound in bounds.groups():
+            page.check_dpi(float(bound), "png")
+        return
+    assert POINTS * page.lettering() * dpi / 72 >= LEAST_LETTERS
+    assert width * height * dpi**2 <= MOST_PIXELS * (1 + 1e-12)
 
 
 @pytest.mark.parametrize(
-    ("style", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")]
+    ("kinds", "size", "dpi"),
+    [
+        (["sphere"], (2.0, 2.0), 21.0),
+        (ON_THE_SHEET, (2.0, 2.0), 49.0),
+        (("cubic", "phase"), (2.0, 50.0), 49.0),
+    ],
 )
-def test_files_are_the_same_every_time(style: str, start: bytes) -> None:
-    page = Page(solve(Top()), ["sphere", "cubic"], PlotRequest(), LIGHT)
-    first, second = (page_bytes(page, style, 50) for _ in range(2))
+def test_the_smallest_pictures(kinds: Sequence[str], size: tuple[float, float], dpi: float) -> None:
+    """FreeType draws every letter; a step below there is a line that says so."""
+    page = Page(solve(Top(r0=101.0, theta0_deg=0.5)), kinds, PlotRequest(x=X, y=Y), LIGHT, size)
+    assert png(page, dpi).shape[:2] == (size[1] * dpi, size[0] * dpi)
+    with pytest.raises(LagtopError, match=r"^dpi must be in \[\d+, \d+\] for 2 x \d+ inches"):
+        page_bytes(page, "png", dpi - 1)
+
+
+SIDES = 2.0, 3.0, 8.0, 50.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kinds", KIND_LISTS, ids=",".join)
+@pytest.mark.parametrize("width", SIDES)
+def test_pictures_over_the_whole_range_of_sizes(kinds: Sequence[str], width: float) -> None:
+    """At the fewest pixels per inch that are allowed, and as SVG and PDF where there are none."""
+    scene = solve(Top(r0=101.0, theta0_deg=0.5))
+    for height in SIDES:
+        page = Page(scene, kinds, PlotRequest(x=X, y=Y), LIGHT, (width, height))
+        least = max(20.0, 72 * LEAST_LETTERS / (POINTS * page.lettering()))
+        assert png(page, least * (1 + 1e-12)).size > 0
+        if width == height == 2.0:
+            assert page_bytes(page, "svg", 20.0).startswith(b"<?xml")
+            assert page_bytes(page, "pdf", 20.0).startswith(b"%PDF")
+
+
+def test_pictures_of_too_many_pixels_are_refused() -> None:
+    """The usual size of the page counts too, where none is given."""
+    page = Page(solve(Top()), ON_THE_SHEET, PlotRequest(), LIGHT)
+    with pytest.raises(LagtopError, match=r"\[20, 583\] for 14.7 x 10 inches, got 600") as error:
+        page_bytes(page, "png", 600)
+    assert error.value.key == "dpi"
+    with pytest.raises(LagtopError, match=r"\[20, 1000\]"):
+        check_pixels(1001, (2, 2))
+
+
+# Files.
+
+
+@pytest.mark.parametrize(
+    ("fmt", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")]
+)
+@pytest.mark.parametrize(
+    "kinds", [["cubic"], pytest.param(["sphere", "cubic"], marks=pytest.mark.slow)], ids=",".join
+)
+def test_files_are_the_same_every_time(kinds: list[str], fmt: str, start: bytes) -> None:
+    page = Page(solve(Top()), kinds, PlotRequest(), LIGHT)
+    first, second = (page_bytes(page, fmt, 50) for _ in range(2))
     assert first == second
     assert first.startswith(start)
     assert not re.search(rb"20\d\d-\d\d|CreationDate|matplotlib v", first)
@@ -43,14 +183,17 @@ def test_letters_shrink_with_the_page_and_fit_it() -> None:
     assert all(upper.y0 > lower.y0 for upper, lower in pairwise(keys))
 
 
-def test_the_numbers_of_the_sheet(lagtop: Lagtop) -> None:
+def test_the_numbers_of_the_sheet() -> None:
     figure = drawn(solve(Top()), ["sphere", "angles"])
     texts = {text.get_text() for text in figure.subfigs[0].texts}
     assert {"T_nutation", "0.4292501", "mean_precession_rate", "7.991055", "cusped"} <= texts
 
 
+# Colours.
+
+
 def _seen(colour: str, matrix: Sequence[Sequence[float]]) -> Array:
-    """CIELAB of a colour as it is seen through a simulation in linear RGB."""
+    """Return a colour in CIELAB as it is seen through a simulation in linear RGB."""
     rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     linear = np.clip(np.array(matrix) @ linear, 0, 1)
@@ -80,10 +223,8 @@ VISIONS: dict[str, list[list[float]]] = {  # Machado, Oliveira and Fernandes (20
 
 
 @pytest.mark.parametrize("vision", VISIONS)
-@pytest.mark.parametrize("style", [LIGHT, DARK], ids=["light", "dark"])
-def test_the_colours_differ_for_everybody(style: Look, vision: str) -> None:
-    seen = [_seen(colour, VISIONS[vision]) for colour in (*style.lines, style.paper)]
+@pytest.mark.parametrize("look", [LIGHT, DARK], ids=["light", "dark"])
+def test_the_colours_differ_for_everybody(look: Look, vision: str) -> None:
+    seen = [_seen(colour, VISIONS[vision]) for colour in (*look.lines, look.paper)]
     distances = [float(np.linalg.norm(p - q)) for i, p in enumerate(seen) for q in seen[i + 1 :]]
     assert min(distances) > 15
-
-

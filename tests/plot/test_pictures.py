@@ -58,11 +58,11 @@ def test_the_angles_are_drawn_as_they_are(radians: bool) -> None:
     figure = drawn(scene, ["angles"], PlotRequest(radians=radians, t_max=1.0))
     for i, rate in enumerate((None, scene.mean_spin_rate, scene.mean_precession_rate)):
         axes = figure.axes[i]
-        curve = next(line for line in axes.lines if line.get_lw() == 1.8)
+        curve = next(line for line in axes.lines if line.get_linewidth() == 1.8)
         t, shown = (np.asarray(x) for x in curve.get_data())
         assert (t[0], t[-1]) == (0.0, 1.0)
         assert shown == pytest.approx(scene.angles(t)[i] * factor, rel=1e-15)
-        means = [line for line in axes.lines if line.get_lw() == 0.9]
+        means = [line for line in axes.lines if line.get_linewidth() == 0.9]
         assert len(means) == (rate is not None)
         if rate is not None:
             end = np.asarray(means[0].get_ydata())[-1]
@@ -95,7 +95,7 @@ def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
         assert course.precession[i] == pytest.approx(exact, abs=1e-13)
     figure = drawn(top, ["remainders"])
     for axes, curve in zip(figure.axes, (course.spin, course.precession), strict=False):
-        shown = next(line for line in axes.lines if line.get_lw() == 1.8)
+        shown = next(line for line in axes.lines if line.get_linewidth() == 1.8)
         assert shown.get_ydata() == pytest.approx(np.degrees(curve), rel=1e-15)
 
 
@@ -237,7 +237,7 @@ def test_a_map_over_equal_factors() -> None:
     axes = drawn(solve(Top()), ["map"], PlotRequest(x=x, y=y)).axes[0]
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
     mesh: Any = axes.collections[0]
-    edges = mesh.get_coordinates()
+    edges = np.asarray(mesh.get_coordinates())
     assert edges[0, :, 0] == pytest.approx([0.1, 10, 1000, 100000])
     assert edges[:, 0, 1] == pytest.approx([-30, 50, 130])
 
@@ -259,8 +259,13 @@ def test_the_progress_of_a_map_is_told_in_tops() -> None:
 @pytest.mark.parametrize(
     ("key", "x", "y", "message"),
     [
-        ("K", "r0=1:2:1001", "theta0=1:2:1000", "x and y must have at most 1e6 cells"),
-        ("K", "r0=1:2:3", "r0=1:2:3", "x and y must be different inputs, got r0 twice"),
+        (
+            "K",
+            "r0=1:2:1001",
+            "theta0=1:2:1000",
+            "x must have at most 1e6 cells together with y",
+        ),
+        ("K", "r0=1:2:3", "r0=1:2:3", "x must be another input than y, got r0 twice"),
         ("regime", "r0=1:2:3", "g=1:2:3", "key must be among a b u1"),
         ("K", "r0=1:2:3", "theta0=100:200:3", r"theta0_deg must be in \[0, 180\]"),
         ("K", "r0=1:2:2001", "g=1:2:3", r"x must have a count in \[2, 2000\], got 'r0=1:2:2001'"),
