@@ -49,7 +49,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
 @click.option(
     "--x",
     metavar="RANGE",
-    help="Horizontal axis of `map`: INPUT=[log:]START:STOP:COUNT.  [default: over r0]",
+    help="Horizontal axis of `map`: INPUT=[log:]start:stop:count.  [default: over r0]",
 )
 @click.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: over theta0]")
 @click.option("--dark", is_flag=True, help="Light on dark.")

@@ -11,9 +11,10 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import SubFigure
 from matplotlib.ticker import LogLocator, NullLocator
 
+from ..arithmetic.points import LogPoints
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.ranges import parse_axis
+from ..inputs.ranges import parse_range
 from ..inputs.top import Top
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion
@@ -54,23 +55,25 @@ class KeyMap(NamedTuple):
 def parse_input_range(name: str, text: str) -> InputRange:
     """Return the range that a text such as `r0=10:100:40` or `r0=log:1:100:40` stands for.
 
-    `name` is the argument that an error names.  Raises LagtopError where the input is unknown, or
-    where it is no range or list of 2 to 2000 increasing values.
+    `name` is the argument that an error names.  Raises LagtopError where the input is unknown, and
+    where it is no range of 2 to 2000 increasing values.
     """
     known, _, grid = text.partition("=")
     if known not in INPUTS:
         inputs = " ".join(INPUTS)
         raise LagtopError(f"{name} must begin with one of {inputs} and =, got {text!r}", name)
     try:
-        axis = parse_axis(grid)
+        points = parse_range(grid)
     except LagtopError as error:
         raise LagtopError(f"{name} {error}", name) from None
-    if not 2 <= axis.size <= MOST_VALUES:
-        raise LagtopError(f"{name} must have a count in [2, {MOST_VALUES}], got {text!r}", name)
-    values = axis.values(np.arange(axis.size))
-    if not (np.diff(values) > 0).all():
-        raise LagtopError(f"{name} must have values that increase, got {text!r}", name)
-    return InputRange(known, values, axis.spacing == "log" and values[0] > 0)
+    if not 2 <= points.count <= MOST_VALUES:
+        raise LagtopError(
+            f"{name} must have a count in [2, {MOST_VALUES}], got {points.count}", name
+        )
+    values = next(points.blocks())
+    if not values[0] < values[-1]:
+        raise LagtopError(f"{name} must have start < stop, got {text!r}", name)
+    return InputRange(known, values, isinstance(points, LogPoints) and bool(values[0] > 0))
 
 
 def default_ranges(top: Top) -> tuple[InputRange, InputRange]:
