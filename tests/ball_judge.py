@@ -99,21 +99,23 @@ class Judge:
         exact = self.record.get(key)
         if exact is None or not math.isfinite(computed):
             return math.inf
-        with _precision(4 * MOST_BITS):
+        with _precision(8 * FIRST_BITS):
             away = exact - ball(Fraction(computed))
             outward = math.nextafter(computed, math.inf if away > 0 else -math.inf)
             gap = abs(ball(Fraction(outward)) - ball(Fraction(computed)))
             return float((abs(away) / gap).abs_upper())
 
-    def relative(self, key: str, computed: float, scale: float = 0.0) -> float:
-        """Return the error of a key in eps of its exact value, or of a scale where that is more."""
+    def relative(self, key: str, computed: float, absolute: float | None = None) -> float:
+        """Return the error of a key in eps of its exact value, or of the size given instead."""
         exact = self.record.get(key)
         if exact is None or not math.isfinite(computed):
             return math.inf
         with _precision(8 * FIRST_BITS):
-            size = max(float(abs(exact).abs_upper()), scale)
-            away = float(abs(exact - ball(Fraction(computed))).abs_upper())
-            return away / (EPS * size) if size else (math.inf if computed else 0.0)
+            away = abs(exact - ball(Fraction(computed)))
+            size = abs(exact) if absolute is None else ball(Fraction(absolute))
+            if not size > 0:
+                return 0.0 if away.contains(0) else math.inf
+            return float((away / (EPS * size)).abs_upper())
 
 
 def _with_units(state: State) -> list[tuple[arb, arb]]:

@@ -1,0 +1,261 @@
+"""Random scenes of the worst kinds, for `fuzz.py`; each kind is one function and one entry.
+
+Numbers are doubles, so that what is to be exact (a cusp, a pass over a pole, a steady precession)
+uses tilts whose cosine is rational and numbers with few bits.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+
+Scene = dict[str, float]
+TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
+"""Degrees whose cosine is rational."""
+
+
+def power(rng: random.Random, low: float, high: float) -> float:
+    """Return a number between 10^low and 10^high, its logarithm uniform."""
+    return 10 ** rng.uniform(low, high)
+
+
+def signed(rng: random.Random, size: float) -> float:
+    """Return the size with a random sign."""
+    return rng.choice([-1, 1]) * size
+
+
+def near(rng: random.Random, value: float) -> float:
+    """Return a double next to a value, up to a few or up to 1e-2 of it away."""
+    if rng.random() < 0.3:
+        for _ in range(rng.randrange(3)):
+            value = math.nextafter(value, signed(rng, math.inf))
+        return value
+    return value * (1 + signed(rng, power(rng, -16, -2)))
+
+
+def body(rng: random.Random) -> Scene:
+    """Return a top with m = s = g = 1."""
+    A = rng.uniform(0.5, 2)
+    C = A * rng.choice([rng.uniform(0.01, 2), 1, 2, power(rng, -8, -2)])
+    return {"m": 1, "A": A, "C": C, "s": 1, "g": 1}
+
+
+def start(rng: random.Random) -> Scene:
+    """Return generic rates and a generic tilt."""
+    return {
+        "r0": rng.uniform(-6, 6),
+        "theta0_deg": rng.uniform(1, 179),
+        "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
+        "psidot0": rng.choice([0, rng.uniform(-4, 4), rng.uniform(-4, 4)]),
+    }
+
+
+def generic(rng: random.Random) -> Scene:
+    """Return a scene with nothing special."""
+    return body(rng) | start(rng)
+
+
+def from_rest(rng: random.Random) -> Scene:
+    """Return a release from rest, slow to fast."""
+    scene = body(rng) | {"theta0_deg": rng.uniform(0.1, 179.9)}
+    return scene | {"r0": signed(rng, rng.choice([power(rng, -3, 3), rng.uniform(0, 9)]))}
+
+
+def in_radians(rng: random.Random) -> Scene:
+    """Return a generic scene with its tilt in radians."""
+    scene = generic(rng)
+    scene["theta0_rad"] = math.radians(scene.pop("theta0_deg"))
+    return scene
+
+
+def extreme(rng: random.Random) -> Scene:
+    """Return sizes from 1e-30 to 1e30, in units of their own and in the rates."""
+    scene, (mass, length, second) = generic(rng), (power(rng, -20, 20) for _ in range(3))
+    scene |= {"m": mass, "s": length, "g": length / second**2}
+    scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
+    wild = rng.random() < 0.5
+    for key in ("r0", "thetadot0", "psidot0"):
+        scene[key] *= power(rng, -12, 12) / second if wild else 1 / second
+    return scene
+
+
+def fast(rng: random.Random) -> Scene:
+    """Return large rates, one or all of them."""
+    scene = generic(rng)
+    for key in rng.sample(["r0", "thetadot0", "psidot0"], rng.choice([1, 1, 2, 3])):
+        scene[key] = signed(rng, power(rng, 1, 15))
+    return scene
+
+
+def slow(rng: random.Random) -> Scene:
+    """Return tiny rates, one or all of them."""
+    scene = generic(rng)
+    for key in rng.sample(["r0", "thetadot0", "psidot0"], rng.choice([1, 2, 3])):
+        scene[key] = signed(rng, power(rng, -30, -1))
+    return scene
+
+
+def over(scene: Scene, pole: int, speed2: float) -> Scene:
+    """Return the rates that lead from cos(theta0) = u over a pole, theta'^2 + .. = speed2."""
+    u = math.cos(math.radians(scene["theta0_deg"]))
+    rate = pole * scene["C"] * scene["r0"] / scene["A"] / (1 + pole * u)
+    rest = max(speed2 - rate * rate * (1 - u * u), 0)
+    return scene | {"psidot0": rate, "thetadot0": math.sqrt(rest)}
+
+
+def near_separatrix(rng: random.Random) -> Scene:
+    """Return a swing that nearly ends upright."""
+    scene = generic(rng)
+    threshold = 2 * math.sqrt(scene["A"]) / scene["C"]
+    part = rng.uniform(0.05, 0.9)
+    scene["r0"] = signed(rng, threshold * math.sqrt(part))
+    u = rng.uniform(2 * part - 1, 1)
+    scene["theta0_deg"] = math.degrees(math.acos(u))
+    scene = over(scene, 1, 2 / scene["A"] * (1 - u))
+    scene["thetadot0"] = signed(rng, near(rng, scene["thetadot0"]))
+    return scene | {"psidot0": near(rng, scene["psidot0"])}
+
+
+def separatrix(rng: random.Random) -> Scene:
+    """Return exact separatrices, with thetadot0 = P x and cos(theta0) = c.
+
+    With A = C = s = g = 1, 2 m = a, b = r0 = P (1 + c), thetadot0^2 = (1 - c)(a - P b).
+    """
+    degrees, turn = rng.choice([60, 120]), rng.randrange(1, 9) / 4
+    c = TILTS[degrees]
+    x = rng.randrange(-6, 7) * (0.25 if degrees == 60 else 0.75)  # x^2/(1 - c) ends in bits
+    m = (turn * turn * (1 + c) + x * x / (1 - c)) / 2
+    turn = signed(rng, turn)
+    scene: Scene = {"m": m, "A": 1, "C": 1, "s": 1, "g": 1, "r0": turn * (1 + c)}
+    return scene | {"theta0_deg": degrees, "psidot0": turn, "thetadot0": x}
+
+
+def near_steady(rng: random.Random) -> Scene:
+    """Return a steady precession, a little disturbed."""
+    scene = generic(rng) | {"thetadot0": rng.choice([0, signed(rng, power(rng, -16, -3))])}
+    scene["r0"] = signed(rng, 2 * math.sqrt(scene["A"]) / scene["C"] * rng.uniform(1, 5))
+    u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
+    root = math.copysign(math.sqrt(max(b * b - 4 * scene["A"] * u, 0)), b)
+    return scene | {"psidot0": near(rng, 2 / (b + root))}
+
+
+def steady(rng: random.Random) -> Scene:
+    """Return exact steady precessions, 2 b P = a + 2 P^2 cos(theta0)."""
+    degrees, turn = rng.choice(list(TILTS)), signed(rng, 2.0 ** rng.randrange(-4, 5))
+    m = rng.randrange(1, 64) / 8
+    b = m / turn + turn * TILTS[degrees]
+    scene: Scene = {"m": m, "A": 1, "C": 1, "s": 1, "g": 1, "r0": b}
+    return scene | {"theta0_deg": degrees, "psidot0": turn}
+
+
+def cusp(rng: random.Random) -> Scene:
+    """Return a scene at a cusp: just off rest, or b N^2 + P (b P - a) sin^2 nearly 0."""
+    scene = generic(rng)
+    if rng.random() < 0.4:
+        tiny = {key: signed(rng, power(rng, -18, -3)) for key in ("thetadot0", "psidot0")}
+        tiny[rng.choice(["thetadot0", "psidot0"])] *= rng.choice([0, 1])
+        return scene | tiny
+    b, a = scene["C"] * scene["r0"] / scene["A"], 2 / scene["A"]
+    turn = near(rng, a / b * rng.random())
+    sine = math.sin(math.radians(scene["theta0_deg"]))
+    rise = math.sqrt(max(turn * (a - b * turn) / b, 0)) * sine
+    return scene | {"psidot0": turn, "thetadot0": signed(rng, near(rng, rise))}
+
+
+def over_a_pole(rng: random.Random) -> Scene:
+    """Return a start whose axis passes exactly over a pole, P (1 +- cos(theta0)) = +-b."""
+    degrees, pole = rng.choice(list(TILTS)), rng.choice([-1, 1])
+    turn = signed(rng, rng.randrange(1, 33) / 8)
+    body = {"m": rng.randrange(1, 9) / 4, "A": 1, "C": rng.choice([0.5, 1, 2]), "s": 1, "g": 1}
+    r0 = turn * pole * (1 + pole * TILTS[degrees]) / body["C"]
+    fast = rng.choice([rng.uniform(-6, 6), rng.uniform(-1, 1), 0])
+    return body | {"r0": r0, "theta0_deg": degrees, "psidot0": turn, "thetadot0": fast}
+
+
+def from_a_pole(rng: random.Random) -> Scene:
+    """Return a start on the vertical that leaves it."""
+    scene = generic(rng) | {"theta0_deg": rng.choice([0, 180]), "psidot0": 0}
+    scene["thetadot0"] = signed(rng, rng.choice([rng.uniform(0.01, 6), power(rng, -9, 1)]))
+    return scene | {"r0": rng.choice([0, scene["r0"], scene["r0"]])}
+
+
+def near_a_pole(rng: random.Random) -> Scene:
+    """Return a start whose axis passes within 1e-16 to 1e-2 of a pole."""
+    scene = generic(rng) | {"r0": rng.uniform(-3, 3)}
+    scene = over(scene, rng.choice([-1, 1]), rng.uniform(0, 40))
+    return scene | {"psidot0": near(rng, scene["psidot0"])}
+
+
+def no_torque(rng: random.Random) -> Scene:
+    """Return a free top, or nearly."""
+    scene = generic(rng) | {rng.choice(["g", "s"]): rng.choice([0, 0, power(rng, -18, -3)])}
+    scene["r0"] *= rng.choice([0, 1, 1, 1])
+    return scene | {"theta0_deg": rng.choice([60, 90, 0, scene["theta0_deg"]])}
+
+
+def no_spin(rng: random.Random) -> Scene:
+    """Return a pendulum, plane or spherical, or nearly."""
+    scene = generic(rng) | {"r0": rng.choice([0, 0, signed(rng, power(rng, -60, -6))])}
+    scene["psidot0"] *= rng.choice([0, 1])
+    return scene | {"theta0_deg": rng.choice([60, 90, 120, scene["theta0_deg"]])}
+
+
+def tiny_tilt(rng: random.Random) -> Scene:
+    """Return a start within 1e-30 to 1 degree of the vertical."""
+    tilt = rng.choice([power(rng, -12, 0), power(rng, -30, 0)])
+    scene = generic(rng) | {"theta0_deg": tilt}
+    if rng.random() < 0.4:
+        scene["theta0_deg"] = 180 - power(rng, -12, 0)
+    threshold = 2 * math.sqrt(scene["A"]) / scene["C"]
+    factor = rng.choice([rng.uniform(0.1, 3), near(rng, 1), near(rng, 1)])
+    scene["thetadot0"] = rng.choice([0, signed(rng, power(rng, -20, -1))])
+    return scene | {"r0": signed(rng, threshold * factor), "psidot0": rng.choice([0, 1, -2.5])}
+
+
+def nice_numbers(rng: random.Random) -> Scene:
+    """Return small rationals, whose keys are often exactly 0, or midway between two doubles."""
+    few = [0, 0.25, 0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 10]
+
+    def either() -> float:
+        return signed(rng, rng.choice(few))
+
+    A = rng.choice([0.5, 1, 2, 3])
+    C = A * rng.choice([0.25, 0.5, 1, 2])
+    scene = {"m": rng.choice([0.5, 1, 2, 3]), "A": A, "C": C, "s": 1, "g": rng.choice([1, 1, 10])}
+    tilts = [30, 45, 60, 60, 60, 90, 90, 90, 120, 120, 120, 135, 150, 0, 180]
+    degrees = rng.choice([*tilts, rng.randrange(1, 180)])
+    still = degrees in (0, 180)
+    psidot0 = 0.0 if still else rng.choice([0, 0, either()])
+    thetadot0 = rng.choice([0, 0, either()])
+    return scene | {
+        "r0": either(),
+        "theta0_deg": degrees,
+        "thetadot0": thetadot0,
+        "psidot0": psidot0,
+    }
+
+
+KINDS: dict[str, Callable[[random.Random], Scene]] = {
+    function.__name__.replace("_", " "): function
+    for function in (
+        generic,
+        from_rest,
+        in_radians,
+        extreme,
+        fast,
+        slow,
+        near_separatrix,
+        separatrix,
+        near_steady,
+        steady,
+        cusp,
+        over_a_pole,
+        from_a_pole,
+        near_a_pole,
+        no_torque,
+        no_spin,
+        tiny_tilt,
+        nice_numbers,
+    )
+}
