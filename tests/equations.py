@@ -1,57 +1,139 @@
-"""A register of the sources' equations, so that each becomes a test of its own."""
+"""A register of the sources' equations: each becomes a test, and a test that the test can fail."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+import math
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, ClassVar
+
+import pytest
 
 from lagrange_cli.arithmetic.generic import many_digits
 
 ar = many_digits(60)
-"""The arithmetic of the identities."""
+"""Arithmetic of the identities, apart from every other context."""
 
 Sides = Iterator[tuple[Any, Any]]
-"""Left and right sides, one of them by our functions and the other independent of them."""
+"""Pairs of a left and a right side: one by our functions, the other independent of them."""
+
+Equation = Callable[[], Sides]
 
 
 class Register:
-    """Equations as they hold, and as they are printed where that is wrong."""
+    """Equations as they hold, and as they are printed where that is wrong.
 
-    def __init__(self) -> None:
-        self.holds: dict[str, Callable[[], Sides]] = {}
-        self.fails: dict[str, Callable[[], Sides]] = {}
+    `numbers` are the numbers printed in the source, each of which must have an equation.
+    """
 
-    def equation(self, number: str) -> Callable[[Callable[[], Sides]], Callable[[], Sides]]:
-        """Both sides agree."""
+    def __init__(self, numbers: Iterable[str]) -> None:
+        self.numbers = frozenset(numbers)
+        self.holds: dict[str, Equation] = {}
+        self.fails: dict[str, Equation] = {}
+        self.misread: dict[str, Equation] = {}
 
-        def register(sides: Callable[[], Sides]) -> Callable[[], Sides]:
-            assert number not in self.holds
-            self.holds[number] = sides
-            return sides
+    def equation(self, number: str) -> Callable[[Equation], Equation]:
+        """Register an equation whose sides agree."""
+        return _entry(self.holds, number)
 
-        return register
+    def as_printed(self, number: str) -> Callable[[Equation], Equation]:
+        """Register an equation as the text at hand prints it, whose sides do not agree.
 
-    def as_printed(self, number: str) -> Callable[[Callable[[], Sides]], Callable[[], Sides]]:
-        """The text at hand, whose sides do not agree."""
+        Where one equation has several slips, its number is followed by ", ..." after " as printed".
+        """
+        return _entry(self.fails, number)
 
-        def register(sides: Callable[[], Sides]) -> Callable[[], Sides]:
-            assert number not in self.fails
-            self.fails[number] = sides
-            return sides
+    def misreading(self, number: str) -> Callable[[Equation], Equation]:
+        """Register another reading of a blurred sign, whose sides do not agree."""
+        return _entry(self.misread, number)
 
-        return register
 
-    def check(self, number: str, tolerance: float = 1e-40) -> None:
-        """The sides of an equation agree."""
-        for left, right in self.holds[number]():
-            assert gap(left, right) < tolerance
+def _entry(equations: dict[str, Equation], number: str) -> Callable[[Equation], Equation]:
+    """Return a decorator that registers an equation under a number that is not taken yet."""
 
-    def check_as_printed(self, number: str) -> None:
-        """The sides as printed do not."""
-        for left, right in self.fails[number]():
-            assert gap(left, right) > 1e-3
+    def register(sides: Equation) -> Equation:
+        assert number not in equations, f"{number} is registered twice"
+        equations[number] = sides
+        return sides
+
+    return register
+
+
+class EquationTests:
+    """Tests of a register: a module derives its test class and names its register.
+
+    `spoil` replaces every function of ours that the equations call by one that is slightly wrong;
+    an equation that still holds then says nothing, and fails.
+    """
+
+    register: ClassVar[Register]
+    errata: ClassVar[set[str]]
+    """Equations that the table of errata lists for these sections."""
+    tolerances: ClassVar[dict[str, float]] = {}
+    """Greatest gap allowed where it is not 1e-40."""
+
+    def spoil(self, patch: pytest.MonkeyPatch) -> None:
+        """Replace our functions in the module by wrong ones."""
+        raise NotImplementedError
+
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        """Make one test of every equation."""
+        if "number" in metafunc.fixturenames:
+            metafunc.parametrize("number", list(self.register.holds))
+        if "misprint" in metafunc.fixturenames:
+            metafunc.parametrize("misprint", [*self.register.fails, *self.register.misread])
+
+    def test_equation(self, number: str) -> None:
+        assert max(gaps(self.register.holds[number])) < self.tolerances.get(number, 1e-40)
+
+    @pytest.mark.slow
+    def test_equation_can_fail(self, number: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.spoil(monkeypatch)
+        assert max(gaps(self.register.holds[number])) > 1e-6
+
+    def test_as_printed_it_fails(self, misprint: str) -> None:
+        wrong = self.register.fails | self.register.misread
+        assert min(gaps(wrong[misprint])) > 1e-3
+
+    def test_every_number_has_an_equation(self) -> None:
+        assert self.register.numbers
+        assert self.register.numbers <= set(self.register.holds)
+
+    def test_every_misprint_is_put_right(self) -> None:
+        wrong = {*self.register.fails, *self.register.misread}
+        assert {number.partition(" as printed")[0] for number in wrong} <= set(self.register.holds)
+
+    def test_the_errata_are_the_misprints(self) -> None:
+        assert set(self.register.fails) == self.errata
+
+
+def gaps(equation: Equation) -> list[float]:
+    """Return how far the sides of each pair are apart; an equation without pairs is an error."""
+    found = [gap(left, right) for left, right in equation()]
+    assert found, "the equation compares nothing"
+    return found
 
 
 def gap(left: Any, right: Any) -> float:
-    """How far two sides are apart, in the size of the right one or 1."""
-    return float(abs(left - right) / max(1, abs(right)))
+    """Return the distance of two sides, in units of the right one or of 1; NaN counts as far."""
+    distance = float(abs(left - right) / max(1, abs(right)))
+    return float("inf") if math.isnan(distance) else distance
+
+
+def slightly_wrong(function: Callable[..., Any], factor: float = 1.01) -> Callable[..., Any]:
+    """Return a function whose numbers are off by a factor and by a multiple of its arguments."""
+
+    def spoiled(*args: Any, **options: Any) -> Any:
+        shift = sum(x for x in args if isinstance(x, ar.mpf | ar.mpc)) / 100
+        return _spoiled(function(*args, **options), ar.mpf(factor), shift)
+
+    return spoiled
+
+
+def _spoiled(value: Any, factor: Any, shift: Any) -> Any:
+    """Return a number, or all the numbers of a tuple or an iterator, times a factor and shifted."""
+    if isinstance(value, tuple):
+        numbers = [_spoiled(part, factor, shift) for part in value]
+        return type(value)(*numbers) if hasattr(value, "_fields") else tuple(numbers)
+    if isinstance(value, Iterator):
+        return (_spoiled(part, factor, shift) for part in value)
+    return value if value is None else value * factor + shift

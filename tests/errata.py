@@ -1,9 +1,14 @@
-"""Section 8 of the source, as printed, against the true values (the README's table)."""
+"""Errata of the sources: slips judged one by one, and the figures of Chrapan's section 8.
+
+The tables of tests/README.md are made from here.  The registers of equations check the slips: each
+of them must be listed, and each that is listed by an equation must fail as printed.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from decimal import Decimal
+from enum import StrEnum
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -11,70 +16,276 @@ import mpmath
 import oracle
 
 
-class Printed(NamedTuple):
-    """A number of section 8: its name, the text printed, and its true value from the oracle's."""
+class Verdict(StrEnum):
+    """Kinds of slips."""
 
-    name: str
-    text: str
-    formula: Callable[[Any], Any]
+    MATHEMATICS = "mathematics"
+    RESTRICTION = "restriction"
+    UNDECIDED = "misprint or OCR"
+    OCR = "most likely OCR"
 
 
-PRINTED = [
-    Printed("a", "319.091", lambda c: c.a),
-    Printed("1 - C/2A", "0.776363", lambda c: 1 - c.C / (2 * c.A)),
-    Printed("u1", "0.8660254", lambda c: c.u1),
-    Printed("b", "22.3637", lambda c: c.b),
-    Printed("u3 + u2", "1.56737", lambda c: c.u3 + c.u2),
-    Printed("u3 u2", "0.35738", lambda c: c.u3 * c.u2),
-    Printed("(u3 + u2)^2", "2.45665", lambda c: (c.u3 + c.u2) ** 2),
-    Printed("-4 u3 u2", "-1.42952", lambda c: -4 * c.u3 * c.u2),
-    Printed("(u3 - u2)^2", "1.02713", lambda c: (c.u3 - c.u2) ** 2),
-    Printed("u3 - u2", "1.01347", lambda c: c.u3 - c.u2),
-    Printed("u3", "1.29042", lambda c: c.u3),
-    Printed("u2", "0.27695", lambda c: c.u2),
-    Printed("k^2", "0.581238", lambda c: c.k**2),
-    Printed("arcsin k", "49d40m31s", lambda c: c.modular_angle_deg),
-    Printed("arcsin k'", "40d19m29s", lambda c: 90 - c.modular_angle_deg),
-    Printed("amplitude (7,2)", "41d41m50s", lambda c: c.amplitude_deg),
-    Printed("K", "1.9299", lambda c: c.K),
-    Printed("E", "1.3085", lambda c: c.E),
-    Printed("alpha = F(amplitude, k')", "0.7544", lambda c: c.alpha),
-    Printed(
-        "E(amplitude, k')",
-        "0.7028",
-        lambda c: mpmath.ellipe(c.amplitude_deg * mpmath.pi / 180, c.k_prime**2),
+class Erratum(NamedTuple):
+    """A slip in the text at hand.
+
+    `place` is the equation as the registers call it, with " as printed, ..." where it has several
+    slips; `tested` says whether a register computes it.
+    """
+
+    source: str
+    section: int
+    place: str
+    right: str
+    verdict: Verdict
+    tested: bool = True
+
+
+MATHEMATICS, RESTRICTION, UNDECIDED, OCR = Verdict
+ONLY = "holds for r0 > 0; for r0 < 0 "
+
+ERRATA = [
+    Erratum("Chrapan", 1, "(1,1)", "√(1+k̄²) stands before Z00(v\\*, k)", MATHEMATICS),
+    Erratum("Chrapan", 1, "(1,2)", "√(1+k̄²) stands before Z11(v\\*, k)", MATHEMATICS),
+    Erratum("Chrapan", 1, "(1,4)", "k², as the line above and (3,7) have, for k′²", UNDECIDED),
+    Erratum("Chrapan", 1, "(1,6)", "1 − ζ² for −ζ² under the root", OCR, tested=False),
+    Erratum("Chrapan", 1, "(1,8)", "minus for the equals sign, iα in both arguments", OCR),
+    Erratum("Chrapan", 2, "(2,4)", "q = exp(−πK′/K); the page is blurred", OCR, tested=False),
+    Erratum("Chrapan", 3, "(3,7)", "the point is w = K, as in (2,11), not w = k", OCR),
+    Erratum("Chrapan", 4, "(4,1)", "ψ̇, not φ̇, in p and q and in the first term of r", OCR),
+    Erratum("Chrapan", 4, "(4,2)", "ψ̇² for φ̇²", OCR),
+    Erratum("Chrapan", 4, "(4,3)", "ψ̇ for φ̇", OCR),
+    Erratum("Chrapan", 4, "(4,7)", "the left side is ψ̇", OCR),
+    Erratum("Chrapan", 4, "(4,8)", "the left side is φ̇", OCR),
+    Erratum(
+        *("Chrapan", 4, "section 4 ch: rate of precession"),
+        *("κ² for κ³; the second term and the next line have κ²", OCR),
     ),
-    Printed("T", "0.42927", lambda c: c.T_nutation),
-    Printed("u(T/4)", "0.63459", lambda c: c.u_quarter),
-    Printed("mean spin rate", "46.13659", lambda c: c.mean_spin_rate),
-    Printed("mean precession rate", "7.98957", lambda c: c.mean_precession_rate),
-    Printed("spin rate at T/2", "46.04841", lambda c: c.spin_rate_half),
-    Printed("precession rate at T/2", "14.2682", lambda c: c.precession_rate_half),
-    Printed("T of the spin", "0.136186", lambda c: c.T_spin),
-    Printed("T of the precession", "0.786423", lambda c: c.T_precession),
+    Erratum(
+        *("Chrapan", 4, "section 4 i: sn, cn, dn of the parameters"),
+        "sn α₂ and dn α₂ are negative if α₂ = α₁ + iK′; squares and (4,28) hold",
+        MATHEMATICS,
+    ),
+    Erratum("Chrapan", 4, "line before (4,27)", "√(u3−u1) for √(u3+u1)", UNDECIDED),
+    Erratum("Chrapan", 4, "(4,27)", ONLY + "|b| for b", RESTRICTION),
+    Erratum("Chrapan", 4, "(4,28)", ONLY + "|b| for b", RESTRICTION),
+    Erratum("Chrapan", 4, "(4,29)", ONLY + "ψ changes sign", RESTRICTION),
+    Erratum(
+        *("Chrapan", 4, "(4,30) as printed, the roots"),
+        *("√(u3−u2)/√(u3−u1) for √(u3+u2)/√(u3−u2)", UNDECIDED),
+    ),
+    Erratum("Chrapan", 4, "(4,30) as printed, the modulus", "√(1+k̄²) for √(1+k²)", UNDECIDED),
+    Erratum("Chrapan", 4, "(4,34)", ONLY + "φ changes sign", RESTRICTION),
+    Erratum("Chrapan", 4, "section 4 l: w", "½, as (4,30) has, for ⅓", OCR),
+    Erratum(
+        *("Chrapan", 5, "section 5: quarters of the nutation"),
+        "slower in the first and last quarter: true for u = cos ϑ, not always for ϑ",
+        MATHEMATICS,
+    ),
+    Erratum("Chrapan", 5, "(5,3)", "ϑ̇ at the left; minus in the second half period", RESTRICTION),
+    Erratum(
+        *("Chrapan", 6, "(6,1) as printed, in the second half of a period"),
+        *("√(u−u2) has the sign of cn w, so that the arccot runs from 0 to π", MATHEMATICS),
+    ),
+    Erratum(
+        "Chrapan", 6, "(6,1) as printed, for r0 < 0", ONLY + "the arccot changes sign", RESTRICTION
+    ),
+    Erratum(
+        *("Chrapan", 6, "section 6: spin after half a period and a whole one"),
+        *(ONLY + "π/2 and π change sign", RESTRICTION),
+    ),
+    Erratum("Chrapan", 6, "(6,3)", ONLY + "π/T changes sign", RESTRICTION),
+    Erratum("Chrapan", 6, "(6,4)", "false after odd half periods, however read", MATHEMATICS),
+    Erratum("Chrapan", 6, "(6,5)", "τ counts from the last whole period", MATHEMATICS),
+    Erratum(
+        *("Chrapan", 7, "(7,1) as printed, the bracket"),
+        *("E − F·(1 − E/K), as ψ(T/2), ψ(T) and (7,3) have, for (E − F)·(1 − E/K)", OCR),
+    ),
+    Erratum(
+        *("Chrapan", 7, "(7,1) as printed, for r0 < 0"),
+        *(ONLY + "all but the first term change sign", RESTRICTION),
+    ),
+    Erratum("Chrapan", 7, "(7,3)", ONLY + "the last term changes sign", RESTRICTION),
+    Erratum("Chrapan", 7, "(7,4)", "false after odd half periods, however read", MATHEMATICS),
+    Erratum("Chrapan", 8, "labels of u", "u(T/4) = u(3T/4) for u(T) = u(3T)/4", OCR, tested=False),
+    Erratum("Aksenov", 3, "property 4", "dn² + k² sn² = 1: the sign reads as a minus", OCR),
+    Erratum("Aksenov", 3, "(3.1.6)", "the exponent of q is negative: the minus is lost", OCR),
 ]
+"""All slips, in the order of the sources."""
+
+
+def misprints(source: str, *sections: int) -> set[str]:
+    """Return the places of the slips in some sections that a register must compute."""
+    return {x.place for x in ERRATA if x.source == source and x.section in sections and x.tested}
 
 
 def errata_table() -> list[str]:
-    """The table in Markdown: printed, true to as many digits, and to 15; bold where they differ."""
-    lines = ["| quantity | printed | true | to 15 digits |", "|---|---|---|---|"]
-    scene = oracle.Scene()
-    constants = oracle.constants(scene)
-    values = SimpleNamespace(**constants, A=mpmath.mpf(scene.A), C=mpmath.mpf(scene.C))
-    for entry in PRINTED:
-        with mpmath.workdps(40):
-            true = entry.formula(values)
-        shown = round_alike(true, entry.text)
-        mark = "" if shown == entry.text else "**"
-        digits = mpmath.nstr(true, 15)
-        lines.append(f"| {entry.name} | {entry.text} | {mark}{shown}{mark} | {digits} |")
+    """Return the slips as a table in Markdown."""
+    lines = ["| place | right | kind |", "|---|---|---|"]
+    for slip in ERRATA:
+        place = slip.place if slip.source == "Chrapan" else f"{slip.source}, {slip.place}"
+        right = slip.right.replace("|", "\\|")
+        lines.append(f"| {place.replace(' as printed', '')} | {right} | {slip.verdict} |")
     return lines
 
 
-def round_alike(true: Any, text: str) -> str:
-    """The true value to as many places, or to whole seconds of arc, as the text has."""
+class Figure(NamedTuple):
+    """A number of section 8.
+
+    `text` is printed, `true` computes it from the oracle's values, and `own` from other figures as
+    printed, which it may read from its argument by name; without `own` it stands alone.
+    """
+
+    name: str
+    text: str
+    true: Callable[[Any], Any]
+    own: Callable[[dict[str, Any]], Any] | None = None
+
+
+def mean_precession(p: dict[str, Any]) -> Any:
+    """Return (7,3) from the printed figures."""
+    K, E, F = p["K"], p["E"], p["alpha = F(amplitude, k')"]
+    curve = K * p["E(amplitude, k')"] - (K - E) * F - mpmath.pi / 4
+    return p["precession rate at T/2"] / 2 * (2 - p["u3 - u2"]) + 4 / p["T"] * curve
+
+
+FIGURES = [
+    Figure("a", "319.091", lambda c: c.a),
+    Figure("1 - C/2A", "0.776363", lambda c: 1 - c.C / (2 * c.A)),
+    Figure("u1", "0.8660254", lambda c: c.u1),
+    Figure("b", "22.3637", lambda c: c.b),
+    Figure("u3 + u2", "1.56737", lambda c: c.u3 + c.u2),
+    Figure("u3 u2", "0.35738", lambda c: c.u3 * c.u2),
+    Figure("(u3 + u2)^2", "2.45665", lambda c: (c.u3 + c.u2) ** 2, lambda p: p["u3 + u2"] ** 2),
+    Figure("-4 u3 u2", "-1.42952", lambda c: -4 * c.u3 * c.u2, lambda p: -4 * p["u3 u2"]),
+    Figure(
+        *("(u3 - u2)^2", "1.02713", lambda c: (c.u3 - c.u2) ** 2),
+        lambda p: p["(u3 + u2)^2"] + p["-4 u3 u2"],
+    ),
+    Figure("u3 - u2", "1.01347", lambda c: c.u3 - c.u2),
+    Figure("2 u3", "2.58084", lambda c: 2 * c.u3),
+    Figure("2 u2", "0.55390", lambda c: 2 * c.u2),
+    Figure("u3", "1.29042", lambda c: c.u3),
+    Figure("u2", "0.27695", lambda c: c.u2),
+    Figure(
+        *("k^2", "0.581238", lambda c: c.k**2),
+        lambda p: (p["u1"] - p["u2"]) / p["u3 - u2"],
+    ),
+    Figure(
+        *("arcsin k", "49d40m31s", lambda c: c.modular_angle_deg),
+        lambda p: mpmath.degrees(mpmath.asin(mpmath.sqrt(p["k^2"]))),
+    ),
+    Figure(
+        *("arcsin k'", "40d19m29s", lambda c: 90 - c.modular_angle_deg),
+        lambda p: 90 - p["arcsin k"],
+    ),
+    Figure("amplitude (7,2)", "41d41m50s", lambda c: c.amplitude_deg),
+    Figure("K", "1.9299", lambda c: c.K, lambda p: interpolated(mpmath.ellipk, p["arcsin k"])),
+    Figure("E", "1.3085", lambda c: c.E),
+    Figure(
+        *("alpha = F(amplitude, k')", "0.7544", lambda c: c.alpha),
+        lambda p: mpmath.ellipf(mpmath.radians(p["amplitude (7,2)"]), 1 - p["k^2"]),
+    ),
+    Figure(
+        *("E(amplitude, k')", "0.7028"),
+        lambda c: mpmath.ellipe(mpmath.radians(c.amplitude_deg), c.k_prime**2),
+    ),
+    Figure(
+        *("T", "0.42927", lambda c: c.T_nutation),
+        lambda p: 4 * p["K"] / mpmath.sqrt(p["a"] * p["u3 - u2"]),
+    ),
+    Figure("u(T/4)", "0.63459", lambda c: c.u_quarter),
+    Figure(
+        *("mean spin rate", "46.13659", lambda c: c.mean_spin_rate),
+        lambda p: 50 * p["1 - C/2A"] + mpmath.pi / p["T"],
+    ),
+    Figure(
+        *("mean precession rate", "7.98957", lambda c: c.mean_precession_rate),
+        mean_precession,
+    ),
+    Figure(
+        *("spin rate at T/2", "46.04841", lambda c: c.spin_rate_half),
+        lambda p: 50 - p["precession rate at T/2"] * p["u2"],
+    ),
+    Figure(
+        *("precession rate at T/2", "14.2682", lambda c: c.precession_rate_half),
+        lambda p: p["a"] / p["b"],
+    ),
+    Figure("T of the spin", "0.136186", lambda c: c.T_spin),
+    Figure(
+        *("T of the precession", "0.786423", lambda c: c.T_precession),
+        lambda p: 2 * mpmath.pi / p["mean precession rate"],
+    ),
+]
+"""All numbers printed in section 8 that are computed there."""
+
+
+def interpolated(integral: Callable[[Any], Any], degrees: Any) -> Any:
+    """Return a complete integral between whole degrees of a table with four decimals."""
+    below = mpmath.floor(degrees)
+    ends = [
+        mpmath.nint(integral(mpmath.sin(mpmath.radians(below + i)) ** 2) * 10**4) / 10**4
+        for i in (0, 1)
+    ]
+    return ends[0] + (degrees - below) * (ends[1] - ends[0])
+
+
+def true_values() -> Any:
+    """Return the oracle's constants of the worked example, with A and C."""
+    scene = oracle.Scene()
+    return SimpleNamespace(**oracle.constants(scene), A=mpmath.mpf(scene.A), C=mpmath.mpf(scene.C))
+
+
+def judged(figure: Figure, true: Any) -> str:
+    """Return "" for a figure that is right, else whether it follows from the printed ones.
+
+    It does if it is at most one unit of its last place from what they give.
+    """
+    if round_alike(true, figure.text) == figure.text:
+        return ""
+    assert figure.own is not None, f"{figure.name} is wrong and stands alone"
+    own = figure.own({x.name: number(x.text) for x in FIGURES})
+    units = abs(number(round_alike(own, figure.text)) - number(figure.text)) / last_place(figure)
+    shown = round_alike(own, figure.text)
+    return f"carried on: {shown}" if units < 1.5 else f"slip: {shown}"
+
+
+def figures_table() -> list[str]:
+    """Return section 8 as a table in Markdown; what is wrong is bold and judged."""
+    lines = [
+        "| quantity | printed | true | to 15 digits | from the printed figures |",
+        "|---|---|---|---|---|",
+    ]
+    values = true_values()
+    with mpmath.workdps(40):
+        for figure in FIGURES:
+            true = figure.true(values)
+            verdict = judged(figure, true)
+            mark = "**" if verdict else ""
+            shown = f"{mark}{round_alike(true, figure.text)}{mark}"
+            digits = mpmath.nstr(true, 15)
+            lines.append(f"| {figure.name} | {figure.text} | {shown} | {digits} | {verdict} |")
+    return lines
+
+
+def number(text: str) -> Any:
+    """Return a printed figure as a number, angles in degrees."""
+    if "d" not in text:
+        return mpmath.mpf(text)
+    degrees, minutes, seconds = text.replace("d", " ").replace("m", " ").rstrip("s").split()
+    return int(degrees) + mpmath.mpf(int(minutes) * 60 + int(seconds)) / 3600
+
+
+def last_place(figure: Figure) -> Any:
+    """Return the unit of the last printed place."""
+    if "d" in figure.text:
+        return mpmath.mpf(1) / 3600
+    return mpmath.mpf(10) ** -len(figure.text.partition(".")[2])
+
+
+def round_alike(value: Any, text: str) -> str:
+    """Return a value to as many places, or to whole seconds of arc, as the text has."""
     if "d" in text:
-        seconds = int(mpmath.nint(true * 3600))
+        seconds = int(mpmath.nint(value * 3600))
         return f"{seconds // 3600}d{seconds // 60 % 60:02d}m{seconds % 60:02d}s"
     places = Decimal(1).scaleb(-len(text.partition(".")[2]))
-    return str(Decimal(mpmath.nstr(true, 30)).quantize(places))
+    return str(Decimal(mpmath.nstr(value, 30)).quantize(places))

@@ -1,4 +1,4 @@
-"""The README does what it shows.  `python tests/test_readme.py` writes its outputs anew."""
+"""Each README does what it shows.  `python tests/test_readme.py` writes outputs and tables anew."""
 
 from __future__ import annotations
 
@@ -7,22 +7,29 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import click
 import pytest
-from errata import errata_table
+from errata import errata_table, figures_table
 
 from lagrange_cli.cli.group import main
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
+READMES = sorted(
+    path
+    for path in ROOT.rglob("README.md")
+    if not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
+)
+"""Every README of the project, also those of the rooms."""
+
 NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?")
 
 
 def sessions(text: str) -> Iterator[tuple[str, str]]:
-    """Each command of the console blocks with the output shown below it."""
+    """Yield each command of the console blocks with the output shown below it."""
     for block in re.findall(r"```console\n(.*?)```", text, re.DOTALL):
         for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
             command, _, output = part.partition("\n")
@@ -30,7 +37,7 @@ def sessions(text: str) -> Iterator[tuple[str, str]]:
 
 
 def run(command: str) -> str:
-    """What a terminal would show."""
+    """Return what a terminal would show for a command."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
         ["bash", "-c", command],
@@ -43,7 +50,25 @@ def run(command: str) -> str:
     return done.stdout.decode()
 
 
-@pytest.mark.parametrize(("command", "shown"), list(sessions(README.read_text())))
+def name(path: Path) -> str:
+    """Return the path of a README inside the project."""
+    return str(path.relative_to(ROOT))
+
+
+def prose(text: str) -> list[str]:
+    """Return the lines of a page that are neither a table nor inside a block of code."""
+    without_blocks = re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+    return [line for line in without_blocks.splitlines() if not line.startswith(("|", "    "))]
+
+
+SESSIONS = [
+    pytest.param(command, shown, id=f"{name(path)}: {command}"[:120])
+    for path in READMES
+    for command, shown in sessions(path.read_text())
+]
+
+
+@pytest.mark.parametrize(("command", "shown"), SESSIONS)
 def test_session(command: str, shown: str) -> None:
     """Text to the letter, numbers to 1e-13 (the last bit of sin and atan is the platform's)."""
     real = run(command)
@@ -52,18 +77,29 @@ def test_session(command: str, shown: str) -> None:
     assert all(float(a) == pytest.approx(float(b), rel=1e-13, abs=1e-13) for a, b in pairs)
 
 
-def test_python_session() -> None:
-    result = doctest.testfile(str(README), module_relative=False)
-    assert result.attempted >= 5
+def test_there_are_sessions() -> None:
+    assert README in READMES
+    assert len(READMES) >= 2
+    assert len(SESSIONS) >= 10
+
+
+@pytest.mark.parametrize("path", READMES, ids=name)
+def test_python_session(path: Path) -> None:
+    result = doctest.testfile(str(path), module_relative=False)
+    assert result.attempted >= (5 if path == README else 0)
     assert result.failed == 0
 
 
-def test_errata_table() -> None:
-    assert "\n".join(errata_table()) in README.read_text()
+@pytest.mark.parametrize("table", [errata_table, figures_table])
+def test_table_of_the_errata(table: Callable[[], list[str]]) -> None:
+    page = (ROOT / "tests" / "README.md").read_text()
+    assert len(table()) > 20
+    assert "\n".join(["", *table(), ""]) in page
+    assert with_table(page, table()) == page
 
 
 def test_every_option_and_key_is_explained() -> None:
-    text = README.read_text()
+    text = "\n".join(path.read_text() for path in READMES)
     context = click.Context(main)
     commands = [main.get_command(context, name) for name in main.list_commands(context)]
     options = {name for command in commands if command for p in command.params for name in p.opts}
@@ -82,14 +118,36 @@ def test_ci_runs_the_test_command_of_the_readme() -> None:
     assert len(re.findall(r"```sh\n(python3 -m venv .*pytest.*)\n```", README.read_text())) == 1
 
 
+@pytest.mark.xfail(reason="the README at the top is still to be rewritten", strict=True)
+def test_the_readme_can_be_read_in_five_minutes() -> None:
+    assert README.stat().st_size <= 12_000
+
+
+@pytest.mark.xfail(reason="the README at the top is still to be rewritten", strict=True)
+def test_lines_of_the_readme_are_short() -> None:
+    assert [line for line in README.read_text().splitlines() if len(line) > 100] == []
+
+
+@pytest.mark.parametrize("path", [path for path in READMES if path != README], ids=name)
+def test_prose_of_the_other_readmes_is_short(path: Path) -> None:
+    assert [line for line in prose(path.read_text()) if len(line) > 100] == []
+
+
 def rewrite() -> None:
-    """Put the real outputs, and the table of errata, into the README."""
-    text = README.read_text()
-    for command, shown in sessions(text):
-        text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
-    table = "\n".join(errata_table())
-    text = re.sub(r"\| quantity \| printed.*(\n\|.*)*", lambda _: table, text)
-    README.write_text(text)
+    """Put the real outputs, and the tables of errata, into every README."""
+    for path in READMES:
+        text = path.read_text()
+        for command, shown in sessions(text):
+            text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
+        for table in (errata_table, figures_table):
+            text = with_table(text, table())
+        path.write_text(text)
+
+
+def with_table(text: str, lines: list[str]) -> str:
+    """Return a page with the table that has this first line in place of the one it shows."""
+    shown = re.compile(rf"^{re.escape(lines[0])}\n(\|.*\n)*", re.MULTILINE)
+    return shown.sub(lambda _: "\n".join([*lines, ""]), text)
 
 
 if __name__ == "__main__":

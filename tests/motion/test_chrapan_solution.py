@@ -1,0 +1,552 @@
+"""Chrapan's section 4, equation by equation, for tops of both directions of spin.
+
+On one side stand the angles and the record of the program in 150 digits; on the other definitions:
+the rotation matrix, Euler's equations with slopes of those angles, and mpmath's elliptic functions,
+those of the paper's imaginary modulus too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, ClassVar
+
+import pytest
+from chrapan_top import (
+    LEFT,
+    MOTIONS,
+    PARTS,
+    RIGHT,
+    SLOW,
+    STEP,
+    J,
+    Motion,
+    ar,
+    moments,
+    nth_value,
+    slope,
+    spoil,
+)
+from equations import EquationTests, Register, Sides
+from errata import misprints
+
+from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.elliptic.theta import pi_function
+
+chrapan = Register(f"(4,{i})" for i in range(1, 35))
+equation, as_printed = chrapan.equation, chrapan.as_printed
+
+
+def rotation(motion: Motion, t: Any) -> Any:
+    """Return the matrix from body to space: turns about z, the line of nodes, and z'."""
+
+    def about_z(angle: Any) -> Any:
+        c, s = ar.cos(angle), ar.sin(angle)
+        return ar.matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+    theta, phi, psi = motion.angles(t)
+    c, s = ar.cos(theta), ar.sin(theta)
+    return about_z(psi) * ar.matrix([[1, 0, 0], [0, c, -s], [0, s, c]]) * about_z(phi)
+
+
+@equation("(4,1)")
+def _() -> Sides:
+    for motion, t in moments():
+        turning = (rotation(motion, t + STEP) - rotation(motion, t - STEP)) / (2 * STEP)
+        spin = rotation(motion, t).T * turning
+        p, q = motion.body_rates(t)
+        yield p, spin[2, 1]
+        yield q, spin[0, 2]
+        yield motion.r0, spin[1, 0]
+
+
+@as_printed("(4,1)")
+def _() -> Sides:
+    motion, t = RIGHT, PARTS[0] * RIGHT.T
+    theta, phi, _ = motion.angles(t)
+    nutation, spin, _ = motion.rates(t)
+    p, _ = motion.body_rates(t)
+    yield p, spin * ar.sin(theta) * ar.sin(phi) + nutation * ar.cos(phi)
+
+
+@equation("(4,1) solved for the rates")
+def _() -> Sides:
+    for motion, t in moments():
+        theta, phi, _ = motion.angles(t)
+        turning = (rotation(motion, t + STEP) - rotation(motion, t - STEP)) / (2 * STEP)
+        spin = rotation(motion, t).T * turning
+        p, q = spin[2, 1], spin[0, 2]
+        around = p * ar.sin(phi) + q * ar.cos(phi)
+        nutation, own, precession = motion.rates(t)
+        yield precession, around / ar.sin(theta)
+        yield own, motion.r0 - around * ar.cot(theta)
+        yield nutation, p * ar.cos(phi) - q * ar.sin(phi)
+
+
+@equation("Euler's equations")
+def _() -> Sides:
+    for motion, t in moments(*PARTS[:2]):
+        theta, phi, _ = motion.angles(t)
+        p, q = motion.body_rates(t)
+        p_rate, q_rate = (slope(partial(nth_value, motion.body_rates, i), t) for i in (0, 1))
+        pull = motion.mgs * ar.sin(theta)
+        gyro = (motion.C - motion.A) * motion.r0
+        yield motion.A * p_rate + gyro * q, pull * ar.cos(phi)
+        yield motion.A * q_rate - gyro * p, -pull * ar.sin(phi)
+
+
+@equation("(4,2)")
+def _() -> Sides:
+    for motion, t in moments():
+        nutation, _, precession = motion.rates(t)
+        left = motion.A * (nutation**2 + precession**2 * (1 - motion.u(t) ** 2))
+        yield left, 2 * motion.mgs * (motion.u1 - motion.u(t))
+
+
+@as_printed("(4,2)")
+def _() -> Sides:
+    motion, t = RIGHT, PARTS[0] * RIGHT.T
+    nutation, spin, _ = motion.rates(t)
+    left = motion.A * (nutation**2 + spin**2 * (1 - motion.u(t) ** 2))
+    yield left, 2 * motion.mgs * (motion.u1 - motion.u(t))
+
+
+@equation("(4,3)")
+def _() -> Sides:
+    for motion, t in moments():
+        left = motion.A * (1 - motion.u(t) ** 2) * motion.rates(t)[2]
+        yield left, motion.C * motion.r0 * (motion.u1 - motion.u(t))
+
+
+@as_printed("(4,3)")
+def _() -> Sides:
+    motion, t = RIGHT, PARTS[0] * RIGHT.T
+    left = motion.A * (1 - motion.u(t) ** 2) * motion.rates(t)[1]
+    yield left, motion.C * motion.r0 * (motion.u1 - motion.u(t))
+
+
+@equation("(4,4)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        yield motion.a, 2 * motion.mgs / motion.A
+
+
+@equation("(4,5)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        yield motion.b, motion.C * motion.r0 / motion.A
+
+
+@equation("section 4 d: c1 and c2")
+def _() -> Sides:
+    for motion, t in moments():
+        u, (p, q) = motion.u(t), motion.body_rates(t)
+        theta, phi, _ = motion.angles(t)
+        around = motion.A * ar.sin(theta) * (p * ar.sin(phi) + q * ar.cos(phi))
+        yield motion.A / 2 * (p**2 + q**2) + motion.mgs * u, motion.mgs * motion.u1
+        yield around + motion.C * motion.r0 * u, motion.C * motion.r0 * motion.u1
+
+
+@equation("(4,6)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        yield motion.u1, motion.u(ar.mpf(0))
+        yield motion.u2, motion.u(motion.T / 2)
+
+
+@equation("(4,7)")
+def _() -> Sides:
+    for motion, t in moments():
+        u = motion.u(t)
+        yield motion.rates(t)[2], motion.b * (motion.u1 - u) / (1 - u * u)
+
+
+@as_printed("(4,7)")
+def _() -> Sides:
+    motion, t = RIGHT, PARTS[0] * RIGHT.T
+    u = motion.u(t)
+    yield motion.rates(t)[1], motion.b * (motion.u1 - u) / (1 - u * u)
+
+
+@equation("(4,8)")
+def _() -> Sides:
+    for motion, t in moments():
+        u = motion.u(t)
+        yield motion.rates(t)[1], motion.r0 - motion.b * u * (motion.u1 - u) / (1 - u * u)
+
+
+@as_printed("(4,8)")
+def _() -> Sides:
+    motion, t = RIGHT, PARTS[0] * RIGHT.T
+    u = motion.u(t)
+    yield motion.rates(t)[2], motion.r0 - motion.b * u * (motion.u1 - u) / (1 - u * u)
+
+
+def _cubic(motion: Motion, u: Any) -> Any:
+    """Return f(u) of (4,9)."""
+    a, b, u1 = motion.a, motion.b, motion.u1
+    return (1 - u * u) * (a * u1 - a * u) - (b * u1 - b * u) ** 2
+
+
+@equation("(4,9)")
+def _() -> Sides:
+    for motion, t in moments():
+        yield slope(motion.u, t) ** 2, _cubic(motion, motion.u(t))
+
+
+@equation("(4,10)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        a, b, u1 = motion.a, motion.b, motion.u1
+        root = ar.sqrt(b**4 - 4 * a * b**2 * u1 + 4 * a**2)
+        for u, ours in zip(
+            ((b**2 - root) / (2 * a), (b**2 + root) / (2 * a)), motion.roots[1:], strict=True
+        ):
+            yield ours, u
+            yield -a * ours**2 + b**2 * ours - (b**2 * u1 - a), ar.mpf(0)
+
+
+@equation("section 4 e: the discriminant")
+def _() -> Sides:
+    for motion in MOTIONS:
+        a, b, u1 = motion.a, motion.b, ar.cos(ar.radians(motion.top.theta0_deg))
+        discriminant = b**4 - 4 * a * b**2 * u1 + 4 * a**2
+        yield (2 * a * (motion.u3 - motion.u2) / 2) ** 2, discriminant
+        yield ar.sign(discriminant - (b**2 - 2 * a) ** 2), 1
+
+
+@equation("section 4 e: f and its slope at 1, -1 and u1")
+def _() -> Sides:
+    for motion in MOTIONS:
+        factored = partial(_factored_cubic, motion)
+        u1 = ar.cos(ar.radians(motion.top.theta0_deg))
+        for pole in (1, -1):
+            yield factored(ar.mpf(pole)), -((motion.b * (u1 - pole)) ** 2)
+        yield slope(factored, u1), -motion.a * (1 - u1**2)
+
+
+def _factored_cubic(motion: Motion, u: Any) -> Any:
+    """Return f(u) from the roots of the record."""
+    u1, u2, u3 = motion.roots
+    return motion.a * (u1 - u) * (u - u2) * (u3 - u)
+
+
+@equation("section 4 e: sign of u2")
+def _() -> Sides:
+    for motion in [*MOTIONS, SLOW]:
+        lowest = motion.u(motion.T / 2)
+        yield motion.a * motion.u3 * lowest, motion.b**2 * motion.u1 - motion.a
+        yield ar.sign(motion.u3 - 1), 1
+
+
+ROOTS: dict[str, Callable[..., Any]] = {
+    "(4,11)": lambda u1, u2, u3, b: (u3 + u2, b),
+    "sum of products": lambda u1, u2, u3, b: (u1 * u2 + u1 * u3 - u2 * u3, 1),
+    "(4,12)": lambda u1, u2, u3, b: (u2 * u3, b * u1 - 1),
+    "(4,13)": lambda u1, u2, u3, b: (1 - u1**2, (u1 - u2) * (u3 - u1)),
+    "(4,14)": lambda u1, u2, u3, b: (1 - u2**2, (u1 - u2) * (u3 + u2)),
+    "(4,14), second": lambda u1, u2, u3, b: (u3**2 - 1, (u3 - u1) * (u3 + u2)),
+    "(4,15)": lambda u1, u2, u3, b: ((1 + u1) * (1 - u2), (u3 + 1) * (u1 - u2)),
+    "(4,15), second": lambda u1, u2, u3, b: ((1 - u1) * (1 + u2), (u3 - 1) * (u1 - u2)),
+    "(4,15), third": lambda u1, u2, u3, b: ((1 + u1) * (u3 - 1), (1 + u2) * (u3 - u1)),
+    "(4,16)": lambda u1, u2, u3, b: ((1 - u1) * (u3 + 1), (1 - u2) * (u3 - u1)),
+    "(4,17)": lambda u1, u2, u3, b: ((1 + u2) * (u3 + 1), (1 + u1) * (u3 + u2)),
+    "(4,18)": lambda u1, u2, u3, b: ((1 - u2) * (u3 - 1), (1 - u1) * (u3 + u2)),
+}
+"""Identities between the roots and b^2/a."""
+
+for _name, _sides in ROOTS.items():
+
+    @equation(_name)
+    def _(sides: Callable[..., Any] = _sides) -> Sides:
+        for motion in MOTIONS:
+            yield sides(*motion.roots, motion.b**2 / motion.a)
+
+
+@equation("(4,19)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        u1, u2, u3 = motion.roots
+        yield motion.k, ar.sqrt((u1 - u2) / (u3 - u2))
+
+
+@equation("(4,20)")
+def _() -> Sides:
+    for motion, t in moments():
+        u1, u2, u3 = motion.roots
+        sn, _, dn = motion.jacobi(t)
+        yield motion.u(t), u3 - (u3 - u1) / dn**2
+        yield motion.u(t), u1 - (u1 - u2) * (u3 - u1) / (u3 - u2) * (sn / dn) ** 2
+
+
+@equation("(4,21)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        u1, u2, u3 = motion.roots
+        yield motion.k_prime, ar.sqrt((u3 - u1) / (u3 - u2))
+
+
+@equation("(4,22)")
+def _() -> Sides:
+    for motion, t in moments():
+        u1, _, u3 = motion.roots
+        yield motion.jacobi(t)[2] ** 2, (u3 - u1) / (u3 - motion.u(t))
+
+
+@equation("(4,23)")
+def _() -> Sides:
+    for motion, t in moments():
+        (u1, u2, u3), u = motion.roots, motion.u(t)
+        yield motion.jacobi(t)[0] ** 2, (u1 - u) * (u3 - u2) / ((u3 - u) * (u1 - u2))
+
+
+@equation("(4,24)")
+def _() -> Sides:
+    for motion, t in moments():
+        (u1, u2, u3), u = motion.roots, motion.u(t)
+        yield motion.jacobi(t)[1] ** 2, (u3 - u1) * (u - u2) / ((u3 - u) * (u1 - u2))
+
+
+@equation("section 4 g: u by the imaginary modulus")
+def _() -> Sides:
+    for motion, t in moments():
+        u1, u2, u3 = motion.roots
+        u, xi2 = motion.u(t), motion.xi(t) ** 2
+        yield u1 - u, (u1 - u2) * xi2
+        yield u - u2, (u1 - u2) * (1 - xi2)
+        yield u3 - u, (u3 - u1) * (1 - motion.kappa2 * xi2)
+
+
+@equation("(4,25)")
+def _() -> Sides:
+    for motion, t in moments():
+        u1, u2, _ = motion.roots
+        yield 1 + motion.u(t), (1 + u1) * (1 - (u1 - u2) / (1 + u1) * motion.xi(t) ** 2)
+
+
+@equation("(4,26)")
+def _() -> Sides:
+    for motion, t in moments():
+        u1, u2, _ = motion.roots
+        yield 1 - motion.u(t), (1 - u1) * (1 + (u1 - u2) / (1 - u1) * motion.xi(t) ** 2)
+
+
+def _precession_rate(motion: Motion, t: Any, power: int) -> Any:
+    """Return the rate of section 4 ch, with the power of kappa in its first numerator."""
+    xi2, kappa = motion.xi(t) ** 2, ar.sqrt(motion.kappa2)
+    first, second = (motion.kappa2 * motion.at_parameter(i)[0] ** 2 * xi2 for i in (1, 2))
+    return motion.b / 2 * (kappa ** (power - 2) * first / (1 - first) - second / (1 - second))
+
+
+@equation("section 4 ch: rate of precession")
+def _() -> Sides:
+    for motion, t in moments():
+        yield motion.rates(t)[2], _precession_rate(motion, t, 2)
+
+
+@as_printed("section 4 ch: rate of precession")
+def _() -> Sides:
+    t = RIGHT.T / 3
+    yield RIGHT.rates(t)[2], _precession_rate(RIGHT, t, 3)
+
+
+@equation("section 4 k: rate of spin")
+def _() -> Sides:
+    for motion, t in moments():
+        xi2 = motion.xi(t) ** 2
+        first, second = (motion.kappa2 * motion.at_parameter(i)[0] ** 2 * xi2 for i in (1, 2))
+        waves = first / (1 - first) + second / (1 - second)
+        yield motion.rates(t)[1], motion.r0 + motion.b / 2 * waves
+
+
+def _printed_at_parameters(motion: Motion) -> list[Any]:
+    """Return sn, cn, dn of alpha1, then of alpha2, as section 4 i prints them."""
+    u1, u2, u3 = motion.roots
+    south = [J * ar.sqrt(u3 - u1), ar.sqrt(u3 + 1), ar.sqrt(1 + u2)]
+    north = [ar.sqrt(u3 - u1), J * ar.sqrt(u3 - 1), ar.sqrt(1 - u2)]
+    return [x / ar.sqrt(1 + u1) for x in south] + [x / ar.sqrt(1 - u1) for x in north]
+
+
+@equation("section 4 i: sn, cn, dn of the parameters")
+def _() -> Sides:
+    for motion in MOTIONS:
+        ours = motion.at_parameter(1) + motion.at_parameter(2)
+        printed = _printed_at_parameters(motion)
+        yield from zip([x**2 for x in ours], [x**2 for x in printed], strict=True)
+        signs = (1, 1, 1, -1, 1, -1)
+        yield from zip(
+            ours, [sign * x for sign, x in zip(signs, printed, strict=True)], strict=True
+        )
+
+
+@as_printed("section 4 i: sn, cn, dn of the parameters")
+def _() -> Sides:
+    for motion in MOTIONS:
+        sn, _, dn = motion.at_parameter(2)
+        _, _, _, printed_sn, _, printed_dn = _printed_at_parameters(motion)
+        yield sn, printed_sn
+        yield dn, printed_dn
+
+
+@equation("section 4 j: product of the two sn")
+def _() -> Sides:
+    for motion in MOTIONS:
+        first, second = motion.at_parameter(1)[0], motion.at_parameter(2)[0]
+        yield motion.kappa2 * first**2 * second**2, 1
+
+
+def _quotient(motion: Motion, v: Any) -> Any:
+    """Return sn/(cn dn) for the imaginary modulus, v already stretched to the real one."""
+    sn, cn, dn = (ar.ellipfun(name, v, m=motion.k**2) for name in ("sn", "cn", "dn"))
+    return motion.k_prime * sn * dn / cn
+
+
+def _size(motion: Motion, b: Any) -> Any:
+    return ar.sqrt(motion.a * (motion.u3 - motion.u1)) / b
+
+
+@equation("line before (4,27)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        u1, u2, u3 = motion.roots
+        right = J * ar.sqrt((u3 - u1) * (1 + u1) / ((u3 + 1) * (1 + u2)))
+        sn, cn, dn = motion.at_parameter(1)
+        yield sn / (cn * dn), right
+
+
+@as_printed("line before (4,27)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        u1, u2, u3 = motion.roots
+        right = J * ar.sqrt((u3 + u1) * (1 + u1) / ((u3 + 1) * (1 + u2)))
+        yield _quotient(motion, J * motion.alpha), right
+
+
+@equation("(4,27)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        yield _quotient(motion, J * motion.alpha), J * _size(motion, abs(motion.b))
+
+
+@as_printed("(4,27)")
+def _() -> Sides:
+    yield _quotient(LEFT, J * LEFT.alpha), J * _size(LEFT, LEFT.b)
+
+
+@equation("(4,28)")
+def _() -> Sides:
+    for motion in MOTIONS:
+        v = J * motion.alpha + J * motion.K_prime + motion.K
+        yield _quotient(motion, v), -J * _size(motion, abs(motion.b))
+
+
+@as_printed("(4,28)")
+def _() -> Sides:
+    v = J * LEFT.alpha + J * LEFT.K_prime + LEFT.K
+    yield _quotient(LEFT, v), -J * _size(LEFT, LEFT.b)
+
+
+def _pi(motion: Motion, t: Any) -> tuple[Any, Any]:
+    """Return Pi00 and Pi11 of section 4 j."""
+    kind = partial(_pi_function, modulus(ar, k=motion.k), motion.w(t), J * motion.alpha)
+    return kind("00"), kind("11")
+
+
+def _pi_function(k: Any, w: Any, parameter: Any, kind: str) -> Any:
+    """Return one of our functions Pi."""
+    return pi_function(ar, kind, w, parameter, k)
+
+
+@equation("(4,29)")
+def _() -> Sides:
+    for motion, t in moments():
+        even, odd = _pi(motion, t)
+        yield motion.angles(t)[2], motion.sigma * J * (even + odd + J * ar.pi / 2)
+
+
+@as_printed("(4,29)")
+def _() -> Sides:
+    even, odd = _pi(LEFT, LEFT.T / 3)
+    yield LEFT.angles(LEFT.T / 3)[2], J * (even + odd + J * ar.pi / 2)
+
+
+def _stretched(motion: Motion, t: Any, stretch: Any) -> tuple[Any, Any]:
+    """Return w of (4,30) and eta times a factor that should be sqrt(1 + k_bar^2)."""
+    eta = ar.sqrt(motion.a * (motion.u3 - motion.u1)) * t / 2
+    return 2 * motion.K * t / motion.T, eta * stretch
+
+
+@equation("(4,30)")
+def _() -> Sides:
+    for motion, t in moments():
+        u1, u2, u3 = motion.roots
+        yield _stretched(motion, t, ar.sqrt((u3 - u2) / (u3 - u1)))
+        yield _stretched(motion, t, ar.sqrt(1 - motion.kappa2))
+        yield 2 * motion.K * t / motion.T, motion.w(t)
+
+
+@as_printed("(4,30) as printed, the roots")
+def _() -> Sides:
+    _, u2, u3 = RIGHT.roots
+    yield _stretched(RIGHT, RIGHT.T / 3, ar.sqrt((u3 + u2) / (u3 - u2)))
+
+
+@as_printed("(4,30) as printed, the modulus")
+def _() -> Sides:
+    yield _stretched(RIGHT, RIGHT.T / 3, ar.sqrt(1 + RIGHT.k**2))
+
+
+@equation("section 4 l: w")
+def _() -> Sides:
+    for motion, t in moments():
+        _, u2, u3 = motion.roots
+        w = ar.sqrt(motion.a * (u3 - u2)) * t / 2
+        yield ar.ellipfun("dn", w, m=motion.k**2) ** 2, (u3 - motion.u1) / (u3 - motion.u(t))
+
+
+@as_printed("section 4 l: w")
+def _() -> Sides:
+    (u1, u2, u3), t = RIGHT.roots, RIGHT.T / 3
+    w = ar.sqrt(RIGHT.a * (u3 - u2)) * t / 3
+    yield ar.ellipfun("dn", w, m=RIGHT.k**2) ** 2, (u3 - u1) / (u3 - RIGHT.u(t))
+
+
+def _at_alpha(name: str, numerator: Callable[..., Any]) -> Callable[[], Sides]:
+    def sides() -> Sides:
+        for motion in MOTIONS:
+            u1, u2, u3 = motion.roots
+            left = ar.ellipfun(name, motion.alpha, m=1 - motion.k**2)
+            yield left, ar.sqrt(numerator(u1, u2, u3) / (u3 + 1))
+
+    return sides
+
+
+equation("(4,31)")(_at_alpha("cn", lambda u1, u2, u3: 1 + u2))
+equation("(4,32)")(_at_alpha("sn", lambda u1, u2, u3: u3 - u2))
+equation("(4,33)")(_at_alpha("dn", lambda u1, u2, u3: 1 + u1))
+
+
+@equation("(4,34)")
+def _() -> Sides:
+    for motion, t in moments():
+        even, odd = _pi(motion, t)
+        right = motion.r0 * t + motion.sigma * J * (even - odd - J * ar.pi / 2)
+        yield motion.angles(t)[1], right
+
+
+@as_printed("(4,34)")
+def _() -> Sides:
+    t = LEFT.T / 3
+    even, odd = _pi(LEFT, t)
+    yield LEFT.angles(t)[1], LEFT.r0 * t + J * (even - odd - J * ar.pi / 2)
+
+
+class TestChrapan(EquationTests):
+    """Tests of the register."""
+
+    register: ClassVar[Register] = chrapan
+    errata: ClassVar[set[str]] = misprints("Chrapan", 4)
+
+    def spoil(self, patch: pytest.MonkeyPatch) -> None:
+        """Put tops in place whose record and angles are wrong."""
+        spoil(patch)
