@@ -75,7 +75,9 @@ def _attributes(node: ast.Module | ast.ClassDef) -> Iterator[tuple[None, int, st
     """Yield the texts that stand below assignments."""
     for before, after in zip(node.body, node.body[1:], strict=False):
         match after:
-            case ast.Expr(ast.Constant(str(text))) if isinstance(before, ast.Assign | ast.AnnAssign):
+            case ast.Expr(ast.Constant(str(text))) if isinstance(
+                before, ast.Assign | ast.AnnAssign
+            ):
                 yield None, after.lineno, text
 
 
