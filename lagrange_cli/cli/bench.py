@@ -17,9 +17,9 @@ from .options import (
     output_options,
     scene_options,
     solved,
-    with_steps,
     write_report,
 )
+from .progress import with_steps
 
 if TYPE_CHECKING:
     from ..output.findings import Findings

@@ -18,8 +18,8 @@ from .options import (
     digits_option,
     listed,
     output_options,
-    with_progress,
 )
+from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

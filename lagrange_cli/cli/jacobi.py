@@ -21,8 +21,8 @@ from .options import (
     exclude,
     listed,
     output_options,
-    with_progress,
 )
+from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

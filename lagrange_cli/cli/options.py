@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import re
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from time import monotonic
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -29,8 +27,6 @@ if TYPE_CHECKING:
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
-P = TypeVar("P")
-T = TypeVar("T")
 V = TypeVar("V")
 
 
@@ -148,45 +144,6 @@ def given(name: str) -> bool:
     from click.core import ParameterSource
 
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
-
-
-def with_progress(
-    parts: Iterable[P],
-    count: int,
-    long: int,
-    size: Callable[[Any], int] = len,
-    label: str = "rows",
-) -> Iterator[P]:
-    """The parts as they come; a bar on the terminal where `count` rows are `long` work."""
-    if count < long or not sys.stderr.isatty():
-        yield from parts
-        return
-    with click.progressbar(length=count, label=label, file=sys.stderr) as bar:
-        for part in parts:
-            yield part
-            bar.update(size(part))
-
-
-def with_count(parts: Iterable[P], label: str) -> Iterator[P]:
-    """The same for nobody knows how many; after a second, a bar that counts."""
-    parts, begun = iter(parts), monotonic()
-    for part in parts:
-        yield part
-        if monotonic() - begun > 1 and sys.stderr.isatty():
-            break
-    else:
-        return
-    with click.progressbar(parts, label=label, file=sys.stderr, show_pos=True) as bar:
-        yield from bar
-
-
-def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
-    """The items one by one; on a terminal a bar says how many are done."""
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    with click.progressbar(items, label=label, file=sys.stderr, show_pos=True) as bar:
-        yield from bar
 
 
 def write_report(find: Callable[[], Findings], style: str, output: str) -> Findings:

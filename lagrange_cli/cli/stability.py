@@ -14,9 +14,9 @@ from .options import (
     ExamplesFirst,
     exclude,
     output_options,
-    with_steps,
     write_report,
 )
+from .progress import with_steps
 
 if TYPE_CHECKING:
     from ..output.findings import Findings

@@ -16,9 +16,8 @@ from .options import (
     exclude,
     input_options,
     output_options,
-    with_count,
-    with_progress,
 )
+from .progress import with_count, with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

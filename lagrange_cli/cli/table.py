@@ -22,8 +22,8 @@ from .options import (
     output_options,
     scene_options,
     solved,
-    with_progress,
 )
+from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

@@ -10,10 +10,14 @@ import stat
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from ..errors import CannotWriteError
 from .signals import terminated_by
+from .terminal import Screen
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer as Buffer
 
 
 @contextmanager
@@ -45,8 +49,20 @@ def _standard_output() -> Iterator[BinaryIO]:
         yield sys.stdout.buffer
         sys.stdout.buffer.flush()
         return
-    with open(descriptor, "wb") as stream:
+    shared = sys.stdout.isatty()
+    with _SharedScreen(io.FileIO(descriptor, "wb")) if shared else open(descriptor, "wb") as stream:
         yield stream
+
+
+class _SharedScreen(io.BufferedWriter):
+    """Standard output on a terminal that may show a line of progress at the same time."""
+
+    def write(self, data: Buffer, /) -> int:
+        """Write at once, with the line of progress out of the way."""
+        with Screen.without_progress():
+            count = super().write(data)
+            self.flush()
+        return count
 
 
 @contextmanager

@@ -1,8 +1,10 @@
-"""What a terminal is safe to show, and how wide it is."""
+"""What a terminal is safe to show, how wide it is, and who else writes to it."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 
 MOST_CHARACTERS = 1000
 """The length of a line that is still read."""
@@ -42,3 +44,10 @@ def width(path: str) -> int | None:
 def encoding(path: str) -> str:
     """Return the encoding of the text that is written to this path."""
     return (path == "-" and getattr(sys.stdout, "encoding", None)) or "utf-8"
+
+
+class Screen:
+    """The terminal of the process, which output may share with a line of progress."""
+
+    without_progress: Callable[[], AbstractContextManager[None]] = nullcontext
+    """Takes the line of progress, if any, away while others write."""

@@ -7,7 +7,6 @@ import io
 import json
 import math
 from collections.abc import Callable
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ import pytest
 from conftest import ROOT, Lagtop
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.cli import options
 from lagrange_cli.output.layouts import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
@@ -349,12 +347,3 @@ def test_examples_of_the_help_run(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatc
 
 def test_version(lagtop: Lagtop) -> None:
     assert lagtop("--version").stdout == "lagtop, version 0.1.0\n"
-
-
-@pytest.mark.parametrize("seconds", [0.0, 0.4])
-def test_counting_loses_no_part(seconds: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Below a second without a bar, and above with it."""
-    clock = count(step=seconds)
-    monkeypatch.setattr(options, "monotonic", lambda: next(clock))
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    assert list(options.with_count(range(10), "parts")) == list(range(10))

@@ -261,18 +261,3 @@ def test_completion() -> None:
         "COMP_CWORD": "1",
     }
     assert b"solve" in process(env=environment).stdout
-
-
-@pytest.mark.parametrize(("rows", "shown"), [("3e6", True), ("1e5", False)])
-def test_long_work_shows_progress_on_a_terminal(rows: str, shown: bool) -> None:
-    terminal, child = os.openpty()
-    with open(terminal, "rb", buffering=0) as screen:
-        command = [*LAGTOP, "table", "--n", rows, "-o", "/dev/null"]
-        environment = os.environ | {"TERM": "xterm"}
-        subprocess.run(command, stderr=child, stdout=child, check=True, env=environment)
-        os.close(child)
-        try:
-            text = screen.read(4096)
-        except OSError:  # nothing was written, and nobody can any more
-            text = b""
-    assert (b"rows" in text) == shown

@@ -1,0 +1,132 @@
+"""Progress of long work: one line on the terminal of standard error, which vanishes at the end.
+
+The line appears after a second, from a thread of its own: also while the first part is still being
+computed.  Rich is loaded only then.  Nothing is shown where standard error is no terminal.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from threading import Timer
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from ..output.terminal import Screen
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+DELAY = 1.0
+"""Seconds of work that nobody needs to be told about."""
+
+P = TypeVar("P")
+T = TypeVar("T")
+
+
+def with_progress(
+    parts: Iterable[P],
+    count: int,
+    long: int,
+    size: Callable[[Any], int] = len,
+    label: str = "rows",
+) -> Iterator[P]:
+    """Yield the parts as they come, and show how many of `count` rows are done.
+
+    `size` gives the rows of a part.  From `long` rows on, progress is shown from the beginning.
+    """
+    return _watched(parts, label, count, size, 0.0 if count >= long else DELAY)
+
+
+def with_count(parts: Iterable[P], label: str) -> Iterator[P]:
+    """Yield the parts when their number is unknown, and show how many are done."""
+    return _watched(parts, label, None, lambda _: 1, DELAY)
+
+
+def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
+    """Yield the items one by one, and show how many are done."""
+    return _watched(items, label, len(items), lambda _: 1, DELAY)
+
+
+def _watched(
+    parts: Iterable[P], label: str, total: int | None, size: Callable[[Any], int], delay: float
+) -> Iterator[P]:
+    if not sys.stderr.isatty():
+        yield from parts
+        return
+    with _line(label, total, delay) as line:
+        for part in parts:
+            yield part
+            line.advance(size(part))
+
+
+@contextmanager
+def _line(label: str, total: int | None, delay: float) -> Iterator[_Line]:
+    """Show a line while the block runs, and take it away even if an interrupted consumer does not
+    come back: a command closes its context before its frames are gone."""
+    line = _Line(label, total, delay)
+    if context := click.get_current_context(silent=True):
+        context.call_on_close(line.stop)
+    try:
+        yield line
+    finally:
+        line.stop()
+
+
+class _Line:
+    """The line of one piece of work."""
+
+    def __init__(self, label: str, total: int | None, delay: float) -> None:
+        self.label, self.total, self.done = label, total, 0
+        self.progress: Progress | None = None
+        self.timer = Timer(delay, self._show)
+        self.timer.daemon = True
+        self.timer.start()
+
+    def _show(self) -> None:
+        progress = _progress(counts=self.total is None)
+        progress.add_task(self.label, total=self.total, completed=self.done)
+        progress.start()
+        self.progress = progress
+        Screen.without_progress = self._out_of_the_way
+
+    def advance(self, count: int) -> None:
+        """Count what is done."""
+        self.done += count
+        if self.progress:
+            self.progress.update(self.progress.task_ids[0], completed=self.done)
+
+    @contextmanager
+    def _out_of_the_way(self) -> Iterator[None]:
+        assert self.progress
+        self.progress.stop()
+        yield
+        self.progress.start()
+
+    def stop(self) -> None:
+        """Take the line away, or see to it that it never comes."""
+        self.timer.cancel()
+        self.timer.join()  # it may be about to draw
+        if self.progress:
+            Screen.without_progress = nullcontext
+            self.progress.stop()
+
+
+def _progress(*, counts: bool) -> Progress:
+    """Return an empty display that fits the width of the terminal, whatever that is."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import TimeRemainingColumn as Remaining
+
+    tail = ["{task.completed:,.0f} done"] if counts else ["{task.percentage:>3.0f}%"]
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        *(TextColumn(text) for text in tail),
+        TimeElapsedColumn() if counts else Remaining(elapsed_when_finished=True),
+        console=Console(stderr=True),
+        transient=True,
+        expand=True,
+    )
