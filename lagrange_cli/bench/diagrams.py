@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import CannotWriteError, LagtopError
-from ..output.destination import opened
 from ..output.findings import Findings
+from ..output.write import write_bytes
+from ..plot.style import figure_bytes, require_matplotlib
 from .stability import CONTRACT
 from .work_precision import is_done
 
@@ -35,8 +35,7 @@ def check_plot(path: str | None, output: str) -> None:
         raise LagtopError(f"--plot must end in {' or '.join(KINDS)}, got {path!r}")
     if Path(path).resolve() == Path(output).resolve():
         raise LagtopError(f"--plot and --output must be different files, got {path!r} twice")
-    if find_spec("matplotlib") is None:
-        raise LagtopError("--plot needs matplotlib: pip install 'lagtop[plot]'")
+    require_matplotlib()
     if not Path(path).resolve().parent.is_dir():
         raise CannotWriteError(f"cannot write {path}: no such directory")
 
@@ -117,13 +116,7 @@ def _line(axes: Axes, i: int, name: str, points: Sequence[tuple[float, float]]) 
 
 
 def _save(figure: Figure, path: str) -> None:
-    """The same file for the same findings: no date, no random names."""
-    import matplotlib
-
+    """Write the figure with its legend; the same findings give the same file."""
     for axes in figure.axes[:1]:
         axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
-    kind = Path(path).suffix.lower()[1:]
-    metadata = {"Date": None} if kind == "svg" else {"Software": None}
-    settings: Any = {"svg.hashsalt": "lagtop", "svg.fonttype": "path"}
-    with matplotlib.rc_context(settings), opened(path) as stream:
-        figure.savefig(stream, format=kind, metadata=metadata, dpi=150)
+    write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150))

@@ -86,9 +86,9 @@ def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> 
 def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:
     """Draw the roots, labelled where the curve leaves room, and an arrow to a u3 out of view."""
     double = cubic.u1 == cubic.u2
-    roots = [("u₁ = u₂" if double else "u₁", cubic.u1, "right", -18)]
+    roots = [("u₁ = u₂", cubic.u1, "right", 8)]
     if not double:
-        roots.append(("u₂", cubic.u2, "right", 8))
+        roots = [("u₁", cubic.u1, "right", -18), ("u₂", cubic.u2, "right", 8)]
     if cubic.u3_in_view is not None:
         roots.append(("u₃", cubic.u3_in_view, "left", -18))
     elif cubic.u3 is not None:

@@ -191,10 +191,10 @@ def test_bad_input_is_one_line(line: str, lagtop: Lagtop) -> None:
 
 
 def test_plots_without_matplotlib(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(diagrams, "find_spec", lambda _: None)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
     result = lagtop("bench", "--plot", "x.svg")
     assert result.exit_code == 2
-    assert result.stderr == "Error: --plot needs matplotlib: pip install 'lagtop[plot]'\n"
+    assert result.stderr == "Error: pictures need matplotlib: pip install 'lagtop[plot]'\n"
 
 
 def test_what_cannot_be_written_is_known_before_the_work(lagtop: Lagtop, tmp_path: Path) -> None:
