@@ -64,6 +64,9 @@ class Points:
 class EvenPoints(Points):
     """The points start + i step for i from 0 to count - 1."""
 
+    def __str__(self) -> str:
+        return f"{self.start}:{self.start + (self.count - 1) * self.step}:{self.count}"
+
     def __init__(self, start: Fraction, step: Fraction, count: int) -> None:
         """Raise LagtopError where there would be more than 1e9 points."""
         if count > MOST_POINTS:
@@ -108,6 +111,9 @@ class EvenPoints(Points):
 class LogPoints(Points):
     """Points from one end to the other, neither of them 0, with equal ratios between neighbours."""
 
+    def __str__(self) -> str:
+        return f"log:{self.first}:{self.last}:{self.count}"
+
     def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
         self.first, self.last, self.count = first, last, count
 
@@ -129,6 +135,9 @@ class LogPoints(Points):
 
 class ListedPoints(Points):
     """Points that are listed one by one."""
+
+    def __str__(self) -> str:
+        return ",".join(map(str, self.exact))
 
     def __init__(self, exact: list[Fraction]) -> None:
         self.exact, self.count = exact, len(exact)

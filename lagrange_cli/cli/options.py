@@ -15,7 +15,7 @@ from ..arithmetic.generic import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from ..inputs.top import build_top, overridden
+from ..inputs.top import build_top
 from ..motion.solve import Motion, solve
 from ..output.terminal import one_line
 from ..output.write import write_findings
@@ -102,7 +102,13 @@ def solved(
 ) -> Motion:
     """The motion of the top in a scene file, if any, and in the options, which win."""
     given: dict[str, Number] = dict(by_key(options, radians=rad))
-    motion = solve(build_top(given, exact=exact)) if scene is None else _of(scene, given, exact)
+    if scene is None:
+        top = build_top(given, exact=exact)
+    else:
+        from ..inputs.scene_file import read_scene
+
+        top = read_scene(scene, given, exact=exact)
+    motion = solve(top)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
@@ -112,16 +118,6 @@ def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
     """The options that were given, by the keys of the inputs."""
     unit = "theta0_rad" if radians else "theta0_deg"
     return {unit if name == "theta0" else name: x for name, x in options.items() if x is not None}
-
-
-def _of(scene: str, given: dict[str, Number], exact: bool) -> Motion:
-    from ..inputs.scene_file import SceneFile
-
-    file = SceneFile(scene)
-    try:
-        return solve(build_top(overridden(file.inputs, given), exact=exact))
-    except LagtopError as error:
-        raise error if error.key in given else file.error(error) from None
 
 
 def exclude(options: dict[str, Any]) -> None:

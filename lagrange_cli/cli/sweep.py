@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import click
 
 from ..errors import LagtopError
-from ..output.write import check_parts, write_parts, write_text_blocks
+from ..output.write import write_text_blocks
 from .options import (
     NAMES,
     ExamplesFirst,
@@ -30,11 +31,11 @@ def _parse_values(text: str) -> Points:
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
-    """I/N, the I-th of N."""
-    which, _, count = text.partition("/")
-    if which.isdecimal() and count.isdecimal() and 1 <= int(which) <= int(count):
-        return int(which), int(count)
-    raise LagtopError(f"must be I/N with 1 <= I <= N, got {text}")
+    """Return I and N of `I/N`, the I-th of N.  Raises LagtopError."""
+    match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", text)
+    if match and 1 <= int(match[1]) <= int(match[2]):
+        return int(match[1]), int(match[2])
+    raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {text[:60]!r}")
 
 
 @click.command(
@@ -83,9 +84,9 @@ def command(  # noqa: PLR0917 - click passes them by name
     """
     from ..output.parquet import check_parquet
     from ..sweeps.cluster import computed
+    from ..sweeps.folder import Folder
     from ..sweeps.parts import Tally, shard_of
     from ..sweeps.plan import plan
-    from ..sweeps.records import BLOCK_ROWS
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
     if folder is not None and style == "json":
@@ -93,18 +94,32 @@ def command(  # noqa: PLR0917 - click passes them by name
     if style == "parquet":
         check_parquet()
     inputs = by_key(axes, radians=rad)
-    sweep, blocks, size = plan(files, inputs, keys=keys, radians=rad, style=style)
+    to_stdout = folder is None and output == "-"
+    todo = plan(
+        files,
+        inputs,
+        keys=keys,
+        radians=rad,
+        fmt=style,
+        until_error=fail_fast and to_stdout,
+        described=folder is not None,
+    )
     tally = Tally(fail_fast=fail_fast)
-    with computed(sweep, shard_of(blocks, shard), cluster) as parts:
-        passing = tally.passing(parts)
-        if size:
-            share = size // (shard or (1, 1))[1]
-            passing = with_progress(passing, share, 1_000_000, lambda part: part.tops)
+    blocks = shard_of(todo.blocks, shard)
+    parts_folder = None
+    if folder is not None:
+        parts_folder = Folder(folder, todo.sweep, todo.description)
+        blocks = parts_folder.missing(blocks, tally)
+    with computed(todo.sweep, blocks, cluster) as parts:
+        passing = tally.until_error(parts, ended=to_stdout) if fail_fast else tally.passing(parts)
+        if todo.size:
+            share = todo.size // (shard or (1, 1))[1]
+            passing = with_progress(passing, share, 1_000_000, tally.progress)
         else:
             passing = with_count(passing, "parts")
-        if folder is not None:
-            check_parts(folder, style, -(-size // BLOCK_ROWS))
-            write_parts(style, sweep.header, ((part.number, part.text) for part in passing), folder)
+        if parts_folder:
+            parts_folder.write(passing)
         else:
-            write_text_blocks(style, sweep.header, (part.text for part in passing), output)
+            texts = (part.text for part in passing)
+            write_text_blocks(style, todo.sweep.header, texts, output)
     tally.check()

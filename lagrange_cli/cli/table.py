@@ -119,7 +119,8 @@ def command(  # noqa: PLR0917 - click passes them by name
         given = shared_inputs(scene, by_key(options, radians=rad))
         tables = open_tables(tops, given, names, times_of, radians=rad, wrap=wrap, style=style)
         tally = Tally()
-        write_text_blocks(style, tables.header, tally.texts(tables.parts()), output)
+        passing = tally.passing(tables.parts())
+        write_text_blocks(style, tables.header, (part.text for part in passing), output)
         tally.check()
         return
     motion = solved(scene, rad, digits is not None, options)

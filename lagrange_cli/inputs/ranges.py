@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
+from .block import InputArrays
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -54,23 +55,40 @@ class Product(NamedTuple):
         """The number of combinations."""
         return prod(axis.count for axis in self.axes.values())
 
-    def columns(self, rows: range) -> dict[str, Array]:
-        """Return the values of the combinations with these numbers, an array for each input."""
-        import numpy as np
-
-        left = np.arange(rows.start, rows.stop)
-        columns = {}
-        for name, axis in reversed(list(self.axes.items())):
-            columns[name] = axis.at(left % axis.count)
-            left //= axis.count
-        return columns
-
-    def blocks(self, size: int) -> Iterator[range]:
-        """Yield the numbers of the combinations, `size` at a time."""
+    def blocks(self, size: int) -> Iterator[Combinations]:
+        """Yield the combinations, `size` at a time."""
         for first in range(0, self.size, size):
-            yield range(first, min(first + size, self.size))
+            yield Combinations(self, first, min(first + size, self.size))
 
     def check(self) -> None:
         """Raise LagtopError where there are more than 1e9 combinations."""
         if self.size > MOST_POINTS:
             raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")
+
+
+class Combinations(NamedTuple):
+    """The combinations of a product from one number to before another."""
+
+    product: Product
+    first: int
+    stop: int
+
+    @property
+    def size(self) -> int:
+        """The number of combinations."""
+        return self.stop - self.first
+
+    def values(self) -> dict[str, Array]:
+        """Return the values of each input in these combinations."""
+        import numpy as np
+
+        left = np.arange(self.first, self.stop)
+        values = {}
+        for name, axis in reversed(list(self.product.axes.items())):
+            values[name] = axis.at(left % axis.count)
+            left //= axis.count
+        return values
+
+    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
+        """Return the inputs of the combinations; those that do not vary are `shared`."""
+        return InputArrays(self.size, {**shared, **self.values()})

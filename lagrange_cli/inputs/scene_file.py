@@ -4,29 +4,48 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
+from ..arithmetic.generic import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError, SceneError
-from .top import Top
+from .names import suggestion
+from .top import Top, build_top, overridden
 
-_MOST_BYTES = 1 << 20
+_MOST_BYTES = 1 << 16
+_MOST_DOTS = 20
+"""In one line: the time that `tomllib` takes grows with the square of the parts of a key."""
 KEYS = Top._fields
+
+
+def read_scene(path: str, given: Mapping[str, Number] | None = None, *, exact: bool = False) -> Top:
+    """Return the top of a scene file; `given` inputs take the place of those of the file.
+
+    Numbers are rounded to doubles, or kept as `exact` decimals.  Raises SceneError, or LagtopError
+    for an input that was given.
+    """
+    given = given or {}
+    file = SceneFile(path)
+    try:
+        return build_top(overridden(file.inputs, given), exact=exact)
+    except LagtopError as error:
+        raise error if error.key in given else file.error(error) from None
 
 
 class SceneFile:
     """A scene file that has been read: its inputs, and where in it an input stands."""
 
     def __init__(self, path: str) -> None:
-        """Raise SceneError."""
+        """Read a file.  Raises SceneError."""
         self.path, self.text = path, ""
         try:
             with open(path, "rb") as file:
                 raw = file.read(_MOST_BYTES + 1)
             if len(raw) > _MOST_BYTES:
-                raise OSError(None, "more than 1 MiB is no scene file")
+                raise OSError(None, "more than 64 KiB is no scene file")
             self.text = raw.decode("utf-8-sig")
+            _check_dots(self.text)
             table = tomllib.loads(self.text, parse_float=_parsed)
         except OSError as error:
             raise SceneError(f"{path or 'the scene file'}: {error.strerror}") from None
@@ -34,17 +53,19 @@ class SceneFile:
             raise SceneError(f"{path}: not a TOML file: {error}") from None
         self.inputs = {key: self._number(key, value) for key, value in table.items()}
 
-    def _number(self, key: str, value: Any) -> Fraction:
+    def _number(self, key: str, value: object) -> Fraction:
         if key not in KEYS:
-            raise self.error(LagtopError(f"unknown key {key!r} (known: {' '.join(KEYS)})", key))
+            wrong = f"unknown key {key[:60]!r}{suggestion(key, KEYS)} (known: {', '.join(KEYS)})"
+            raise self.error(LagtopError(wrong, key))
         if isinstance(value, int) and not isinstance(value, bool):
             return Fraction(value)
         if not isinstance(value, Fraction):
-            raise self.error(LagtopError(f"{key} must be a finite number, got {value!r}", key))
+            shown = repr(value)[:60]
+            raise self.error(LagtopError(f"{key} must be a finite number, got {shown}", key))
         return value
 
     def error(self, error: LagtopError) -> SceneError:
-        """The same error, laid at the door of the file, and of its line where the key stands."""
+        """Return the error with the name of the file, and the line of its key, in front."""
         pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(error.key or "")}\b""")
         numbered = enumerate(self.text.splitlines(), 1)
         line = next((i for i, text in numbered if error.key and pattern.match(text)), None)
@@ -52,7 +73,15 @@ class SceneFile:
         return SceneError(f"{place}: {error}", error.key)
 
 
+def _check_dots(text: str) -> None:
+    """Raise ValueError for a key of very many parts."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.count(".") > _MOST_DOTS and not line.lstrip().startswith("#"):
+            raise ValueError(f"line {number} has more than {_MOST_DOTS} dots")
+
+
 def _parsed(text: str) -> Fraction | str:
+    """Return a number as a fraction, or as its text where it is none."""
     try:
         return parse_number(text.replace("_", ""))
     except LagtopError:

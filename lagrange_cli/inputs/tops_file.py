@@ -1,4 +1,4 @@
-"""Files of tops, one a line: CSV with a header, or JSON objects.
+"""Files of tops, one per line: CSV with a header, or JSON objects.
 
 Lines are cut into blocks without being read closer, so that any machine can take any block; a line
 that cannot be read becomes an error of its own row and harms no other.
@@ -10,27 +10,21 @@ import csv
 import math
 import re
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from io import BufferedIOBase
 from itertools import chain, islice
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import json_text, parse_number
 from ..errors import LagtopError
+from .block import InputArrays
 from .top import Top, overridden
 
 INPUTS = Top._fields
 
 
-class Lines(NamedTuple):
-    """Some lines that follow one another."""
-
-    first: int
-    """The number of the first one in its file, from 1."""
-    texts: list[bytes]
-
-
-class Row(NamedTuple):
+class TopRow(NamedTuple):
     """One top: its line, what is carried through, and its inputs or what is wrong with them."""
 
     line: int
@@ -38,14 +32,50 @@ class Row(NamedTuple):
     inputs: Mapping[str, float]
     error: str | None = None
 
-    def completed(self, given: Mapping[str, float]) -> Mapping[str, float]:
-        """The inputs, with those given where the row lacks them; those that could be read where
-        there is an error."""
-        return self.inputs if self.error else overridden(given, self.inputs)
+    def completed(self, shared: Mapping[str, float]) -> Mapping[str, float]:
+        """Return the inputs, with shared ones where the row has none.
+
+        Where there is an error these are the inputs that could be read.
+        """
+        return self.inputs if self.error else overridden(shared, self.inputs)
 
 
-class RowFile(NamedTuple):
-    """How to read the lines of a file: all of its blocks alike."""
+class Lines(NamedTuple):
+    """Lines of a file of tops that follow one another."""
+
+    file: TopsFile
+    first: int
+    """The number of the first one in its file, from 1."""
+    texts: list[bytes]
+
+    @property
+    def size(self) -> int:
+        """The number of tops; blank lines hold none."""
+        return sum(1 for text in self.texts if text.strip())
+
+    def rows(self) -> Iterator[TopRow]:
+        """Yield the tops of the lines."""
+        for number, text in enumerate(self.texts, self.first):
+            if text.strip():
+                yield self.file.row(number, text)
+
+    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
+        """Return the inputs of the tops; `shared` ones stand where a row has none of its own."""
+        import numpy as np
+
+        rows = list(self.rows())
+        completed = [row.completed(shared) for row in rows]
+        return InputArrays(
+            len(rows),
+            {name: np.array([x.get(name, math.nan) for x in completed]) for name in INPUTS},
+            list(zip(*(row.carried for row in rows), strict=True)),
+            [row.line for row in rows],
+            {i: row.error for i, row in enumerate(rows) if row.error},
+        )
+
+
+class TopsFile(NamedTuple):
+    """The way to read the lines of a file, the same for all of its blocks."""
 
     columns: Sequence[str] | None
     """The header of a CSV file; None for JSON lines."""
@@ -54,22 +84,21 @@ class RowFile(NamedTuple):
     computed: frozenset[str]
     """Names that are neither read nor carried."""
 
-    def rows(self, lines: Lines) -> Iterator[Row]:
-        """The rows of some lines; blank ones are left out."""
-        read = self._json_row if self.columns is None else self._csv_row
-        for number, raw in enumerate(lines.texts, lines.first):
-            if not raw.strip():
-                continue
-            carried: dict[str, Any] = {}
-            inputs: dict[str, float] = {}
-            error = None
-            try:
-                read(raw, carried, inputs)
-            except LagtopError as wrong:
-                error = str(wrong)
-            yield Row(number, [carried.get(name) for name in self.carried], inputs, error)
+    def row(self, number: int, raw: bytes) -> TopRow:
+        """Return the top of a line, or what is wrong with it."""
+        carried: dict[str, Any] = {}
+        inputs: dict[str, float] = {}
+        error = None
+        try:
+            if self.columns is None:
+                self._read_json(raw, carried, inputs)
+            else:
+                self._read_csv(raw, carried, inputs)
+        except LagtopError as wrong:
+            error = str(wrong)
+        return TopRow(number, [carried.get(name) for name in self.carried], inputs, error)
 
-    def _csv_row(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
+    def _read_csv(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         assert self.columns is not None
         cells = split_cells(_decoded(raw))
         texts = dict(zip(self.columns, cells, strict=False))
@@ -80,7 +109,7 @@ class RowFile(NamedTuple):
             if name in INPUTS:
                 inputs[name] = _double(name, text)
 
-    def _json_row(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
+    def _read_json(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         values = _json_object(raw)
         carried.update((name, values[name]) for name in self.carried if name in values)
         for name, value in values.items():
@@ -91,8 +120,11 @@ class RowFile(NamedTuple):
 
 
 def split_cells(line: str) -> list[str]:
-    """The cells of a line of CSV.  A quoted cell ends on its line, or one open quote would
-    swallow the rows that follow.  Raises LagtopError."""
+    """Return the cells of a line of CSV.
+
+    A quoted cell ends on its line, or one open quote would swallow the rows that follow.  Raises
+    LagtopError for a wrong quote.
+    """
     if '"' not in line:
         return line.split(",")
     try:
@@ -145,22 +177,25 @@ def _shown(value: Any) -> str:
     return json_text(value)[:60]
 
 
-def open_rows(path: str, computed: Collection[str], size: int) -> tuple[RowFile, Iterator[Lines]]:
-    """How to read a file (or standard input, for `-`), and its lines, `size` at a time.
+def open_tops(
+    path: str, computed: Collection[str], size: int, stream: BufferedIOBase | None = None
+) -> tuple[TopsFile, Iterator[Lines]]:
+    """Return the way to read a file (standard input for `-`), and its lines, `size` at a time.
 
-    Columns whose names are in `computed` are neither read nor carried through.
-    Raises LagtopError for a file without a header or an object.
+    Columns whose names are in `computed` are neither read nor carried through.  A `stream` that is
+    open already is read in place of the path.  Raises LagtopError for a file that cannot be read
+    or has neither a header nor an object.
     """
     name = "standard input" if path == "-" else path
-    lines = _lines(path, name)
+    lines = _lines(path, name, stream)
     start, first = next(((i, raw) for i, raw in lines if raw.strip()), (1, b""))
     first = first.removeprefix(b"\xef\xbb\xbf")
     if first.lstrip().startswith(b"{"):
-        blocks = _blocks(chain([(start, first)], lines), size)
-        head = next(blocks)
-        carried = [x for x in _names(head) if x not in computed]
+        head = [(start, first), *islice(lines, size - 1)]
+        carried = [x for x in _names(raw for _, raw in head) if x not in computed]
         _check_spelling(carried, name)
-        return RowFile(None, carried, frozenset(computed)), chain([head], blocks)
+        file = TopsFile(None, carried, frozenset(computed))
+        return file, _blocks(file, chain(head, lines), size)
     try:
         columns = [cell.strip() for cell in split_cells(_decoded(first))]
     except LagtopError as error:
@@ -168,29 +203,30 @@ def open_rows(path: str, computed: Collection[str], size: int) -> tuple[RowFile,
     carried = [x for x in columns if x not in INPUTS and x not in computed]
     _check_spelling(carried, name)
     _check_header(columns, name)
-    return RowFile(columns, carried, frozenset(computed)), _blocks(lines, size)
+    file = TopsFile(columns, carried, frozenset(computed))
+    return file, _blocks(file, lines, size)
 
 
-def _lines(path: str, name: str) -> Iterator[tuple[int, bytes]]:
+def _lines(path: str, name: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
     try:
-        if path == "-":
+        if stream is None and path == "-":
             yield from enumerate(sys.stdin.buffer if sys.stdin else (), 1)
             return
-        with open(path, "rb") as stream:
-            yield from enumerate(stream, 1)
+        with stream or open(path, "rb") as file:
+            yield from enumerate(file, 1)
     except OSError as error:
         raise LagtopError(f"{name}: {error.strerror}") from None
 
 
-def _blocks(lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:
+def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:
     while block := list(islice(lines, size)):
-        yield Lines(block[0][0], [raw for _, raw in block])
+        yield Lines(file, block[0][0], [raw for _, raw in block])
 
 
-def _names(head: Lines) -> list[str]:
-    """The keys in a block of JSON lines that name no input, in the order they come in."""
+def _names(lines: Iterable[bytes]) -> list[str]:
+    """Return the keys of JSON lines that name no input, in the order in which they come."""
     names: dict[str, None] = {}
-    for raw in head.texts:
+    for raw in lines:
         with suppress(LagtopError):  # which the row will name
             names |= dict.fromkeys(_json_object(raw) if raw.strip() else ())
     return [name for name in names if name not in INPUTS]
@@ -205,7 +241,7 @@ def _check_spelling(carried: Sequence[str], name: str) -> None:
 
 
 def _plain(column: str) -> str:
-    """Without what is easily mistaken: case, underscores, the 0 of theta0, the unit."""
+    """Return a name without case, underscores, the 0 of theta0 and the unit: easily mistaken."""
     return re.sub("_|0|deg$|rad$", "", column.lower()) or column
 
 

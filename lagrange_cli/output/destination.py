@@ -21,14 +21,15 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def opened(path: str) -> Iterator[BinaryIO]:
+def opened(path: str, mark: str = "") -> Iterator[BinaryIO]:
     """Yield a binary stream to a file, or to standard output for `-`.
 
-    An existing file is replaced when the block ends well and left alone when it does not.  Raises
+    An existing file is replaced when the block ends well and left alone when it does not; the name
+    of the temporary file is `.lagtop-`, a mark, and some random characters.  Raises
     CannotWriteError, or BrokenPipeError for a reader that went away.
     """
     try:
-        with _standard_output() if path == "-" else _file(path) as stream:
+        with _standard_output() if path == "-" else _file(path, mark) as stream:
             yield stream
     except BrokenPipeError:
         raise
@@ -66,7 +67,7 @@ class _SharedScreen(io.BufferedWriter):
 
 
 @contextmanager
-def _file(path: str) -> Iterator[BinaryIO]:
+def _file(path: str, mark: str) -> Iterator[BinaryIO]:
     if not _is_replaceable(path):
         with open(path, "wb") as stream:
             yield stream
@@ -76,7 +77,7 @@ def _file(path: str) -> Iterator[BinaryIO]:
     target = os.path.realpath(path)
     folder = os.path.dirname(target)
     with terminated_by(["SIGTERM", "SIGHUP"]):
-        descriptor, temporary = mkstemp(prefix=".lagtop-", dir=folder)
+        descriptor, temporary = mkstemp(prefix=f".lagtop-{mark}", dir=folder)
         try:
             with open(descriptor, "wb") as stream:
                 yield stream

@@ -5,14 +5,13 @@ A double has the same text in all of them (see `numerals`).
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from io import BytesIO
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import json_text, value_text
-from ..errors import CannotWriteError
 from .destination import opened
 
 if TYPE_CHECKING:
@@ -102,35 +101,19 @@ def write_text_blocks(style: str, names: Sequence[str], blocks: Iterable[bytes],
         stream.write(b"]\n" if style == "json" else b"")
 
 
-def check_parts(folder: str, style: str, count: int) -> None:
-    """Raise CannotWriteError where a folder holds a part that a sweep of so many parts does not
-    have (0: it is not known how many), and that would be taken for one of its own."""
-    for name in sorted(os.listdir(folder)) if os.path.isdir(folder) and count else []:
-        number = name.removeprefix("part-").removesuffix(f".{style}")
-        if number.isdigit() and int(number) >= count:
-            path = os.path.join(folder, name)
-            raise CannotWriteError(f"cannot write {folder}: {path} is of another, longer sweep")
-
-
-def write_parts(
-    style: str, names: Sequence[str], parts: Iterable[tuple[int, bytes]], folder: str
-) -> None:
-    """Each text into a file of its own, named by its number, which is replaced whole or not at all.
+def part_file(style: str, names: Sequence[str], number: int, text: bytes) -> bytes:
+    """Return the content of the file of a part, from the text that `block_text` made.
 
     One after the other they are what `write_text_blocks` writes (but for Parquet, where each is
     whole).
     """
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise CannotWriteError(f"cannot write {folder}: {error.strerror}") from None
-    for number, text in parts:
-        path = os.path.join(folder, f"part-{number:06}.{style}")
-        if style == "parquet":
-            write_text_blocks(style, names, [text], path)
-            continue
-        with opened(path) as stream:
-            stream.write(text if number else opening(style, names) + text)
+    if style == "parquet":
+        from .parquet import write_parquet
+
+        stream = BytesIO()
+        write_parquet(stream, names, filter(None, [text]))
+        return stream.getvalue()
+    return text if number else opening(style, names) + text
 
 
 def opening(style: str, names: Sequence[str]) -> bytes:

@@ -3,56 +3,74 @@
 from __future__ import annotations
 
 import logging
+import pickle
+import pkgutil
 import signal
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import closing, contextmanager
+from contextlib import contextmanager, suppress
 from itertools import chain, repeat
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ..errors import LagtopError
-from .parts import Block, Part, Sweep
+from .. import __version__
+from ..errors import LagtopError, UnavailableError
+from .parts import NumberedBlock, Part, Sweep
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
+PATIENCE = 8.0
+"""Seconds to wait for a scheduler that does not answer, or for a first or another worker."""
+
+_BETWEEN_LOOKS = 1.0
+
 
 @contextmanager
 def computed(
-    sweep: Sweep, blocks: Iterable[Block], cluster: str | None
+    sweep: Sweep, blocks: Iterable[NumberedBlock], address: str | None
 ) -> Iterator[Iterator[Part]]:
-    """The parts in their order, made here or on a Dask cluster (its address, or `local`).
+    """Yield the parts in their order, made here or on a Dask cluster (its address, or `local`).
 
-    Raises LagtopError for a cluster that cannot be reached.
+    Raises UnavailableError for a cluster that cannot be reached, has no worker, or whose workers
+    have no lagtop or another version of it; LagtopError for an address that is none.
     """
-    if cluster is None:
+    if address is None:
         yield map(sweep.part, blocks)
         return
-    with closing(_client(cluster)) as client:
+    client = _client(address)
+    try:
+        _check_workers(client)
         yield _gathered(client, sweep, blocks)
+    finally:
+        client.close(timeout=2)
 
 
 def _client(address: str) -> Client:
     try:
         from distributed import Client
     except ImportError:
-        raise LagtopError("--dask needs dask: pip install 'lagtop[cluster]'") from None
+        raise LagtopError("dask needs distributed: pip install 'lagtop[cluster]'", "dask") from None
     for name in ("distributed", "distributed.client"):  # we say ourselves, and once, what is wrong
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    if address == "local":
-        with _no_interrupts():
-            return Client(threads_per_worker=1, dashboard_address=":0", silence_logs=logging.ERROR)
     try:
-        return Client(address, timeout=10)
-    except (OSError, ValueError) as error:
-        raise LagtopError(f"--dask must be local or a scheduler, got {address}: {error}") from None
+        if address == "local":
+            with _no_interrupts():
+                return Client(
+                    threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+                )
+        return Client(address, timeout=PATIENCE)
+    except ValueError as error:
+        raise LagtopError(
+            f"dask must be local or a scheduler, got {address}: {error}", "dask"
+        ) from None
+    except OSError as error:
+        raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
 
 
 @contextmanager
 def _no_interrupts() -> Iterator[None]:
-    """Ignore Ctrl-C, and for good in the processes that are started meanwhile: workers are ours to
-    stop, and would each print a traceback."""
+    """Start worker processes that ignore Ctrl-C, so that only this process handles it."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield
@@ -60,22 +78,103 @@ def _no_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _gathered(client: Client, sweep: Sweep, blocks: Iterable[Block]) -> Iterator[Part]:
-    """Some parts a worker are under way at a time, so that memory does not grow with their number.
+def _check_workers(client: Client) -> None:
+    """Raise UnavailableError where there is no worker, or one that would compute otherwise."""
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        _threads(client)
+        raise UnavailableError("the cluster has no worker") from None
+    # A function of the standard library: a worker that cannot unpickle what it is sent would die.
+    versions = _answer(
+        lambda: client.run(
+            pkgutil.resolve_name,
+            "lagrange_cli:__version__",
+            on_error="return",
+            callback_timeout=PATIENCE,
+        )
+    )
+    for worker, version in versions.items():
+        if isinstance(version, BaseException):
+            raise UnavailableError(f"the worker {worker} of the cluster has no lagtop: {version}")
+        if version != __version__:
+            raise UnavailableError(
+                f"the worker {worker} of the cluster has lagtop {version}, and not {__version__}"
+            )
 
-    What a lost worker was at is computed by another one.
+
+def _threads(client: Client) -> dict[str, int]:
+    """Return the number of threads of each worker.  Raises UnavailableError."""
+    threads: dict[str, int] = _answer(lambda: client.nthreads(callback_timeout=PATIENCE))
+    return threads
+
+
+def _answer(ask: Callable[[], Any]) -> Any:
+    """Return what the cluster answers.  Raises UnavailableError where it does not."""
+    try:
+        return ask()
+    except TimeoutError:
+        raise UnavailableError(f"the cluster does not answer for {PATIENCE:.0f} s") from None
+    except (OSError, CancelledError, RuntimeError) as error:
+        raise UnavailableError(f"the cluster is lost: {error}") from None
+
+
+class _Call:
+    """A part that is computed by being unpickled.
+
+    A worker is sent `pickle.loads` and these bytes: one that joined later and has no lagtop, or
+    another version, fails in the task, where an error is reported, and not in reading the message,
+    where it would die.
     """
-    from distributed import KilledWorker
 
-    most = 4 * max(sum(client.nthreads().values()), 4)
+    def __init__(self, sweep: Sweep, block: NumberedBlock) -> None:
+        self.content = pickle.dumps((sweep, block))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return compute, (__version__, self.content)
+
+
+def compute(version: str, content: bytes) -> Part:
+    """Compute a part on a worker.  Raises UnavailableError for a sweep of another version."""
+    if version != __version__:
+        raise UnavailableError(f"a worker of the cluster has lagtop {__version__}, not {version}")
+    sweep, block = pickle.loads(content)
+    part: Part = sweep.part(block)
+    return part
+
+
+def _gathered(client: Client, sweep: Sweep, blocks: Iterable[NumberedBlock]) -> Iterator[Part]:
+    """Yield the parts in their order; a part of a lost worker is computed by another one.
+
+    A few parts per worker are under way at a time, so that memory does not grow with their number.
+    """
+    most = 4 * max(sum(_threads(client).values()), 4)
     waiting: deque[Future[Part]] = deque()
     for block in chain(blocks, repeat(None)):
         if block is not None:
-            waiting.append(client.submit(sweep.part, block, pure=False))
+            waiting.append(
+                client.submit(pickle.loads, pickle.dumps(_Call(sweep, block)), pure=False)
+            )
         elif not waiting:
             return
         if block is None or len(waiting) >= most:
-            try:
-                yield waiting.popleft().result()
-            except (ImportError, OSError, CancelledError, KilledWorker) as error:
-                raise LagtopError(f"--dask: the cluster lost a part: {error}") from None
+            yield _result(client, waiting.popleft())
+
+
+def _result(client: Client, future: Future[Part]) -> Part:
+    """Wait for a part.  Raises UnavailableError as soon as nothing is left to wait for."""
+    from distributed import KilledWorker, wait
+
+    lonely = 0.0
+    try:
+        while True:
+            with suppress(TimeoutError):
+                wait([future], timeout=_BETWEEN_LOOKS)
+                return future.result()
+            lonely = 0.0 if _threads(client) else lonely + _BETWEEN_LOOKS
+            if lonely > PATIENCE:
+                raise UnavailableError("the cluster has no worker left")
+    except (ImportError, AttributeError) as error:
+        raise UnavailableError(f"a worker of the cluster has no lagtop: {error}") from None
+    except (OSError, CancelledError, KilledWorker) as error:
+        raise UnavailableError(f"the cluster lost a part: {error}") from None

@@ -12,14 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import SomeFailedError
-from ..inputs.ranges import Product
-from ..inputs.tops_file import Lines, RowFile
+from ..inputs.block import Block
 from ..output.write import Columns, block_text
 from .records import Column, records
 from .top_arrays import Tops
 
-Block = tuple[int, range | Lines]
-"""The number of a part, and the points of the grid or the lines of the file that it is made of."""
+NumberedBlock = tuple[int, Block]
+"""The number of a part, and the tops that it is made of."""
 
 
 class Part(NamedTuple):
@@ -27,78 +26,50 @@ class Part(NamedTuple):
 
     number: int
     text: bytes
-    tops: int
-    """How many tops it has."""
+    size: int
+    """The number of tops."""
     failed: int
-    """How many of them have an error."""
+    """The number of tops that have an error."""
     first_error: str
 
 
-class Inputs(NamedTuple):
-    """The tops of a part, and what goes with each of them."""
-
-    tops: Tops
-    carried: Sequence[Sequence[Any]] = ()
-    """Columns that are carried through."""
-    lines: Sequence[int] | None = None
-    errors: Mapping[int, str] | None = None
-    """What is already known to be wrong, by row."""
-
-
 class Sweep(NamedTuple):
-    """What to do with every part: where the inputs stand, what to compute, how to write it."""
+    """What to do with every part: what to compute of it and how to write it."""
 
-    source: Product | RowFile
-    given: Mapping[str, float]
-    """Inputs that all tops share, or that a row may lack."""
+    header: Sequence[str]
+    """The names of the columns that are written: what is carried through, and the keys."""
+    shared: Mapping[str, float]
+    """Inputs of all tops that have none of their own."""
     keys: Sequence[str]
     radians: bool
-    style: str
+    fmt: str
+    until_error: bool = False
+    """Whether the rows of a part end before the first top that has an error."""
 
-    @property
-    def header(self) -> list[str]:
-        """The names of the columns."""
-        carried = self.source.carried if isinstance(self.source, RowFile) else ()
-        return [*carried, *self.keys]
-
-    def part(self, block: Block) -> Part:
+    def part(self, numbered: NumberedBlock) -> Part:
         """Compute one part."""
-        number, place = block
-        inputs = self._inputs(place)
-        found = records(
-            inputs.tops, [*self.keys, "error"], radians=self.radians, errors=inputs.errors
-        )
-        errors = [(row, error) for row, error in enumerate(found["error"]) if error]
-        if inputs.lines is not None:
-            errors = [(row, f"line {inputs.lines[row]}: {error}") for row, error in errors]
+        number, block = numbered
+        given = block.arrays(self.shared)
+        tops = Tops(*(_filled(given.inputs.get(name), given.size) for name in Tops._fields))
+        columns = records(tops, [*self.keys, "error"], radians=self.radians, errors=given.errors)
+        errors = [(row, error) for row, error in enumerate(columns["error"]) if error]
+        if given.lines is not None:
+            errors = [(row, f"line {given.lines[row]}: {error}") for row, error in errors]
         for row, error in errors:
-            found["error"][row] = error
-        columns = [*inputs.carried, *_runs([found[key] for key in self.keys])]
-        text = block_text(columns, self.header, self.style)
-        return Part(number, text, inputs.tops.m.size, len(errors), errors[0][1] if errors else "")
-
-    def _inputs(self, place: range | Lines) -> Inputs:
-        if isinstance(self.source, Product):
-            assert isinstance(place, range)
-            given = {**self.given, **self.source.columns(place)}
-            return Inputs(Tops(*(_column(given.get(x), len(place)) for x in Tops._fields)))
-        assert isinstance(place, Lines)
-        rows = list(self.source.rows(place))
-        filled = [row.completed(self.given) for row in rows]
-        return Inputs(
-            Tops(*(np.array([x.get(name, np.nan) for x in filled]) for name in Tops._fields)),
-            list(zip(*(row.carried for row in rows), strict=True)),
-            [row.line for row in rows],
-            {i: row.error for i, row in enumerate(rows) if row.error},
-        )
+            columns["error"][row] = error
+        rows = slice(errors[0][0] if errors and self.until_error else given.size)
+        carried = [column[rows] for column in given.carried]
+        computed = _runs([columns[key][rows] for key in self.keys])
+        text = block_text([*carried, *computed], self.header, self.fmt)
+        return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
 
 
-def _column(value: Any, count: int) -> Any:
-    return np.broadcast_to(np.float64(np.nan if value is None else value), (count,))
+def _filled(values: Any, count: int) -> Any:
+    return np.broadcast_to(np.float64(np.nan if values is None else values), (count,))
 
 
 def _runs(columns: Iterable[Column]) -> Columns:
-    """Neighbouring columns of numbers as one array of rows, and texts as lists."""
+    """Return neighbouring columns of numbers as one array of rows, and texts as lists."""
     runs: list[Any] = []
     numbers: list[Column] = []
     for column in columns:
@@ -112,38 +83,58 @@ def _runs(columns: Iterable[Column]) -> Columns:
     return [*runs, np.stack(numbers, axis=1)] if numbers else runs
 
 
-def shard_of(blocks: Iterable[Block], which: tuple[int, int] | None) -> Iterator[Block]:
-    """Every N-th block, from the I-th on."""
-    first, step = which or (1, 1)
+def shard_of(
+    blocks: Iterable[NumberedBlock], shard: tuple[int, int] | None
+) -> Iterator[NumberedBlock]:
+    """Return every N-th block from the I-th on, for the shard (I, N), or all blocks."""
+    first, step = shard or (1, 1)
     return (block for block in blocks if block[0] % step == first - 1)
 
 
 class Tally:
-    """Counts the tops that have an error as the parts pass by."""
+    """A count of the tops that have an error, taken as the parts pass by."""
 
     def __init__(self, *, fail_fast: bool = False) -> None:
         self.fail_fast = fail_fast
-        self.count = self.failed = 0
-        self.first = ""
+        self.count = self.failed = self.shown = 0
+        self.first: tuple[int, str] | None = None
+        """The part with the first error, and that error."""
+
+    def add(self, part: Part) -> None:
+        """Count one part."""
+        self.count, self.failed = self.count + part.size, self.failed + part.failed
+        if part.failed:
+            found = part.number, part.first_error
+            self.first = min(self.first, found) if self.first else found
 
     def passing(self, parts: Iterable[Part]) -> Iterator[Part]:
-        """The parts.  With `fail_fast`, raises SomeFailedError at the first one with an error."""
+        """Yield the parts, counted."""
         for part in parts:
-            self.count, self.failed = self.count + part.tops, self.failed + part.failed
-            self.first = self.first or part.first_error
-            if self.fail_fast:
-                self.check()
+            self.add(part)
             yield part
 
-    def texts(self, parts: Iterable[Part]) -> Iterator[bytes]:
-        """What there is to write."""
-        return (part.text for part in self.passing(parts))
+    def until_error(self, parts: Iterable[Part], *, ended: bool) -> Iterator[Part]:
+        """Yield the parts, counted, to the first error and no further.
+
+        There the parts end, or SomeFailedError is raised before the part with the error.
+        """
+        for part in self.passing(parts):
+            if not ended:
+                self.check()
+            yield part
+            if self.failed:
+                return
+
+    def progress(self, _: Part) -> int:
+        """Return the number of tops that were counted since the last call."""
+        more, self.shown = self.count - self.shown, self.count
+        return more
 
     def check(self) -> None:
         """Raise SomeFailedError if there was any error."""
-        if self.failed and self.fail_fast:
-            raise SomeFailedError(self.first)
-        if self.failed:
+        if self.first and self.fail_fast:
+            raise SomeFailedError(self.first[1])
+        if self.first:
             raise SomeFailedError(
-                f"{self.failed} of {self.count} tops have an error; the first: {self.first}"
+                f"{self.failed} of {self.count} tops have an error; the first: {self.first[1]}"
             )

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+import sys
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from hashlib import file_digest
+from io import BufferedIOBase
+from shutil import copyfileobj
+from tempfile import TemporaryFile
+from typing import Any, NamedTuple
 
+from .. import __version__
 from ..arithmetic.generic import Number
 from ..arithmetic.points import Points
 from ..errors import LagtopError
 from ..inputs.ranges import Product
-from ..inputs.top import Top, build_top, overridden
-from ..inputs.tops_file import open_rows
-from .parts import Block, Sweep
+from ..inputs.top import build_top, overridden
+from ..inputs.tops_file import INPUTS, open_tops
+from .parts import NumberedBlock, Sweep
 from .records import BLOCK_ROWS, check_keys, record_keys
 
 
@@ -19,9 +25,11 @@ class Plan(NamedTuple):
     """A sweep, and the blocks it is made of."""
 
     sweep: Sweep
-    blocks: Iterator[Block]
+    blocks: Iterator[NumberedBlock]
     size: int
-    """How many tops there are; 0 where only the end of the file can tell."""
+    """The number of tops; 0 where only the end of the file can tell."""
+    description: Mapping[str, Any]
+    """What decides about the bytes of the parts, for the folder they are written to."""
 
 
 def plan(
@@ -30,55 +38,78 @@ def plan(
     *,
     keys: Sequence[str] | None = None,
     radians: bool = False,
-    style: str = "csv",
+    fmt: str = "csv",
+    until_error: bool = False,
+    described: bool = False,
 ) -> Plan:
-    """The plan for a scene (a `.toml` file) and a grid, or for a scene and a file of tops.
+    """Return the plan for a scene (a `.toml` file) and a grid, or for a scene and a file of tops.
 
-    The last axis is the fastest.  Raises LagtopError.
+    The last axis varies fastest.  Where the plan is to be `described`, the file is read twice, for
+    its digest, and standard input is kept on disk meanwhile.  Raises LagtopError.
     """
     scenes = [file for file in files if file.endswith(".toml")]
     tables = [file for file in files if file not in scenes]
     if len(scenes) > 1 or len(tables) > 1:
         raise LagtopError(f"a sweep has one scene and one file of tops, got {' '.join(files)}")
-    first = {name: axis.bounds()[0] for name, axis in axes.items()}
-    given = shared_inputs(scenes[0] if scenes else None, first)
+    scene = scenes[0] if scenes else None
     known = record_keys(radians=radians)
     chosen = list(check_keys(known if keys is None else keys, radians=radians))
+    ranges = {name: axis for name, axis in axes.items() if axis.count > 1}
+    first = {name: axis.bounds()[0] for name, axis in axes.items()}
+    told: dict[str, Any] = {"lagtop": __version__, "format": fmt, "radians": radians}
     if not tables:
         grid = Product(axes)
         grid.check()
-        _check_shared(given, [name for name, axis in axes.items() if axis.count > 1])
-        sweep = Sweep(grid, given, chosen, radians, style)
-        return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size)
-    if ranges := [name for name, axis in axes.items() if axis.count > 1]:
-        raise LagtopError(f"a range of {ranges[0]} and a file of tops exclude each other")
-    source, lines = open_rows(tables[0], {*known, *record_keys(radians=not radians)}, BLOCK_ROWS)
-    _check_shared(given, given if source.columns is None else source.columns)
+        shared = shared_inputs(scene, first, varying=ranges)
+        told |= {"keys": chosen, "inputs": shared | {x: str(axis) for x, axis in ranges.items()}}
+        told |= {"file": None, "parts": -(-grid.size // BLOCK_ROWS)}
+        sweep = Sweep(chosen, shared, chosen, radians, fmt, until_error)
+        return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told)
+    if ranges:
+        raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
+    stream, digest = _digested(tables[0]) if described else (None, "")
+    computed = {*known, *record_keys(radians=not radians)}
+    source, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
+    varying = INPUTS if source.columns is None else source.columns
+    shared = shared_inputs(scene, first, varying=varying)
     if "error" not in chosen:
         chosen.append("error")
-    return Plan(Sweep(source, given, chosen, radians, style), enumerate(lines), 0)
+    told |= {"keys": chosen, "inputs": shared, "file": digest, "parts": None}
+    header = [*source.carried, *chosen]
+    sweep = Sweep(header, shared, chosen, radians, fmt, until_error)
+    return Plan(sweep, enumerate(lines), 0, told)
 
 
-def shared_inputs(scene: str | None, given: Mapping[str, Number]) -> dict[str, float]:
-    """Inputs by key: those given, over those of a scene file, over the worked example."""
-    top = Top()
-    if scene is not None:
-        from ..inputs.scene_file import SceneFile
+def shared_inputs(
+    scene: str | None, given: Mapping[str, Number], *, varying: Collection[str] = ()
+) -> dict[str, float]:
+    """Return inputs by key: those given, over those of a scene file, over the worked example.
 
-        file = SceneFile(scene)
-        try:
-            top = build_top(file.inputs)
-        except LagtopError as error:
-            raise file.error(error) from None
+    Raises LagtopError for one that no top could have; the `varying` ones are not looked at.
+    """
+    loose = {*varying, *({"A", "C"} if {"A", "C"} & set(varying) else ())}  # C <= 2A
+    fixed = {name: x for name, x in given.items() if name not in loose}
+    if scene is None:
+        top = build_top(fixed)
+    else:
+        from ..inputs.scene_file import read_scene
+
+        top = read_scene(scene, fixed)
     inputs = {name: float(x) for name, x in top._asdict().items() if x is not None}
     return overridden(inputs, {name: float(x) for name, x in given.items()})
 
 
-def _check_shared(
-    given: Mapping[str, float], varying: Sequence[str] | Mapping[str, object]
-) -> None:
-    """Raise LagtopError for an input that no top could have."""
-    shared = {name: x for name, x in given.items() if name not in varying}
-    if {"A", "C"} & set(varying):
-        shared = {name: x for name, x in shared.items() if name not in ("A", "C")}
-    Top(**shared)
+def _digested(path: str) -> tuple[BufferedIOBase, str]:
+    """Return a file of tops, open at its start, and the digest of its content."""
+    try:
+        if path == "-":
+            stream: BufferedIOBase = TemporaryFile()  # noqa: SIM115 - read until the sweep ends
+            copyfileobj(sys.stdin.buffer, stream)
+            stream.seek(0)
+        else:
+            stream = open(path, "rb")  # noqa: SIM115 - read until the sweep ends
+        digest = file_digest(stream, "sha256").hexdigest()
+        stream.seek(0)
+    except OSError as error:
+        raise LagtopError(f"{path}: {error.strerror}") from None
+    return stream, f"sha256:{digest}"

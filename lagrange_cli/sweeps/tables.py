@@ -11,7 +11,7 @@ from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
-from ..inputs.tops_file import Lines, Row, RowFile, open_rows
+from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.solve import Motion, solve
 from ..motion.table import headings, rows
 from ..output.write import block_text
@@ -23,7 +23,7 @@ _TOPS_AT_ONCE = 64
 class Tables(NamedTuple):
     """What to do with every top of a file."""
 
-    source: RowFile
+    source: TopsFile
     lines: Iterator[Lines]
     given: Mapping[str, float]
     """Inputs that a row may lack."""
@@ -42,11 +42,11 @@ class Tables(NamedTuple):
 
     def parts(self) -> Iterator[Part]:
         """Blocks of rows as text; a top that has no table has one row with its error."""
-        for some in self.lines:
-            for row in self.source.rows(some):
+        for lines in self.lines:
+            for row in lines.rows():
                 yield from self._table(row)
 
-    def _table(self, row: Row) -> Iterator[Part]:
+    def _table(self, row: TopRow) -> Iterator[Part]:
         try:
             if row.error:
                 raise LagtopError(row.error)
@@ -62,7 +62,7 @@ class Tables(NamedTuple):
         for i, block in enumerate(blocks):
             yield Part(0, self._text(row, block, None), 0 if i else 1, 0, "")
 
-    def _text(self, row: Row, block: Array, error: str | None) -> bytes:
+    def _text(self, row: TopRow, block: Array, error: str | None) -> bytes:
         carried = row.carried or [row.line]
         same = [[value] * len(block) for value in carried]
         return block_text([*same, block, [error] * len(block)], self.header, self.style)
@@ -79,5 +79,5 @@ def open_tables(
     style: str,
 ) -> Tables:
     """The tables of the tops in a file.  Raises LagtopError for one that cannot be read."""
-    source, lines = open_rows(path, [*headings(columns, radians=radians), "error"], _TOPS_AT_ONCE)
+    source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], _TOPS_AT_ONCE)
     return Tables(source, lines, given, columns, times, radians, wrap, style)

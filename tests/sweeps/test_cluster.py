@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import os
+import pickle
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import LAGTOP, process
 from distributed import Client, LocalCluster
+
+from lagrange_cli.errors import UnavailableError
+from lagrange_cli.sweeps.cluster import compute
 
 pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itself does
 
@@ -23,7 +31,7 @@ def cluster() -> Iterator[LocalCluster]:
 
 
 def joined(folder: Path) -> bytes:
-    return b"".join(part.read_bytes() for part in sorted(folder.iterdir()))
+    return b"".join(part.read_bytes() for part in sorted(folder.glob("part-*")))
 
 
 def test_the_bytes_of_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None:
@@ -34,7 +42,7 @@ def test_the_bytes_of_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None
     assert there.stdout == here
     assert there.stderr == b""
     process(*options, "--dask", cluster.scheduler_address, "--parts", str(tmp_path))
-    assert len(list(tmp_path.iterdir())) == 3
+    assert len(list(tmp_path.glob("part-*"))) == 3
     assert joined(tmp_path) == here
 
 
@@ -55,7 +63,7 @@ def test_a_killed_worker_loses_nothing(cluster: LocalCluster, tmp_path: Path) ->
     running = subprocess.Popen(
         [*LAGTOP, *options, "--dask", cluster.scheduler_address, "--parts", str(tmp_path)]
     )
-    while running.poll() is None and len(list(tmp_path.iterdir())) < 2:
+    while running.poll() is None and len(list(tmp_path.glob("part-*"))) < 2:
         time.sleep(0.005)
     assert running.poll() is None
     os.kill(victim, signal.SIGKILL)
@@ -68,9 +76,9 @@ def test_a_cluster_of_its_own_goes_with_it(tmp_path: Path) -> None:
     running = subprocess.Popen(
         [*command, str(tmp_path / "out.csv")], stderr=subprocess.PIPE, start_new_session=True
     )
-    while not list(tmp_path.iterdir()):
-        time.sleep(0.05)
-    time.sleep(0.5)
+    while not any(path.stat().st_size for path in tmp_path.iterdir()):  # rows have come
+        assert running.poll() is None
+        time.sleep(0.01)
     os.killpg(running.pid, signal.SIGINT)
     assert running.communicate(timeout=60)[1] == b""
     assert running.returncode == -signal.SIGINT
@@ -88,6 +96,122 @@ def alive(group: int) -> bool:
     except ProcessLookupError:
         return False
     return True
+
+
+@contextmanager
+def ended(*command: str, **extra: Any) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a process, and kill it at the end if it runs then."""
+    with subprocess.Popen([sys.executable, *command], stderr=subprocess.PIPE, **extra) as running:
+        yield running
+        running.kill()
+
+
+@contextmanager
+def worker(address: str, folder: Path, init: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a worker that has a package lagrange_cli of its own, of these lines."""
+    (folder / "lagrange_cli").mkdir(parents=True)
+    (folder / "lagrange_cli" / "__init__.py").write_text(init)
+    path = os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")])
+    command = ["-m", "distributed.cli.dask_worker", address, "--no-nanny", "--no-dashboard"]
+    env = os.environ | {"PYTHONPATH": path}
+    with ended(*command, "--nthreads", "1", cwd=folder, env=env) as running:
+        yield running
+
+
+def wait_for_workers(address: str, count: int) -> None:
+    with Client(address) as client:
+        client.wait_for_workers(count, timeout=60)
+
+
+BAD_WORKERS = {
+    "without": ("raise ImportError('not here')", b"has no lagtop: not here"),
+    "other": ("__version__ = '0.0.9'", b"has lagtop 0.0.9, and not "),
+}
+
+
+def assert_lost(result: subprocess.CompletedProcess[bytes], message: bytes) -> None:
+    """That a sweep ended with one line on standard error, and said nothing else."""
+    assert (result.returncode, result.stdout) == (69, b"")
+    assert message in result.stderr
+    assert result.stderr.startswith(b"Error: ")
+    assert result.stderr.count(b"\n") == 1
+
+
+@pytest.mark.parametrize("kind", BAD_WORKERS)
+def test_a_worker_that_would_compute_otherwise_is_refused(kind: str, tmp_path: Path) -> None:
+    """And lives on: a shared cluster may have such workers."""
+    init, message = BAD_WORKERS[kind]
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        with worker(cluster.scheduler_address, tmp_path, init) as other:
+            wait_for_workers(cluster.scheduler_address, 2)
+            result = process("sweep", "--dask", cluster.scheduler_address, check=False)
+            assert_lost(result, message)
+            assert other.poll() is None
+            wait_for_workers(cluster.scheduler_address, 2)
+
+
+@pytest.mark.parametrize("kind", BAD_WORKERS)
+def test_so_is_one_that_joins_later(kind: str, tmp_path: Path) -> None:
+    init = BAD_WORKERS[kind][0]
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        options = ["-m", "lagrange_cli", "sweep", "--r0", "1:100:1e8", "--parts", "out", "--dask"]
+        with ended(*options, cluster.scheduler_address, cwd=tmp_path) as running:
+            while not list(tmp_path.glob("out/part-*")):
+                assert running.poll() is None
+                time.sleep(0.01)
+            with worker(cluster.scheduler_address, tmp_path / "worker", init) as other:
+                stderr = running.communicate(timeout=60)[1]
+                assert other.poll() is None
+        assert running.returncode == 69
+        assert stderr.startswith(b"Error: a worker of the cluster has no lagtop")
+        assert stderr.count(b"\n") == 1
+
+
+def test_a_part_of_another_version_is_not_computed() -> None:
+    content = pickle.dumps((None, None))
+    with pytest.raises(UnavailableError, match="a worker of the cluster has lagtop .*, not 0.0.9"):
+        compute("0.0.9", content)
+
+
+def test_a_cluster_without_workers() -> None:
+    with LocalCluster(n_workers=0, dashboard_address=None) as cluster:
+        result = process("sweep", "--dask", cluster.scheduler_address, check=False)
+        assert_lost(result, b"the cluster has no worker")
+
+
+def test_a_scheduler_that_is_not_there() -> None:
+    result = process("sweep", "--dask", "tcp://127.0.0.1:9", check=False)
+    assert_lost(result, b"no scheduler answers at tcp://127.0.0.1:9")
+
+
+@pytest.mark.parametrize("number", [signal.SIGSTOP, signal.SIGKILL])
+@pytest.mark.parametrize("who", ["scheduler", "worker"])
+def test_what_is_lost_while_it_computes(number: int, who: str, tmp_path: Path) -> None:
+    """A scheduler that stops or dies, and the last worker; a stopped worker may go on any time."""
+    if (who, number) == ("worker", signal.SIGSTOP):
+        return
+    file = tmp_path / "scheduler.json"
+    options = ["--scheduler-file", str(file)]
+    module = "distributed.cli.dask_"
+    with ended("-m", f"{module}scheduler", "--port", "0", "--no-dashboard", *options) as scheduler:
+        while not file.exists():
+            assert scheduler.poll() is None
+            time.sleep(0.01)
+        address = json.loads(file.read_text())["address"]
+        command = ["-m", f"{module}worker", address, "--no-nanny", "--no-dashboard"]
+        sweep = ["-m", "lagrange_cli", "sweep", "--r0", "1:100:1e8", "--dask", address]
+        with (
+            ended(*command, "--nthreads", "1") as only_worker,
+            ended(*sweep, "--parts", str(tmp_path / "out")) as running,
+        ):
+            while not list(tmp_path.glob("out/part-*")):
+                assert running.poll() is None
+                time.sleep(0.01)
+            os.kill((scheduler if who == "scheduler" else only_worker).pid, number)
+            stderr = running.communicate(timeout=60)[1]
+            assert running.returncode == 69
+            assert stderr.startswith(b"Error: the cluster ")
+            assert stderr.count(b"\n") == 1
 
 
 def test_no_cluster() -> None:

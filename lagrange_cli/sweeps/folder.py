@@ -1,0 +1,157 @@
+"""A folder of parts of one sweep: what it is a part of, and which parts are whole already.
+
+Besides the parts, `part-000000.csv` and so on, it holds `sweep.json`, which describes the sweep,
+and an `errors-000000.json` for each part in which some tops have an error.  Any number of runs of
+one sweep may fill a folder at once.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from ..errors import CannotWriteError
+from ..output.destination import opened
+from ..output.write import part_file
+from .parts import NumberedBlock, Part, Sweep, Tally
+
+DESCRIPTION = "sweep.json"
+_TEMPORARY = ".lagtop-"
+
+
+class Folder:
+    """A folder that holds the parts of one sweep and of no other."""
+
+    def __init__(self, path: str, sweep: Sweep, description: Mapping[str, Any]) -> None:
+        """Claim a folder for a sweep, and remove what killed runs left in it.
+
+        Raises CannotWriteError for a folder that cannot be made or holds parts of another sweep.
+        """
+        self.path, self.sweep = Path(path), sweep
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._claim(json.loads(json.dumps(description)))
+            self._remove_leftovers()
+        except OSError as error:
+            raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
+
+    def missing(self, blocks: Iterable[NumberedBlock], tally: Tally) -> Iterator[NumberedBlock]:
+        """Yield the blocks whose parts are not here yet, and count the others as done."""
+        for number, block in blocks:
+            if self._part(number).exists():
+                tally.add(self._done(number, block.size))
+            else:
+                yield number, block
+
+    def write(self, parts: Iterable[Part]) -> None:
+        """Write each part into a file of its own, which appears whole or not at all."""
+        for part in parts:
+            if part.failed:  # before the part, which counts as done from then on
+                errors = {"failed": part.failed, "first": part.first_error}
+                with opened(str(self._errors(part.number)), _mark()) as stream:
+                    stream.write(json.dumps(errors).encode() + b"\n")
+            content = part_file(self.sweep.fmt, self.sweep.header, part.number, part.text)
+            with opened(str(self._part(part.number)), _mark()) as stream:
+                stream.write(content)
+
+    def _part(self, number: int) -> Path:
+        return self.path / f"part-{number:06}.{self.sweep.fmt}"
+
+    def _errors(self, number: int) -> Path:
+        return self.path / f"errors-{number:06}.json"
+
+    def _done(self, number: int, count: int) -> Part:
+        """Return a part that is whole already, without its text."""
+        try:
+            errors = json.loads(self._errors(number).read_text())
+        except FileNotFoundError:
+            return Part(number, b"", count, 0, "")
+        return Part(number, b"", count, errors["failed"], errors["first"])
+
+    def _claim(self, description: Mapping[str, Any]) -> None:
+        """Write the description, or compare it with the one that is there already."""
+        file = self.path / DESCRIPTION
+        if not file.exists():
+            if alien := next(self.path.glob("part-*"), None):
+                raise CannotWriteError(
+                    f"cannot write {self.path}: {alien.name} is there without a {DESCRIPTION}; "
+                    "take another folder or empty this one"
+                )
+            text = json.dumps(description, indent=1) + "\n"
+            _create(file, text.encode())
+        try:
+            other = json.loads(file.read_text())
+        except ValueError:
+            other = None
+        if not isinstance(other, dict):
+            raise CannotWriteError(f"cannot write {self.path}: {DESCRIPTION} describes no sweep")
+        if difference := _difference(other, description):
+            raise CannotWriteError(
+                f"cannot write {self.path}: it holds parts of another sweep, {difference}; "
+                "take another folder or empty this one"
+            )
+
+    def _remove_leftovers(self) -> None:
+        """Remove the temporary files of runs on this machine that have ended."""
+        for file in self.path.glob(f"{_TEMPORARY}*@{_host()}@*"):
+            pid = file.name.removeprefix(_TEMPORARY).partition("@")[0]
+            if pid.isdecimal() and not _is_running(int(pid)):
+                file.unlink(missing_ok=True)
+
+
+def _create(file: Path, content: bytes) -> None:
+    """Write a file that is not there yet, whole; leave one that another run has made meanwhile."""
+    own = file.with_name(f"{_TEMPORARY}{_mark()}{file.name}")
+    own.write_bytes(content)
+    try:
+        os.link(own, file)
+    except FileExistsError:
+        pass
+    except OSError:  # a file system without links
+        if not file.exists():
+            own.replace(file)
+    finally:
+        own.unlink(missing_ok=True)
+
+
+def _difference(one: Mapping[str, Any], other: Mapping[str, Any], name: str = "") -> str:
+    """Return the first thing in which two descriptions differ, and how; nothing if they agree."""
+    for key in dict.fromkeys([*one, *other]):
+        there, here = one.get(key), other.get(key)
+        if there == here:
+            continue
+        if isinstance(there, dict) and isinstance(here, dict):
+            return _difference(there, here)
+        return f"{key} {_shown(there)} there and {_shown(here)} here"
+    return ""
+
+
+def _shown(value: object) -> str:
+    text = ",".join(map(str, value)) if isinstance(value, list) else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _mark() -> str:
+    """Return what tells temporary files of this process from those of others."""
+    return f"{os.getpid()}@{_host()}@"
+
+
+def _host() -> str:
+    return socket.gethostname().replace(os.sep, "_")
+
+
+def _is_running(pid: int) -> bool:
+    """Return whether a process of this machine is running; True where that cannot be told."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
