@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from hashlib import file_digest
@@ -99,17 +100,22 @@ def shared_inputs(
     return overridden(inputs, {name: float(x) for name, x in given.items()})
 
 
-def _digested(path: str) -> tuple[BufferedIOBase, str]:
-    """Return a file of tops, open at its start, and the digest of its content."""
-    try:
-        if path == "-":
-            stream: BufferedIOBase = TemporaryFile()  # noqa: SIM115 - read until the sweep ends
-            copyfileobj(sys.stdin.buffer, stream)
-            stream.seek(0)
-        else:
-            stream = open(path, "rb")  # noqa: SIM115 - read until the sweep ends
-        digest = file_digest(stream, "sha256").hexdigest()
-        stream.seek(0)
-    except OSError as error:
-        raise LagtopError(f"{path}: {error.strerror}") from None
-    return stream, f"sha256:{digest}"
+def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
+    """Return the digest of a file, and a copy of it on disk where it is standard input."""
+    if path != "-":
+        try:
+            with open(path, "rb") as file:
+                return None, _digest(file)
+        except OSError as error:
+            raise LagtopError(f"{path}: {error.strerror}") from None
+    with TemporaryFile() as copy:
+        if sys.stdin:
+            copyfileobj(sys.stdin.buffer, copy)
+        return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(copy)
+
+
+def _digest(stream: BufferedIOBase) -> str:
+    stream.seek(0)
+    digest = file_digest(stream, "sha256").hexdigest()
+    stream.seek(0)
+    return f"sha256:{digest}"

@@ -47,7 +47,7 @@ def arrays(scenes: list[dict[str, float]]) -> dict[str, Any]:
 
 
 def error(key: str, value: float, exact: float, r0: float) -> float:
-    """In eps; absolute for cosines, relative to r0 for spin rates, as `solve` promises."""
+    """Return the error in eps; absolute for cosines, relative to r0 for spin rates."""
     if value == exact:
         return 0.0
     scale = abs(exact)
@@ -59,7 +59,7 @@ def error(key: str, value: float, exact: float, r0: float) -> float:
 
 
 def condition(scene: dict[str, float], key: str) -> float:
-    """Relative change of a number over that of each input, summed."""
+    """Return the relative change of a number over that of each input, summed."""
     total, exact = 0.0, getattr(solve(Top(**scene)), key)
     for name in ("m", "A", "C", "s", "g", "r0", "theta0_deg"):
         step = -1e-7 if name in ("C", "theta0_deg") else 1e-7  # C <= 2A, theta0 <= 180
@@ -87,7 +87,7 @@ def test_as_solve_over_all_ranges() -> None:
 
 
 def tops_of(inputs: dict[str, Any]) -> Tops:
-    """The inputs that are given as arrays, those of the worked example besides."""
+    """Return the inputs as arrays, those of the worked example where there are no others."""
     given = {name: np.nan if x is None else x for name, x in Top()._asdict().items()} | inputs
     return Tops(*np.broadcast_arrays(*(np.asarray(given[x], float) for x in Tops._fields)))
 
