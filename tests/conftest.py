@@ -32,7 +32,7 @@ def lagtop() -> Lagtop:
 
 @pytest.fixture
 def solved(lagtop: Lagtop) -> Callable[..., dict[str, Any]]:
-    """The record of `lagtop solve` as a dictionary."""
+    """Return the record of `lagtop solve` as a dictionary."""
 
     def run(*args: Any) -> dict[str, Any]:
         result = lagtop("solve", *args, "--format", "json")
@@ -44,7 +44,7 @@ def solved(lagtop: Lagtop) -> Callable[..., dict[str, Any]]:
 
 
 def assert_one_line(result: Result, code: int, message: str) -> None:
-    """That a command failed with one line on standard error, and said nothing else."""
+    """Check that a command failed with one line on standard error, and said nothing else."""
     assert (result.exit_code, result.stdout) == (code, "")
     assert result.stderr.startswith(f"Error: {message}")
     assert result.stderr.count("\n") == 1

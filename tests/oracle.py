@@ -65,7 +65,7 @@ class Phase(NamedTuple):
 
 
 def constants(scene: Scene, dps: int = 50) -> dict[str, mpf]:
-    """Every constant of the motion, under the names of the program's record."""
+    """Return every constant of the motion, under the names of the program's record."""
     digits = _digits(scene, dps, mpf(0))
     with mp.workdps(digits):
         top = _solve(scene, digits)
@@ -91,7 +91,7 @@ def constants(scene: Scene, dps: int = 50) -> dict[str, mpf]:
 
 
 def angles(scene: Scene, t: float | mpf, dps: int = 50) -> tuple[mpf, mpf, mpf]:
-    """theta, phi, psi in radians at any real time, phi and psi unwrapped."""
+    """Return theta, phi, psi in radians at any real time, phi and psi unwrapped."""
     time = mp.convert(t)
     digits = _digits(scene, dps, time)
     with mp.workdps(digits):
@@ -101,7 +101,7 @@ def angles(scene: Scene, t: float | mpf, dps: int = 50) -> tuple[mpf, mpf, mpf]:
 
 
 def angle_rates(scene: Scene, t: float | mpf, dps: int = 50) -> tuple[mpf, mpf, mpf]:
-    """The rates of theta, phi, psi: (5,3) with (4,22) to (4,24) put in, (4,8), (4,7)."""
+    """Return the rates of theta, phi, psi: (5,3) with (4,22) to (4,24) put in, (4,8), (4,7)."""
     time = mp.convert(t)
     digits = _digits(scene, dps, time)
     with mp.workdps(digits):
@@ -116,7 +116,7 @@ def angle_rates(scene: Scene, t: float | mpf, dps: int = 50) -> tuple[mpf, mpf, 
 def units(
     computed: Sequence[float], scene: Scene, t: float | mpf, dps: int = 50
 ) -> tuple[float, float, float]:
-    """The errors of computed angles (radians) in units of their unavoidable rounding."""
+    """Return the errors of computed angles (radians) in units of their unavoidable rounding."""
     exact, rates, time = angles(scene, t, dps), angle_rates(scene, t, dps), mp.convert(t)
     digits = _digits(scene, dps, time)
     with mp.workdps(digits):
@@ -127,7 +127,7 @@ def units(
 
 
 def integrate(scene: Scene, times: Iterable[float]) -> Array:
-    """theta, phi, psi at the given times (rows) from Euler's equations of section 4, in doubles."""
+    """Return theta, phi, psi in rows, from Euler's equations of section 4 in doubles."""
     instants = np.asarray(list(times), dtype=float)
     result = np.empty((instants.size, 3))
     for side in (instants >= 0, instants < 0):
@@ -137,20 +137,20 @@ def integrate(scene: Scene, times: Iterable[float]) -> Array:
 
 
 def _error(computed: float, exact: mpf, drift: mpf) -> float:
-    """|computed - exact| over eps (max(1, |exact|) + |tau rate|); a NaN is infinitely wrong."""
+    """Return |computed - exact| over eps (max(1, |exact|) + |tau rate|), infinity for a NaN."""
     if mp.isnan(computed):
         return float("inf")
     return float(abs(computed - exact) * 2**52 / (max(mpf(1), abs(exact)) + abs(drift)))
 
 
 def _data(scene: Scene) -> tuple[mpf, mpf, mpf, mpf, mpf]:
-    """a and b of (4,4) and (4,5), r0, the factor 1 - C/2A, theta0 in radians."""
+    """Return a and b of (4,4) and (4,5), r0, the factor 1 - C/2A, theta0 in radians."""
     m, A, C, s, g, r0, degrees = map(mp.convert, scene)
     return 2 * m * g * s / A, C * r0 / A, r0, 1 - C / (2 * A), mp.radians(degrees)
 
 
 def _digits(scene: Scene, dps: int, t: mpf) -> int:
-    """dps and what fast, slow and nearly upright or hanging tops and long times can cancel."""
+    """Return dps and what fast, slow, nearly upright or hanging tops and long times cancel."""
     with mp.workdps(dps + 30):
         a, b, _, _, theta0 = _data(scene)
         extremes = abs(mp.log10(b**2 / a)) + abs(mp.log10(mp.sin(theta0)))
@@ -160,7 +160,7 @@ def _digits(scene: Scene, dps: int, t: mpf) -> int:
 
 @cache
 def _solve(scene: Scene, digits: int) -> Top:
-    """Roots, modulus (4,19), k' (4,21), amplitude (7,2), alpha (1,6), period (5,1)."""
+    """Solve for roots, modulus (4,19), k' (4,21), amplitude (7,2), alpha (1,6), period (5,1)."""
     with mp.workdps(digits):
         a, b, r0, factor, theta0 = _data(scene)
         u1 = mp.cos(theta0)
@@ -175,7 +175,7 @@ def _solve(scene: Scene, digits: int) -> Top:
 
 
 def _phase(top: Top, t: mpf) -> Phase:
-    """The instant reduced modulo T: x of (7,1), w of (4,30), u of (4,20)."""
+    """Return the instant reduced modulo T: x of (7,1), w of (4,30), u of (4,20)."""
     turns = mp.floor(t / top.T)
     part = t / top.T - turns
     sn, cn, dn = (mp.ellipfun(name, 2 * top.K * part, m=top.k**2) for name in ("sn", "cn", "dn"))
@@ -183,30 +183,30 @@ def _phase(top: Top, t: mpf) -> Phase:
 
 
 def _nome(top: Top) -> mpf:
-    """The nome (2,4)."""
+    """Return the nome (2,4)."""
     return mp.exp(-mp.pi * top.K_prime / top.K)
 
 
 def _mean_spin(top: Top) -> mpf:
-    """The mean spin rate (6,3), for either sign of r0."""
+    """Return the mean spin rate (6,3), for either sign of r0."""
     return top.steady_spin + top.sigma * mp.pi / top.T
 
 
 def _mean_precession(top: Top) -> mpf:
-    """The mean precession rate (7,3), for either sign of r0."""
+    """Return the mean precession rate (7,3), for either sign of r0."""
     curve = top.K * top.E_amplitude - (top.K - top.E) * top.alpha - mp.pi / 4
     return top.a / (2 * top.b) * (2 - top.u3 + top.u2) + top.sigma * 4 / top.T * curve
 
 
 def _spin(top: Top, phase: Phase, t: mpf) -> mpf:
-    """(6,1) for all times: the arccot runs over (0, pi) once in every period."""
+    """Return the spin (6,1) for all times: the arccot runs over (0, pi) once in every period."""
     rho = mp.sqrt((top.u3 - top.u2) / (top.u3 + top.u2))
     arccot = mp.atan2(phase.sn * phase.dn, rho * phase.cn)
     return top.steady_spin * t + top.sigma * (mp.pi * phase.turns + arccot)
 
 
 def _precession(top: Top, phase: Phase, t: mpf) -> mpf:
-    """(7,1) for all times, with E(phi,k') - F(phi,k')(1 - E/K) as the factor of t."""
+    """Return (7,1) for all times, with E(phi,k') - F(phi,k')(1 - E/K) as the factor of t."""
     y = mp.pi * top.alpha / (2 * top.K)
     arccot = mp.atan2(mp.sin(phase.x), mp.cos(phase.x) * mp.tanh(y))
     growth = top.E_amplitude - top.alpha * (1 - top.E / top.K)
@@ -216,7 +216,7 @@ def _precession(top: Top, phase: Phase, t: mpf) -> mpf:
 
 
 def _series(x: mpf, y: mpf, q: mpf) -> mpf:
-    """The sum of arctangents in (7,1), up to the first one below the working precision."""
+    """Return the sum of arctangents in (7,1), up to the first one below the working precision."""
     total, power, sign = mpf(0), q, 1
     sine, cosine = mp.sin(2 * x) * mp.sinh(2 * y), mp.cos(2 * x) * mp.cosh(2 * y)
     while power * mp.cosh(2 * y) > mp.eps:
@@ -231,7 +231,7 @@ def _march(scene: Scene, times: Array) -> Array:
     m, A, C, s, g, r0, degrees = map(float, scene)
 
     def slope(_: float, state: Array) -> Array:
-        """Euler's equations in the body, and the quaternion's (body to space)."""
+        """Return Euler's equations in the body, and the quaternion's (body to space)."""
         p, q, e0, e1, e2, e3 = state
         pull, push = 2 * (e2 * e3 + e0 * e1), 2 * (e1 * e3 - e0 * e2)
         rates = (
@@ -258,7 +258,7 @@ def _march(scene: Scene, times: Array) -> Array:
 
 
 def _euler(path: Array) -> Array:
-    """theta, phi, psi along a path of quaternions, from (psi + phi)/2 and (psi - phi)/2."""
+    """Return theta, phi, psi along a path of quaternions, from (psi + phi)/2 and (psi - phi)/2."""
     upper, lower = path[:, 0] + 1j * path[:, 3], path[:, 1] + 1j * path[:, 2]
     mean, half = np.unwrap(np.angle(upper)), np.unwrap(np.angle(lower))
     return np.stack((2 * np.arctan2(abs(lower), abs(upper)), mean - half, mean + half), axis=1)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from conftest import ROOT
 from matplotlib.figure import Figure
+from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.inputs.scene_file import SceneFile
@@ -15,8 +15,6 @@ from lagrange_cli.plot.page import Page, draw_page
 from lagrange_cli.plot.request import PlotRequest
 from lagrange_cli.plot.style import LIGHT, styled
 
-SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
-_UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 REGIMES: dict[str, dict[str, float]] = {
     "sleeping": {"theta0_deg": 0},
     "hanging": {"theta0_deg": 180},
@@ -26,8 +24,8 @@ REGIMES: dict[str, dict[str, float]] = {
     "spherical pendulum": {"r0": 0, "psidot0": 3},
     "over the upper pole": {"theta0_deg": 0, "thetadot0": 2, "r0": 20},
     "over the lower pole": {"theta0_deg": 180, "thetadot0": -2, "r0": 20},
-    "separatrix": {**_UNIT, "A": 2, "theta0_deg": 90, "thetadot0": 1, "r0": 0},
-    "steady precession": {**_UNIT, "theta0_deg": 90, "r0": 1, "psidot0": 1},
+    "separatrix": {**UNIT, "A": 2, "theta0_deg": 90, "thetadot0": 1, "r0": 0},
+    "steady precession": {**UNIT, "theta0_deg": 90, "r0": 1, "psidot0": 1},
     "nothing but noise": {"r0": 1e9},
 }
 """Inputs of one scene per way of moving."""

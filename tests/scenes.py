@@ -5,6 +5,19 @@ from __future__ import annotations
 import math
 import random
 
+from conftest import ROOT
+
+from lagrange_cli import Motion
+
+EPS = 2.0**-52
+"""Distance from 1 to the next double."""
+
+UNIT: dict[str, float] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
+"""A spherical top with a = 2, b = r0 and lambda = r0^2/4."""
+
+SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
+"""Scene files of the project."""
+
 NAMED: dict[str, dict[str, float]] = {
     "worked example": {},
     "other way round": {"r0": -50},
@@ -22,7 +35,7 @@ NAMED: dict[str, dict[str, float]] = {
 
 
 def random_scene(rng: random.Random) -> dict[str, float]:
-    """m = g = s = 1; body, spin and tilt generic or at one of the extremes."""
+    """Return a scene with m = g = s = 1; body, spin and tilt generic or at one of the extremes."""
     A = rng.uniform(0.5, 2)
     C = A * rng.choice([rng.uniform(0.01, 2), rng.uniform(0.2, 2), 1, 2])
     r0, tilt = rng.uniform(-30, 30), rng.uniform(0.1, 179.9)
@@ -44,7 +57,12 @@ def random_scene(rng: random.Random) -> dict[str, float]:
 
 
 def random_times(rng: random.Random, period: float) -> list[float]:
-    """Times from 1e-9 to 1e12 periods, and near turning points far away."""
+    """Return times from 1e-9 to 1e12 periods, and near turning points far away."""
     spread = [rng.uniform(-1, 1) * 10.0 ** rng.choice([-9, -3, 0, 0, 3, 6, 12]) for _ in range(4)]
     near_turn = rng.randrange(1000) + rng.choice([0, 0.5]) + 10 ** rng.uniform(-12, -1)
     return [period * x for x in [*spread, near_turn]]
+
+
+def period(motion: Motion) -> float:
+    """Return the nutation period, or 0 where there is none."""
+    return float(motion.T_nutation or 0)

@@ -39,7 +39,7 @@ STILL_TO_REWRITE = {
     "cli": 17,
     "inputs": 15,
     "top": 1,
-    "tests": 55,
+    "tests": 33,
 }
 """Rooms with docstrings that break the rule, and how many.  Numbers only fall; rooms only leave."""
 

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 from conftest import ROOT, Lagtop
+from scenes import SAMPLES
 
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.output.layouts import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
-SAMPLES = sorted((ROOT / "sample_inputs").glob("*.toml"))
 KEYS = """
     m A C s g r0 theta0_deg thetadot0 psidot0 regime a b u1 u2 u3 k k_prime modular_angle_deg nome
     K K_prime E amplitude_deg alpha T_nutation T_spin T_precession u_quarter theta_min_deg

@@ -8,11 +8,11 @@ import random
 import mpmath
 import numpy as np
 import pytest
+from scenes import EPS
 
 from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.elliptic import carlson_rf, complete_e, complete_k, nome, period_mean
 
-EPS = 2.0**-52
 _RANDOM = random.Random(4)
 COMPLEMENTS = [10 ** _RANDOM.uniform(-14, 0) for _ in range(100)] + [
     _RANDOM.uniform(0.01, 1) for _ in range(100)

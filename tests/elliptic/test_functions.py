@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
+from scenes import EPS
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.generic import many_digits
@@ -22,8 +23,6 @@ from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
 from lagrange_cli.elliptic.theta import omega, theta, zeta
-
-EPS = 2.0**-52
 
 
 def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:

@@ -8,14 +8,10 @@ import random
 import numpy as np
 import oracle
 import pytest
-from scenes import NAMED, random_scene, random_times
+from scenes import NAMED, period, random_scene, random_times
 
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.generic import BLOCK
-
-
-def period(motion: Motion) -> float:
-    return float(motion.T_nutation or 0)
 
 
 def worst(scene: dict[str, float], motion: Motion, times: list[float]) -> float:

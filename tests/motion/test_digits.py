@@ -11,12 +11,11 @@ import mpmath
 import oracle
 import pytest
 from conftest import Lagtop
+from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.bench.reference import Reference
 from lagrange_cli.motion.digits import settled_record, settled_rows
-
-UNIT: dict[str, Any] = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
 
 
 def same(text: Any, true: Any, digits: int) -> bool:
@@ -159,8 +158,8 @@ def integrated(top: Top) -> Callable[[Any], Any]:
 
     tilt = mpmath.mpf(top.theta0_deg)
     start = mpmath.cospi(tilt / 180), -mpmath.sinpi(tilt / 180) * top.thetadot0
-    flow = mpmath.odefun(slope, 0, [*start, mpmath.mpf(0), mpmath.mpf(0)])
-    return lambda t: flow(t)
+    flow: Callable[[Any], Any] = mpmath.odefun(slope, 0, [*start, mpmath.mpf(0), mpmath.mpf(0)])
+    return flow
 
 
 def test_wrapped_far_away() -> None:

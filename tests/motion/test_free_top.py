@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -58,7 +59,8 @@ def test_solve(scene: dict[str, float]) -> None:
 def test_sweep() -> None:
     """Numbers within 10 eps: of 1 for cosines, of the two parts of a rate, else of themselves."""
     scenes = [{"thetadot0": 0.0, "psidot0": 0.0} | scene for scene in SCENES]
-    columns = sweep(**{key: [scene[key] for scene in scenes] for key in scenes[0]})
+    inputs: dict[str, Any] = {key: [scene[key] for scene in scenes] for key in scenes[0]}
+    columns = sweep(**inputs)
     for i, scene in enumerate(scenes):
         for key, true in free_record(Top(**scene)).items():
             value = float(np.asarray(columns[key], float)[i])

@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 import oracle
 import pytest
+from scenes import UNIT, period
 
 from lagrange_cli import Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.points import EvenPoints
@@ -18,13 +19,6 @@ from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic
 from lagrange_cli.bench.reference import Reference, angle_units
 from lagrange_cli.motion.table import rows
-
-UNIT: Scene = {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1}
-"""A spherical top with a = 2, b = r0 and lambda = r0^2/4."""
-
-
-def period(motion: Motion) -> float:
-    return float(motion.T_nutation or 0)
 
 
 def columns(motion: Motion, names: str, t: Array) -> list[Array]:

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import oracle
 import pytest
-from scenes import NAMED, random_scene
+from scenes import EPS, NAMED, random_scene
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic import decimals
@@ -18,8 +18,6 @@ from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.motion.record import Regime
 from lagrange_cli.motion.released import released_record
 from lagrange_cli.motion.roots import invariants, roots_from_rest
-
-EPS = 2.0**-52
 
 
 def errors(scene: dict[str, float]) -> dict[str, float]:

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from pictures import REGIMES, SAMPLES, regime_motion, sample_motion
+from pictures import REGIMES, regime_motion, sample_motion
+from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.types import Array

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Lagtop
-from pictures import SAMPLES, sample_motion
+from pictures import sample_motion
+from scenes import SAMPLES
 
 from lagrange_cli import Top, solve
 from lagrange_cli.plot import film, view

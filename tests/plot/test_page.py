@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
-from pictures import REGIMES, SAMPLES, drawn, regime_motion, sample_motion
+from pictures import REGIMES, drawn, regime_motion, sample_motion
+from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array

@@ -13,7 +13,8 @@ import oracle
 import pytest
 from conftest import ROOT
 from matplotlib.collections import LineCollection
-from pictures import REGIMES, SAMPLES, drawn, regime_motion, sample_motion
+from pictures import REGIMES, drawn, regime_motion, sample_motion
+from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError

@@ -18,7 +18,7 @@ import pytest
 from conftest import Lagtop
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import random_scene
+from scenes import EPS, random_scene
 
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic import decimals
@@ -32,7 +32,6 @@ from lagrange_cli.sweeps.start_arrays import starts
 from lagrange_cli.sweeps.top_arrays import Tops
 
 Record = dict[str, Any]
-EPS = 2.0**-52
 
 
 def table(text: str) -> list[Record]:
