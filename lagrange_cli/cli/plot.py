@@ -15,12 +15,7 @@ from ..errors import LagtopError
 from ..output.write import write_bytes
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look, require_matplotlib
-from .options import (
-    NUMBER,
-    ExamplesFirst,
-    scene_options,
-    solved,
-)
+from .options import NUMBER, ExamplesFirst, scene_options, solved
 from .progress import with_progress
 
 FORMATS = ("png", "svg", "pdf")

@@ -86,8 +86,8 @@ def test_bad_input(  # noqa: PLR0917
 
 
 def test_the_help_needs_no_matplotlib_and_a_picture_says_how_to_get_it(tmp_path: Path) -> None:
-    code = "import sys; sys.modules['matplotlib'] = None; import lagrange_cli.cli.group as cli; "
-    code += "cli.main()"
+    code = "import sys; sys.modules['matplotlib'] = sys.modules['numpy'] = None; "
+    code += "import lagrange_cli.cli.group as cli; cli.main()"
     line = [sys.executable, "-c", code, "plot"]
     helped = subprocess.run([*line, "--help"], capture_output=True, check=True)
     assert helped.stdout.startswith(b"Examples:")

@@ -81,7 +81,7 @@ def test_a_vertical_top_has_no_precession_to_draw() -> None:
 
 @pytest.mark.parametrize("scene", [(50.0, 30.0), (-50.0, 30.0), (20.0, 120.0)])
 def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
-    """They agree with (6,4) and (7,4) in 50 digits, and are what is drawn."""
+    """Compared with (6,4) and (7,4) in 50 digits, and with what is drawn."""
     r0, tilt = scene
     top = solve(Top(r0=r0, theta0_deg=tilt))
     course = remainder_curves(top, span(top, 2))
