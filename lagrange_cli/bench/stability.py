@@ -94,7 +94,7 @@ class Row(NamedTuple):
 
 
 FIELDS = [
-    Field("stratum", "stratum", is_text=True),
+    Field("stratum", "stratum", is_text=True, names_the_row=True),
     Field("scenes", "scenes"),
     *(Field(f"{angle}_units", angle, lambda x: f"{x:.2f}") for angle in ("theta", "phi", "psi")),
     Field("key_eps", "keys", lambda x: f"{x:.2f}"),

@@ -82,8 +82,8 @@ class Row(NamedTuple):
 
 ANGLES = ("theta", "phi", "psi")
 FIELDS = [
-    Field("method", "method", is_text=True),
-    Field("setting", "setting"),
+    Field("method", "method", is_text=True, names_the_row=True),
+    Field("setting", "setting", names_the_row=True),
     Field("periods"),
     *(Field(f"{angle}_max") for angle in ANGLES),
     *(Field(f"{angle}_end") for angle in ANGLES),

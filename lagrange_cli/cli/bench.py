@@ -59,7 +59,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     limit: Fraction,
     is_long: bool,
     plot: str | None,
-    style: str,
+    fmt: str,
     output: str,
     **options: Any,
 ) -> None:
@@ -94,7 +94,7 @@ def command(  # noqa: PLR0917 - click passes them by name
             (draw_drift if is_long else draw_work_precision)(found, plot)
         return found
 
-    write_report(find, style, output)
+    write_report(find, fmt, output)
 
 
 def _check(t_max: Fraction | None, count: int | None, limit: Fraction) -> None:

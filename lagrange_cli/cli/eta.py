@@ -9,7 +9,7 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
-from ..output.write import write_record, write_rows, write_texts
+from ..output.write import write_record, write_table
 from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
@@ -70,7 +70,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     single: tuple[Fraction, ...],
     grid: Points | None,
     digits: int | None,
-    style: str,
+    fmt: str,
     output: str,
 ) -> None:
     """The oscillation of eta between delta* and delta, from its quadrature (Aksenov, 3.2).
@@ -83,13 +83,14 @@ def command(  # noqa: PLR0917 - click passes them by name
     times = listed("tau", single, grid)
     of = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
     if times is None:
-        write_record(record(of, digits), style, output, "eta")
+        write_record(record(of, digits), fmt, output, "eta")
     elif digits is None:
         header, blocks = rows(of, times, c3)
-        write_rows(header, with_progress(blocks, times.count, 3_000_000), style, output)
+        write_table(header, with_progress(blocks, times.count, 3_000_000), fmt, output)
     else:
-        header, texts = digit_rows(of, times, c3, digits)
-        write_texts(header, texts, style, output)
+        header, lines = digit_rows(of, times, c3, digits)
+        texts = with_progress(([line] for line in lines), times.count, 1000)
+        write_table(header, texts, fmt, output)
 
 
 def _quadrature(

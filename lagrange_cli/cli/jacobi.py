@@ -10,7 +10,7 @@ import click
 from .. import __version__
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..output.write import write_record, write_rows, write_texts
+from ..output.write import write_record, write_table
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -76,7 +76,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     terms: int | None,
     rad: bool,
     digits: int | None,
-    style: str,
+    fmt: str,
     output: str,
 ) -> None:
     """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
@@ -97,15 +97,15 @@ def command(  # noqa: PLR0917 - click passes them by name
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
         exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
-        _write_series(given, arguments, terms, style, output)
+        _write_series(given, arguments, terms, fmt, output)
         return
     if arguments is None:
         if families:
             raise LagtopError(f"--{families[0]} needs --u or --u-range")
-        write_record(constants_record(given, digits), style, output, "jacobi")
+        write_record(constants_record(given, digits), fmt, output, "jacobi")
         return
     request = Request(given, families, *_parameter(param, families), radians=rad)
-    _write_rows(arguments, request, digits, style, output)
+    _write_rows(arguments, request, digits, fmt, output)
 
 
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:
@@ -124,20 +124,22 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, 
 
 
 def _write_rows(
-    arguments: Points, request: Request, digits: int | None, style: str, output: str
+    arguments: Points, request: Request, digits: int | None, fmt: str, output: str
 ) -> None:
     from ..elliptic.function_table import digit_rows, rows
 
     if digits is None:
         header, blocks = rows(arguments, request)
-        write_rows(header, with_progress(blocks, arguments.count, 3_000_000), style, output)
+        parts = with_progress(blocks, arguments.count, 3_000_000)
+        write_table(header, parts, fmt, output)
     else:
-        header, texts = digit_rows(arguments, request, digits)
-        write_texts(header, texts, style, output)
+        header, lines = digit_rows(arguments, request, digits)
+        texts = with_progress(([line] for line in lines), arguments.count, 1000)
+        write_table(header, texts, fmt, output)
 
 
 def _write_series(
-    given: Given, arguments: Points | None, terms: int, style: str, output: str
+    given: Given, arguments: Points | None, terms: int, fmt: str, output: str
 ) -> None:
     from ..elliptic.function_table import series_rows
 
@@ -147,4 +149,4 @@ def _write_series(
         raise LagtopError(f"--series takes one --u, got {arguments.count}")
     u = None if arguments is None else next(arguments.decimals())
     header, table = series_rows(given, u, terms)
-    write_texts(header, table, style, output)
+    write_table(header, [table], fmt, output)

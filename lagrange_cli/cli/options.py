@@ -142,10 +142,10 @@ def given(name: str) -> bool:
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
 
 
-def write_report(find: Callable[[], Findings], style: str, output: str) -> Findings:
+def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
     """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
-    findings = write_findings(find, style, output)
-    if style == "csv":
+    findings = write_findings(find, fmt, output)
+    if fmt == "csv":
         for name, text in findings.conditions.items():
             complain(f"{name}: {text}")
     return findings
@@ -210,7 +210,7 @@ def digits_option(most: int) -> Callable[[F], F]:
 
 
 def output_options(*styles: str) -> Callable[[F], F]:
-    """--format and --output; the first style is the default."""
+    """--format and --output; the first fmt is the default."""
 
     def decorate(command: F) -> F:
         command = click.option(
@@ -223,7 +223,7 @@ def output_options(*styles: str) -> Callable[[F], F]:
         )(command)
         choice = click.Choice(styles)
         return click.option(
-            "--format", "style", type=choice, default=styles[0], show_default=True, help="Output."
+            "--format", "fmt", type=choice, default=styles[0], show_default=True, help="Output."
         )(command)
 
     return decorate

@@ -35,9 +35,10 @@ def with_progress(
 ) -> Iterator[P]:
     """Yield the parts as they come, and show how many of `count` rows are done.
 
-    `size` gives the rows of a part.  From `long` rows on, progress is shown from the beginning.
+    `size` gives the rows of a part; a count of 0 stands for an unknown one.  From `long` rows on,
+    progress is shown from the beginning.
     """
-    return _watched(parts, label, count, size, 0.0 if count >= long else DELAY)
+    return _watched(parts, label, count or None, size, 0.0 if count >= long else DELAY)
 
 
 def with_count(parts: Iterable[P], label: str) -> Iterator[P]:

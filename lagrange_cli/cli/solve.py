@@ -41,7 +41,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     rad: bool,
     digits: int | None,
     key: str | None,
-    style: str,
+    fmt: str,
     output: str,
     **options: Any,
 ) -> None:
@@ -58,9 +58,9 @@ def command(  # noqa: PLR0917 - click passes them by name
 
         record = settled_record(motion.top, digits, radians=rad)
     if key is None:
-        write_record(record, style, output)
+        write_record(record, fmt, output)
         return
-    exclude({"--get": key, "--format": style if given("style") else None})
+    exclude({"--get": key, "--format": fmt if given("fmt") else None})
     if key not in record:
         raise LagtopError(f"--get must be among {' '.join(record)}, got {key!r}")
     if record[key] is None:

@@ -50,7 +50,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     seed: int,
     strata: list[str] | None,
     plot: str | None,
-    style: str,
+    fmt: str,
     output: str,
 ) -> None:
     """Random scenes of every hard kind, judged by a reference of 80 digits.
@@ -74,5 +74,5 @@ def command(  # noqa: PLR0917 - click passes them by name
             draw_stability(found, plot)
         return found
 
-    if stability.exceeded(write_report(find, style, output)):
+    if stability.exceeded(write_report(find, fmt, output)):
         ctx.exit(1)

@@ -71,7 +71,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     shard: tuple[int, int] | None,
     cluster: str | None,
     folder: str | None,
-    style: str,
+    fmt: str,
     output: str,
     **axes: Points | None,
 ) -> None:
@@ -89,9 +89,9 @@ def command(  # noqa: PLR0917 - click passes them by name
     from ..sweeps.plan import plan
 
     exclude({"--parts": folder, "--output": None if output == "-" else output})
-    if folder is not None and style == "json":
+    if folder is not None and fmt == "json":
         raise LagtopError("--format json is one array: with --parts take csv or ndjson")
-    if style == "parquet":
+    if fmt == "parquet":
         check_parquet()
     inputs = by_key(axes, radians=rad)
     to_stdout = folder is None and output == "-"
@@ -100,7 +100,7 @@ def command(  # noqa: PLR0917 - click passes them by name
         inputs,
         keys=keys,
         radians=rad,
-        fmt=style,
+        fmt=fmt,
         until_error=fail_fast and to_stdout,
         described=folder is not None,
     )
@@ -121,5 +121,5 @@ def command(  # noqa: PLR0917 - click passes them by name
             parts_folder.write(passing)
         else:
             texts = (part.text for part in passing)
-            write_text_blocks(style, todo.sweep.header, texts, output)
+            write_text_blocks(fmt, todo.sweep.header, texts, output)
     tally.check()

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import chain
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from ..errors import LagtopError
-from ..output.write import MAX_TABLE_ROWS, write_rows, write_text_blocks, write_texts
+from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -23,11 +24,14 @@ from .options import (
     scene_options,
     solved,
 )
-from .progress import with_progress
+from .progress import with_count, with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..motion.solve import Motion
+
+LONG, LONG_IN_DIGITS = 3_000_000, 1000
+"""Rows that are known to take longer than a moment."""
 
 
 @click.command(
@@ -80,7 +84,7 @@ def command(  # noqa: PLR0917 - click passes them by name
     tops: str | None,
     wrap: bool,
     digits: int | None,
-    style: str,
+    fmt: str,
     output: str,
     **options: Any,
 ) -> None:
@@ -89,48 +93,82 @@ def command(  # noqa: PLR0917 - click passes them by name
     Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
     nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
     """
-    from ..inputs.times_file import TimesFile
-    from ..motion.table import DEFAULT_COLUMNS, digit_rows, grid, rows
+    from ..motion.table import DEFAULT_COLUMNS
 
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})
     exclude({"--tops": tops, "--digits": digits})
-    exclude(
-        {"--tops -": tops if tops == "-" else None, "--times -": times if times == "-" else None}
-    )
+    stdin = {"--tops -": tops, "--times -": times}
+    exclude({name: True if path == "-" else None for name, path in stdin.items()})
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
-    file = None if times is None else TimesFile(times)
-    listed = None  # all tops, and the one width of a rich table, need the times more than once
-    if file and (tops is not None or style == "table"):
-        listed = file.listed(None if tops is not None else MAX_TABLE_ROWS + 1)
-
-    def times_of(motion: Motion) -> Points:
-        return listed or file or grid(motion, t_min, t_max, n=count, dt=dt)
-
-    names = DEFAULT_COLUMNS if columns is None else columns
-    if tops is not None:
-        if style == "table":
-            raise LagtopError("--format table shows one top: with --tops take csv or json")
-        from ..sweeps.parts import Tally
-        from ..sweeps.plan import shared_inputs
-        from ..sweeps.tables import open_tables
-
-        given = shared_inputs(scene, by_key(options, radians=rad))
-        tables = open_tables(tops, given, names, times_of, radians=rad, wrap=wrap, style=style)
-        tally = Tally()
-        passing = tally.passing(tables.parts())
-        write_text_blocks(style, tables.header, (part.text for part in passing), output)
-        tally.check()
-        return
-    motion = solved(scene, rad, digits is not None, options)
-    chosen = times_of(motion)
-    if style == "table" and chosen.count > MAX_TABLE_ROWS:
-        raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {chosen.count}")
-    header, blocks = rows(motion, chosen, names, radians=rad, wrap=wrap)
-    if digits is None:
-        write_rows(header, with_progress(blocks, chosen.count, 3_000_000), style, output)
+    if tops is not None and fmt == "table":
+        raise LagtopError("--format table shows one top: with --tops take csv or json")
+    wish = Wish(
+        _listed(times, tops, fmt) or partial(_grid, t_min=t_min, t_max=t_max, n=count, dt=dt),
+        DEFAULT_COLUMNS if columns is None else columns,
+        rad,
+        wrap,
+    )
+    if tops is None:
+        _write_one(solved(scene, rad, digits is not None, options), wish, digits, fmt, output)
     else:
-        parts = digit_rows(motion, chosen, digits, radians=rad, wrap=wrap)
-        texts = chain.from_iterable(with_progress(parts, chosen.count, 1000))
-        write_texts(header, texts, style, output)
+        from ..sweeps.plan import shared_inputs
+
+        _write_many(tops, shared_inputs(scene, by_key(options, radians=rad)), wish, fmt, output)
+
+
+class Wish(NamedTuple):
+    """What to tabulate of every top."""
+
+    times: Callable[[Motion], Points]
+    columns: Sequence[str]
+    radians: bool
+    wrap: bool
+
+
+def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion], Points] | None:
+    """Return the times of a file as those of every motion, if there is a file.
+
+    Many tops, and the one width of a drawn table, need them more than once.
+    """
+    if times is None:
+        return None
+    from ..inputs.times_file import TimesFile
+
+    file = TimesFile(times)
+    if tops is None and fmt != "table":
+        return lambda _: file
+    listed = file.listed(None if tops is not None else MAX_TABLE_ROWS + 1)
+    return lambda _: listed
+
+
+def _grid(motion: Motion, **interval: Any) -> Points:
+    from ..motion.table import grid
+
+    return grid(motion, **interval)
+
+
+def _write_one(motion: Motion, wish: Wish, digits: int | None, fmt: str, output: str) -> None:
+    from ..motion.table import digit_rows, rows
+
+    times, units = wish.times(motion), {"radians": wish.radians, "wrap": wish.wrap}
+    if fmt == "table" and times.count > MAX_TABLE_ROWS:
+        raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
+    header, blocks = rows(motion, times, wish.columns, **units)
+    parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **units)
+    long = LONG if digits is None else LONG_IN_DIGITS
+    write_table(header, with_progress(parts, times.count, long), fmt, output)
+
+
+def _write_many(tops: str, shared: Mapping[str, float], wish: Wish, fmt: str, output: str) -> None:
+    from ..sweeps.parts import Tally
+    from ..sweeps.tables import open_tables
+
+    tables = open_tables(
+        tops, shared, wish.columns, wish.times, radians=wish.radians, wrap=wish.wrap, fmt=fmt
+    )
+    tally = Tally()
+    texts = (part.text for part in tally.passing(tables.parts()))
+    write_text_blocks(fmt, tables.header, with_count(texts, "blocks"), output)
+    tally.check()

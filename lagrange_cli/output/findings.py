@@ -16,6 +16,8 @@ class Field(NamedTuple):
     """Empty: not in the table."""
     show: Callable[[Any], str] = str
     is_text: bool = False
+    names_the_row: bool = False
+    """Whether every block of a folded table begins with this column."""
 
     def cell(self, value: Any) -> str:
         """The text in a table."""

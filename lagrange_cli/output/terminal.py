@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from typing import NamedTuple
 
 MOST_CHARACTERS = 1000
 """The length of a line that is still read."""
@@ -24,26 +25,28 @@ def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
     return f"{line[:half]} [... {len(line) - 2 * half} characters ...] {line[-half:]}"
 
 
-def is_terminal(path: str) -> bool:
-    """Return whether output to this path (`-` is standard output) goes to a terminal."""
-    return path == "-" and sys.stdout is not None and sys.stdout.isatty()
+class View(NamedTuple):
+    """What a reader of the output can see."""
+
+    width: int | None = None
+    """Columns of the terminal; None where the output goes elsewhere and may be as wide as it is."""
+    has_greek: bool = True
+    """Whether the encoding has every letter that we write."""
 
 
-def width(path: str) -> int | None:
-    """Return the columns of the terminal that the output goes to; None where it goes elsewhere.
+def view_of(path: str) -> View:
+    """Return the view of the output to a file, or to standard output for `-`.
 
-    The variable COLUMNS wins over what the terminal says.
+    The variable COLUMNS wins over what the terminal says about its width.
     """
-    if not is_terminal(path):
-        return None
+    if path != "-" or sys.stdout is None:
+        return View()
+    has_greek = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().startswith("utf")
+    if not sys.stdout.isatty():
+        return View(None, has_greek)
     from shutil import get_terminal_size
 
-    return get_terminal_size().columns
-
-
-def encoding(path: str) -> str:
-    """Return the encoding of the text that is written to this path."""
-    return (path == "-" and getattr(sys.stdout, "encoding", None)) or "utf-8"
+    return View(get_terminal_size().columns, has_greek)
 
 
 class Screen:

@@ -13,7 +13,8 @@ import numpy as np
 
 from ..errors import SomeFailedError
 from ..inputs.block import Block
-from ..output.write import Columns, block_text
+from ..output.formats import Columns
+from ..output.write import block_text
 from .records import Column, records
 from .top_arrays import Tops
 

@@ -32,7 +32,7 @@ class Tables(NamedTuple):
     """The times for a motion."""
     radians: bool
     wrap: bool
-    style: str
+    fmt: str
 
     @property
     def header(self) -> list[str]:
@@ -65,7 +65,7 @@ class Tables(NamedTuple):
     def _text(self, row: TopRow, block: Array, error: str | None) -> bytes:
         carried = row.carried or [row.line]
         same = [[value] * len(block) for value in carried]
-        return block_text([*same, block, [error] * len(block)], self.header, self.style)
+        return block_text([*same, block, [error] * len(block)], self.header, self.fmt)
 
 
 def open_tables(
@@ -76,8 +76,8 @@ def open_tables(
     *,
     radians: bool,
     wrap: bool,
-    style: str,
+    fmt: str,
 ) -> Tables:
     """The tables of the tops in a file.  Raises LagtopError for one that cannot be read."""
     source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], _TOPS_AT_ONCE)
-    return Tables(source, lines, given, columns, times, radians, wrap, style)
+    return Tables(source, lines, given, columns, times, radians, wrap, fmt)

@@ -10,8 +10,14 @@ import subprocess
 import sys
 import termios
 from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+
+from lagrange_cli.output.findings import Field, Findings
+from lagrange_cli.output.formats import FORMATS
+from lagrange_cli.output.terminal import View, view_of
 
 ESCAPE = re.compile("\x1b\\[[?]?([0-9;]*)([A-Za-z])|([\r\n])|([^\x1b\r\n]+)")
 IMPATIENT = """if True:
@@ -80,13 +86,18 @@ LONG = [
     "table --n 300 --digits 30 -o /dev/null",
     "sweep --r0 1:9:100000 --keys K -o /dev/null",
     "jacobi --k 0.5 --u-range 0:1:100000 --format csv -o /dev/null",
+    "jacobi --k 0.5 --u-range 0:1:100 --digits 50 -o /dev/null",
+    f"{ETA} --tau-range 0:3:100 --digits 50 -o /dev/null",
+    "table --tops {tops} --n 100 -o /dev/null",
 ]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", LONG, ids=lambda line: line[:25])
-def test_progress_is_one_line_that_vanishes(line: str) -> None:
+def test_progress_is_one_line_that_vanishes(line: str, tmp_path: Path) -> None:
     columns = 60
+    (tmp_path / "tops.csv").write_text("r0\n" + "50\n" * 200)
+    line = line.replace("{tops}", str(tmp_path / "tops.csv"))
     text = on_terminal(columns, line, only_errors=True, code=IMPATIENT)
     shown = list(screens(text, columns))
     assert any("%" in x or "done" in x for lines in shown for x in lines), "no progress"
@@ -94,3 +105,63 @@ def test_progress_is_one_line_that_vanishes(line: str) -> None:
         assert sum(x != "" for x in lines) <= 1, lines
     assert not any(shown[-1])
     assert text.count("\x1b[?25l") == text.count("\x1b[?25h") > 0  # the cursor is back
+
+
+WIDE = [
+    "solve",
+    "solve --theta0 0",
+    "solve --digits 40 --theta0 60",
+    "solve --digits 300",
+    "solve --rad --r0 1e-100",
+    "table --n 3 --format table",
+    "table --n 3 --columns t,axis,quaternion,energy --format table",
+    "table --n 3 --digits 90 --format table",
+    "jacobi --k 0.5 --u-range 0:1:3 --theta --zeta",
+    "jacobi --k 0.5 --digits 70",
+    f"{ETA} --digits 60",
+    f"{ETA} --tau 1 --digits 60",
+]
+
+
+@pytest.mark.parametrize("columns", [80, 60])
+@pytest.mark.parametrize("line", WIDE)
+def test_tables_fit_the_terminal_and_lose_no_digit(line: str, columns: int) -> None:
+    bare = re.sub("\x1b\\[[0-9;]*m", "", on_terminal(columns, line))
+    assert max(map(len, bare.splitlines())) <= columns
+    command = [sys.executable, "-m", "lagrange_cli", *line.split()]
+    piped = subprocess.run(command, capture_output=True, check=True).stdout.decode()
+    numbers = re.findall(r"\d[\d.]{9,}(?:e[-+]?\d+)?", piped)
+    together = "".join(bare.split())
+    assert numbers
+    assert [number for number in numbers if number not in together] == []
+
+
+def test_a_wide_terminal_changes_nothing_but_bold_letters() -> None:
+    for line in ("solve", "table --n 3 --columns t,axis --format table"):
+        command = [sys.executable, "-m", "lagrange_cli", *line.split()]
+        piped = subprocess.run(command, capture_output=True, check=True).stdout.decode()
+        shown = re.sub("\x1b\\[[0-9;]*m", "", on_terminal(200, line)).replace("\r", "")
+        assert [x.rstrip() for x in shown.splitlines()] == piped.splitlines()
+
+
+def test_the_variable_columns_wins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lagrange_cli.output.terminal.sys.stdout.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "61")
+    assert view_of("-").width == 61
+    assert view_of("file").width is None
+
+
+def test_reports_fold_with_the_names_of_their_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    fields = [
+        Field("method", "method", is_text=True, names_the_row=True),
+        *(Field(key, key * 8) for key in "abcdef"),
+    ]
+    rows = [SimpleNamespace(method=name, **dict.fromkeys("abcdef", 1.5)) for name in ("x", "y")]
+    findings = Findings({"machine": "word " * 30}, fields, rows, ["word " * 30])
+    text = FORMATS["table"].findings(findings, View(40, True)).decode()
+    plain = re.sub("\x1b\\[[0-9;]*m", "", text)
+    assert max(map(len, plain.splitlines())) <= 40
+    assert plain.count("method") == 2
+    assert plain.count("1.5") == 12
+    wide = FORMATS["table"].findings(findings, View()).decode()
+    assert wide.count("method") == 1

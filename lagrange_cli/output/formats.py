@@ -1,0 +1,275 @@
+"""The formats of output, one object each: csv, json, ndjson, parquet and table.
+
+A double has the same text in all of them (see `arithmetic.text`).  Rows are written by orjson,
+which is loaded together with numpy.  One record (`solve --format json`) and numbers of many digits
+are put together here: importing orjson would cost that command 4 % of its time, and it knows
+doubles only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from io import BytesIO
+from itertools import chain
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
+
+from ..arithmetic.text import json_text, value_text
+from .terminal import View
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+    from .findings import Findings
+
+QUOTE = '"'
+_SPECIAL = {QUOTE, ",", "\n", "\r"}
+
+Columns = Sequence["Array | Sequence[Any]"]
+"""The columns of a block: arrays of numbers, one or several columns each, where NaN stands for
+none; or lists of texts and JSON values."""
+Texts = Sequence[Sequence[str]]
+"""A block of rows whose numbers are written out; an empty text stands for none."""
+
+
+class Format:
+    """A format: the bytes before, between and after blocks of rows, and of a block itself."""
+
+    name: str
+    between = b""
+    closing = b""
+
+    def opening(self, names: Sequence[str]) -> bytes:
+        """Return what stands before the rows."""
+        return b""
+
+    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
+        """Return rows of numbers and JSON values, given by their columns."""
+        raise NotImplementedError
+
+    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
+        """Return rows of numbers that are written out already."""
+        raise NotImplementedError
+
+    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+        """Return one record of a kind, `top`, `jacobi` or `eta`."""
+        raise NotImplementedError
+
+    def findings(self, findings: Findings, view: View) -> bytes:
+        """Return what a report found."""
+        raise NotImplementedError
+
+    def write_blocks(self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
+        """Write blocks made by `block`, with what stands before, between and after them."""
+        stream.write(self.opening(names))
+        between = b""
+        for text in filter(None, blocks):
+            stream.write(between + text)
+            between = self.between
+        stream.write(self.closing)
+
+    def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
+        """Return the file of a part of a sweep: part 0 alone begins with the header."""
+        return text if number else self.opening(names) + text
+
+    def write_table(
+        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array | Texts], view: View
+    ) -> None:
+        """Write blocks of rows, arrays or numbers written out."""
+        self.write_blocks(
+            stream,
+            names,
+            (
+                self.texts(block, names) if isinstance(block, list) else self._array(block, names)
+                for block in blocks
+            ),
+        )
+
+    def _array(self, block: Any, names: Sequence[str]) -> bytes:
+        return self.block([block], names)
+
+
+class Csv(Format):
+    """Comma-separated values with a header; nothing stands for none."""
+
+    name = "csv"
+
+    def opening(self, names: Sequence[str]) -> bytes:
+        """Return the header."""
+        return (",".join(map(csv_text, names)) + "\n").encode()
+
+    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
+        """Return a line per row."""
+        import numpy as np
+
+        if not len(columns[0]):
+            return b""
+        if len(columns) == 1 < len(names) and isinstance(columns[0], np.ndarray):
+            return _array_lines(columns[0])
+        cells = [
+            _array_lines(x).splitlines()
+            if isinstance(x, np.ndarray)
+            else [csv_text(y).encode() for y in x]
+            for x in columns
+        ]
+        lines = list(map(b",".join, zip(*cells, strict=True)))
+        if len(names) == 1:  # an empty line would be lost to its reader
+            lines = [line or b'""' for line in lines]
+        return b"\n".join(lines) + b"\n"
+
+    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
+        """Return a line per row."""
+        return "".join(",".join(row) + "\n" for row in rows).encode()
+
+    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+        """Return a header and one line."""
+        cells = ",".join(map(value_text, record.values()))
+        return f"{','.join(record)}\n{cells}\n".encode()
+
+    def findings(self, findings: Findings, view: View) -> bytes:
+        """Return the rows alone, with a header."""
+        header = [field.key for field in findings.fields]
+        lines = [header, *(row.values() for row in findings.values())]
+        return "".join(",".join(map(csv_text, line)) + "\n" for line in lines).encode()
+
+
+class Ndjson(Format):
+    """JSON lines: an object per row; null stands for none."""
+
+    name = "ndjson"
+
+    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
+        """Return a line per row."""
+        return b"".join(line + b"\n" for line in _objects(columns, names))
+
+
+class Json(Format):
+    """JSON: an array with an object per row, each on a line; or one object."""
+
+    name = "json"
+    between = b",\n"
+    closing = b"]\n"
+
+    def opening(self, names: Sequence[str]) -> bytes:
+        """Return the bracket of the array."""
+        return b"["
+
+    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
+        """Return the objects, with commas between."""
+        return b",\n".join(_objects(columns, names))
+
+    def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
+        """Return the objects, with commas between."""
+        members = (zip(names, (x or "null" for x in row), strict=True) for row in rows)
+        return b",\n".join(map(_object, members))
+
+    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+        """Return one object on one line."""
+        return _object((key, _json_value(value)) for key, value in record.items()) + b"\n"
+
+    def findings(self, findings: Findings, view: View) -> bytes:
+        """Return one object."""
+        return findings.as_json()
+
+
+class Parquet(Format):
+    """Parquet, a row group per block; a block on its way is an Arrow stream."""
+
+    name = "parquet"
+
+    def block(self, columns: Columns, names: Sequence[str]) -> bytes:
+        """Return an Arrow stream."""
+        from .parquet import arrow_block
+
+        return arrow_block(columns, names) if len(columns[0]) else b""
+
+    def write_blocks(self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
+        """Write one file of all blocks."""
+        from .parquet import write_parquet
+
+        write_parquet(stream, names, filter(None, blocks))
+
+    def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
+        """Return the file of a part of a sweep, which is whole."""
+        stream = BytesIO()
+        self.write_blocks(stream, names, [text])
+        return stream.getvalue()
+
+
+class DrawnTable(Format):
+    """A table for the eye, drawn by rich when all of it is known."""
+
+    name = "table"
+
+    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+        """Return a line per key, in groups."""
+        from .rich_tables import record_table
+
+        return record_table(record, kind, view)
+
+    def findings(self, findings: Findings, view: View) -> bytes:
+        """Return conditions, rows and conclusions."""
+        from .rich_tables import findings_table
+
+        return findings_table(findings, view)
+
+    def write_table(
+        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array | Texts], view: View
+    ) -> None:
+        """Write a column per name and a line per row."""
+        from .rich_tables import rows_table
+
+        rows = chain.from_iterable(
+            block if isinstance(block, list) else cast("Array", block).tolist() for block in blocks
+        )
+        stream.write(rows_table(names, (map(value_text, row) for row in rows), view))
+
+
+FORMATS: dict[str, Format] = {
+    fmt.name: fmt for fmt in (Csv(), Ndjson(), Json(), Parquet(), DrawnTable())
+}
+"""The formats by name."""
+
+
+def csv_text(value: Any) -> str:
+    """Return a cell, in quotes where it has to be; what is neither text nor number as JSON."""
+    if type(value) is str:
+        return f'"{value.replace(QUOTE, QUOTE * 2)}"' if set(value) & _SPECIAL else value
+    if value is None or isinstance(value, float):
+        return value_text(value)
+    return csv_text(json_text(value))
+
+
+def _array_lines(rows: Array) -> bytes:
+    """Return an array of numbers, a line per row and nothing for NaN."""
+    import numpy as np
+    import orjson
+
+    text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
+    if b"n" in text:
+        text = text.replace(b"null", b"")
+    # Commas at the ends of rows become line ends in place: to look for `],[` takes twice as long.
+    view = np.frombuffer(text, dtype=np.uint8)
+    commas = np.flatnonzero(view == ord(","))
+    view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
+    view[-1] = ord("\n")
+    return bytes(view[1:])
+
+
+def _objects(columns: Columns, names: Sequence[str]) -> list[bytes]:
+    """Return the JSON object of every row."""
+    import numpy as np
+    import orjson
+
+    lists = (x.T.tolist() if isinstance(x, np.ndarray) else [x] for x in columns)
+    rows = zip(*chain.from_iterable(lists), strict=True)
+    return [orjson.dumps(dict(zip(names, row, strict=True))) for row in rows]
+
+
+def _object(members: Iterable[tuple[str, str]]) -> bytes:
+    inside = ", ".join(f'"{name}": {text}' for name, text in members)
+    return f"{{{inside}}}".encode()
+
+
+def _json_value(value: Any) -> str:
+    if type(value) is str:  # our only strings are plain words
+        return f'"{value}"'
+    return value_text(value) or "null"

@@ -1,0 +1,216 @@
+"""Tables drawn by rich: records in the order of the papers, and rows.  No digit is ever cut.
+
+On a terminal a table that is too wide is folded: its columns come in blocks, one below the other.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..arithmetic.text import value_text
+from .layouts import LAYOUTS, Line
+
+if TYPE_CHECKING:
+    from .findings import Findings
+    from .terminal import View
+
+_GAP = 3
+"""Columns of the screen between two columns of a table."""
+_TEXT_WIDTH = 100
+"""The width of running text where no terminal says another."""
+
+_BOLD = re.compile("\x1b\\[[0-9;]*m")
+_ASCII = str.maketrans(
+    {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "§": "sec. "}
+    | {"δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta"}
+)
+
+
+class Column(NamedTuple):
+    """A column of a table: its heading, its cells, and whether they are numbers."""
+
+    heading: str
+    cells: Sequence[str]
+    numeric: bool = True
+
+    def width(self) -> int:
+        """Return the width on the screen."""
+        lines = (line for cell in (self.heading, *self.cells) for line in cell.split("\n"))
+        return max(map(cell_len, lines))
+
+    def cut_into_lines(self, width: int) -> Column:
+        """Return the column with every cell in lines of at most `width` characters."""
+        return self._replace(cells=["\n".join(_chunks(cell, width)) for cell in self.cells])
+
+
+def record_table(record: Mapping[str, Any], kind: str, view: View) -> bytes:
+    """Return a record by the groups of its kind, a line per key with a value, its remark last."""
+    angle = "rad" if any(key.endswith("_rad") for key in record) else "deg"
+    groups = {
+        name: [cells for line in lines if (cells := _cells(record, line, angle, view))]
+        for name, lines in LAYOUTS[kind].items()
+    }
+    groups = {name: lines for name, lines in groups.items() if lines}
+    text = _drawn(_record(groups), view)
+    if view.width and _width(text) > view.width:
+        text = _drawn(_narrow_record(groups, view.width), view)
+    remark = f"\n{_filled(record['remark'], view)}\n" if record.get("remark") else ""
+    return _encoded(text, view) + remark.encode()
+
+
+def _cells(record: Mapping[str, Any], line: Line, angle: str, view: View) -> list[str]:
+    is_angle = line.unit == "angle"
+    value = record[f"{line.key}_{angle}" if is_angle else line.key]
+    if value is None:
+        return []
+    unit = angle if is_angle else line.unit
+    cells = (line.symbol, line.name, value_text(value), unit, line.equation)
+    return [_spelt(cell, view) for cell in cells]
+
+
+def _record(groups: Mapping[str, list[list[str]]]) -> Table:
+    """Return five columns.  A group is one row of many lines: rich takes its time for each cell."""
+    headings = ("Symbol", "Name", "Value", "Unit", "Equation")
+    table = _empty((heading, heading == "Value") for heading in headings)
+    for group, lines in groups.items():
+        symbols, names, *rest = ("\n".join(cells) for cells in zip(*lines, strict=True))
+        name_cell = Text.assemble((f"{group}\n", "bold"), names)
+        table.add_row(f"\n{symbols}", name_cell, *(f"\n{cells}" for cells in rest))
+    return table
+
+
+def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
+    """Return four columns, each value in lines of its own below the name."""
+    every = [line for lines in groups.values() for line in lines]
+    beside = [Column("", [line[i] for line in every]).width() for i in (0, 3, 4)]
+    room = max(width - sum(max(used, len("Equation")) for used in beside) - 3 * _GAP, 12)
+    table = _empty((heading, False) for heading in ("Symbol", "Name, value", "Unit", "Equation"))
+    for group, lines in groups.items():
+        table.add_row("", Text(group, "bold"), "", "")
+        for symbol, name, value, unit, equation in lines:
+            table.add_row(symbol, "\n".join([name, *_chunks(value, room)]), unit, equation)
+    return table
+
+
+def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) -> bytes:
+    """Return a column per name and a line per row."""
+    cells = list(zip(*rows, strict=True)) or [()] * len(names)
+    columns = [Column(name, column) for name, column in zip(names, cells, strict=True)]
+    return _encoded(_folded(columns[:1], columns[1:], view), view)
+
+
+def findings_table(findings: Findings, view: View) -> bytes:
+    """Return the conditions as lines, the rows as a table of short numbers, and the conclusions."""
+    shown = [field for field in findings.fields if field.heading]
+    columns = [
+        Column(
+            _spelt(field.heading, view),
+            [_spelt(field.cell(getattr(row, field.key)), view) for row in findings.rows],
+            not field.is_text,
+        )
+        for field in shown
+    ]
+    keys = [column for column, field in zip(columns, shown, strict=True) if field.names_the_row]
+    rest = [column for column in columns if column not in keys]
+    heads = (_condition(name, text, view) for name, text in findings.conditions.items())
+    above = _spelt("\n".join(heads), view) + "\n\n"
+    below = "".join(f"\n{_filled(line, view)}" for line in findings.conclusions)
+    return (
+        above.encode()
+        + _encoded(_folded(keys, rest, view), view)
+        + f"{_spelt(below, view)}\n".encode()
+    )
+
+
+def _folded(keys: Sequence[Column], columns: Sequence[Column], view: View) -> str:
+    """Return the table in blocks of columns that fit; the keys are the first ones of each."""
+    blocks = _blocks(keys, columns, view.width) if view.width else [[*keys, *columns]]
+    return "\n".join(_drawn(_filled_table(block), view) for block in blocks)
+
+
+def _blocks(
+    keys: Sequence[Column], columns: Sequence[Column], width: int
+) -> Iterator[list[Column]]:
+    used = sum(column.width() + _GAP for column in keys)
+    if any(used + column.width() > width for column in columns):  # keys too wide to be repeated
+        keys, columns, used = [], [*keys, *columns], 0
+    block, room = list(keys), width - used
+    for column in columns:
+        fitting = column.cut_into_lines(width - used) if column.width() > width - used else column
+        if len(block) > len(keys) and fitting.width() > room:
+            yield block
+            block, room = list(keys), width - used
+        block.append(fitting)
+        room -= fitting.width() + _GAP
+    yield block
+
+
+def _filled_table(columns: Sequence[Column]) -> Table:
+    table = _empty((column.heading, column.numeric) for column in columns)
+    for row in zip(*(column.cells for column in columns), strict=True):
+        table.add_row(*row)
+    return table
+
+
+def _empty(columns: Iterable[tuple[str, bool]]) -> Table:
+    """Return a table without rows; each column by its heading, and whether it holds numbers."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for heading, numeric in columns:
+        table.add_column(heading, justify="right" if numeric else "left", no_wrap=True)
+    return table
+
+
+def _chunks(text: str, width: int) -> list[str]:
+    """Return a text in pieces of at most `width` characters, at least one."""
+    return [text[i : i + width] for i in range(0, len(text), width)] or [""]
+
+
+def _width(text: str) -> int:
+    """Return the width of what is drawn, without the codes for bold letters."""
+    return max(cell_len(line) for line in _BOLD.sub("", text).splitlines())
+
+
+def _spelt(text: str, view: View) -> str:
+    return text if view.has_greek else text.translate(_ASCII)
+
+
+def _filled(text: str, view: View) -> str:
+    """Return running text in lines that fit."""
+    return fill(text, view.width, break_on_hyphens=False) if view.width else text
+
+
+def _condition(name: str, text: str, view: View) -> str:
+    """Return a name with its text beside it, in lines that fit."""
+    width = min(view.width or _TEXT_WIDTH, _TEXT_WIDTH)
+    return fill(f"{name:11}{text}", width, subsequent_indent=" " * 11, break_on_hyphens=False)
+
+
+def _drawn(table: Table, view: View) -> str:
+    """Return the table at its natural width; bold only on a terminal."""
+    file = io.StringIO()
+    Console(
+        file=file,
+        force_terminal=view.width is not None,
+        width=10_000,
+        highlight=False,
+        markup=False,
+        emoji=False,
+    ).print(table)
+    lines = [line.rstrip() for line in file.getvalue().splitlines()]
+    return "\n".join(lines).strip("\n") + "\n"
+
+
+def _encoded(text: str, view: View) -> bytes:
+    if view.has_greek:
+        return text.encode()
+    return text.replace("─", "-").encode("ascii", "replace")
