@@ -286,7 +286,7 @@ def test_missing_and_unreadable_scene_files(lagtop: Lagtop, tmp_path: Path) -> N
     (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
     assert lagtop("solve", tmp_path / "binary").exit_code == 65
     (tmp_path / "huge").write_bytes(b"#" * (1 << 21))
-    assert "more than 1 MiB" in lagtop("solve", tmp_path / "huge").stderr
+    assert "more than 64 KiB" in lagtop("solve", tmp_path / "huge").stderr
 
 
 def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
