@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from decimal import Decimal
+from collections.abc import Iterable, Mapping
+from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 from ..arithmetic import decimals
 from ..arithmetic.generic import Arithmetic, Number, Real, number
@@ -18,10 +18,23 @@ _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _PI = Fraction(decimals.pi)
+_NOT_REAL = (bool, str, bytes, bytearray, complex)
+_SHOWN = 60
+_DIGITS_SHOWN = Context(
+    prec=50,
+    rounding=ROUND_HALF_EVEN,
+    Emin=MIN_EMIN,
+    Emax=MAX_EMAX,
+    capitals=0,
+    clamp=0,
+    flags=[],
+    traps=[],
+)
+"""A context of our own, so that no message depends on the one of the caller."""
 
 
 class Tilt(NamedTuple):
-    """Sine and cosine of theta0 and of its half."""
+    """Sines and cosines of theta0 and of its half."""
 
     sin: Real
     cos: Real
@@ -29,7 +42,7 @@ class Tilt(NamedTuple):
     cos_half: Real
 
     def degrees(self, ar: Arithmetic) -> Real:
-        """The angle itself, in degrees."""
+        """Return the angle itself, in degrees."""
         return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
 
 
@@ -49,7 +62,8 @@ class _Inputs(NamedTuple):
 class Top(_Inputs):
     """A heavy symmetric top with a fixed point, and its state at t = 0 (phi = psi = 0 there).
 
-    Any consistent units; the defaults are the worked example of Chrapan (1952), section 8, in CGS.
+    Any consistent units will do; the defaults are the worked example of Chrapan (1952), section 8,
+    in CGS.  Each input is a real number: int, float, Fraction, Decimal or a scalar of NumPy.
 
     m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
     s, g        distance from the pivot to the centre of mass, and gravity, >= 0
@@ -78,40 +92,59 @@ class Top(_Inputs):
         thetadot0: Number = 0.0,
         psidot0: Number = 0.0,
         theta0_rad: Number | None = None,
-    ) -> Top:
+    ) -> Self:
         """Check the inputs and keep them."""
         if theta0_deg is None and theta0_rad is None:
             theta0_deg = 30.0
-        given = _Inputs(m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad)
-        numbers: Iterator[Any] = (
-            None if value is None else _finite(name, value)
-            for name, value in zip(given._fields, given, strict=True)
+        values = _Inputs(m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad)
+        numbers: Iterable[Any] = (
+            None if value is None and name.startswith("theta0_") else _finite(name, value)
+            for name, value in zip(values._fields, values, strict=True)
         )
         top = super().__new__(cls, *numbers)
         _check_ranges(top)
         return top
 
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]:
-        """For copies and pickles, which go through the guards again."""
+        """Return the inputs for copies and pickles, which go through the guards again."""
         return (), self._asdict()
 
+    def __dir__(self) -> list[str]:
+        """Return the names of the attributes, without those of a tuple."""
+        return [name for name in super().__dir__() if name not in ("count", "index")]
+
+    @classmethod
+    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override] # theirs is generic
+        """Return a top of ten values in the order of the fields, checked like any other."""
+        return cls(**dict(zip(cls._fields, iterable, strict=True)))
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the top with other values of some inputs, such as `replace(r0=60)`.
+
+        A tilt in either unit takes the place of the one there is.  Raises LagtopError.
+        """
+        present = {name: value for name, value in self._asdict().items() if value is not None}
+        return type(self)(**overridden(present, changes))
+
+    _replace = replace
+
     def inputs(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
-        """The nine inputs by record key, the tilt in degrees or in radians."""
+        """Return the nine inputs by record key, the tilt in degrees or in radians."""
         names = ["m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"]
         values: dict[str, Any] = {name: getattr(self, name) for name in names[:6]}
         values["theta0_rad" if radians else "theta0_deg"] = self._tilt_in(radians, ar)
         return values | {name: getattr(self, name) for name in names[6:]}
 
     def _tilt_in(self, radians: bool, ar: Arithmetic) -> Real:
-        given, other = self.theta0_deg, self.theta0_rad
+        wanted, other = self.theta0_deg, self.theta0_rad
         if radians:
-            given, other = other, given
-        if given is not None:
-            return given
+            wanted, other = other, wanted
+        if wanted is not None:
+            return wanted
         return number(ar, _known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
 
     def tilt(self, ar: Arithmetic) -> Tilt:
-        """Sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
+        """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
         if self.theta0_rad is not None:
             arc = number(ar, self.theta0_rad)
             return Tilt(ar.sin(arc), ar.cos(arc), ar.sin(arc / 2), ar.cos(arc / 2))
@@ -125,7 +158,7 @@ class Top(_Inputs):
 
     @property
     def is_released(self) -> bool:
-        """Whether it starts at rest in nutation and precession, the paper's case."""
+        """Whether the top starts at rest in nutation and precession, the case of the paper."""
         return self.thetadot0 == 0 and self.psidot0 == 0
 
     @property
@@ -136,7 +169,7 @@ class Top(_Inputs):
         return -1 if self.theta0_deg == 180 else 0
 
     def caveat(self) -> str | None:
-        """One line on a body that can be computed but not built, or None."""
+        """Return a line on a body that can be computed but not built, or None."""
         offset = Fraction(self.m) * Fraction(self.s) ** 2
         limit = 2 * (Fraction(self.A) - offset)
         if limit <= 0:
@@ -168,13 +201,27 @@ def _known(value: Number | None) -> Number:
 def _finite(name: str, value: Any) -> Number:
     if isinstance(value, Fraction):
         return value
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) > _LARGEST:
+        raise LagtopError(f"{name} must be within 1e100 in size, got {_shown(value)}", name)
     try:
+        if not _is_real(value):
+            raise TypeError
         nearest = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise LagtopError(f"{name} must be a number, got {value!r}", name) from None
+        shown = repr(value)[:_SHOWN]
+        raise LagtopError(f"{name} must be a real number, got {shown}", name) from None
     if not math.isfinite(nearest):
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
     return nearest
+
+
+def _is_real(value: object) -> bool:
+    """Return whether a value is neither a truth value, a text, complex, masked, nor an array."""
+    dtype = getattr(value, "dtype", None)
+    if dtype is None:
+        return not isinstance(value, _NOT_REAL)
+    is_scalar = not getattr(value, "ndim", 0) and not hasattr(value, "mask")
+    return is_scalar and getattr(dtype, "kind", None) in {"i", "u", "f"}
 
 
 def _check_ranges(top: Top) -> None:
@@ -204,21 +251,27 @@ def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = ""
 
 
 def _shown(value: Number) -> str:
-    """As it was given, so that 180.00000000000000000001 is not shown as 180."""
-    if isinstance(value, float) or float(value) == value:
+    """Return a number as text, in so many digits that 180.00000000000000000001 is not 180."""
+    if isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value):
         return str(float(value))
-    return str(Decimal(value.numerator) / Decimal(value.denominator))
+    exact = Fraction(value)
+    parts = Decimal(exact.numerator), Decimal(exact.denominator)
+    quotient = _DIGITS_SHOWN.normalize(_DIGITS_SHOWN.divide(*parts))
+    return _DIGITS_SHOWN.to_sci_string(quotient)
 
 
 def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
-    """The inputs with those given in their place; a tilt takes the place of one in either unit."""
+    """Return inputs by key, with those given in the place of others.
+
+    A tilt takes the place of one in either unit.
+    """
     tilted = any(key.startswith("theta0_") for key in given)
     kept = {x: y for x, y in inputs.items() if not (tilted and x.startswith("theta0_"))}
     return kept | dict(given)
 
 
 def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:
-    """A Top from inputs by key, read as exact decimals or rounded to doubles.
+    """Return the top of inputs by key, which are rounded to doubles or kept `exact`.
 
     Raises LagtopError.
     """

@@ -176,5 +176,7 @@ def _result(client: Client, future: Future[Part]) -> Part:
                 raise UnavailableError("the cluster has no worker left")
     except (ImportError, AttributeError) as error:
         raise UnavailableError(f"a worker of the cluster has no lagtop: {error}") from None
-    except (OSError, CancelledError, KilledWorker) as error:
+    except CancelledError:
+        raise UnavailableError("the cluster has no scheduler any more") from None
+    except (OSError, KilledWorker) as error:
         raise UnavailableError(f"the cluster lost a part: {error}") from None

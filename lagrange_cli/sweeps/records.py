@@ -57,10 +57,9 @@ def sweep(
     given = Top().inputs() | {"theta0_rad": np.nan}
     if "theta0_rad" in inputs and "theta0_deg" not in inputs:
         given["theta0_deg"] = np.nan
+    doubles = [_doubles(name, (given | inputs)[name]) for name in Tops._fields]
     try:
-        arrays = np.broadcast_arrays(
-            *(np.asarray((given | inputs)[name], dtype=np.float64) for name in Tops._fields)
-        )
+        arrays = np.broadcast_arrays(*doubles)
     except ValueError as error:
         raise LagtopError(f"the inputs do not go together: {error}") from None
     shape = arrays[0].shape
@@ -70,6 +69,20 @@ def sweep(
         for first in range(0, max(tops.m.size, 1), BLOCK_ROWS)
     ]
     return {key: np.concatenate([b[key] for b in blocks]).reshape(shape) for key in chosen}
+
+
+def _doubles(name: str, values: ArrayLike) -> Array:
+    """Return real numbers as an array of doubles.  Raises LagtopError for anything else."""
+    if np.ma.isMaskedArray(values) and np.ma.getmaskarray(values).any():
+        raise LagtopError(f"{name} must not be masked: fill it or leave the elements out", name)
+    try:
+        array = np.asarray(values)
+        if array.size and array.dtype.kind not in "iufO":
+            raise TypeError
+        return array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        shown = repr(values)[:60]
+        raise LagtopError(f"{name} must be real numbers, got {shown}", name) from None
 
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:

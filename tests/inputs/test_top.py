@@ -1,0 +1,117 @@
+"""Guards of `Top`: what is refused, with which message, and that there is no way around them."""
+
+from __future__ import annotations
+
+import copy
+import decimal
+import math
+import pickle
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic.points import EvenPoints
+from lagrange_cli.inputs.ranges import parse_values
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        ({"m": None}, "m must be a real number, got None"),
+        ({"m": True}, "m must be a real number, got True"),
+        ({"r0": np.True_}, "r0 must be a real number, got "),
+        ({"m": "1587"}, "m must be a real number, got '1587'"),
+        ({"m": b"7"}, "m must be a real number, got b'7'"),
+        ({"m": 1j}, "m must be a real number, got 1j"),
+        ({"m": np.complex64(1)}, "m must be a real number"),
+        ({"m": np.array([1.0])}, "m must be a real number, got array([1.])"),
+        ({"m": np.ma.masked}, "m must be a real number"),
+        ({"m": np.datetime64("2020-01-01")}, "m must be a real number"),
+        ({"m": [1] * 1000}, "m must be a real number, got [1, 1"),
+        ({"m": Decimal("sNaN")}, "m must be a real number"),
+        ({"m": math.nan}, "m must be finite, got nan"),
+        ({"m": 10**400}, "m must be within 1e100 in size, got 1e+400"),
+        ({"m": Fraction(10**400)}, "m must be within 1e100 in size, got 1e+400"),
+        ({"m": -(16**3000)}, "m must be within 1e100 in size, got -"),
+        ({"m": Fraction(1, 10**400)}, "m must be >= 1e-100, got 1e-400"),
+        (
+            {"A": Fraction(1, 3)},
+            "C must be <= 2 A = 0.6666666666666666666666666666666666",
+        ),
+        ({"theta0_deg": 180 + Fraction(1, 10**20)}, "got 180.00000000000000000001"),
+        ({"theta0_deg": 30, "theta0_rad": 1}, "are both given"),
+    ],
+)
+def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
+    with pytest.raises(LagtopError) as refused:
+        Top(**inputs)
+    assert message in str(refused.value)
+    assert len(str(refused.value)) < 200
+    assert refused.value.key in (*inputs, "C")
+
+
+@pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
+def test_numbers_of_many_types(value: Any) -> None:
+    assert Top(r0=value).r0 == 3
+
+
+def test_no_way_around_the_guards() -> None:
+    top = Top(theta0_deg=40)
+    for change in (top.replace, top._replace):
+        with pytest.raises(LagtopError, match="m must be > 0"):
+            change(m=-1)
+        with pytest.raises(LagtopError, match=r"theta0_deg must be in \[0, 180\]"):
+            change(theta0_deg=500)
+    with pytest.raises(LagtopError, match="m must be > 0"):
+        Top._make([-1, *top[1:]])
+    with pytest.raises(AttributeError):
+        top.m = -1  # type: ignore[misc]
+    assert not hasattr(top, "__dict__")
+    assert Top._make(top) == copy.deepcopy(top) == pickle.loads(pickle.dumps(top)) == top
+
+
+def test_replace() -> None:
+    top = Top(theta0_deg=40, r0=7)
+    assert top.replace(r0=60) == Top(theta0_deg=40, r0=60)
+    assert top.replace(theta0_rad=1) == Top(theta0_rad=1, r0=7)
+    assert top.replace(theta0_rad=1).replace(theta0_deg=2) == Top(theta0_deg=2, r0=7)
+    assert top.replace() == top
+    assert top == Top(theta0_deg=40, r0=7)
+
+
+def test_dir_shows_what_a_top_has() -> None:
+    assert {"m", "replace", "theta0_deg"} <= set(dir(Top()))
+    assert not {"count", "index"} & set(dir(Top()))
+
+
+def strange_context(kind: str) -> decimal.Context:
+    """Return a decimal context that a host program may have set."""
+    context = decimal.Context()
+    if kind == "traps":
+        context.traps = dict.fromkeys(context.traps, True)
+    elif kind == "precision":
+        context.prec, context.Emax, context.Emin = 1, 1, -1
+    else:
+        context.rounding = decimal.ROUND_UP
+    return context
+
+
+@pytest.mark.parametrize("kind", ["traps", "precision", "rounding"])
+def test_nothing_depends_on_the_decimal_context_of_the_host(kind: str) -> None:
+    inputs: dict[str, Any] = {"theta0_deg": Fraction(100, 3), "r0": Fraction(1, 7), "psidot0": 0.1}
+    record = solve(Top(**inputs)).record()
+    points = parse_values("log:1:1e4:7").at(np.arange(7))
+    with decimal.localcontext(strange_context(kind)):
+        with pytest.raises(LagtopError) as refused:
+            Top(theta0_deg=180 + Fraction(1, 3))
+        assert str(refused.value).endswith(f"got 180.{'3' * 47}")
+        with pytest.raises(LagtopError, match=r"got 1e\+400"):
+            Top(m=10**400)
+        with pytest.raises(LagtopError, match=r"at most 1e9 rows, got 1.000e\+12"):
+            EvenPoints(Fraction(0), Fraction(1), 10**12)
+        assert solve(Top(**inputs)).record() == record
+        assert parse_values("log:1:1e4:7").at(np.arange(7)).tolist() == points.tolist()
