@@ -23,7 +23,7 @@ from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..elliptic.eta import Quadrature
+    from ..elliptic.quadrature import Quadrature
 
 
 @click.command(
@@ -81,14 +81,14 @@ def command(  # noqa: PLR0917 - click passes them by name
     from ..elliptic.eta import digit_rows, record, rows
 
     times = listed("tau", single, grid)
-    of = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
+    quadrature = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
     if times is None:
-        write_record(record(of, digits), fmt, output, "eta")
+        write_record(record(quadrature, digits), fmt, output, "eta")
     elif digits is None:
-        header, blocks = rows(of, times, c3)
+        header, blocks = rows(quadrature, times, c3)
         write_table(header, with_progress(blocks, times.count, 3_000_000), fmt, output)
     else:
-        header, lines = digit_rows(of, times, c3, digits)
+        header, lines = digit_rows(quadrature, times, c3, digits)
         texts = with_progress(([line] for line in lines), times.count, 1000)
         write_table(header, texts, fmt, output)
 
@@ -100,8 +100,8 @@ def _quadrature(
     gaps: tuple[Fraction | None, Fraction | None],
     g: Fraction,
 ) -> Quadrature:
-    """The roots from either way to give the outer ones; the rest is checked where it is used."""
-    from ..elliptic.eta import Quadrature
+    """Return the quadrature from either way to give the outer roots; it is checked when used."""
+    from ..elliptic.quadrature import Quadrature
 
     p, q = middle.values()
     above, below = gaps

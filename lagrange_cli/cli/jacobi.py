@@ -26,7 +26,8 @@ from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..elliptic.function_table import Given, Request
+    from ..elliptic.function_table import Request
+    from ..elliptic.modulus_input import ModulusInput
 
 MOST_TERMS = 10_000
 
@@ -84,32 +85,33 @@ def command(  # noqa: PLR0917 - click passes them by name
     Without --u the constants; with it am, sn, cn, dn of every u, right to an ulp or two as close to
     k = 1 as --k-prime can say, and what else is asked for, to a few roundings of 1.
     """
-    from ..elliptic.function_table import Given, Request, constants_record
+    from ..elliptic.function_table import Request
+    from ..elliptic.modulus_input import ModulusInput, constants_record
 
-    named = {"k": k, "k_prime": k_prime, "angle": angle, "q": q}
+    named = {"k": k, "k_prime": k_prime, "modular_angle": angle, "nome": q}
     chosen = [(name, value) for name, value in named.items() if value is not None]
     if len(chosen) != 1:
         raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
-    given = Given(*chosen[0], radians=rad)
+    modulus = ModulusInput(*chosen[0], radians=rad)
     flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
     families = tuple(name for name, wanted in flags.items() if wanted)
     arguments = listed("u", single, grid)
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
         exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
-        _write_series(given, arguments, terms, fmt, output)
+        _write_series(modulus, arguments, terms, fmt, output)
         return
     if arguments is None:
         if families:
             raise LagtopError(f"--{families[0]} needs --u or --u-range")
-        write_record(constants_record(given, digits), fmt, output, "jacobi")
+        write_record(constants_record(modulus, digits), fmt, output, "jacobi")
         return
-    request = Request(given, families, *_parameter(param, families), radians=rad)
+    request = Request(modulus, families, *_parameter(param, families), radians=rad)
     _write_rows(arguments, request, digits, fmt, output)
 
 
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:
-    """The value of --param, and whether it is imaginary."""
+    """Return the value of --param, and whether it is imaginary."""
     if not {"omega", "pi"} & set(families):
         if param is not None:
             raise LagtopError("--param needs --omega or --pi")
@@ -139,14 +141,14 @@ def _write_rows(
 
 
 def _write_series(
-    given: Given, arguments: Points | None, terms: int, fmt: str, output: str
+    modulus: ModulusInput, arguments: Points | None, terms: int, fmt: str, output: str
 ) -> None:
-    from ..elliptic.function_table import series_rows
+    from ..elliptic.series_table import series_rows
 
     if not 1 <= terms <= MOST_TERMS:
         raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")
     if arguments is not None and arguments.count != 1:
         raise LagtopError(f"--series takes one --u, got {arguments.count}")
     u = None if arguments is None else next(arguments.decimals())
-    header, table = series_rows(given, u, terms)
+    header, table = series_rows(modulus, u, terms)
     write_table(header, [table], fmt, output)

@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import reduce
+from itertools import combinations
 from typing import Any
 
+from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
 from ..arithmetic.generic import (
     Arithmetic,
     Real,
@@ -22,9 +24,13 @@ from ..arithmetic.generic import (
     has_arrays,
     where,
 )
+from ..arithmetic.types import Array
 
 Roots = tuple[Real, Real, Real, Real]
 Gain = Callable[[Roots, Real, Real], Real]
+
+_FAR_APART = 1e6
+"""Ratio of arguments beyond which the rounding errors of ten steps or more add up."""
 
 _NEAR_ONE, _TINY = 0.01, 1e-17
 """Where R_C(1, 1 - e) = sum e^n/(2n + 1) is used, and what it may leave out."""
@@ -112,25 +118,55 @@ def _rc_from_one(ar: Arithmetic, y: Real) -> Real:
 
 
 def _duplicated(ar: Arithmetic, arguments: Roots, gain: Gain) -> Real:
-    """R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`.
+    """Return R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`.
 
     What remains after n steps is R_J of the new arguments over 4^n: where fewer than half of an
-    array need more, they are continued alone.
+    array need more, they are continued alone.  The rounding errors of the arguments add up over the
+    steps; arrays of arguments many decades apart, which need many, carry them along.
     """
     x, y, z, p = arguments
     mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, ar.sqrt(1)
     spread = _spread(ar, mean, x, y, z, p)
+    carried = has_arrays(ar) and _far_apart(arguments)
+    lows, lost = [0 * p] * 4, 0 * p
     while _mostly(unequal := spread > abs(mean)):
         root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x
-        total = total + gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
-        x, y, z, p = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, (p + shift) / 4
+        term = gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
+        if carried:
+            total, error = two_sum(total, term)
+            lost = lost + error
+            (x, y, z, p), lows = _shifted((x, y, z, p), lows)
+        else:
+            total = total + term
+            x, y, z, p = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, (p + shift) / 4
         weight, spread = weight / 4, spread / 4
         mean = (x + y + z + 2 * p) / 5
     rest = _near_mean(1 - x / mean, 1 - y / mean, 1 - z / mean) / (mean * ar.sqrt(mean))
     if not everywhere(~unequal if has_arrays(ar) else not unequal):
         rest[unequal] = _duplicated(ar, (x[unequal], y[unequal], z[unequal], p[unequal]), gain)
-    return total + rest * weight
+    return total + (rest * weight + lost)
+
+
+def _far_apart(arguments: Roots) -> bool:
+    """Return whether some of the arguments are many decades apart."""
+    least = reduce(lambda a, b: where(a < b, a, b), arguments)
+    return anywhere(least * _FAR_APART < sum(arguments))
+
+
+def _shifted(highs: Roots, lows: list[Array]) -> tuple[Roots, list[Array]]:
+    """Return the arguments of the next step from arguments in pairs of doubles, as such pairs."""
+    shift, low = 0 * highs[0], 0 * highs[0]
+    roots = [sqrt_pair(high, rest) for high, rest in zip(highs[:3], lows[:3], strict=True)]
+    for (a, a_low), (b, b_low) in combinations(roots, 2):
+        product, error = two_product(a, b)
+        shift, lost = two_sum(shift, product)
+        low = low + (error + lost + (a * b_low + b * a_low))
+    sums = [two_sum(high, shift) for high in highs]
+    rests = [(error + rest + low) / 4 for (_, error), rest in zip(sums, lows, strict=True)]
+    pairs = [two_sum(total / 4, rest) for (total, _), rest in zip(sums, rests, strict=True)]
+    x, y, z, p = (high for high, _ in pairs)
+    return (x, y, z, p), [rest for _, rest in pairs]
 
 
 def _mostly(condition: Any) -> bool:

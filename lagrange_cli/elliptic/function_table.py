@@ -1,185 +1,225 @@
-"""What `lagtop jacobi` shows: the constants of a modulus, its functions, the nome series."""
+"""Tables of the functions of one modulus, in doubles or to any number of digits."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
-from itertools import islice
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cache, partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.correct_digits import require_digits, settle, settled_or_rounded
 from ..arithmetic.double_double import pair
 from ..arithmetic.generic import Arithmetic, Real, many_digits, number
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
-from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from . import complete_k
 from .jacobi import jacobi
-from .modulus import Modulus, constants, modulus
-from .nome_series import am_sums, cn_sums, k_sums, sn_sums
-from .theta import Complex, omega, pi_function, theta_of, zeta
+from .modulus import Modulus
+from .modulus_input import ModulusInput
+from .periods import Complex, Periods
+from .proved_digits import TooFewDigitsError, require_digits, settled_texts
+from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
+from .third_kind import ThirdKind, check_near, check_parameter, third_kind
 
 if TYPE_CHECKING:
     from ..arithmetic.correct_digits import NumberText
     from ..arithmetic.points import Points
     from ..arithmetic.types import Array
 
-ONE_ARGUMENT = {"theta": theta_of, "zeta": zeta}
-TWO_ARGUMENTS = {"omega": omega, "pi": pi_function}
+THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
+"""The functions of one argument, and those of an argument and a parameter."""
 
-
-class Given(NamedTuple):
-    """A modulus as it was given: k, k_prime, angle (degrees, or radians) or q, and its value."""
-
-    name: str
-    value: Fraction
-    radians: bool = False
-
-    def modulus(self, ar: Arithmetic) -> Modulus:
-        """It in an mpmath context.  Raises LagtopError where it is out of range."""
-        if self.name != "angle" or self.radians:
-            return modulus(ar, **{self.name: number(ar, self.value)})
-        if not 0 <= self.value <= 90:
-            raise LagtopError(f"modular_angle_deg must be in [0, 90], got {float(self.value)}")
-        if self.value == 90:
-            return modulus(ar, k_prime=0)
-        return modulus(ar, angle=ar.pi * number(ar, self.value) / 180)
+VANISH = {
+    "u": "u am_deg am_rad sn theta11 zeta01 zeta00 zeta10 omega01 omega00 pi01 pi00",
+    "param": "omega01 omega00 omega11 pi01 pi00",
+    "k": "theta11 theta10 zeta01 zeta00 omega01 omega00 pi01 pi00",
+}
+"""The columns that are exactly 0 where u, the parameter or k is; no other is, at rational u."""
 
 
 class Request(NamedTuple):
     """What to evaluate: am, sn, cn, dn and these families, Omega and Pi with their parameter."""
 
-    given: Given
+    modulus: ModulusInput
     families: tuple[str, ...] = ()
     parameter: Fraction = Fraction(0)
     imaginary: bool = False
     radians: bool = False
 
+    def parameter_in(self, ar: Arithmetic) -> Complex:
+        """Return the parameter in an mpmath context, rounded once."""
+        value = number(ar, self.parameter)
+        return ar.mpc(0, value) if self.imaginary else ar.mpc(value, 0)
 
-def constants_in(ar: Arithmetic, given: Given) -> dict[str, Real]:
-    """The record of a modulus in an mpmath context; None for what is infinite."""
-    of = given.modulus(ar)
-    K, K_prime, E, E_prime, q = constants(ar, of)
-    other = constants(ar, Modulus(of.k_prime, of.k)).q
-    unit = "rad" if given.radians else "deg"
-    angle = ar.atan2(of.k, of.k_prime) * (1 if given.radians else 180 / ar.pi)
-    return {
-        "k": of.k,
-        "k_prime": of.k_prime,
-        f"modular_angle_{unit}": angle,
-        "nome": q,
-        "nome_prime": other,
-        "K": None if ar.isinf(K) else K,
-        "K_prime": None if ar.isinf(K_prime) else K_prime,
-        "E": E,
-        "E_prime": E_prime,
-    }
+    def in_doubles(self) -> Request:
+        """Return the request with the parameter that its nearest double is."""
+        return self._replace(parameter=Fraction(float(self.parameter)))
+
+    @property
+    def has_parameter(self) -> bool:
+        """Whether Omega or Pi are among the families."""
+        return bool({"omega", "pi"} & set(self.families))
 
 
-def constants_record(given: Given, digits: int | None = None) -> dict[str, Any]:
-    """The record, each number the nearest double or to so many significant digits."""
-    return settled_or_rounded(lambda ar: constants_in(ar, given), digits)
+class Functions(NamedTuple):
+    """The modulus of a request and all that follows from it and the parameter alone."""
+
+    modulus: Modulus
+    series: ThetaSeries | None
+    """None where no family but am, sn, cn, dn is asked for."""
+    third: dict[str, ThirdKind]
+
+    def rounded(self, modulus: Modulus) -> Functions:
+        """Return them in doubles, beside the modulus in doubles."""
+        series = self.series and rounded(self.series)
+        return Functions(modulus, series, {ij: kind.rounded() for ij, kind in self.third.items()})
 
 
-def values(ar: Arithmetic, u: Real, of: Modulus, request: Request) -> dict[str, Real]:
-    """The columns at u, in either arithmetic; what is imaginary by its imaginary part."""
+def functions_in(ar: Arithmetic, request: Request) -> Functions:
+    """Return the constants of a request in an mpmath context.
+
+    Raises LagtopError for a modulus or a parameter out of range.
+    """
+    exact = request.modulus.in_digits(ar)
+    series = series_for(ar, exact) if request.families else None
+    third: dict[str, ThirdKind] = {}
+    if request.has_parameter:
+        v = request.parameter_in(ar)
+        check_parameter(ar, v, exact)
+        third = {ij: third_kind(ar, ij, v, exact) for ij in THIRD}
+    return Functions(exact, series, third)
+
+
+def values(
+    ar: Arithmetic,
+    u: Real,
+    functions: Functions,
+    request: Request,
+    known: Mapping[str, float] = MappingProxyType({}),
+) -> dict[str, Real]:
+    """Return the columns at u, in numpy or an mpmath context; those `known` are not computed.
+
+    Omega and Pi of an imaginary parameter are given by their imaginary parts.
+    """
     unit = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
-    am, sn, cn, dn = jacobi(ar, u, of)
+    am, sn, cn, dn = jacobi(ar, u, functions.modulus)
     columns = {"u": u, f"am_{unit[0]}": am * unit[1], "sn": sn, "cn": cn, "dn": dn}
-    for family in request.families:
-        if family in ONE_ARGUMENT:
-            for ij in "01 00 11 10".split():
-                columns[f"{family}{ij}"] = ONE_ARGUMENT[family](ar, ij, u, of)
-        else:
-            for ij in "01 00 11".split():
-                value = TWO_ARGUMENTS[family](ar, ij, u, _parameter(ar, request), of)
-                columns |= _real_column(ar, f"{family}{ij}", value, request.imaginary)
+    if not functions.series:
+        return columns
+    x = in_periods(ar, u, functions.series)
+    if not hasattr(ar, "rint") and u and not x.rest:
+        raise TooFewDigitsError
+    for name, compute in _families(ar, x, functions, functions.series, request):
+        columns[name] = ar.mpf(known[name]) if name in known else compute()
     return columns
 
 
-def _parameter(ar: Arithmetic, request: Request) -> Complex:
-    value = number(ar, request.parameter)
-    if not request.imaginary:
-        return value
-    return ar.mpc(0, value) if hasattr(ar, "mpc") else 1j * value
-
-
-def _real_column(ar: Arithmetic, name: str, value: Complex, imaginary: bool) -> dict[str, Real]:
-    if not imaginary:
-        return {name: value}
-    return {f"{name}_imag": ar.im(value) if hasattr(ar, "im") else ar.imag(value)}
+def _families(
+    ar: Arithmetic, x: Periods, functions: Functions, series: ThetaSeries, request: Request
+) -> Iterator[tuple[str, Callable[[], Real]]]:
+    """Yield the columns of the families by name, and how to compute each."""
+    suffix = "_imag" if request.imaginary else ""
+    for family in request.families:
+        if family in {"theta", "zeta"}:
+            at = theta_at if family == "theta" else zeta_at
+            for ij in THETA:
+                yield f"{family}{ij}", partial(at, ar, ij, x, series)
+        else:
+            for ij, kind in functions.third.items():
+                yield f"{family}{ij}{suffix}", partial(getattr(kind, family), ar, x)
 
 
 def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array]]:
-    """The header, and blocks of rows in doubles.  Raises LagtopError before the first block."""
+    """Return the header, and blocks of rows in doubles; a pole is not a number.
+
+    Raises LagtopError before the first block, and before any arithmetic, for arguments or a
+    parameter out of range.
+    """
     import numpy as np
 
-    exact = request.given.modulus(many_digits())
-    of = Modulus(float(exact.k), *pair(exact.k_prime))
-    if exact.k_prime > 0 and not of.k_prime:
-        raise LagtopError("k' is too small for doubles: give --digits")
-    limit = MAX_PERIODS * 2 * float(complete_k(np, of.k_prime)) if of.k_prime else MAX_TIME
+    request = request.in_doubles()
+    exact = request.modulus.in_digits(many_digits())
+    in_doubles = Modulus(float(exact.k), *pair(exact.k_prime))
+    if exact.k_prime > 0 and not in_doubles.k_prime:
+        name = request.modulus.name
+        raise LagtopError(f"{name}: k' is too small for doubles (give --digits)", name)
+    has_periods = exact.k_prime > 0
+    limit = MAX_PERIODS * 2 * complete_k(math, in_doubles.k_prime) if has_periods else MAX_TIME
     check_reach("u", arguments, min(limit, MAX_TIME))
+    parameter = float(request.parameter)
+    if request.has_parameter and has_periods and not request.imaginary:
+        check_near(parameter, in_doubles)
+    functions = functions_in(many_digits(), request).rounded(in_doubles)
 
     def columns(u: Array) -> dict[str, Array]:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return values(np, u, of, request)
-
-    header = list(columns(np.array(arguments.bounds())))
+        with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
+            table = values(np, u, functions, request)
+        poles = abs(u) == abs(parameter)
+        if request.has_parameter and parameter and not request.imaginary:
+            for name in {"omega11", "pi11"} & set(table):
+                table[name] = np.where(poles, np.nan, table[name])
+        return table
 
     def block(u: Array) -> Array:
         together = np.stack(list(columns(u).values()), axis=1)
-        together[np.isinf(together)] = np.nan  # the poles of Zeta, Omega and Pi: no number
-        return together
+        together[np.isinf(together)] = np.nan
+        return together + 0.0  # no -0
 
+    header = list(columns(np.array(arguments.bounds())))
     return header, (block(u) for u in arguments.blocks())
 
 
 def digit_rows(
     arguments: Points, request: Request, digits: int
 ) -> tuple[list[str], Iterator[list[NumberText]]]:
-    """The header, and rows to so many significant digits."""
+    """Return the header, and rows to so many significant digits; a pole is an empty text.
+
+    Raises LagtopError for a parameter out of range, before any row.
+    """
+
+    @cache
+    def at_precision(dps: int) -> tuple[Arithmetic, Functions]:
+        ar = many_digits(dps)
+        return ar, functions_in(ar, request)
 
     def at(u: Fraction) -> dict[str, NumberText]:
-        def compute(ar: Arithmetic) -> dict[str, Real]:
-            require_digits(ar, digits, abs(number(ar, u)))
-            return values(ar, number(ar, u), request.given.modulus(ar), request)
+        known = known_values(u, request)
 
-        return settle(compute, digits)
+        def compute(context: Arithmetic) -> dict[str, Real]:
+            for far in (u, request.parameter if not request.imaginary else 0):
+                require_digits(context, digits, abs(number(context, far)))
+            ar, functions = at_precision(context.dps)
+            return values(ar, number(ar, u), functions, request, known)
+
+        return settled_texts(compute, digits, known)
 
     header = list(at(next(arguments.decimals())))
     return header, (list(at(u).values()) for u in arguments.decimals())
 
 
-def series_rows(given: Given, u: Fraction | None, terms: int) -> tuple[list[str], list[list[str]]]:
-    """Partial sums 1 to `terms` of (3.1.8) for K and, at u, of (3.1.7), (3.1.4), (3.1.5) for am,
-    sn, cn, each with its error.
+def known_values(u: Fraction, request: Request) -> dict[str, float]:
+    """Return the columns that are exactly 0 at u, and not a number where they have a pole.
 
-    Raises LagtopError for k = 0 and k = 1, where the series are limits.
+    K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
+    rational places to think of.
     """
-    ar = many_digits()
-    of = given.modulus(ar)
-    if not (of.k and of.k_prime):
-        raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(of.k)}")
-    sums: dict[str, tuple[Iterator[Real], Real]] = {
-        "K": (k_sums(ar, of), complete_k(ar, of.k_prime))
-    }
-    if u is not None:
-        x, unit = number(ar, u), 1 if given.radians else 180 / ar.pi
-        am, sn, cn, _ = jacobi(ar, x, of)
-        from_first_term = islice(am_sums(ar, x, of), 1, None)
-        sums["am_rad" if given.radians else "am_deg"] = (
-            (unit * part for part in from_first_term),
-            unit * am,
-        )
-        sums |= {"sn": (sn_sums(ar, x, of), sn), "cn": (cn_sums(ar, x, of), cn)}
-    header = ["terms", *(name for key in sums for name in (key, f"{key}_error"))]
-    exact = [value for _, value in sums.values()]
-    table = []
-    for n, row in enumerate(zip(*(parts for parts, _ in sums.values()), strict=False), 1):
-        pairs = zip(row, exact, strict=True)
-        cells = (x for part, true in pairs for x in (part, abs(part - true)))
-        table.append([str(n), *(double_text(float(x)) for x in cells)])
-        if n == terms:
-            break
-    return header, table
+    name, value, _ = request.modulus
+    suffix = "_imag" if request.imaginary else ""
+    known: dict[str, float] = {}
+
+    def add(names: str, x: float) -> None:
+        for column in names.split():
+            known[column + suffix * column.startswith(("omega", "pi"))] = x
+
+    if value == (1 if name == "k_prime" else 0):
+        add(VANISH["k"], 0)
+    if u == 0:
+        add(VANISH["u"] + ("" if request.imaginary else " omega11 pi11"), 0)
+        add("zeta11", math.nan)
+    if request.parameter == 0:
+        add(VANISH["param"], 0)
+        add("pi11", math.nan)
+    elif abs(u) == abs(request.parameter) and not request.imaginary:
+        add("omega11 pi11", math.nan)
+    return known

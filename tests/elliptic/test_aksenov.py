@@ -13,15 +13,15 @@ from errata import misprints
 
 from lagrange_cli.elliptic import complete_k, nome
 from lagrange_cli.elliptic.eta import (
-    Quadrature,
-    band,
-    constants,
+    band_of,
     eta_and_rate,
+    eta_constants,
 )
 from lagrange_cli.elliptic.incomplete import incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.elliptic.nome_series import am_sums, cn_sums, k_sums, sn_sums
+from lagrange_cli.elliptic.quadrature import Quadrature
 
 NUMBERS = {f"(3.1.{i})" for i in range(1, 9)} | {f"(3.2.{i})" for i in range(1, 13)}
 aksenov = Register(NUMBERS | {f"property {i}" for i in range(1, 6)})
@@ -193,7 +193,7 @@ def _() -> Sides:
 
 LOWER, UPPER, P, Q, G = (Fraction(x) for x in ("-0.5", "0.6", "0.1", "1.4", "2.5"))
 NESTED = Quadrature(LOWER, UPPER, (P - Q, P + Q), G)
-C = constants(ar, NESTED)
+C = eta_constants(ar, NESTED)
 DELTA, DELTA_STAR, P_, Q_, G_ = (
     ar.mpf(x.numerator) / x.denominator for x in (UPPER, LOWER, P, Q, G)
 )
@@ -202,7 +202,7 @@ K1 = ar.ellipk(C.k1**2)
 
 def eta_at(tau: Any) -> Any:
     """Return eta at a time since it was at delta*."""
-    return eta_and_rate(ar, C.sigma1 * tau / 2, C, band(ar, NESTED))[0]
+    return eta_and_rate(ar, C.sigma1 * tau / 2, C, band_of(ar, NESTED))[0]
 
 
 TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]

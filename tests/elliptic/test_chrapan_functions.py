@@ -14,7 +14,8 @@ from lagrange_cli.elliptic import nome
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import constants, modulus
-from lagrange_cli.elliptic.theta import omega, pi_function, zeta
+from lagrange_cli.elliptic.theta import zeta
+from lagrange_cli.elliptic.third_kind import omega, pi_function
 
 LAST = {1: 8, 2: 11, 3: 8}
 """Number of the last equation of each section."""

@@ -16,7 +16,8 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import units
-from lagrange_cli.elliptic.eta import Quadrature, constants, digit_rows, record, rows
+from lagrange_cli.elliptic.eta import digit_rows, eta_constants, record, rows
+from lagrange_cli.elliptic.quadrature import Quadrature
 from lagrange_cli.motion.released import released_record
 
 ORBITS = {
@@ -85,7 +86,7 @@ def test_eta(name: str) -> None:
     with mpmath.workdps(60):
         integral = Integral(of)
         period = 2 * integral.tau(mpmath.pi)
-        assert abs(mpmath.mpf(constants(many_digits(50), of).period) / period - 1) < 1e-45
+        assert abs(mpmath.mpf(eta_constants(many_digits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
         block = next(rows(of, ListedPoints(times), Fraction(0))[1])
         for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
@@ -118,7 +119,7 @@ def test_the_top_is_the_cubic_case() -> None:
         rows(of, ListedPoints([Fraction(t) for t in times]), rational(exact.T_nutation) / 2)[1]
     )
     assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
-    assert float(constants(many_digits(50), of).period) == solve(Top()).T_nutation
+    assert float(eta_constants(many_digits(50), of).period) == solve(Top()).T_nutation
 
 
 @given(
@@ -151,7 +152,7 @@ def test_far_times(lagtop: Lagtop) -> None:
     assert shown.splitlines()[1] == "1.0e+60,0.46542969581402027,-0.31188048026682578"
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
     of = ORBITS["generic"]
-    period = constants(many_digits(60), of).period
+    period = eta_constants(many_digits(60), of).period
     shifted = next(rows(of, ListedPoints([Fraction(1)]), rational(10**15 * period))[1])
     assert shifted == pytest.approx(
         next(rows(of, ListedPoints([Fraction(1)]), Fraction(0))[1]), abs=1e-14
@@ -186,7 +187,10 @@ def test_digits_agree_with_doubles() -> None:
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "delta must be >= delta_star = 0.5, got 0.2"),
+        (
+            "--delta 0.2 --delta-star 0.5 --p 0 --q 2",
+            "--delta must be >= --delta-star = 0.5, got 0.2",
+        ),
         (
             "--delta 1 --delta-star 0 --p 0 --q 0.5",
             "outside [delta_star, delta] = [0.0, 1.0]",
@@ -198,7 +202,7 @@ def test_digits_agree_with_doubles() -> None:
             "--delta 1 --delta-star 0 --gap-above 0",
             "--gap-above must be > 0",
         ),
-        ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "g must be > 0, got 0.0"),
+        ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "--g must be > 0, got 0.0"),
         ("--delta 1 --delta-star 0 --gap-below 1 --tau-range 0:1:0", "--tau-range must have"),
         ("--delta 1 --delta-star 0 --gap-below 1 --tau 1 --tau-range 0:1:5", "exclude each other"),
         ("--delta x --delta-star 0 --gap-below 1", "--delta must be a finite decimal"),

@@ -22,7 +22,8 @@ from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rj
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
-from lagrange_cli.elliptic.theta import omega, theta, zeta
+from lagrange_cli.elliptic.theta import theta, zeta
+from lagrange_cli.elliptic.third_kind import omega
 
 
 def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:
@@ -373,10 +374,10 @@ def test_series_of_the_command(lagtop: Lagtop) -> None:
     [
         ("", "give exactly one of --k, --k-prime, --modular-angle, --nome"),
         ("--k 0.5 --nome 0.1", "give exactly one of"),
-        ("--k 1.5", "k must be in [0, 1], got 1.5"),
-        ("--k-prime -1", "k_prime must be in [0, 1], got -1.0"),
-        ("--modular-angle 91", "modular_angle_deg must be in [0, 90], got 91.0"),
-        ("--nome 1", "q must be in [0, 1), got 1.0"),
+        ("--k 1.5", "--k must be in [0, 1], got 1.5"),
+        ("--k-prime -1", "--k-prime must be in [0, 1], got -1.0"),
+        ("--modular-angle 91", "--modular-angle must be in [0, 90], got 91.0"),
+        ("--nome 1", "--nome must be in [0, 1), got 1.0"),
         ("--k 0.5 --u-range 0:1", "--u-range must be a range [log:]start:stop:count"),
         ("--k 0.5 --u-range 0:1:0", "--u-range must have a whole count of 1 to 1e9"),
         ("--k 0.5 --u 1 --u-range 0:1:3", "exclude each other"),

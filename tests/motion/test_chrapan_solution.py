@@ -31,7 +31,7 @@ from equations import EquationTests, Register, Sides
 from errata import misprints
 
 from lagrange_cli.elliptic.modulus import modulus
-from lagrange_cli.elliptic.theta import pi_function
+from lagrange_cli.elliptic.third_kind import pi_function
 
 chrapan = Register(f"(4,{i})" for i in range(1, 35))
 equation, as_printed = chrapan.equation, chrapan.as_printed

@@ -1,0 +1,68 @@
+"""A modulus as the user names it, and the record of its constants."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..arithmetic.correct_digits import settled_or_rounded
+from ..arithmetic.generic import Arithmetic, Real, number
+from ..errors import LagtopError
+from .modulus import Modulus, constants, modulus
+
+
+class ModulusInput(NamedTuple):
+    """A modulus as the user named it: k, k_prime, modular_angle (degrees, or radians) or nome."""
+
+    name: str
+    value: Fraction
+    radians: bool = False
+
+    def check(self) -> None:
+        """Raise LagtopError unless the modulus is in its range."""
+        most, end = {"modular_angle": (90.0, "90]"), "nome": (1.0, "1)")}.get(
+            self.name, (1.0, "1]")
+        )
+        if self.name == "modular_angle" and self.radians:
+            most, end = math.pi / 2, "pi/2]"
+        if not 0 <= self.value <= most or (self.name == "nome" and self.value == 1):
+            value = float(self.value)
+            raise LagtopError(f"{self.name} must be in [0, {end}, got {value}", self.name)
+
+    def in_digits(self, ar: Arithmetic) -> Modulus:
+        """Return the modulus in an mpmath context.  Raises LagtopError where it is out of range."""
+        self.check()
+        value = number(ar, self.value)
+        if self.name == "nome":
+            return modulus(ar, q=value)
+        if self.name != "modular_angle":
+            return modulus(ar, **{self.name: value})
+        if self.value == 90 and not self.radians:
+            return modulus(ar, k_prime=0)
+        return modulus(ar, angle=value if self.radians else ar.pi * value / 180)
+
+
+def constants_in(ar: Arithmetic, modulus_input: ModulusInput) -> dict[str, Real]:
+    """Return the record of a modulus in an mpmath context; None for what is infinite."""
+    exact = modulus_input.in_digits(ar)
+    K, K_prime, E, E_prime, q = constants(ar, exact)
+    other = constants(ar, Modulus(exact.k_prime, exact.k)).q
+    unit = "rad" if modulus_input.radians else "deg"
+    angle = ar.atan2(exact.k, exact.k_prime) * (1 if modulus_input.radians else 180 / ar.pi)
+    return {
+        "k": exact.k,
+        "k_prime": exact.k_prime,
+        f"modular_angle_{unit}": angle,
+        "nome": q,
+        "nome_prime": other,
+        "K": None if ar.isinf(K) else K,
+        "K_prime": None if ar.isinf(K_prime) else K_prime,
+        "E": E,
+        "E_prime": E_prime,
+    }
+
+
+def constants_record(modulus_input: ModulusInput, digits: int | None = None) -> dict[str, Any]:
+    """Return the record, each number the nearest double or to so many significant digits."""
+    return settled_or_rounded(lambda ar: constants_in(ar, modulus_input), digits)

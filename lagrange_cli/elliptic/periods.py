@@ -1,0 +1,87 @@
+"""Arguments counted in periods 2K: whole ones, and a rest that keeps its digits.
+
+Next to a pole of a Zeta function, or far from zero, all that matters is the rest; so 1/(2K) is held
+as a sum of three doubles, and the rest as a sum of two.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arithmetic.double_double import two_product, two_sum
+from ..arithmetic.generic import Arithmetic, Real, has_arrays, where
+from ..arithmetic.types import Array
+from .complete import complete_k
+from .modulus import Modulus, rate_of_half_periods
+
+Complex = Real
+"""A real or complex number, or array, of the arithmetic in use."""
+
+
+class Periods(NamedTuple):
+    """An argument in periods: whole ones and the rest, its real part within half of one."""
+
+    turns: Real
+    rest: Complex
+    low: Real = 0.0
+    """What rounding took from the rest (real arrays only)."""
+
+    def half_further(self, ar: Arithmetic) -> Periods:
+        """Return the place half a period further on."""
+        forward = real_part(ar, self.rest) < 0
+        half, turns = where(forward, 0.5, -0.5), self.turns + where(forward, 0.0, 1.0)
+        if has_arrays(ar) and ar.isrealobj(self.rest):
+            rest, low = two_sum(self.rest, half)
+            return Periods(turns, rest + (low + self.low))
+        return Periods(turns, self.rest + half)
+
+
+class Rate(NamedTuple):
+    """1/(2K), the rate of periods, as a sum of three doubles."""
+
+    high: float | Array
+    middle: float | Array
+    low: float | Array = 0.0
+
+
+def rate_of(ar: Arithmetic, modulus: Modulus) -> Rate:
+    """Return the rate of a modulus with k' > 0: 48 digits in a context, 30 of arrays."""
+    if has_arrays(ar):
+        return Rate(*rate_of_half_periods(ar, modulus.k_prime, modulus.rest))
+    exact = 1 / (2 * complete_k(ar, modulus.k_prime))
+    high = float(exact)
+    middle = float(exact - high)
+    return Rate(high, middle, float(exact - high - middle))
+
+
+def whole_and_rest(ar: Arithmetic, x: Complex) -> Periods:
+    """Return a number of periods as whole ones and the rest."""
+    real = real_part(ar, x)
+    turns = ar.rint(real) if has_arrays(ar) else ar.nint(real)
+    return Periods(turns, x - turns)
+
+
+def reduced(u: Array, rate: Rate) -> Periods:
+    """Return real arguments in periods, for |u| up to 1e290."""
+    u, high, middle, low = np.broadcast_arrays(np.asarray(u, dtype=float), *rate)
+    product, error = two_product(u, high)
+    second, second_error = two_product(u, middle)
+    turns = product.round()
+    total, first_rest = two_sum(product - turns, error)
+    total, second_rest = two_sum(total, second)
+    rest, low = two_sum(total, first_rest + (second_rest + (second_error + u * low)))
+    more = rest.round()
+    rest, low = two_sum(rest - more, low)
+    return Periods(turns + more, rest, low)
+
+
+def real_part(ar: Arithmetic, x: Complex) -> Real:
+    """Return the real part of a number or an array."""
+    return ar.real(x) if has_arrays(ar) else ar.re(x)
+
+
+def imaginary_part(ar: Arithmetic, x: Complex) -> Real:
+    """Return the imaginary part of a number or an array."""
+    return ar.imag(x) if has_arrays(ar) else ar.im(x)

@@ -1,0 +1,178 @@
+"""Omega and Pi of an imaginary parameter i alpha, |alpha| < K'; both over i, so that they are real.
+
+Omega is the phase of theta(x - i y), continuous in x = eta/2K, where y = alpha/2K.  Of the odd
+function it is -pi/2 at x = 0, for alpha > 0, as in (2,5), and grows by half a turn in a period.
+All is odd in alpha, so y > 0 below.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..arithmetic.generic import Arithmetic, Real, where
+from .periods import Periods
+
+
+@dataclass(frozen=True)
+class ImaginaryCircular:
+    """The parameter for k <= k', where the series run in the nome q."""
+
+    odd: bool
+    shifted: bool
+    """Whether the function is that of x + 1/2."""
+    sign: int
+    """Sign of alpha."""
+    zeta: Real
+    """2K Z(i |alpha|)/i."""
+    growth: Real
+    """What Pi grows by in a period: zeta, and half a turn of the odd function."""
+    floor: Real
+    """theta01(i y) of the even function, which vanishes with K' - alpha."""
+    heights: tuple[Real, ...]
+    """Coefficients with cosh."""
+    slants: tuple[Real, ...]
+    """Coefficients with sinh."""
+
+    @classmethod
+    def at(
+        cls, ar: Arithmetic, ij: str, y: Real, zeta: Real, q: Real, *, terms: int
+    ) -> ImaginaryCircular:
+        """Return the constants from y = alpha/2K, the nome and zeta = 2K Z(i |alpha|)/i."""
+        odd, size, floor = ij[0] == "1", abs(y), ar.mpf(1)
+        if odd:
+            weights = [(-1) ** h * q ** (h * (h + 1)) / ar.cosh(ar.pi * size) for h in range(terms)]
+            angles = [(2 * h + 1) * ar.pi * size for h in range(terms)]
+        else:
+            weights = [2 * (-1) ** h * q ** (h * h) for h in range(1, terms)]
+            angles = [2 * h * ar.pi * size for h in range(1, terms)]
+        parts = list(zip(weights, angles, strict=True))
+        heights = tuple(weight * ar.cosh(angle) for weight, angle in parts)
+        slants = tuple(weight * ar.sinh(angle) for weight, angle in parts)
+        if not odd:
+            floor += sum(heights)
+            heights = tuple(-2 * height for height in heights)
+        growth = zeta + ar.pi if odd else zeta
+        sign = -1 if y < 0 else 1
+        return cls(odd, ij[1] == "0", sign, zeta, growth, floor, heights, slants)
+
+    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return the phase of the theta function."""
+        half_turns, within = self._phase(ar, x)
+        return self.sign * (ar.pi * half_turns + within)
+
+    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return Pi, by its growth over the periods and what is left within one."""
+        half_turns, within = self._phase(ar, x)
+        if self.odd:
+            within = within + ar.pi * (half_turns - x.turns)
+        return self.sign * (self.growth * x.turns + (self.zeta * x.rest + within))
+
+    def _phase(self, ar: Arithmetic, x: Periods) -> tuple[Real, Real]:
+        """Return whole half turns of the phase, and the rest of it."""
+        turns, rest, _ = x.half_further(ar) if self.shifted else x
+        series = list(enumerate(zip(self.heights, self.slants, strict=True)))
+        if self.odd:
+            across = sum(a * ar.sin((2 * h + 1) * ar.pi * rest) for h, (a, _) in series)
+            along = sum(b * ar.cos((2 * h + 1) * ar.pi * rest) for h, (_, b) in series)
+            return turns, ar.atan2(across, along) - ar.pi / 2
+        along = self.floor + sum(a * ar.sin((h + 1) * ar.pi * rest) ** 2 for h, (a, _) in series)
+        across = sum(b * ar.sin(2 * (h + 1) * ar.pi * rest) for h, (_, b) in series)
+        return 0 * turns, ar.atan2(across, along)
+
+    def rounded(self) -> ImaginaryCircular:
+        """Return the parameter with its constants in doubles."""
+        return replace(
+            self,
+            zeta=float(self.zeta),
+            growth=float(self.growth),
+            floor=float(self.floor),
+            heights=tuple(map(float, self.heights)),
+            slants=tuple(map(float, self.slants)),
+        )
+
+
+@dataclass(frozen=True)
+class ImaginaryHyperbolic:
+    """The parameter for k > k', where the theta functions are sums of Gaussians.
+
+    theta(x - i y) is exp(2 i c x y) times a sum over n > 0, half-integers or (for 00 and 10)
+    integers, of exp(-c n^2) cosh or sinh 2 c n (x - i y); c = pi K/K' is the steepness.
+    """
+
+    ij: str
+    sign: int
+    """Sign of alpha."""
+    steepness: Real
+    turn: Real
+    """2 c y = pi |alpha|/K', less than pi."""
+    slope: Real
+    """Z of the sum alone: 2K Z(i |alpha|)/i + 2 c y."""
+    growth: Real
+    """What Pi grows by in a period: 2K Z(i |alpha|)/i, and half a turn of the odd function."""
+    cosines: tuple[Real, ...]
+    """cos 2 c n y."""
+    sines: tuple[Real, ...]
+    """sin 2 c n y."""
+
+    @classmethod
+    def at(
+        cls, ar: Arithmetic, ij: str, y: Real, steepness: Real, terms: int
+    ) -> ImaginaryHyperbolic:
+        """Return the constants from y = alpha/2K and the steepness."""
+        c, half_turn = steepness, steepness * abs(y)
+        orders = [ar.mpf(2 * i + 1 if ij[1] == "1" else 2 * i) / 2 for i in range(terms)]
+        signs = [(-1) ** i if ij[0] == "1" else 1 for i in range(terms)]
+        cosines = tuple(ar.cos(2 * n * half_turn) for n in orders)
+        sines = tuple(ar.sin(2 * n * half_turn) for n in orders)
+        first = orders[0] ** 2
+        bells = [ar.exp(-c * (n * n - first)) for n in orders]
+        if ij[1] == "0":
+            bells[0] /= 2  # it is its own image
+        parts = list(zip(signs, bells, orders, cosines, sines, strict=True))
+        if ij == "11":
+            rise = -sum(sign * bell * 2 * c * n * cosine for sign, bell, n, cosine, _ in parts)
+            total = sum(sign * bell * sine for sign, bell, _, _, sine in parts)
+        else:
+            rise = sum(sign * bell * 2 * c * n * sine for sign, bell, n, _, sine in parts)
+            total = sum(sign * bell * cosine for sign, bell, _, cosine, _ in parts)
+        slope, turn = rise / total, 2 * half_turn
+        growth = slope - turn + ar.pi if ij[0] == "1" else slope - turn
+        return cls(ij, -1 if y < 0 else 1, c, turn, slope, growth, cosines, sines)
+
+    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return the phase of the theta function."""
+        half_turns = ar.pi * x.turns if self.ij[0] == "1" else 0 * x.turns
+        return self.sign * (half_turns + (self.turn * x.rest + self._phase(ar, x.rest)))
+
+    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return Pi, by its growth over the periods and what is left within one."""
+        within = self.slope * x.rest + self._phase(ar, x.rest)
+        return self.sign * (self.growth * x.turns + within)
+
+    def _phase(self, ar: Arithmetic, rest: Real) -> Real:
+        """Return the phase of the sum alone, within a period."""
+        c, size, half = self.steepness, abs(rest), self.ij[1] == "1"
+        plus = minus = 0 * size, 0 * size
+        for i, (cosine, sine) in enumerate(zip(self.cosines, self.sines, strict=True)):
+            sign = (-1) ** i if self.ij[0] == "1" else 1
+            bell = sign * ar.exp(-c * i * (i + (1 if half else 0) - 2 * size))
+            image = ar.expm1(-2 * c * (2 * i + 1 if half else 2 * i) * size)
+            both = bell * (2 + image) if i or half else 1 + 0 * size
+            plus = plus[0] + both * cosine, plus[1] + both * sine
+            minus = minus[0] - bell * image * cosine, minus[1] - bell * image * sine
+        if self.ij != "11":
+            return -ar.sign(rest) * ar.atan2(minus[1], plus[0])
+        turned = ar.atan2(plus[1], minus[0])
+        return where(rest < 0, turned - ar.pi, -turned)
+
+    def rounded(self) -> ImaginaryHyperbolic:
+        """Return the parameter with its constants in doubles."""
+        return replace(
+            self,
+            steepness=float(self.steepness),
+            turn=float(self.turn),
+            slope=float(self.slope),
+            growth=float(self.growth),
+            cosines=tuple(map(float, self.cosines[:5])),
+            sines=tuple(map(float, self.sines[:5])),
+        )

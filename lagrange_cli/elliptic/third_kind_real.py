@@ -1,0 +1,204 @@
+"""Omega and Pi of a real parameter v: y = v/2K, and x = eta/2K is a place in the periods.
+
+Both are odd in x and in y and, but for the growth of Pi, periodic; so the formulas are in |x| and
+|y| up to 1/2.  The functions 00 and 10 are 01 and 11 of v + K.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..arithmetic.generic import Arithmetic, Real, where
+from .periods import Periods
+
+
+def _distance(x: Periods, size: Real, low: Real) -> Real:
+    """Return how far |x| and |y| are apart, |y| being size + low."""
+    return abs((abs(x.rest) - size) + (where(x.rest < 0, -x.low, x.low) - low))
+
+
+@dataclass(frozen=True)
+class RealCircular:
+    """The parameter for k <= k', where the series run in the nome q."""
+
+    odd: bool
+    sign: int
+    """Sign of y."""
+    growth: Real
+    """2K Z(|v|), what Pi grows by in a period."""
+    cosines: tuple[Real, ...]
+    """Coefficients of the series of P (odd: of A) below."""
+    sines: tuple[Real, ...]
+    """Coefficients of the series of Q (odd: of B) below."""
+    weights: tuple[Real, ...]
+    """Coefficients of both, before they are multiplied by cosines and sines."""
+    size: Real
+    """|y|."""
+    low: Real = 0.0
+    """What rounding took from |y|."""
+
+    @classmethod
+    def at(
+        cls, ar: Arithmetic, odd: bool, y: Real, growth: Real, q: Real, *, terms: int
+    ) -> RealCircular:
+        """Return the constants from y and the nome.
+
+        Even: theta(x -+ y) = P +- Q, P = 1 + 2 sum (-1)^h q^(h^2) cos 2 pi h x cos 2 pi h y, and Q
+        with sines.  Odd, over 2 q^(1/4): A -+ B, A = sum (-1)^h q^(h(h+1)) sin (2h+1) pi x
+        cos (2h+1) pi y, and B with cos and sin exchanged.
+        """
+        size, orders = abs(y), range(terms)
+        if odd:
+            weights = [(-1) ** h * q ** (h * (h + 1)) for h in orders]
+            angles = [(2 * h + 1) * ar.pi * size for h in orders]
+        else:
+            weights = [2 * (-1) ** h * q ** (h * h) for h in orders[1:]]
+            angles = [2 * h * ar.pi * size for h in orders[1:]]
+        parts = list(zip(weights, angles, strict=True))
+        cosines = tuple(weight * ar.cos(angle) for weight, angle in parts)
+        sines = tuple(weight * ar.sin(angle) for weight, angle in parts)
+        return cls(odd, -1 if y < 0 else 1, growth, cosines, sines, tuple(weights), size)
+
+    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return Omega = artanh Q/P or, of the odd function, -artanh B/A or A/B.
+
+        Next to its pole the latter is log[(A - B)/(A + B)]/2, A - B being the series at |x| - |y|.
+        """
+        size, side = abs(x.rest), self.sign * ar.sign(x.rest)
+        series = list(enumerate(zip(self.cosines, self.sines, strict=True)))
+        if not self.odd:
+            P = 1 + sum(a * ar.cos(2 * (h + 1) * ar.pi * size) for h, (a, _) in series)
+            Q = sum(b * ar.sin(2 * (h + 1) * ar.pi * size) for h, (_, b) in series)
+            return side * ar.atanh(Q / P)
+        A = sum(a * ar.sin((2 * h + 1) * ar.pi * size) for h, (a, _) in series)
+        B = sum(b * ar.cos((2 * h + 1) * ar.pi * size) for h, (_, b) in series)
+        near = _distance(x, self.size, self.low)
+        close = abs(sum(w * ar.sin((2 * h + 1) * ar.pi * near) for h, w in enumerate(self.weights)))
+        pole = 2 * close < A + B
+        ratio = where(A < B, A, B) / where(A < B, B, A)
+        logarithm = ar.log(where(pole, close / (A + B), 1 + 0 * A)) / 2
+        return side * where(pole, logarithm, -ar.atanh(where(pole, 0 * ratio, ratio)))
+
+    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return Pi, by its growth over the periods and what is left within one."""
+        return (self.sign * self.growth) * x.turns + (
+            (self.sign * self.growth) * x.rest + self.omega(ar, x)
+        )
+
+    def rounded(self) -> RealCircular:
+        """Return the parameter with its constants in doubles."""
+        return replace(
+            self,
+            growth=float(self.growth),
+            cosines=tuple(map(float, self.cosines)),
+            sines=tuple(map(float, self.sines)),
+            weights=tuple(map(float, self.weights)),
+            size=float(self.size),
+            low=float(self.size - float(self.size)),
+        )
+
+
+@dataclass(frozen=True)
+class RealHyperbolic:
+    """The parameter for k > k', where the theta functions are sums of Gaussians.
+
+    theta(a) = exp(-c (1/2 - a)^2) S(a) for a in [0, 1/2], where S is close to 1 unless a is small,
+    and c is the steepness pi K/K'.  With a = |x - y| and b = x + y or 1 - x - y, whichever is at
+    most 1/2, Omega is log[theta(a)/theta(b)]/2.
+    """
+
+    odd: bool
+    sign: int
+    """Sign of y."""
+    growth: Real
+    """2K Z(|v|), what Pi grows by in a period."""
+    size: Real
+    """|y|."""
+    room: Real
+    """1 - 2 |y|."""
+    steepness: Real
+    slope: Real
+    """d log S/da at |y|."""
+    tilt: Real
+    """The slope and the steepness; they cancel for small y."""
+    terms: int
+    low: Real = 0.0
+    """What rounding took from |y|."""
+
+    @classmethod
+    def at(cls, ar: Arithmetic, odd: bool, y: Real, steepness: Real, terms: int) -> RealHyperbolic:
+        """Return the constants from y and the steepness."""
+        size, c = abs(y), steepness
+        rise = total = 0 * y
+        for i in range(terms):
+            sign = (-1) ** i if odd else 1
+            near, far = ar.exp(-c * i * (i + 1 - 2 * size)), ar.exp(-c * (i + 1) * (i + 2 * size))
+            image = -1 if odd else 1
+            pair = ar.expm1(-2 * c * (2 * i + 1) * size)
+            total += sign * near * (-pair if odd else 2 + pair)
+            rise += sign * 2 * c * (i * near - image * (i + 1) * far)
+        slope = rise / total
+        room, sign = 1 - 2 * size, -1 if y < 0 else 1
+        return cls(odd, sign, c * room + slope, size, room, c, slope, slope + c, terms)
+
+    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return Omega = -c small (1 - 2 large) + log[S(a)/S(b)]/2, of the two sizes |x|, |y|."""
+        small, room, apart = self._sorted(x)
+        main = -self.steepness * small * room
+        return self.sign * ar.sign(x.rest) * (main + self._ratio(ar, small, room, apart))
+
+    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+        """Return Pi, by its growth over the periods and what is left within one."""
+        size, c = abs(x.rest), self.steepness
+        small, room, apart = self._sorted(x)
+        if c * self.size > 1:  # the multiples of c have cancelled
+            within = size * self.slope + c * where(size < self.size, 0 * apart, apart)
+        else:
+            within = size * self.tilt - c * small
+        within = within + self._ratio(ar, small, room, apart)
+        return self.sign * (self.growth * x.turns + ar.sign(x.rest) * within)
+
+    def rounded(self) -> RealHyperbolic:
+        """Return the parameter with its constants in doubles."""
+        size = float(self.size)
+        return RealHyperbolic(
+            odd=self.odd,
+            sign=self.sign,
+            growth=float(self.growth),
+            size=size,
+            room=float(self.room),
+            steepness=float(self.steepness),
+            slope=float(self.slope),
+            tilt=float(self.tilt),
+            terms=4,
+            low=float(self.size - size),
+        )
+
+    def _sorted(self, x: Periods) -> tuple[Real, Real, Real]:
+        """Return the smaller of |x| and |y|, 1 - 2 times the larger, and their distance."""
+        size = abs(x.rest)
+        room = (1 - 2 * size) - 2 * where(x.rest < 0, -x.low, x.low)
+        less = size < self.size
+        apart = _distance(x, self.size, self.low)
+        return where(less, size, self.size), where(less, self.room, room), apart
+
+    def _ratio(self, ar: Arithmetic, small: Real, room: Real, a: Real) -> Real:
+        """Return log[S(a)/S(b)]/2 from the difference of the two, which keeps its digits.
+
+        S is a sum of exp(-c i (i + 1 - 2a)) and their images exp(-c (i + 1)(i + 2a)); of the odd
+        function the signs alternate and the images are subtracted.
+        """
+        c = self.steepness
+        apart = where(2 * small < room, 2 * small, room)
+        b = a + apart
+        difference = total = 0 * a
+        for i in range(self.terms):
+            sign = (-1) ** i if self.odd else 1
+            near, image = ar.exp(-c * i * (i + 1 - 2 * b)), ar.exp(-c * (i + 1) * (i + 2 * a))
+            fall, image_fall = ar.expm1(-2 * c * i * apart), ar.expm1(-2 * c * (i + 1) * apart)
+            pair = ar.expm1(-2 * c * (2 * i + 1) * b)
+            total = total + sign * near * (-pair if self.odd else 2 + pair)
+            difference = difference + sign * (
+                near * fall + (image if self.odd else -image) * image_fall
+            )
+        return ar.log1p(difference / total) / 2
