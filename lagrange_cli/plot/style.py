@@ -91,7 +91,7 @@ def styled(look: Look, size: float = 1.0) -> Iterator[None]:
 
 
 def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
-    """Return the style sheet as matplotlib's settings; `size` scales letters and lines."""
+    """Return the style sheet as matplotlib's settings; `size` scales letters, lines and gaps."""
     return {
         "axes.axisbelow": True,
         "axes.edgecolor": look.quiet,
@@ -102,8 +102,12 @@ def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
         "axes.labelcolor": look.ink,
         "axes.spines.right": False,
         "axes.spines.top": False,
+        "axes.labelpad": 4.0 * size,
         "axes.titlelocation": "left",
+        "axes.titlepad": 6.0 * size,
         "axes.titlesize": 12.0 * size,
+        "figure.constrained_layout.h_pad": 0.042 * size,
+        "figure.constrained_layout.w_pad": 0.042 * size,
         "figure.facecolor": look.paper,
         "font.family": "DejaVu Sans",  # comes with matplotlib, and has Greek
         "font.size": POINTS * size,
@@ -117,8 +121,12 @@ def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
         "savefig.facecolor": look.paper,
         "text.color": look.ink,
         "xtick.color": look.quiet,
+        "xtick.major.pad": 3.5 * size,
+        "xtick.major.size": 3.5 * size,
         "xtick.labelcolor": look.ink,
         "ytick.color": look.quiet,
+        "ytick.major.pad": 3.5 * size,
+        "ytick.major.size": 3.5 * size,
         "ytick.labelcolor": look.ink,
     }
 

@@ -135,13 +135,13 @@ def test_the_smallest_pictures(kinds: Sequence[str], size: tuple[float, float], 
 @pytest.mark.slow
 @pytest.mark.parametrize("kinds", KIND_LISTS, ids=",".join)
 def test_pictures_at_the_corners_of_the_range_of_sizes(kinds: Sequence[str]) -> None:
-    """At the fewest pixels per inch that are allowed, and as SVG and PDF where there are none."""
+    """At the fewest pixels per inch allowed; the fullest page as SVG and PDF too."""
     scene = solve(Top(r0=101.0, theta0_deg=0.5))
     for size in ((2.0, 2.0), (2.0, 50.0), (50.0, 2.0), (3.0, 3.0)):
         page = Page(scene, kinds, PlotRequest(x=X, y=Y), LIGHT, size)
         least = max(20.0, 72 * LEAST_LETTERS / (POINTS * page.lettering()))
         assert png(page, least * (1 + 1e-12)).size > 0
-        if size == (2.0, 2.0):
+        if size == (2.0, 2.0) and len(kinds) == len(KINDS):
             assert page_bytes(page, "svg", 20.0).startswith(b"<?xml")
             assert page_bytes(page, "pdf", 20.0).startswith(b"%PDF")
 
