@@ -59,11 +59,14 @@ class Motion:
 
     def angles(self, t: Any) -> tuple[Any, Any, Any]:
         """Return theta, phi, psi at a time, computed once together with its neighbours."""
-        if not self._rows:
-            self._compute(part * self.T for part in [*PARTS, *FAR, *TURNS])
         if _fraction(t) not in self._rows:
             self._compute([t])
         return self._rows[_fraction(t)]
+
+    def prepare(self) -> None:
+        """Compute the angles at all the times that most equations need."""
+        if not self._rows:
+            self._compute(part * self.T for part in [*PARTS, *FAR, *TURNS])
 
     def _compute(self, times: Iterable[Any]) -> None:
         """Compute rows at many times and their neighbours: one by one they are much slower."""
@@ -197,6 +200,7 @@ TURNS = [ar.mpf(i) / 4 for i in range(5)]
 def moments(*parts: Any) -> Iterator[tuple[Motion, Any]]:
     """Yield each top with times given in its periods."""
     for motion in MOTIONS:
+        motion.prepare()
         for part in parts or PARTS:
             yield motion, part * motion.T
 

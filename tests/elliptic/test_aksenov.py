@@ -80,7 +80,7 @@ def _() -> Sides:
 def _() -> Sides:
     for pair in MODULI:
         K = ar.ellipk(pair.k**2)
-        values = [jacobi(ar, i * K / 4, pair) for i in range(-16, 17)]
+        values = [jacobi(ar, i * K / 2, pair) for i in range(-5, 6)]
         for extreme in (min, max):
             sign = 1 if extreme is max else -1
             yield extreme(value.sn for value in values), sign
