@@ -32,7 +32,7 @@ TESTS = sorted((ROOT / "tests").rglob("*.py"))
 STILL_TO_REWRITE = {
     "motion": 98,
     "bench": 88,
-    "elliptic": 65,
+    "elliptic": 5,
     "sweeps": 28,
     "arithmetic": 31,
     "output": 6,

@@ -11,33 +11,33 @@ from .modulus import Modulus
 _PI = 3.141592653589793, 1.2246467991473532e-16
 
 
-def incomplete_f(ar: Arithmetic, phi: Real, given: Modulus) -> Real:
-    """F(phi, k) = integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 to phi (3.1.2), for k' > 0.
+def incomplete_f(ar: Arithmetic, phi: Real, modulus: Modulus) -> Real:
+    """Return F(phi, k), the integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 (3.1.2), for k' > 0.
 
     phi is any real amplitude in radians, of numpy or an mpmath context; |phi| <= pi/2 costs no
     digit, however close k is to 1.
     """
-    half_turns, sine, cosine2, delta2 = _parts(ar, phi, given)
+    half_turns, sine, cosine2, delta2 = _parts(ar, phi, modulus)
     within = sine * carlson_rf(ar, cosine2, delta2, 1 + 0 * sine)
-    return half_turns * 2 * complete_k(ar, given.k_prime) + within
+    return half_turns * 2 * complete_k(ar, modulus.k_prime) + within
 
 
-def incomplete_e(ar: Arithmetic, phi: Real, given: Modulus) -> Real:
-    """E(phi, k) = integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi, for k' > 0.
+def incomplete_e(ar: Arithmetic, phi: Real, modulus: Modulus) -> Real:
+    """Return E(phi, k), the integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi, for k' > 0.
 
     As a sum of positive terms (DLMF 19.25.10).
     """
-    half_turns, sine, cosine2, delta2 = _parts(ar, phi, given)
-    one, complement = 1 + 0 * sine, given.k_prime * given.k_prime
+    half_turns, sine, cosine2, delta2 = _parts(ar, phi, modulus)
+    one, complement = 1 + 0 * sine, modulus.k_prime * modulus.k_prime
     first = carlson_rf(ar, cosine2, delta2, one)
-    second = (given.k * sine) ** 2 * carlson_rd(ar, cosine2, one, delta2) / 3
+    second = (modulus.k * sine) ** 2 * carlson_rd(ar, cosine2, one, delta2) / 3
     third = (1 - complement) * ar.sqrt(cosine2 / delta2)
     within = sine * (complement * (first + second) + third)
-    return half_turns * 2 * complete_e(ar, given.k_prime) + within
+    return half_turns * 2 * complete_e(ar, modulus.k_prime) + within
 
 
-def _parts(ar: Arithmetic, phi: Real, given: Modulus) -> tuple[Real, Real, Real, Real]:
-    """Half turns in phi and, of the rest, sin, cos^2, and 1 - k^2 sin^2 as a sum of squares."""
+def _parts(ar: Arithmetic, phi: Real, modulus: Modulus) -> tuple[Real, Real, Real, Real]:
+    """Return half turns in phi and, of the rest, sin, cos^2, 1 - k^2 sin^2 as a sum of squares."""
     half_turns, rest, low = _reduced(ar, phi)
     sine, cosine = ar.sin(rest), ar.cos(rest)
     sine, cosine = sine + low * cosine, cosine - low * sine
@@ -45,11 +45,11 @@ def _parts(ar: Arithmetic, phi: Real, given: Modulus) -> tuple[Real, Real, Real,
         beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)
         half_turns, sine = half_turns + beyond, ar.where(cosine < 0, -sine, sine)
     cosine2 = cosine * cosine
-    return half_turns, sine, cosine2, cosine2 + given.k_prime * given.k_prime * (1 - cosine2)
+    return half_turns, sine, cosine2, cosine2 + modulus.k_prime * modulus.k_prime * (1 - cosine2)
 
 
 def _reduced(ar: Arithmetic, phi: Real) -> tuple[Real, Real, Real]:
-    """Half turns, the rest, and what rounding takes from that; up to a quarter turn phi itself."""
+    """Return half turns, the rest (phi up to a quarter turn) and what rounding took from it."""
     if not has_arrays(ar):
         half_turns = ar.nint(ar.re(phi) / ar.pi)
         return half_turns, phi - half_turns * ar.pi, 0 * phi

@@ -20,9 +20,9 @@ from .modulus import Modulus, rate_of_half_periods
 from .theta import theta
 
 _LARGEST_ARGUMENT = 350.0
-"""Of sinh.  Beyond it, which is for k' = 0 alone, cn and dn are exponentials."""
+"""Greatest argument of sinh; beyond, for k' = 0 alone, cn and dn are exponentials."""
 _SMALL = 1e-290
-"""Below, q' = (k'/4)^2 has lost digits, being close to the end of the range."""
+"""Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
 
 
 Polynomial = tuple[Real, ...]
@@ -38,8 +38,8 @@ class Jacobi(NamedTuple):
     dn: Real
 
 
-def jacobi(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
-    """am, sn, cn, dn of u (3.1.3), for k in [0, 1].
+def jacobi(ar: Arithmetic, u: Real, modulus: Modulus) -> Jacobi:
+    """Return am, sn, cn, dn of u (3.1.3), for k in [0, 1].
 
     numpy: real u and a modulus of shapes that broadcast; the worst error seen, also at 1e12 K and
     at 1 - k^2 = 1e-300, was 1.2 units of eps (max(1, |f|) + |u df/du|), u less the nearest multiple
@@ -47,13 +47,13 @@ def jacobi(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
     |u|/K costs.
     """
     if not has_arrays(ar):
-        return _by_theta(ar, u, given)
+        return _by_theta(ar, u, modulus)
     u = np.asarray(u, dtype=float)
-    if all(np.ndim(part) == 0 for part in given):
-        series = _series(given)
+    if all(np.ndim(part) == 0 for part in modulus):
+        series = _series(modulus)
         parts = [_evaluate(u.ravel()[block], series) for block in blocks(u.size)]
         return Jacobi(*(np.concatenate(f).reshape(u.shape) for f in zip(*parts, strict=True)))
-    u, *moduli = np.broadcast_arrays(u, *given)
+    u, *moduli = np.broadcast_arrays(u, *modulus)
     flat = [np.ravel(part) for part in (u, *moduli)]
     results = np.empty((4, u.size))
     circular = flat[1] <= flat[2]
@@ -72,7 +72,7 @@ class _Series(NamedTuple):
     circular: bool
     k_prime: Real
     rate: Pair
-    """1/(2K)."""
+    """Half periods per unit of u, 1/(2K)."""
     stretch: Real
     """Argument y per half period."""
     above: Polynomial
@@ -81,11 +81,11 @@ class _Series(NamedTuple):
     """The nome in use."""
 
 
-def _series(given: Modulus) -> _Series:
-    """The coefficients; the moduli are all of one family."""
-    k, k_prime = given.k, given.k_prime
+def _series(modulus: Modulus) -> _Series:
+    """Return the coefficients of moduli that are all of one family."""
+    k, k_prime = modulus.k, modulus.k_prime
     finite = np.where(k_prime > 0, k_prime, 1.0)
-    rate = rate_of_half_periods(np, finite, given.rest)
+    rate = rate_of_half_periods(np, finite, modulus.rest)
     if np.all(k <= k_prime):
         q = nome(np, m=k * k, k_prime=k_prime)
         return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)
@@ -96,7 +96,7 @@ def _series(given: Modulus) -> _Series:
 
 
 def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
-    """theta1 : theta2 in powers of sin^2; `root` is sqrt(k') = theta4/theta3."""
+    """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
     above = 1 - 3 * q2 + 5 * q6, 4 * q2 - 20 * q6, 16 * q6
@@ -105,7 +105,7 @@ def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
 
 
 def _hyperbolic(q: Real) -> tuple[Polynomial, Polynomial]:
-    """theta1 : theta4 of an imaginary argument in powers of q sinh^2, which stays small."""
+    """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
     q2 = q * q
     q4 = q2 * q2
     q8 = q4 * q4
@@ -126,7 +126,7 @@ def _hyperbolic(q: Real) -> tuple[Polynomial, Polynomial]:
 
 
 def _evaluate(u: Array, series: _Series) -> Jacobi:
-    """One block."""
+    """Return the functions of one block of arguments."""
     k_prime = series.k_prime
     halves, since = reduce_phase(u, series.rate)
     far = abs(since) > 0.25
@@ -152,7 +152,7 @@ def _evaluate(u: Array, series: _Series) -> Jacobi:
 
 
 def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
-    """Numerator and denominator of tan(am u)."""
+    """Return numerator and denominator of tan(am u)."""
     if series.circular:
         f = np.tan(y)
         square = f * f
@@ -163,20 +163,20 @@ def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
     return f * polynomial(series.above, x), polynomial(series.below, x)
 
 
-def _by_theta(ar: Arithmetic, u: Real, given: Modulus) -> Jacobi:
-    """By quotients of theta functions, for k < 1; real or complex u."""
+def _by_theta(ar: Arithmetic, u: Real, modulus: Modulus) -> Jacobi:
+    """Return the functions of real or complex u in many digits, by quotients of theta functions."""
     u = ar.convert(u)
-    if not given.k_prime:
+    if not modulus.k_prime:
         am = 2 * ar.atan(ar.tanh(u / 2))
         return Jacobi(am, ar.tanh(u), ar.sech(u), ar.sech(u))
-    if not given.k:
+    if not modulus.k:
         return Jacobi(u, ar.sin(u), ar.cos(u), 1 + 0 * u)
-    K = complete_k(ar, given.k_prime)
+    K = complete_k(ar, modulus.k_prime)
     halves = ar.nint(ar.re(u) / (2 * K))
     x = u / (2 * K) - halves
     zero = ar.mpf(0)
-    sine, cosine, delta, below = (theta(ar, ij, x, given) for ij in ("11", "10", "00", "01"))
-    at_2, at_3, at_4 = (theta(ar, ij, zero, given) for ij in ("10", "00", "01"))
+    sine, cosine, delta, below = (theta(ar, ij, x, modulus) for ij in ("11", "10", "00", "01"))
+    at_2, at_3, at_4 = (theta(ar, ij, zero, modulus) for ij in ("10", "00", "01"))
     sn, cn, dn = (
         at_3 / at_2 * sine / below,
         at_4 / at_2 * cosine / below,

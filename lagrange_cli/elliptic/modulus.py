@@ -1,4 +1,4 @@
-"""The modulus, by whichever of its names keeps the digits, and the constants that hang on it."""
+"""The modulus, by whichever of its names keeps the digits, and the constants derived from it."""
 
 from __future__ import annotations
 
@@ -40,16 +40,17 @@ def modulus(
     angle: Real = None,
     q: Real = None,
 ) -> Modulus:
-    """The modulus from exactly one of: k, the complement k', the parameter m = k^2, the modular
-    angle arcsin k in radians, the nome q.  Give k' where k is close to 1.
+    """Return the modulus from exactly one of k, k', m = k^2, the modular angle, the nome q.
+
+    The angle arcsin k is in radians.  Give the complement k' where k is close to 1.
 
     `ar` is numpy or an mpmath context.  Raises LagtopError for a value outside [0, 1] (the angle:
     [0, pi/2]; the nome: [0, 1)) and for none or several of them.
     """
-    given = {"k": k, "k_prime": k_prime, "m": m, "angle": angle, "q": q}
-    named = [(name, value) for name, value in given.items() if value is not None]
+    names = {"k": k, "k_prime": k_prime, "m": m, "angle": angle, "q": q}
+    named = [(name, value) for name, value in names.items() if value is not None]
     if len(named) != 1:
-        raise LagtopError(f"exactly one of {', '.join(given)} must be given, got {len(named)}")
+        raise LagtopError(f"exactly one of {', '.join(names)} must be given, got {len(named)}")
     name, value = named[0]
     value = ar.asarray(value, dtype=float) if has_arrays(ar) else ar.convert(value)
     most = ar.pi / 2 if name == "angle" else 1
@@ -57,13 +58,13 @@ def modulus(
     if not everywhere(inside):
         end = {"angle": "pi/2]", "q": "1)"}.get(name, "1]")
         wrong = value[~inside].flat[0] if has_arrays(ar) and value.ndim else value
-        raise LagtopError(f"{name} must be in [0, {end}, got {float(wrong)}")
+        raise LagtopError(f"{name} must be in [0, {end}, got {float(wrong)}", name)
     return _FROM[name](ar, value)
 
 
-def constants(ar: Arithmetic, given: Modulus) -> Constants:
-    """The complete integrals and the nome (2,4), each to a few eps."""
-    k, k_prime = given.k, given.k_prime
+def constants(ar: Arithmetic, modulus: Modulus) -> Constants:
+    """Return the complete integrals and the nome (2,4), each to a few eps."""
+    k, k_prime = modulus.k, modulus.k_prime
     ordinary, other = where(k_prime > 0, k_prime, 1 + 0 * k), where(k > 0, k, 1 + 0 * k)
     infinite = ar.inf
     return Constants(
@@ -76,7 +77,7 @@ def constants(ar: Arithmetic, given: Modulus) -> Constants:
 
 
 def rate_of_half_periods(ar: Arithmetic, k_prime: Real, rest: Real) -> Pair:
-    """agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
+    """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
     a, a_low = two_sum(ar.asarray(k_prime) / 2, 0.5)
     a_low += rest / 2
     b, b_low = sqrt_pair(ar.asarray(k_prime), ar.asarray(rest))
@@ -113,7 +114,7 @@ def _from_angle(ar: Arithmetic, angle: Real) -> Modulus:
 
 
 def _from_q(ar: Arithmetic, q: Real) -> Modulus:
-    """theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and of k'."""
+    """Return theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and k'."""
     limit = ar.exp(-ar.pi)
     large = q > limit
     root = where(large, ar.exp(ar.pi**2 / (2 * ar.log(where(large, q, limit)))), ar.sqrt(q))
@@ -131,7 +132,7 @@ def _from_q(ar: Arithmetic, q: Real) -> Modulus:
 
 
 def _complement(ar: Arithmetic, k: Real) -> tuple[Real, Real]:
-    """sqrt(1 - k^2) and what rounding takes from it."""
+    """Return sqrt(1 - k^2) and what rounding takes from it."""
     if not has_arrays(ar):
         return ar.sqrt((1 - k) * (1 + k)), 0 * k
     square, error = two_product(k, k)

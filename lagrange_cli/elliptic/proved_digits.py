@@ -16,7 +16,7 @@ from ..arithmetic.generic import Arithmetic
 __all__ = ["TooFewDigitsError", "require_digits", "settled_texts"]
 
 _GUARD = 8
-"""So many more digits must agree than are printed."""
+"""Digits that must agree beyond those that are printed."""
 
 
 def settled_texts(

@@ -39,7 +39,7 @@ class Quadrature(NamedTuple):
         for root in self.outer:
             if self.lower <= root <= self.upper:
                 raise LagtopError(
-                    "the outer roots must lie outside [delta_star, delta] = "
+                    "the outer roots must lie outside the band from delta* to delta, "
                     f"[{float(self.lower)}, {float(self.upper)}], got {float(root)}"
                 )
 

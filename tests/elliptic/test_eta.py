@@ -62,18 +62,18 @@ class Integral:
         return self.lower + (self.upper - self.lower) * mpmath.sin(chi / 2) ** 2
 
     def pace(self, chi: Any) -> Any:
-        """d tau/d chi."""
+        """Return d tau/d chi."""
         eta = self.eta(chi)
         return 1 / mpmath.sqrt(self.g * abs(mpmath.fprod(eta - root for root in self.outer)))
 
     def tau(self, chi: Any) -> Any:
-        """From delta* at chi = 0; split where an outer root is close."""
+        """Return tau since delta* at chi = 0; split where an outer root is close."""
         corners = [mpmath.mpf(10) ** -n for n in (12, 9, 6, 4, 2)]
         ends = sorted({*corners, 1, mpmath.pi - 1, *(mpmath.pi - x for x in corners)})
         return mpmath.quad(self.pace, [0, *(x for x in ends if x < chi), chi])
 
     def chi(self, tau: Any, guess: Any) -> Any:
-        """Newton's method from our own answer: one step doubles its digits, were they right."""
+        """Return chi by two steps of Newton's method from our own answer."""
         for _ in range(2):
             guess -= (self.tau(guess) - tau) / self.pace(guess)
         return guess
@@ -103,7 +103,7 @@ def test_eta(name: str) -> None:
 
 
 def rational(value: Any) -> Fraction:
-    """A many-digit number as the fraction it is."""
+    """Return a many-digit number as the fraction it is."""
     sign, digits, exponent, _ = value._mpf_
     size: Fraction = int(digits) * Fraction(2) ** exponent
     return -size if sign else size
@@ -193,7 +193,7 @@ def test_digits_agree_with_doubles() -> None:
         ),
         (
             "--delta 1 --delta-star 0 --p 0 --q 0.5",
-            "outside [delta_star, delta] = [0.0, 1.0]",
+            "outside the band from delta* to delta, [0.0, 1.0]",
         ),
         ("--delta 1 --delta-star 0 --p 0 --q -2", "--q must be >= 0, got -2.0"),
         ("--delta 1 --delta-star 0 --p 0", "give either --p and --q or"),

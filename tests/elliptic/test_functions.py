@@ -27,7 +27,7 @@ from lagrange_cli.elliptic.third_kind import omega
 
 
 def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:
-    """Ways to give k, each over all it can say; k' down to 1 - k^2 = 1e-300."""
+    """Yield ways to give k, each over all it can say; k' down to 1 - k^2 = 1e-300."""
     while True:
         yield rng.choice(
             [
@@ -43,7 +43,7 @@ def moduli(rng: random.Random) -> Iterator[tuple[str, float]]:
 
 
 def arguments(rng: random.Random, K: float) -> float:
-    """Within K, up to 1e12 K, close to the zeros of sn and of cn."""
+    """Return an argument within K, up to 1e12 K, close to the zeros of sn and of cn."""
     close = (
         2 * rng.randrange(10**6)
         + rng.choice([0, 1])
@@ -54,7 +54,7 @@ def arguments(rng: random.Random, K: float) -> float:
 
 
 def errors(name: str, value: float, u: float) -> list[float]:
-    """Of am, sn, cn, dn in units."""
+    """Return the errors of am, sn, cn, dn in units."""
     ours = jacobi(np, u, modulus(np, **{name: value}))
     with mpmath.workdps(700):
         x = mpmath.mpf(value)

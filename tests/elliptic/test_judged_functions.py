@@ -150,7 +150,7 @@ def test_columns(seed: int) -> None:
     ids=lambda case: f"{case.name}={case.modulus:.3g}, v={case.parameter:.3g}",
 )
 def test_columns_that_were_wrong(case: Case) -> None:
-    """They were off by up to 1e13 units, or empty."""
+    """Columns that were off by up to 1e13 units, or empty."""
     for column, error in errors(case, case.judge()):
         assert error <= 2.5, column
 
