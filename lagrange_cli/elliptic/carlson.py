@@ -11,9 +11,8 @@ import math
 from collections.abc import Callable
 from functools import reduce
 from itertools import combinations
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
 from ..arithmetic.generic import (
     Arithmetic,
     Real,
@@ -24,7 +23,9 @@ from ..arithmetic.generic import (
     has_arrays,
     where,
 )
-from ..arithmetic.types import Array
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
 
 Roots = tuple[Real, Real, Real, Real]
 Gain = Callable[[Roots, Real, Real], Real]
@@ -134,6 +135,8 @@ def _duplicated(ar: Arithmetic, arguments: Roots, gain: Gain) -> Real:
         shift = root_x * root_y + root_y * root_z + root_z * root_x
         term = gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
         if carried:
+            from ..arithmetic.double_double import two_sum  # numpy is loaded for arrays only
+
             total, error = two_sum(total, term)
             lost = lost + error
             (x, y, z, p), lows = _shifted((x, y, z, p), lows)
@@ -156,6 +159,8 @@ def _far_apart(arguments: Roots) -> bool:
 
 def _shifted(highs: Roots, lows: list[Array]) -> tuple[Roots, list[Array]]:
     """Return the arguments of the next step from arguments in pairs of doubles, as such pairs."""
+    from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
+
     shift, low = 0 * highs[0], 0 * highs[0]
     roots = [sqrt_pair(high, rest) for high, rest in zip(highs[:3], lows[:3], strict=True)]
     for (a, a_low), (b, b_low) in combinations(roots, 2):
