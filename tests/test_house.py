@@ -43,7 +43,7 @@ STILL_TO_REWRITE = {
 }
 """Rooms with docstrings that break the rule, and how many.  Numbers only fall; rooms only leave."""
 
-NOQA = 12
+NOQA = 4
 """Lint warnings switched off in the package.  The number only falls."""
 
 
@@ -65,6 +65,7 @@ def test_the_package_has_these_rooms_and_no_others() -> None:
         *("cli", "bench", "plot", "sweeps", "motion"),
         *("elliptic", "inputs", "output", "arithmetic"),
         *("errors.py", "__init__.py", "__main__.py", "py.typed"),
+        *("LICENSE", "CHANGES.md"),
     }
 
 

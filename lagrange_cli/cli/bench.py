@@ -50,7 +50,7 @@ MOST_SAMPLES = 10_000_000
 @click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
 @click.option("--plot", type=click.Path(), metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     scene: str | None,
     rad: bool,
     t_max: Fraction | None,

@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 @click.option("--tau-range", "grid", type=RANGE, help="Times, as [log:]start:stop:count.")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("table", "csv", "json")
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     delta: Fraction,
     delta_star: Fraction,
     p: Fraction | None,

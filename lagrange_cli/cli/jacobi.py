@@ -62,7 +62,7 @@ MOST_TERMS = 10_000
 @click.option("--rad", is_flag=True, help="Angles in radians, in and out.")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("table", "csv", "json")
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     k: Fraction | None,
     k_prime: Fraction | None,
     angle: Fraction | None,

@@ -70,7 +70,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
     metavar="FILE|-",
     help="FILE.png, .svg or .pdf, replaced when all is written.",
 )
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     scene: str | None,
     rad: bool,
     kinds: tuple[str, ...],

@@ -36,7 +36,7 @@ from .options import (
 @digits_option(MOST_RECORD_DIGITS)
 @click.option("--get", "key", metavar="KEY", help="Print one value of the record, bare.")
 @output_options("table", "json", "csv")
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     scene: str | None,
     rad: bool,
     digits: int | None,

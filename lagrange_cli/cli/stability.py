@@ -43,7 +43,7 @@ SEED = 1952
 @click.version_option(__version__, prog_name="lagtop")
 @output_options("table", "csv", "json")
 @click.pass_context
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     ctx: click.Context,
     samples: int | None,
     thorough: bool,

@@ -63,7 +63,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
 )
 @click.option("--parts", "folder", type=click.Path(), metavar="DIR", help="Write a file a part.")
 @output_options("csv", "ndjson", "json", "parquet")
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     files: tuple[str, ...],
     rad: bool,
     keys: list[str] | None,

@@ -72,7 +72,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("csv", "json", "table")
-def command(  # noqa: PLR0917 - click passes them by name
+def command(
     scene: str | None,
     rad: bool,
     t_max: Fraction | None,
