@@ -9,6 +9,8 @@
 | 69 | a cluster or a method is not available |
 | 74 | the output cannot be written |
 | 128 + N | ended by the signal N, such as 130 for Ctrl-C and 141 for a reader that went away |
+
+A command ends with 0 where all is fine.
 """
 
 from __future__ import annotations

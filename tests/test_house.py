@@ -35,11 +35,8 @@ STILL_TO_REWRITE = {
     "elliptic": 5,
     "sweeps": 28,
     "arithmetic": 31,
-    "output": 6,
-    "cli": 13,
     "inputs": 1,
-    "top": 1,
-    "tests": 28,
+    "tests": 17,
 }
 """Rooms with docstrings that break the rule, and how many.  Numbers only fall; rooms only leave."""
 

@@ -15,7 +15,7 @@ from ..arithmetic.generic import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from ..inputs.top import build_top
+from ..inputs.top import Top, build_top
 from ..motion.solve import Motion, solve
 from ..output.terminal import one_line
 from ..output.write import write_findings
@@ -31,13 +31,13 @@ V = TypeVar("V")
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """What a function makes of a text; its LagtopError goes on from the name of the option."""
+    """A parameter type: what a function makes of a text.  Errors begin with the option's name."""
 
     def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
         self.name, self.parse = name, parse
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The value, which click may hand in a second time when it is no text any more."""
+        """Return the value; click may hand it in a second time, when it is no text any more."""
         if not isinstance(value, str):
             return value
         try:
@@ -47,7 +47,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
 
 
 def _parse_count(text: str) -> int:
-    """A whole number, also as 1e6."""
+    """Return a whole number, which may be written 1e6."""
     exact = parse_number(text)
     if exact.denominator != 1:
         raise LagtopError(f"must be a whole number, got {text}")
@@ -61,17 +61,22 @@ def _parse_range(text: str) -> Points:
 
 
 class ExamplesFirst(click.Command):
-    """A command whose help starts with its examples."""
+    """A command whose help starts with its examples and may end with the keys of a record."""
 
-    def __init__(self, *args: Any, examples: str = "", **kwargs: Any) -> None:
+    def __init__(
+        self, *args: Any, examples: str = "", shows_keys: bool = False, **kwargs: Any
+    ) -> None:
         super().__init__(*args, **kwargs)
+        self.shows_keys = shows_keys
         self.examples = [line.strip() for line in examples.strip().splitlines()]
 
     def format_help(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Examples, then what click writes."""
+        """Write the examples, what click writes, and the keys."""
         formatter.write("Examples:\n")
         formatter.write("".join(f"  {line}\n" for line in self.examples) + "\n")
         super().format_help(ctx, formatter)
+        if self.shows_keys:
+            write_keys(formatter)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; an error about an argument names its option."""
@@ -80,6 +85,20 @@ class ExamplesFirst(click.Command):
         except LagtopError as error:
             error.args = (_naming_options(error, self.params),)
             raise
+
+
+def write_keys(formatter: click.HelpFormatter) -> None:
+    """Write the keys of the record of a top, by their groups."""
+    from ..output.layouts import LAYOUTS
+
+    for group, lines in LAYOUTS["top"].items():
+        with formatter.section(f"Keys: {group}"):
+            formatter.write_dl(
+                [
+                    (f"{line.key}_deg" if line.unit == "angle" else line.key, line.name)
+                    for line in lines
+                ]
+            )
 
 
 def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
@@ -100,7 +119,7 @@ def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> st
 def solved(
     scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
 ) -> Motion:
-    """The motion of the top in a scene file, if any, and in the options, which win."""
+    """Return the motion of the top in a scene file, if any, and in the options, which win."""
     given: dict[str, Number] = dict(by_key(options, radians=rad))
     if scene is None:
         top = build_top(given, exact=exact)
@@ -115,7 +134,7 @@ def solved(
 
 
 def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
-    """The options that were given, by the keys of the inputs."""
+    """Return the options on the command line by the keys of the inputs."""
     unit = "theta0_rad" if radians else "theta0_deg"
     return {unit if name == "theta0" else name: x for name, x in options.items() if x is not None}
 
@@ -128,7 +147,7 @@ def exclude(options: dict[str, Any]) -> None:
 
 
 def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Points | None:
-    """The numbers of --NAME, or those of --NAME-range, if any.  Raises LagtopError for both."""
+    """Return the numbers of --NAME or of --NAME-range, if any.  Raises LagtopError for both."""
     from ..arithmetic.points import ListedPoints
 
     exclude({f"--{name}": single or None, f"--{name}-range": grid})
@@ -136,7 +155,7 @@ def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Poin
 
 
 def given(name: str) -> bool:
-    """Whether an option of the command that runs was given."""
+    """Return whether an option of the command that runs stands on the command line."""
     from click.core import ParameterSource
 
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
@@ -176,21 +195,25 @@ _SCENE_OPTIONS = [
 
 
 def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[type-arg]
-    """The inputs of a top, and --rad."""
+    """Add the options for the inputs of a top, with their defaults, and --rad."""
+
+    defaults = Top().inputs()
 
     def decorate(command: F) -> F:
         command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
             command
         )
         for name, text in reversed(_SCENE_OPTIONS):
-            command = click.option(name, name[2:], type=kind, help=text)(command)
+            default = defaults.get(f"{name[2:]}_deg", defaults.get(name[2:]))
+            shown = f"{text}  [default: {default:g}]"
+            command = click.option(name, name[2:], type=kind, help=shown)(command)
         return click.version_option(__version__, prog_name="lagtop")(command)
 
     return decorate
 
 
 def scene_options(command: F) -> F:
-    """The scene file and the inputs that override it."""
+    """Add the argument for a scene file and the options that override it."""
     command = input_options(NUMBER)(command)
     return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
         command
@@ -198,7 +221,7 @@ def scene_options(command: F) -> F:
 
 
 def digits_option(most: int) -> Callable[[F], F]:
-    """--digits, up to `most`."""
+    """Add the option --digits, from 1 to `most`."""
 
     def check(_: click.Context, __: click.Parameter, digits: int | None) -> int | None:
         if digits is not None and not 1 <= digits <= most:
@@ -209,8 +232,8 @@ def digits_option(most: int) -> Callable[[F], F]:
     return click.option("--digits", type=COUNT, callback=check, metavar="N", help=text)
 
 
-def output_options(*styles: str) -> Callable[[F], F]:
-    """--format and --output; the first fmt is the default."""
+def output_options(*formats: str) -> Callable[[F], F]:
+    """Add the options --format, whose default is the first one, and --output."""
 
     def decorate(command: F) -> F:
         command = click.option(
@@ -221,9 +244,9 @@ def output_options(*styles: str) -> Callable[[F], F]:
             metavar="FILE|-",
             help="Where to write; FILE is replaced when all is written.",
         )(command)
-        choice = click.Choice(styles)
+        choice = click.Choice(formats)
         return click.option(
-            "--format", "fmt", type=choice, default=styles[0], show_default=True, help="Output."
+            "--format", "fmt", type=choice, default=formats[0], show_default=True, help="Output."
         )(command)
 
     return decorate

@@ -23,6 +23,7 @@ from .options import (
 @click.command(
     "solve",
     cls=ExamplesFirst,
+    shows_keys=True,
     examples="""
         lagtop solve --theta0 30
         lagtop solve sample_inputs/simo-wong-1991.toml --r0 40
@@ -34,7 +35,9 @@ from .options import (
 )
 @scene_options
 @digits_option(MOST_RECORD_DIGITS)
-@click.option("--get", "key", metavar="KEY", help="Print one value of the record, bare.")
+@click.option(
+    "--get", "key", metavar="KEY", help="Print one value of the record, bare; the keys stand below."
+)
 @output_options("table", "json", "csv")
 def command(
     scene: str | None,

@@ -41,6 +41,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
 @click.command(
     "sweep",
     cls=ExamplesFirst,
+    shows_keys=True,
     examples="""
         lagtop sweep --r0 10:200:1000 --theta0 5,10,30 > tops.csv
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate

@@ -1,4 +1,4 @@
-"""What a report has found: conditions, rows and conclusions."""
+"""Findings of a report: conditions, rows and conclusions."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ class Field(NamedTuple):
 
     key: str
     heading: str = ""
-    """Empty: not in the table."""
+    """Heading in a table; a field without one is not shown there."""
     show: Callable[[Any], str] = str
     is_text: bool = False
     names_the_row: bool = False
     """Whether every block of a folded table begins with this column."""
 
     def cell(self, value: Any) -> str:
-        """The text in a table."""
+        """Return the text in a table."""
         return "" if value is None else self.show(value)
 
 
 class Findings(NamedTuple):
-    """A report."""
+    """What a report has found."""
 
     conditions: dict[str, str]
-    """Under which it holds, by name."""
+    """Conditions of the measurement, by name."""
     fields: Sequence[Field]
     rows: Sequence[Any]
     """Objects with an attribute for every field."""
     conclusions: Sequence[str]
 
     def values(self) -> list[dict[str, Any]]:
-        """Each row by key."""
+        """Return every row by key."""
         return [{field.key: getattr(row, field.key) for field in self.fields} for row in self.rows]
 
     def as_json(self) -> bytes:
-        """One object; infinite numbers are null."""
+        """Return one JSON object, in which infinite numbers are null."""
         whole = {
             "conditions": self.conditions,
             "rows": self.values(),
@@ -49,5 +49,5 @@ class Findings(NamedTuple):
 
 
 def short(value: float) -> str:
-    """Two significant digits."""
+    """Return two significant digits."""
     return f"{value:.1e}"

@@ -17,11 +17,13 @@ def check_parquet() -> None:
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:
-        raise LagtopError("--format parquet needs pyarrow: pip install 'lagtop[parquet]'") from None
+        raise LagtopError(
+            "format parquet needs pyarrow: pip install 'lagtop[parquet]'", "format"
+        ) from None
 
 
 def arrow_block(columns: Sequence[Any], names: Sequence[str]) -> bytes:
-    """Columns as one Arrow stream: numbers with null for NaN, and texts."""
+    """Return columns as one Arrow stream: numbers with null for NaN, and texts."""
     import pyarrow as pa
 
     arrays = chain.from_iterable(
@@ -38,7 +40,7 @@ def arrow_block(columns: Sequence[Any], names: Sequence[str]) -> bytes:
 
 
 def write_parquet(stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
-    """Arrow streams as one Parquet file, a row group each."""
+    """Write Arrow streams as one Parquet file, a row group per stream."""
     import pyarrow as pa
     from pyarrow import parquet
 

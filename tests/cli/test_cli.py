@@ -14,7 +14,7 @@ import pytest
 from conftest import ROOT, Lagtop
 from scenes import SAMPLES
 
-from lagrange_cli import Motion, Top, solve
+from lagrange_cli import LagtopError, Motion, Top, errors, solve, sweep
 from lagrange_cli.output.layouts import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
@@ -333,16 +333,54 @@ def test_help_starts_with_examples(command: str, lagtop: Lagtop) -> None:
     assert result.stdout.startswith("Examples:\n  lagtop ")
 
 
-def test_examples_of_the_help_run(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
-    from lagrange_cli.cli.group import main
+def test_help_shows_the_defaults_of_the_inputs(lagtop: Lagtop) -> None:
+    for command in ("solve", "table", "sweep", "plot"):
+        shown = " ".join(lagtop(command, "--help").stdout.split())
+        for default in (1587, 39032, 17458, 4, 981, 50, 30, 0):
+            assert f"[default: {default}]" in shown, command
 
-    monkeypatch.chdir(ROOT)
-    for command in main.commands.values():
-        for example in command.examples:  # type: ignore[attr-defined]
-            line = example.replace("> out.csv", "").replace("-o ", "-o /dev/null ").split("|")
-            words = next(part for part in line if "lagtop" in part).replace("1e6", "9").split()
-            words = [word for word in words[1:] if word not in ("solved.csv", "angles.csv")]
-            assert lagtop(*words, input="0\n1\n").exit_code == 0, example
+
+def test_help_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
+    from lagrange_cli.motion.columns import COLUMNS
+
+    for command in ("solve", "sweep"):
+        _, *sections = lagtop(command, "--help").stdout.split("\nKeys: ")
+        keys = [line.split()[0] for text in sections for line in text.splitlines()[1:] if line]
+        assert sorted(keys) == sorted(set(KEYS) - {"remark"})
+    shown = " ".join(lagtop("table", "--help").stdout.split())
+    assert f"Of {' '.join(COLUMNS)}, with commas" in shown
+
+
+def test_commands_and_options_that_are_nearly_right_are_suggested(lagtop: Lagtop) -> None:
+    assert "Did you mean 'solve'?" in lagtop("solv").stderr
+    assert "Did you mean 'stability'?" in lagtop("stabilty").stderr
+    assert lagtop("xyz").stderr == "Error: No such command 'xyz'.\n"
+    assert "--theta0" in lagtop("solve", "--theta", "3").stderr
+
+
+def test_errors_name_options_where_the_library_names_arguments(lagtop: Lagtop) -> None:
+    def error(line: str) -> str:
+        return lagtop(*line.split()).stderr
+
+    assert error("table --columns t,x").startswith("Error: --columns must be among t, theta")
+    assert error("sweep --keys x").startswith("Error: --keys must be among m, A")
+    assert error("solve --m -1") == "Error: --m must be > 0, got -1.0\n"
+    with pytest.raises(LagtopError, match=r"^keys must be among") as raised:
+        sweep(keys=["x"])
+    assert raised.value.key == "keys"
+
+
+def test_every_error_is_of_one_family_and_says_its_exit_code() -> None:
+    codes = {
+        name: error.exit_code
+        for name, error in vars(errors).items()
+        if isinstance(error, type) and issubclass(error, LagtopError) and error is not LagtopError
+    }
+    assert codes == {
+        **{"DataError": 65, "SceneError": 65, "UnavailableError": 69, "CannotWriteError": 74},
+        **{"SomeFailedError": 1, "AbsentError": 1, "NothingToDrawError": 2},
+    }
+    assert LagtopError.exit_code == 2
 
 
 def test_version(lagtop: Lagtop) -> None:

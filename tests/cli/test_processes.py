@@ -16,7 +16,7 @@ HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotl
 
 
 def loaded(*args: str) -> set[str]:
-    """Top-level modules that a command imports."""
+    """Return the top-level modules that a command imports."""
     command = [sys.executable, "-X", "importtime", "-m", "lagrange_cli", *args]
     listing = subprocess.run(command, capture_output=True, check=True).stderr.decode()
     names = (line.rpartition("|")[2].strip() for line in listing.splitlines() if "|" in line)
@@ -50,7 +50,7 @@ def test_the_package_alone_loads_no_numpy() -> None:
 
 
 def shell(line: str, **extra: str) -> subprocess.CompletedProcess[bytes]:
-    """A bash line in which $LAGTOP is the command."""
+    """Run a line of bash in which $LAGTOP is the command."""
     environment = os.environ | {"LAGTOP": " ".join(LAGTOP)} | extra
     return subprocess.run(["bash", "-c", line], capture_output=True, check=False, env=environment)
 
@@ -152,7 +152,7 @@ def test_a_shell_loop_stops_with_ctrl_c(tmp_path: Path) -> None:
 
 
 def wait_for_a_file(folder: Path, count: int = 1) -> None:
-    """Until so many are there, and their writer is at work."""
+    """Wait until a folder holds so many files and their writer is at work."""
     deadline = time.monotonic() + 30
     while len(list(folder.iterdir())) < count and time.monotonic() < deadline:
         time.sleep(0.02)
@@ -160,7 +160,7 @@ def wait_for_a_file(folder: Path, count: int = 1) -> None:
 
 
 def most_memory(*args: str) -> float:
-    """The most that a command had, in MB (by its own account: ru_maxrss counts its parent too)."""
+    """Return the most memory of a command in MB, by its own account: ru_maxrss has its parent's."""
     code = """if True:
         import atexit, sys
         from lagrange_cli.__main__ import main

@@ -1,0 +1,107 @@
+"""Every example of every `--help` runs as it stands, in bash."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+import pytest
+from conftest import ROOT
+
+from lagrange_cli.cli.group import main
+from lagrange_cli.cli.options import ExamplesFirst
+
+SHORTER = {
+    "lagtop bench": "lagtop bench --limit 0.05",
+    "lagtop stability": "lagtop stability --samples 1 --strata fast",
+    " --strata separatrix,thresholds --samples 50": "",
+    " --thorough": "",
+    "--n 1e5": "--n 1e3",
+    "--n 1e6": "--n 1e4",
+}
+"""What a test has no time for: minutes of measurement.  Every option is still given once."""
+SLOW = ("plot", "bench", "stability")
+
+
+def commands() -> Iterator[ExamplesFirst]:
+    """Yield the group and its commands."""
+    context = click.Context(main)
+    for command in [main, *(main.get_command(context, x) for x in main.list_commands(context))]:
+        assert isinstance(command, ExamplesFirst)
+        yield command
+
+
+EXAMPLES = [
+    pytest.param(x, marks=[pytest.mark.slow] if command.name in SLOW else [], id=x)
+    for command in commands()
+    for x in command.examples
+]
+
+
+JQ = """
+import json, sys
+options = ("-c",)
+key, *files = [word for word in sys.argv[1:] if word not in options]
+for line in open(files[0]) if files else sys.stdin:
+    print(json.dumps(json.loads(line)[key.removeprefix(".")]))
+"""
+"""The tool jq, as far as the examples need it: one key of every line."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Return a folder with the files that the examples read, and a `lagtop` on the PATH."""
+    (tmp_path / "sample_inputs").symlink_to(ROOT / "sample_inputs")
+    (tmp_path / "tops.csv").write_text("id,r0,theta0_deg\na,40,20\nb,-60,110\n")
+    tops = [{"time": i, "top": {"r0": 40 + i}} for i in range(3)]
+    (tmp_path / "log.json").write_text("".join(json.dumps(x) + "\n" for x in tops))
+    script(tmp_path / "bin" / "lagtop", "from lagrange_cli.__main__ import main; main()")
+    script(tmp_path / "bin" / "jq", JQ)
+    return tmp_path
+
+
+def script(path: Path, code: str) -> None:
+    """Write a Python program that can be run."""
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(f"#!{sys.executable}\n{code}\n")
+    path.chmod(0o755)
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_examples_of_the_help_run(example: str, folder: Path) -> None:
+    line = example
+    for long, short in SHORTER.items():
+        line = line.replace(long, short)
+    environment = os.environ | {
+        "PATH": f"{folder}/bin{os.pathsep}{os.environ['PATH']}",
+        "PYTHONPATH": str(ROOT),
+        "SLURM_ARRAY_TASK_ID": "7",
+    }
+    done = subprocess.run(
+        ["bash", "-e", "-o", "pipefail", "-c", line],
+        capture_output=True,
+        check=False,
+        cwd=folder,
+        env=environment,
+    )
+    assert done.returncode == 0, done.stderr.decode()
+    assert b"Error" not in done.stderr
+    before = {"sample_inputs", "tops.csv", "log.json", "bin"}
+    made = [path for path in folder.iterdir() if path.name not in before or "> tops" in line]
+    assert done.stdout or made or "$(" in line, "it writes nothing"
+
+
+def test_the_examples_are_so_many() -> None:
+    counts = {command.name: len(command.examples) for command in commands()}
+    assert counts == {
+        **{"main": 3, "solve": 6, "table": 6, "sweep": 5, "plot": 5},
+        **{"jacobi": 6, "eta": 5, "bench": 4, "stability": 4},
+    }
+    assert len(EXAMPLES) == 41 + 3
+    lines = [line for command in commands() for line in command.examples]
+    assert all(any(long in line for line in lines) for long in SHORTER)
