@@ -4,19 +4,21 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .errors import LagtopError
+    from .inputs.scene_file import read_scene
     from .inputs.top import Top
     from .motion.record import Regime
     from .motion.solve import Motion, solve
     from .sweeps.records import sweep
 
 __version__ = "0.1.0"
-__all__ = ["LagtopError", "Motion", "Regime", "Top", "__version__", "solve", "sweep"]
+__all__ = ["LagtopError", "Motion", "Regime", "Top", "__version__", "read_scene", "solve", "sweep"]
 
 _MODULES = {
     "LagtopError": "errors",
     "Motion": "motion.solve",
     "Regime": "motion.record",
     "Top": "inputs.top",
+    "read_scene": "inputs.scene_file",
     "solve": "motion.solve",
     "sweep": "sweeps.records",
 }

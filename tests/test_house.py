@@ -33,9 +33,8 @@ STILL_TO_REWRITE = {
     "motion": 98,
     "bench": 88,
     "elliptic": 5,
-    "sweeps": 28,
+    "sweeps": 25,
     "arithmetic": 31,
-    "inputs": 1,
     "tests": 17,
 }
 """Rooms with docstrings that break the rule, and how many.  Numbers only fall; rooms only leave."""

@@ -1,4 +1,4 @@
-"""`lagtop sweep`: one record a top."""
+"""The command `lagtop sweep`: one record per top."""
 
 from __future__ import annotations
 
@@ -47,7 +47,9 @@ def _parse_shard(text: str) -> tuple[int, int]:
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
         lagtop sweep tops.csv --format ndjson -o solved.ndjson
         jq -c .top log.json | lagtop sweep - --keys T_nutation,error
-        lagtop sweep --r0 10:200:1e7 --shard $SLURM_ARRAY_TASK_ID/100 --parts out
+        lagtop sweep --r0 10:200:1e5 --parts out
+        lagtop sweep --r0 10:200:1e5 --shard $SLURM_ARRAY_TASK_ID/100 --parts out
+        lagtop sweep tops.csv --dask local -o solved.csv
     """,
 )
 @click.argument("files", nargs=-1, type=click.Path(), metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
@@ -60,9 +62,18 @@ def _parse_shard(text: str) -> tuple[int, int]:
     "--shard", type=Parsed("I/N", _parse_shard), help="Only every N-th part, from the I-th on."
 )
 @click.option(
-    "--dask", "cluster", metavar="ADDRESS|local", help="Compute the parts on a Dask cluster."
+    "--dask",
+    "cluster",
+    metavar="ADDRESS|local",
+    help="Compute the parts on a Dask cluster, or on all cores of this machine.",
 )
-@click.option("--parts", "folder", type=click.Path(), metavar="DIR", help="Write a file a part.")
+@click.option(
+    "--parts",
+    "folder",
+    type=click.Path(),
+    metavar="DIR",
+    help="Write a file per part; resume a folder that is not complete.",
+)
 @output_options("csv", "ndjson", "json", "parquet")
 def command(
     files: tuple[str, ...],
@@ -76,12 +87,17 @@ def command(
     output: str,
     **axes: Points | None,
 ) -> None:
-    """One record a top, with the keys of `solve`: over a grid, or for each row of a file.
+    """The record of `solve` for each top of a grid or of a file.
 
-    An input is a number, a list 1,2,3 or a range [log:]start:stop:count; the grid is the product of
-    all, the last option fastest.  In a file the header, or the keys of JSON lines, name the inputs;
-    what a row lacks comes from the options and the scene, other columns are carried through.  A top
-    that cannot be solved has its `error` in its row, and the exit code is 1.
+    An input is a number, a list 1,2,3 or a range [log:]start:stop:count.  The grid is the product
+    of all, the last option fastest.
+
+    A file is CSV with a header, or JSON lines, whose names are those of a record.  What a row lacks
+    comes from the options and the scene; other columns are carried through.  A top that cannot be
+    solved has its `error` in its row, and the exit code is 1.
+
+    A folder of --parts belongs to one sweep: any number of runs, shards among them, may fill it,
+    and a run that was killed is resumed by the same command.
     """
     from ..output.parquet import check_parquet
     from ..sweeps.cluster import computed

@@ -36,8 +36,13 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
 
 
 def suggestion(name: object, known: Iterable[str]) -> str:
-    """Return ` (did you mean 'x'?)` with the known name that is near a wrong one, if any is."""
+    """Return ` (did you mean 'x'?)` with the known name that is near a wrong one, if any is.
+
+    A name of which the wrong one is the beginning comes before those that are merely alike.
+    """
     from difflib import get_close_matches
 
-    nearest = get_close_matches(str(name)[:_SHOWN], known, 1)
+    known, wrong = list(known), str(name)[:_SHOWN]
+    longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
+    nearest = longer or get_close_matches(wrong, known, 1)
     return f" (did you mean {nearest[0]!r}?)" if nearest else ""

@@ -15,7 +15,7 @@ from .top import Top, build_top, overridden
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
-"""In one line: the time that `tomllib` takes grows with the square of the parts of a key."""
+"""Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
 KEYS = Top._fields
 
 

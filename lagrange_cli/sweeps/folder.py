@@ -27,7 +27,7 @@ class Folder:
     """A folder that holds the parts of one sweep and of no other."""
 
     def __init__(self, path: str, sweep: Sweep, description: Mapping[str, Any]) -> None:
-        """Claim a folder for a sweep, and remove what killed runs left in it.
+        """Take a folder for a sweep, and remove what killed runs left in it.
 
         Raises CannotWriteError for a folder that cannot be made or holds parts of another sweep.
         """

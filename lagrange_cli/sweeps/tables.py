@@ -25,8 +25,8 @@ class Tables(NamedTuple):
 
     source: TopsFile
     lines: Iterator[Lines]
-    given: Mapping[str, float]
-    """Inputs that a row may lack."""
+    shared: Mapping[str, float]
+    """Inputs of all tops that have none of their own."""
     columns: Sequence[str]
     times: Callable[[Motion], Points]
     """The times for a motion."""
@@ -36,12 +36,12 @@ class Tables(NamedTuple):
 
     @property
     def header(self) -> list[str]:
-        """What is carried (the number of the line, if there is nothing), the columns, `error`."""
+        """The names of what is carried (or `line`, if nothing is), of the columns, and `error`."""
         carried = self.source.carried or ["line"]
         return [*carried, *headings(self.columns, radians=self.radians), "error"]
 
     def parts(self) -> Iterator[Part]:
-        """Blocks of rows as text; a top that has no table has one row with its error."""
+        """Yield blocks of rows as text; a top that has no table has one row with its error."""
         for lines in self.lines:
             for row in lines.rows():
                 yield from self._table(row)
@@ -50,7 +50,7 @@ class Tables(NamedTuple):
         try:
             if row.error:
                 raise LagtopError(row.error)
-            motion = solve(Top(**row.completed(self.given)))
+            motion = solve(Top(**row.completed(self.shared)))
             _, blocks = rows(
                 motion, self.times(motion), self.columns, radians=self.radians, wrap=self.wrap
             )
@@ -70,7 +70,7 @@ class Tables(NamedTuple):
 
 def open_tables(
     path: str,
-    given: Mapping[str, float],
+    shared: Mapping[str, float],
     columns: Sequence[str],
     times: Callable[[Motion], Points],
     *,
@@ -78,6 +78,6 @@ def open_tables(
     wrap: bool,
     fmt: str,
 ) -> Tables:
-    """The tables of the tops in a file.  Raises LagtopError for one that cannot be read."""
+    """Return the tables of the tops in a file.  Raises LagtopError if it cannot be read."""
     source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], _TOPS_AT_ONCE)
-    return Tables(source, lines, given, columns, times, radians, wrap, fmt)
+    return Tables(source, lines, shared, columns, times, radians, wrap, fmt)

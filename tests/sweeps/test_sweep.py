@@ -481,3 +481,47 @@ def test_a_large_file_with_rubbish_in_it(tmp_path: Path, lagtop: Lagtop) -> None
         top = Top(r0=float(row["r0"]), theta0_deg=float(row["theta0_deg"]))
         rate = float(row["mean_precession_rate"])
         assert rate == pytest.approx(solve(top).mean_precession_rate, rel=1.5e-15)
+
+
+# Arguments of the library
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (1j, "r0 must be real numbers, got 1j"),
+        (np.array([1, 2j]), "r0 must be real numbers, got array"),
+        ([1, 2j], "r0 must be real numbers"),
+        (np.array(["2020-01-01"], "datetime64[D]"), "r0 must be real numbers"),
+        (np.array([1], "timedelta64[s]"), "r0 must be real numbers"),
+        (np.zeros(2, [("x", float)]), "r0 must be real numbers"),
+        (10**400, "r0 must be real numbers, got 1000"),
+        ([10**400], "r0 must be real numbers, got [1000"),
+        ("50", "r0 must be real numbers, got '50'"),
+        (["50"], "r0 must be real numbers"),
+        ([True], "r0 must be real numbers, got [True]"),
+        ({"x": 1}, "r0 must be real numbers"),
+        ([[1], [2, 3]], "r0 must be real numbers"),
+        (np.ma.array([1.0, 2.0], mask=[False, True]), "r0 must not be masked"),
+    ],
+)
+def test_arrays_that_are_no_real_numbers(values: Any, message: str) -> None:
+    with pytest.raises(LagtopError) as refused:
+        sweep(r0=values)
+    assert str(refused.value).startswith(message)
+    assert len(str(refused.value)) < 120
+    assert refused.value.key == "r0"
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [1, 2],
+        (Fraction(1), Fraction(2)),
+        np.array([1, 2], np.int8),
+        np.array([1, 2], np.float16),
+        np.ma.array([1.0, 2.0]),
+    ],
+)
+def test_arrays_of_many_types(values: Any) -> None:
+    assert sweep(r0=values, keys=["r0"])["r0"].tolist() == [1.0, 2.0]

@@ -1,0 +1,196 @@
+"""Scene files, files of times and files of tops: what is read, what is refused, what it costs."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from conftest import LAGTOP, ROOT, Lagtop
+
+import lagrange_cli
+from lagrange_cli import LagtopError, Top
+from lagrange_cli.arithmetic.points import POINTS_AT_ONCE
+from lagrange_cli.errors import DataError, SceneError
+from lagrange_cli.inputs.scene_file import read_scene
+from lagrange_cli.inputs.times_file import TimesFile
+from lagrange_cli.inputs.tops_file import open_tops
+
+
+def scene(folder: Path, text: str) -> str:
+    path = folder / "scene.toml"
+    path.write_text(text)
+    return str(path)
+
+
+# Scenes
+
+
+def test_a_scene_is_a_top(tmp_path: Path) -> None:
+    path = scene(tmp_path, "r0 = 60\ntheta0_rad = 0.1\n")
+    assert lagrange_cli.read_scene(path) == Top(r0=60, theta0_rad=0.1)
+    assert read_scene(path, {"r0": 7, "theta0_deg": 3}) == Top(r0=7, theta0_deg=3)
+    assert read_scene(path, exact=True).theta0_rad == Fraction(1, 10)
+    known = read_scene(str(ROOT / "sample_inputs" / "chrapan-1952.toml"))
+    assert known == Top()
+
+
+def test_who_is_to_blame(tmp_path: Path) -> None:
+    path = scene(tmp_path, "r0 = 60\nm = -1\n")
+    with pytest.raises(SceneError, match=r"scene.toml, line 2: m must be > 0, got -1.0$"):
+        read_scene(path)
+    with pytest.raises(LagtopError, match=r"^A must be > 0") as refused:
+        read_scene(path, {"m": 1, "A": -1})
+    assert not isinstance(refused.value, SceneError)
+    with pytest.raises(SceneError, match="No such file"):
+        read_scene(str(tmp_path / "nowhere.toml"))
+
+
+def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = scene(tmp_path, "A = 1\n")
+    assert lagtop("solve", path).exit_code == lagtop("sweep", path).exit_code == 65
+    assert lagtop("solve", path, "--C", "1").exit_code == 0
+    assert lagtop("sweep", path, "--C", "1").exit_code == 0
+    assert lagtop("table", path, "--C", "1", "--tops", "-", input="r0\n3\n").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("mm = 1", "unknown key 'mm' (did you mean 'm'?) (known: m, A, C"),
+        ("theta0 = 1", "did you mean 'theta0_"),
+        (f"{'x' * 5000} = 1", "unknown key 'xxx"),
+        ("r0 = true", "r0 must be a finite number, got True"),
+        ('r0 = "3"', "r0 must be a finite number, got '3'"),
+        (f"m = 1.{'0' * 50_000}", "m must be a finite number, got '1.000"),
+        (f"m = 0x{'F' * 3000}", "m must be"),
+        (f"m = {'9' * 5000}", "not a TOML file"),
+        (f"a{'.a' * 20_000} = 1", "line 1 has more than 20 dots"),
+        (f'"#"{".a" * 20_000} = 1', "line 1 has more than 20 dots"),
+        (f"x = {{a{'.a' * 20_000} = 1}}", "line 1 has more than 20 dots"),
+        ("[" * 20_000, "not a TOML file"),
+        ("r0 = 1\n" + "#" * 70_000, "more than 64 KiB is no scene file"),
+    ],
+)
+def test_scenes_that_are_none(text: str, message: str, tmp_path: Path, lagtop: Lagtop) -> None:
+    path = scene(tmp_path, text)
+    for more in ([], ["--digits", "30"]):
+        result = lagtop("solve", path, *more)
+        assert (result.exit_code, result.stdout) == (65, "")
+        assert message in result.stderr
+        assert result.stderr.count("\n") == 1
+        assert len(result.stderr) < 500 + len(path)
+
+
+def test_dots_in_comments_are_free(tmp_path: Path) -> None:
+    assert read_scene(scene(tmp_path, f"# {'.' * 500}\nr0 = 2.5  # spin...\n")) == Top(r0=2.5)
+
+
+# Times
+
+
+def test_times_are_read_as_they_are_needed(tmp_path: Path) -> None:
+    path = tmp_path / "times.txt"
+    count = 2 * POINTS_AT_ONCE + 5
+    path.write_text("\ufeff# times\n\n" + "".join(f"  {i}e-1\r\n" for i in range(count)))
+    blocks = list(TimesFile(str(path)).blocks())
+    assert [block.size for block in blocks] == [POINTS_AT_ONCE, POINTS_AT_ONCE, 5]
+    assert blocks[0][3] == 0.3
+    assert list(TimesFile(str(path)).decimals()) == [Fraction(i, 10) for i in range(count)]
+    assert TimesFile(str(path)).listed(7).count == 7
+    assert TimesFile(str(path)).bounds() == []
+
+
+@pytest.mark.parametrize("line", [b"soon", b"1,5", b"\xff", b"1" * 3000, b"1 2"])
+def test_a_bad_line_late_in_the_file(line: bytes, tmp_path: Path, lagtop: Lagtop) -> None:
+    """Rows before it may be out; a file that was there stays."""
+    path, out = tmp_path / "times.txt", tmp_path / "out.csv"
+    count = 3 * POINTS_AT_ONCE
+    path.write_bytes(b"0.5\n" * count + line + b"\n")
+    out.write_text("old")
+    result = lagtop("table", "--times", path, "-o", out)
+    assert (result.exit_code, result.stdout, out.read_text()) == (65, "", "old")
+    assert f"times.txt, line {count + 1}: " in result.stderr
+    assert len(result.stderr) < 300 + len(str(path))
+    to_stdout = lagtop("table", "--times", path)
+    assert to_stdout.exit_code == 65
+    assert to_stdout.stdout.count("\n") == 1 + count
+    with pytest.raises(DataError):
+        TimesFile(str(path)).listed()
+
+
+def test_a_bad_line_early_in_the_file_prints_nothing(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "times.txt"
+    path.write_text("1\n" * 1000 + "x\n")
+    for fmt in ("csv", "json", "table"):
+        result = lagtop("table", "--times", path, "--format", fmt)
+        assert (result.exit_code, result.stdout) == (65, "")
+
+
+def test_a_time_out_of_reach_late_in_the_file(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "times.txt"
+    path.write_text("1\n" * (2 * POINTS_AT_ONCE) + "1e30\n")
+    result = lagtop("table", "--times", path)
+    assert result.exit_code == 2
+    assert "t must be finite and within 2^50 periods" in result.stderr
+
+
+PEAK = """if True:
+    import atexit, sys
+    from lagrange_cli.cli.group import main
+    atexit.register(lambda: sys.stderr.write(open("/proc/self/status").read()))
+    main()
+"""
+
+
+def test_the_memory_for_times_does_not_grow(tmp_path: Path) -> None:
+    """Six times the times may cost no more than 8 MB; a list of them took 50."""
+    peaks = []
+    for count in (50_000, 300_000):
+        path = tmp_path / f"{count}.txt"
+        path.write_text("".join(f"{i / 7!r}\n" for i in range(count)))
+        command = [sys.executable, "-c", PEAK, "table", "--times", str(path), "-o", "/dev/null"]
+        status = subprocess.run(command, capture_output=True, check=True).stderr.decode()
+        peaks.append(int(status.partition("VmHWM:")[2].split()[0]) / 1024)
+    assert peaks[1] - peaks[0] < 8
+
+
+# Tops
+
+
+def test_a_key_that_comes_after_the_first_lines_is_refused(tmp_path: Path) -> None:
+    """The first block of JSON lines says what is carried; a new key later has no column."""
+    path = tmp_path / "tops.ndjson"
+    first = [{"id": i, "r0": i} for i in range(4)]
+    later = [{"id": 4, "r0": 4}, {"id": 5, "r0": 5, "T_nutation": 1}, {"id": 6, "name": "x"}]
+    path.write_text("".join(json.dumps(row) + "\n" for row in [*first, *later]))
+    file, blocks = open_tops(str(path), {"T_nutation"}, 4)
+    assert file.carried == ["id"]
+    rows = [row for block in blocks for row in block.rows()]
+    assert [row.line for row in rows] == [1, 2, 3, 4, 5, 6, 7]
+    assert [row.error for row in rows] == [
+        *[None] * 6,
+        "the key 'name' must be in one of the first rows too",
+    ]
+
+
+def test_a_new_key_late_in_a_sweep(lagtop: Lagtop) -> None:
+    text = '{"r0": 1}\n' * 4096 + '{"r0": 2, "name": "x"}\n{"r0": 3}\n'
+    result = lagtop("sweep", "-", "--keys", "r0,error", input=text)
+    assert result.exit_code == 1
+    assert result.stdout.splitlines()[4096:] == [
+        "1.0,",
+        "2.0,line 4097: the key 'name' must be in one of the first rows too",
+        "3.0,",
+    ]
+
+
+def test_a_long_line_of_tops_is_one_error(tmp_path: Path) -> None:
+    path = tmp_path / "tops.csv"
+    path.write_text(f"r0\n{'9' * 100_000}\n7\n")
+    done = subprocess.run([*LAGTOP, "sweep", str(path)], capture_output=True, check=False)
+    assert done.returncode == 1
+    assert b"line 2: r0 must have at most 2000 characters, got 100000" in done.stderr
