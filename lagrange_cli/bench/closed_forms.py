@@ -1,7 +1,8 @@
 """Closed forms to compare: ours, Legendre's integrals by scipy.special, and the paper's series.
 
-The last two are written as a reader of the paper or of a handbook would write them, in plain
-doubles.  Equation numbers in parentheses are Chrapan's.
+The last two are written in plain doubles, by the formulas of a handbook and of the paper; the roots
+that scipy.special starts from are ours.  A new closed form is one entry in CLOSED_FORMS.  Equation
+numbers in parentheses are Chrapan's.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def _ours_in_digits(top: Top, digits: int) -> Sample:
 
 
 def _legendre(top: Top, _: str) -> Sample:
-    """sn^2 by ellipj, and Legendre's third integral by Carlson's R_F and R_J.
+    """Return sn^2 by ellipj, and Legendre's third integral by Carlson's R_F and R_J.
 
     With sn^2 counted from u1, 1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2)
     and n = k^2 (1 +- u3)/(1 +- u1).
@@ -87,7 +88,7 @@ def _legendre(top: Top, _: str) -> Sample:
 
 
 class _Paper(NamedTuple):
-    """The constants of sections 4 to 7."""
+    """Constants of sections 4 to 7 in doubles."""
 
     u1: float
     u3: float
@@ -129,13 +130,13 @@ def _paper(top: Top) -> _Paper:
 
 
 def _phase(p: _Paper, t: Array) -> Array:
-    """pi t/T, less whole turns."""
+    """Return pi t/T, less whole turns."""
     periods = t / p.T
     return np.pi * (periods - np.rint(periods))
 
 
 def _tilt(p: _Paper, x: Array, terms: int) -> Array:
-    """(4,20), with dn^2 = k' (theta3/theta4)^2 from so many terms of the theta functions."""
+    """Return (4,20), with dn^2 = k' (theta3/theta4)^2 from so many terms of the theta functions."""
     theta3, theta4 = np.ones_like(x), np.ones_like(x)
     for h in range(1, terms + 1):
         wave = 2 * p.q ** (h * h) * np.cos(2 * h * x)
@@ -145,13 +146,13 @@ def _tilt(p: _Paper, x: Array, terms: int) -> Array:
 
 
 def _mean_rates(top: Top, _: str) -> Sample:
-    """(6,3) and (7,3) without the periodic remainders."""
+    """Return (6,3) and (7,3) without the periodic remainders."""
     p = _paper(top)
     return lambda t: (_tilt(p, _phase(p, t), 3), p.mean_spin * t, p.mean_precession * t)
 
 
 def _theta_series(top: Top, terms: int) -> Sample:
-    """(6,1) and (7,1) in their form for all times, the sums over h cut after so many terms."""
+    """Return (6,1) and (7,1) in their form for all times, the sums over h cut after `terms`."""
     p = _paper(top)
     z = math.exp(-2 * p.y)
 

@@ -1,4 +1,4 @@
-"""Pictures of the reports, by matplotlib: work and precision, drift, error by stratum."""
+"""Pictures of the reports, by matplotlib: work and precision, long spans, error by stratum."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from ..errors import CannotWriteError, LagtopError
 from ..output.findings import Findings
 from ..output.write import write_bytes
 from ..plot.style import figure_bytes, require_matplotlib
-from .stability import CONTRACT
-from .work_precision import is_done
+from .battery import CONTRACT
+from .front import is_done
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,40 +20,40 @@ if TYPE_CHECKING:
 KINDS = (".svg", ".png")
 LEAST_ERROR = 1e-17
 LEAST_UNITS = 1e-2
-"""Where an error of 0 is drawn."""
+"""Least values that are drawn; an error of 0 stands there."""
 
 
 def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for a kind of file that is not drawn, where matplotlib is missing, or where
-    the report would replace the picture.
+    """Raise LagtopError for a kind of file that is not drawn or that is the report itself.
 
-    Raises CannotWriteError where there is no such directory.
+    Raises LagtopError where matplotlib is missing, too, and CannotWriteError where there is no such
+    directory.
     """
     if path is None:
         return
     if Path(path).suffix.lower() not in KINDS:
-        raise LagtopError(f"--plot must end in {' or '.join(KINDS)}, got {path!r}")
+        raise LagtopError(f"plot must end in {' or '.join(KINDS)}, got {path!r}", "plot")
     if Path(path).resolve() == Path(output).resolve():
-        raise LagtopError(f"--plot and --output must be different files, got {path!r} twice")
+        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
     require_matplotlib()
     if not Path(path).resolve().parent.is_dir():
         raise CannotWriteError(f"cannot write {path}: no such directory")
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:
-    """Log-log, error on x and time on y, a line for each method over its settings."""
+    """Draw error on x and time on y, both as logarithms, a line for each method."""
     figure, (axes,) = _figure(1)
     rows = [row for row in findings.rows if is_done(row)]
     for i, name in enumerate(sorted({row.method for row in rows}, key=_order(rows))):
         points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
         _line(axes, i, name, points)
-    axes.set(xlabel="greatest error (rad)", ylabel="time a sample (ns)")
+    axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
     axes.set_title(f"Error against run time\ntimes: {findings.conditions['times']}", fontsize=9)
     _save(figure, path)
 
 
-def draw_drift(findings: Findings, path: str) -> None:
-    """Error, and time, against the span."""
+def draw_long_spans(findings: Findings, path: str) -> None:
+    """Draw error and time against the span."""
     figure, (above, below) = _figure(2)
     rows = [row for row in findings.rows if is_done(row)]
     for i, name in enumerate(dict.fromkeys(row.method for row in rows)):
@@ -61,14 +61,14 @@ def draw_drift(findings: Findings, path: str) -> None:
         _line(above, i, name, [(row.periods, row.units_max) for row in mine])
         _line(below, i, name, [(row.periods, row.ns_min) for row in mine])
     above.set(xlabel="nutation periods", ylabel="greatest error (units)")
-    below.set(xlabel="nutation periods", ylabel="time a sample (ns)")
+    below.set(xlabel="nutation periods", ylabel="time per sample (ns)")
     title = f"Error and time against the span\ntimes: {findings.conditions['times']}"
     above.set_title(title, fontsize=9)
     _save(figure, path)
 
 
 def draw_stability(findings: Findings, path: str) -> None:
-    """Worst error in units by stratum, ours and the others'."""
+    """Draw the worst error of each stratum in units, ours and the others'."""
     figure, (axes,) = _figure(1)
     strata = [row.stratum for row in findings.rows]
     axes.set(yscale="linear", yticks=range(len(strata)))
@@ -85,12 +85,14 @@ def draw_stability(findings: Findings, path: str) -> None:
     axes.set(xlim=(LEAST_UNITS / 2, None), xlabel="worst error (units)")
     axes.set_yticklabels(strata)
     axes.invert_yaxis()
-    axes.set_title(f"Error by stratum\nscenes: {findings.conditions['scenes']}", fontsize=9)
+    axes.set_title(
+        f"Error by stratum\nscenes: {findings.conditions['scenes'].partition(';')[0]}", fontsize=9
+    )
     _save(figure, path)
 
 
 def _order(rows: Sequence[Any]) -> Any:
-    """Methods by their least error."""
+    """Return the key that sorts methods by their least error."""
     return lambda name: (min(row.error_max for row in rows if row.method == name), name)
 
 
@@ -106,7 +108,7 @@ def _figure(panels: int) -> tuple[Figure, Any]:
 
 
 def _line(axes: Axes, i: int, name: str, points: Sequence[tuple[float, float]]) -> None:
-    """Our own in black and thicker."""
+    """Draw a line; our own is black and thicker."""
     mine = name.startswith("lagtop")
     color = "black" if mine else f"C{i % 10}"
     style = "--" if name.endswith("euler") else "-"

@@ -1,6 +1,7 @@
-"""Random scenes, a stratum for each thing that is hard; general starts, both signs of all.
+"""Random scenes, a stratum for each thing that is hard; a new stratum is one function in STRATA.
 
-Lengths, masses and times are of the size of 1 but for the stratum of units.
+Starts are general, of both signs, and lengths, masses and times are of the size of 1 but for the
+stratum of units.
 """
 
 from __future__ import annotations
@@ -8,28 +9,29 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
 Scene = dict[str, float]
 
 
 def power(rng: random.Random, low: float, high: float) -> float:
-    """A number between 10^low and 10^high, its logarithm uniform."""
+    """Return a number between 10^low and 10^high, its logarithm uniform."""
     return 10 ** rng.uniform(low, high)
 
 
 def body(rng: random.Random) -> Scene:
-    """A top with m = s = g = 1."""
+    """Return a top with m = s = g = 1."""
     A = rng.uniform(0.5, 2)
     return {"m": 1, "s": 1, "g": 1, "A": A, "C": A * rng.uniform(0.05, 2)}
 
 
 def signed(rng: random.Random, size: float) -> float:
-    """The size with a random sign."""
+    """Return the size with a random sign."""
     return rng.choice([-1, 1]) * size
 
 
 def generic(rng: random.Random) -> Scene:
-    """Nothing special: any tilt, moderate rates."""
+    """Return a scene with any tilt and moderate rates."""
     return body(rng) | {
         "r0": rng.uniform(-6, 6),
         "theta0_deg": rng.uniform(1, 179),
@@ -38,24 +40,30 @@ def generic(rng: random.Random) -> Scene:
     }
 
 
+def from_rest(rng: random.Random) -> Scene:
+    """Return the paper's case: a release from rest, slow to fast."""
+    scene = body(rng) | {"theta0_deg": rng.uniform(1, 179)}
+    return scene | {"r0": signed(rng, rng.choice([power(rng, -3, 3), rng.uniform(0.1, 6)]))}
+
+
 def fast(rng: random.Random) -> Scene:
-    """Spins from 10^2 to 10^12."""
+    """Return a scene with a spin of 10^2 to 10^12."""
     return generic(rng) | {"r0": signed(rng, power(rng, 2, 12))}
 
 
 def slow(rng: random.Random) -> Scene:
-    """Spins from 10^-12 to 0.1."""
+    """Return a scene with a spin of 10^-12 to 0.1."""
     scene = generic(rng) | {"r0": signed(rng, power(rng, -12, -1))}
     return scene | {"psidot0": signed(rng, power(rng, -6, 0))}
 
 
 def threshold_spin(scene: Scene) -> float:
-    """The spin above which the upright top sleeps stably."""
+    """Return the spin above which the upright top sleeps stably."""
     return 2 * math.sqrt(scene["A"]) / scene["C"]
 
 
 def upright(rng: random.Random, factor: float) -> Scene:
-    """Next to the upright position, with so many times the spin of the threshold."""
+    """Return a start next to the upright position; `factor` is the spin over its threshold."""
     scene = generic(rng)
     scene["r0"] = signed(rng, threshold_spin(scene) * factor)
     scene["theta0_deg"] = power(rng, -12, 0)
@@ -64,23 +72,23 @@ def upright(rng: random.Random, factor: float) -> Scene:
 
 
 def upright_below(rng: random.Random) -> Scene:
-    """Too slow to sleep, far from the threshold or within 10^-12 of it."""
+    """Return an upright start too slow to sleep, some within 10^-12 of the threshold."""
     return upright(rng, rng.choice([rng.uniform(0.1, 0.99), 1 - power(rng, -12, -2)]))
 
 
 def upright_above(rng: random.Random) -> Scene:
-    """Fast enough to sleep, likewise."""
+    """Return an upright start fast enough to sleep, some within 10^-12 of the threshold."""
     return upright(rng, rng.choice([rng.uniform(1.01, 5), 1 + power(rng, -12, -2)]))
 
 
 def hanging(rng: random.Random) -> Scene:
-    """Next to the lowest position."""
+    """Return a start next to the lowest position."""
     scene = generic(rng) | {"theta0_deg": 180 - power(rng, -12, 0)}
     return scene | {"thetadot0": rng.choice([0, signed(rng, power(rng, -12, -1))])}
 
 
 def separatrix(rng: random.Random) -> Scene:
-    """beta = b and alpha = a but for a small factor."""
+    """Return a start with beta = b and alpha = a but for a small factor."""
     scene = generic(rng)
     lam = rng.uniform(0.01, 0.9)
     scene["r0"] = signed(rng, threshold_spin(scene) * math.sqrt(lam))
@@ -89,7 +97,7 @@ def separatrix(rng: random.Random) -> Scene:
 
 
 def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float) -> Scene:
-    """A start at cos(theta0) = u whose angular momentum leads it past a pole, almost over it."""
+    """Return rates at cos(theta0) = u whose angular momentum leads almost over a pole."""
     b = scene["C"] * scene["r0"] / scene["A"]
     rate = pole * b / (1 + pole * u) * (1 + miss)
     theta_rate = math.sqrt(max(speed2 - rate * rate * (1 - u * u), 0))
@@ -97,21 +105,21 @@ def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float) -> Sc
 
 
 def bottom_pass(rng: random.Random) -> Scene:
-    """The axis passes the lower pole within 10^-9 to 10^-6."""
+    """Return a start that passes the lower pole within 10^-9 to 10^-6."""
     scene, u = generic(rng), rng.uniform(-0.9, 0.9)
     scene["r0"] = rng.uniform(-2, 2)
     return scene | to_pole(scene, u, -1, rng.uniform(0, 30), power(rng, -9, -6))
 
 
 def top_pass(rng: random.Random) -> Scene:
-    """The axis passes the upper pole within 10^-9 to 10^-6."""
+    """Return a start that passes the upper pole within 10^-9 to 10^-6."""
     scene, u = generic(rng), rng.uniform(-0.9, 0.9)
     scene["r0"] = rng.uniform(-2, 2)
     return scene | to_pole(scene, u, 1, rng.uniform(10, 40), power(rng, -9, -6))
 
 
 def tiny_nutation(rng: random.Random) -> Scene:
-    """A steady precession, A u psi'^2 - C r0 psi' + m g s = 0, a little disturbed."""
+    """Return a steady precession, A u psi'^2 - C r0 psi' + m g s = 0, a little disturbed."""
     scene = generic(rng) | {"thetadot0": 0.0}
     scene["r0"] = signed(rng, threshold_spin(scene) * rng.uniform(1, 5))
     u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
@@ -121,32 +129,32 @@ def tiny_nutation(rng: random.Random) -> Scene:
 
 
 def sphere(rng: random.Random) -> Scene:
-    """A = C."""
+    """Return a scene with A = C."""
     scene = generic(rng)
     return scene | {"C": scene["A"]}
 
 
 def disc(rng: random.Random) -> Scene:
-    """C = 2A, the most a rigid body can have."""
+    """Return a scene with C = 2A, the most a rigid body can have."""
     scene = generic(rng)
     return scene | {"C": 2 * scene["A"]}
 
 
 def sphere_limit(rng: random.Random) -> Scene:
-    """C within 10^-15 to 10^-6 of A."""
+    """Return a scene with C within 10^-15 to 10^-6 of A."""
     scene = generic(rng)
     return scene | {"C": scene["A"] * (1 + signed(rng, power(rng, -15, -6)))}
 
 
 def disc_limit(rng: random.Random) -> Scene:
-    """C less than 2A by 10^-15 to 10^-6 of it; or a needle, C = 10^-6 to 10^-2 of A."""
+    """Return C less than 2A by 10^-15 to 10^-6 of it, or a needle, C = 10^-6 to 10^-2 of A."""
     scene = generic(rng)
     part = rng.choice([2 * (1 - power(rng, -15, -6)), power(rng, -6, -2)])
     return scene | {"C": scene["A"] * part}
 
 
 def units(rng: random.Random) -> Scene:
-    """A generic scene in units of mass, length and time of 10^-30 to 10^30."""
+    """Return a generic scene in units of mass, length and time of 10^-30 to 10^30."""
     scene, (mass, length, time) = generic(rng), (power(rng, -30, 30) for _ in range(3))
     scene |= {"m": mass, "s": length, "g": length / time**2}
     scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
@@ -154,38 +162,38 @@ def units(rng: random.Random) -> Scene:
 
 
 def far_times(rng: random.Random) -> Scene:
-    """Any of the other strata, at 10^11 to 10^12 periods (see `scene_and_times`)."""
+    """Return a scene of another stratum, for 10^11 to 10^14 periods (see `hard_scene`)."""
     return rng.choice([generic, fast, slow, upright_below, hanging, bottom_pass, tiny_nutation])(
         rng
     )
 
 
 def thresholds(rng: random.Random) -> Scene:
-    """Where the program, or the motion, goes over from one kind to another, within 10^-15."""
+    """Return a scene next to where the program or the motion changes its kind, within 10^-15."""
     return rng.choice([_series_change, _sleeping_threshold, _hardly_torque, _hardly_start])(rng)
 
 
 def _series_change(rng: random.Random) -> Scene:
-    """Released at k = k' (lambda = cos(theta0)), where the series change their nome."""
+    """Return a release at k = k' (lambda = cos(theta0)), where the series change their nome."""
     scene = body(rng) | {"theta0_deg": rng.uniform(1, 85)}
     lam = math.cos(math.radians(scene["theta0_deg"])) * (1 + signed(rng, power(rng, -15, -3)))
     return scene | {"r0": signed(rng, threshold_spin(scene) * math.sqrt(lam))}
 
 
 def _sleeping_threshold(rng: random.Random) -> Scene:
-    """Released next to the vertical, at the spin that just makes it sleep."""
+    """Return a release next to the vertical, at the spin that just makes it sleep."""
     scene = body(rng) | {"theta0_deg": power(rng, -9, 0)}
     miss = 1 + signed(rng, power(rng, -15, -3))
     return scene | {"r0": signed(rng, threshold_spin(scene) * miss)}
 
 
 def _hardly_torque(rng: random.Random) -> Scene:
-    """Next to torque-free."""
+    """Return a scene that is nearly torque-free."""
     return generic(rng) | {"g": power(rng, -15, -6)}
 
 
 def _hardly_start(rng: random.Random) -> Scene:
-    """Next to a release from rest, and next to no spin."""
+    """Return a scene next to a release from rest, and next to no spin."""
     scene = generic(rng) | {"r0": signed(rng, power(rng, -15, -12))}
     return scene | {key: signed(rng, power(rng, -15, -6)) for key in ("thetadot0", "psidot0")}
 
@@ -194,6 +202,7 @@ STRATA: dict[str, Callable[[random.Random], Scene]] = {
     function.__name__.replace("_", " "): function
     for function in (
         generic,
+        from_rest,
         fast,
         slow,
         upright_below,
@@ -214,13 +223,34 @@ STRATA: dict[str, Callable[[random.Random], Scene]] = {
 }
 
 
-def times(rng: random.Random, period: float, count: int = 5, *, least: float = -9) -> list[float]:
-    """Times of 10^least to 10^12 periods, before and after the start."""
-    return [period * signed(rng, power(rng, least, 12)) for _ in range(count)]
+class HardScene(NamedTuple):
+    """A scene of the battery and the times it is judged at."""
+
+    inputs: Scene
+    periods: list[float]
+    """Times anywhere, in nutation periods."""
+    quarters: list[int]
+    """Times next to which angles leap if they leap anywhere, in quarters of a period."""
+
+    def times(self, period: Any) -> list[float]:
+        """Return all the times, with both neighbours of the double next to each quarter.
+
+        `period` is the exact nutation period, in many digits.
+        """
+        times = [float(period * number) for number in self.periods]
+        for number in self.quarters:
+            t = float(period * number / 4)
+            times += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
+        return times
 
 
-def scene_and_times(stratum: str, seed: int, i: int, count: int) -> tuple[Scene, list[float]]:
-    """The i-th scene of a stratum, and so many times in nutation periods."""
+def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
+    """Return the i-th scene of a stratum, with `count` times anywhere and one half period at each
+    side of the start, one of which may be a quarter or a whole number of periods instead."""
     rng = random.Random(f"{seed} {stratum} {i}")
     scene = STRATA[stratum](rng)
-    return scene, times(rng, 1.0, count, least=11 if stratum == "far times" else -9)
+    least, nearest = (11, 11) if stratum == "far times" else (-9, 0)
+    periods = [signed(rng, power(rng, least, 14)) for _ in range(count)]
+    sides = rng.sample([-1, 1], 2)
+    halves = [4 * int(power(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
+    return HardScene(scene, periods, [side * n for side, n in zip(sides, halves, strict=True)])

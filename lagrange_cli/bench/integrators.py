@@ -20,10 +20,10 @@ from ..inputs.top import Top
 from .method import FailedError, Method, NotApplicableError, Sample, Sampled
 
 TIGHTEST = 3e-14
-"""As tight as scipy lets a relative tolerance be."""
+"""Least relative tolerance that scipy takes."""
 
 STEPS_PER_SECOND = 100_000
-"""Of heyoka, which does more; between its steps nothing can look at a clock, so they count."""
+"""Steps that count as a second of heyoka, which no clock can interrupt between its steps."""
 
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 
@@ -38,11 +38,11 @@ class Problem(NamedTuple):
     theta_rate: float
     psi_rate: float
     clock: float
-    """The rate that has become 1."""
+    """Rate that has become 1."""
 
 
 def problem(top: Top) -> Problem:
-    """The problem of a top."""
+    """Return the problem of a top."""
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
     b, theta0 = float(top.C) * float(top.r0) / float(top.A), top.tilt(math)
     theta_rate, psi_rate = float(top.thetadot0), float(top.psidot0)
@@ -63,9 +63,9 @@ class Form(NamedTuple):
 
     start: Callable[[Problem], Sequence[float]]
     slope: Callable[[Problem, Any], Slope]
-    """In an arithmetic with sin and cos: `math`, or heyoka's expressions."""
+    """Right-hand side in an arithmetic with sin and cos: `math`, or heyoka's expressions."""
     angles: Callable[[Array], Sampled]
-    """From a row for each variable."""
+    """Angles from an array with a row for each variable."""
     whole_turns: bool
 
 
@@ -76,7 +76,7 @@ def _euler_start(p: Problem) -> Sequence[float]:
 
 
 def _euler_slope(p: Problem, ar: Any) -> Slope:
-    """theta, its rate, phi and psi; with the momenta of (4,7) and (4,8), which are constant."""
+    """Return the slope of theta, its rate, phi and psi, by the constant momenta of (4,7), (4,8)."""
     beta = p.psi_rate * math.sin(p.theta0) ** 2 + p.b * math.cos(p.theta0)
 
     def slope(_: float, state: Sequence[Any]) -> Sequence[Any]:
@@ -94,7 +94,7 @@ def _quaternion_start(p: Problem) -> Sequence[float]:
 
 
 def _quaternion_slope(p: Problem, _: Any) -> Slope:
-    """p and q in the body and the quaternion from body to space: nothing is singular."""
+    """Return the slope of p, q (body) and the quaternion (body to space): nothing is singular."""
     twist = p.r0 - p.b
 
     def slope(_: float, state: Sequence[Any]) -> Sequence[Any]:
@@ -124,23 +124,23 @@ FORMS = {
 
 
 class Limit:
-    """Seconds that a run may take."""
+    """A clock that ends a run after some seconds."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds, self.end = seconds, time.perf_counter() + seconds
 
     def check(self) -> None:
-        """Raise FailedError when they are over."""
+        """Raise FailedError when the seconds are over."""
         if time.perf_counter() > self.end:
             raise self.error()
 
     def error(self) -> FailedError:
-        """What is said of a run that took longer."""
+        """Return what is said of a run that took longer."""
         return FailedError(f"took more than {self.seconds:g} s")
 
 
 def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.0) -> Sample:
-    """A method of scipy's solve_ivp, with its own interpolation between the steps."""
+    """Return a method of scipy's solve_ivp, with its own interpolation between the steps."""
     from scipy.integrate import solve_ivp
 
     scene = problem(top)
@@ -169,14 +169,14 @@ def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.
 
 
 def _forget_compiled_code(state: Any) -> None:
-    """Or the set-up would be that of the first run ever of this scene, found in a cache."""
+    """Disable heyoka's cache of compiled code, so that set-up times can be compared."""
     state.clear_memcache()
     if hasattr(state, "set_diskcache_enabled"):
         state.set_diskcache_enabled(False)
 
 
 def heyoka_method(form: Form, top: Top, tol: float, limit: float = 5.0) -> Sample:
-    """Taylor's method, compiled for this top; set-up includes the compilation."""
+    """Return Taylor's method, compiled for this top; the set-up includes the compilation."""
     import heyoka
 
     _forget_compiled_code(heyoka.llvm_state)
@@ -210,7 +210,7 @@ TAYLOR = [1e-5, 1e-8, 1e-12, 1e-16]
 
 
 def integrators(limit: float) -> dict[str, Method]:
-    """Each method in each form, over its tolerances; a run may take `limit` seconds."""
+    """Return each method in each form by name; a run may take `limit` seconds."""
     table = {}
     for shape, form in FORMS.items():
         for name, tolerances in SCIPY.items():

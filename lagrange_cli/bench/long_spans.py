@@ -4,37 +4,27 @@ from __future__ import annotations
 
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings
-from .method import Method
-from .work_precision import (
-    FIELDS,
-    Row,
-    Steps,
-    Task,
-    conditions,
-    is_done,
-    is_out,
-    measure,
-    period_of,
-    task,
-)
+from .front import FIELDS, MethodRow, is_done, is_out
+from .method import Method, Steps
+from .work_precision import Task, conditions, measure, nutation_period, task
 
 SPANS = [10.0**power + 0.3 for power in range(7)]
-"""In nutation periods; none ends at a turning point, where approximations are at their best."""
+"""Spans in nutation periods; none ends at a turning point, where approximations do best."""
 JUDGED = 21
 
 SHOWN = ("method", "setting", "error_max", "error_end", "units_max", "ns_min", "runs", "remark")
 
 
-def report(
+def compare_spans(
     motion: Motion, count: int, methods: dict[str, Method], *, limit: float, steps: Steps
 ) -> Findings:
-    """Each method at its tightest setting over longer and longer spans.
+    """Return the report on each method at its tightest setting over longer and longer spans.
 
-    Raises LagtopError as `bench.task` does.
+    Raises LagtopError as `task` does.
     """
-    spans = [task(motion, span * period_of(motion), count, judged=JUDGED) for span in SPANS]
+    spans = [task(motion, span * nutation_period(motion), count, judged=JUDGED) for span in SPANS]
     runs = [(name, work) for name in methods for work in spans]
-    rows: list[Row] = []
+    rows: list[MethodRow] = []
     for name, work in steps(runs, "methods and spans"):
         rows.append(_measure(work, name, methods[name], rows))
     last = conditions(spans[-1], limit)
@@ -44,25 +34,25 @@ def report(
 
 
 def _field(field: Field) -> Field:
-    """As in a report of one span, with the span and without what matters less here."""
+    """Return a field of the report of one span, with the span shown and less of the rest."""
     if field.key == "periods":
         return Field("periods", "periods", lambda periods: f"{periods:.0e}")
     return field if field.key in SHOWN else field._replace(heading="")
 
 
-def _measure(work: Task, name: str, method: Method, before: list[Row]) -> Row:
-    """As `measure`, but for a method that has failed over a shorter span."""
+def _measure(work: Task, name: str, method: Method, before: list[MethodRow]) -> MethodRow:
+    """Return the measured row; a method that failed over a shorter span is not run again."""
     setting = method.settings[-1]
     if before and before[-1].method == name and not is_done(before[-1]):
         if is_out(before[-1]):
             return before[-1]._replace(periods=work.periods)
         remark = "not run: it failed over a shorter span"
-        return Row(name, setting, work.periods, remark=remark)
+        return MethodRow(name, setting, work.periods, remark=remark)
     return measure(work, name, method, setting)
 
 
-def _conclusions(rows: list[Row]) -> list[str]:
-    """Growth of error and of time over all the spans a method could do."""
+def _conclusions(rows: list[MethodRow]) -> list[str]:
+    """Return how error and time grow over the spans that each method could do."""
     lines = []
     for name in dict.fromkeys(row.method for row in rows):
         done = [row for row in rows if row.method == name and is_done(row)]

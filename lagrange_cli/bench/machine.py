@@ -1,4 +1,4 @@
-"""What a report was made on and with."""
+"""The machine and the packages that a report was made with."""
 
 from __future__ import annotations
 
@@ -10,20 +10,22 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 
 
 def use_one_thread() -> None:
-    """Keep linear algebra to one thread, for what has not been imported yet."""
+    """Keep the linear algebra of packages that are not imported yet to one thread."""
     os.environ.update(dict.fromkeys(_THREADS, "1"))
 
 
 def warm_allocator() -> None:
-    """Let a large array come and go: until then glibc gives freed memory back at once, and to ask
-    for it again doubles the time of whatever works on arrays of some thousand numbers."""
+    """Make and free a large array, after which glibc keeps freed memory instead of returning it.
+
+    Asking the system for it again would double the time of work on arrays of some thousand numbers.
+    """
     import numpy as np
 
     np.empty(1 << 21)
 
 
 def machine() -> str:
-    """Processor, system and Python."""
+    """Return the processor and the system."""
     return f"{_processor()}, {platform.system()} {platform.machine()}"
 
 
@@ -37,7 +39,7 @@ def _processor() -> str:
 
 
 def versions() -> str:
-    """Of Python and of all packages that take part."""
+    """Return the versions of Python and of all packages that take part."""
     parts = [f"Python {platform.python_version()}"]
     for name in ("lagtop", "numpy", "mpmath", "scipy", "heyoka"):
         try:
@@ -45,3 +47,8 @@ def versions() -> str:
         except PackageNotFoundError:
             parts.append(f"no {name}")
     return ", ".join(parts)
+
+
+def common_conditions() -> dict[str, str]:
+    """Return the conditions that every report begins with."""
+    return {"machine": machine(), "versions": versions()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
@@ -13,7 +13,16 @@ Sampled = Sequence[Any]
 """Tilt, spin and precession (radians), each an array or a list in the length of the times."""
 
 Sample = Callable[[Array], Sampled]
-"""The angles at times that run away from 0."""
+"""Computes the angles at times that run away from 0."""
+
+
+Steps = Callable[[Sequence[Any], str], Iterable[Any]]
+"""Goes through a sequence, and may show how far it is, under a label."""
+
+
+def silent_steps(items: Sequence[Any], _: str) -> Iterable[Any]:
+    """Return the items as they are; nothing is shown."""
+    return items
 
 
 class NotApplicableError(Exception):
@@ -25,7 +34,7 @@ class FailedError(Exception):
 
 
 class Method(NamedTuple):
-    """A way to compute the angles, with the settings it is tried at."""
+    """A way to compute the angles, with the settings that it is tried at."""
 
     settings: Sequence[Any]
     prepare: Callable[[Top, Any], Sample]
@@ -44,4 +53,4 @@ class Method(NamedTuple):
         """Raise NotApplicableError where the package is missing."""
         name = self.package.partition(".")[0]
         if name and find_spec(name) is None:
-            raise NotApplicableError(f"needs {name}: pip install 'lagtop[bench]'")
+            raise NotApplicableError(f"needs {name}: pip install {name}")

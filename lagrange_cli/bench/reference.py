@@ -1,7 +1,9 @@
 """The one definition of error, and a many-digit reference that shares no formula with the program.
 
-Where the program uses theta functions about the highest point, the reference uses Legendre's third
-integral about the lowest, by mpmath's sn, R_F and R_J, from roots by Viete's cosines:
+The reference shares nothing with what it judges but the inputs as `Top` holds them.  Where the
+program uses theta functions about the highest point and means by the arithmetic-geometric mean,
+the reference uses Legendre's third integral about the lowest point, by mpmath's own sn, R_F, R_J,
+K and E, from roots by Viete's cosines:
 
     u = u2 + (u1 - u2) sn^2 w,  w = sqrt(a (u3 - u2)) (t - t2)/2,
     (psi +- phi)/2 = +-(r0 - b) t/2 + (beta +- b)/2 * integral of dt / (1 +- u).
@@ -25,7 +27,7 @@ Many = Any
 
 
 class Exact(NamedTuple):
-    """Tilt, spin and precession at one time (radians, unwrapped), and their rates."""
+    """The exact tilt, spin and precession at one time (radians, unwrapped), with their rates."""
 
     theta: Many
     phi: Many
@@ -34,11 +36,15 @@ class Exact(NamedTuple):
     phi_rate: Many
     psi_rate: Many
     tau: Many
-    """The time reduced to the nearest multiple of the nutation period."""
+    """Time since the nearest whole nutation period."""
+    quaternion: tuple[Many, Many, Many, Many]
+    """Parts w, x, y, z of the rotation from body to space, continuous from t = 0."""
+    turning_rate: Many
+    """Bound of the rate of each part of the quaternion: half of the angular velocity."""
 
 
 def unit(exact: Many, rate: Many, tau: Many) -> float:
-    """eps (max(1, |exact|) + |tau rate|), what the error of a computed value is counted in.
+    """Return eps (max(1, |exact|) + |tau rate|), what the error of a computed value is counted in.
 
     The second term is what one rounding of the time, less whole periods, does.
     """
@@ -46,7 +52,7 @@ def unit(exact: Many, rate: Many, tau: Many) -> float:
 
 
 def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
-    """The error of one value in units; not a number counts as infinite."""
+    """Return the error of one value in units; not a number counts as infinite."""
     if not math.isfinite(computed):
         return math.inf
     return float(abs(mpmath.mpf(computed) - exact)) / unit(exact, rate, tau)
@@ -55,7 +61,7 @@ def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
 def angle_differences(
     angles: Sequence[Any], exact: Exact, *, whole_turns: bool = True
 ) -> tuple[float, float, float]:
-    """|computed - exact| of tilt, spin and precession, in radians.
+    """Return |computed - exact| of tilt, spin and precession, in radians.
 
     Not a number counts as infinite.  Without `whole_turns`, spin and precession count modulo 2 pi.
     """
@@ -77,13 +83,32 @@ def _less_turns(angle: Many) -> Many:
 def angle_units(
     angles: Sequence[Any], exact: Exact, *, whole_turns: bool = True
 ) -> tuple[float, float, float]:
-    """The same in units."""
+    """Return the errors of tilt, spin and precession in units (see `angle_differences`)."""
     differences = angle_differences(angles, exact, whole_turns=whole_turns)
     theta, phi, psi = (
         difference / unit(true, rate, exact.tau)
         for difference, true, rate in zip(differences, exact[:3], exact[3:6], strict=True)
     )
     return theta, phi, psi
+
+
+def quaternion_units(parts: Sequence[float], exact: Exact) -> float:
+    """Return the worst error of the parts w, x, y, z in units; a wrong sign is an error."""
+    return max(
+        units(part, true, exact.turning_rate, exact.tau)
+        for part, true in zip(parts, exact.quaternion, strict=True)
+    )
+
+
+def key_ulps(computed: float, exact: Many, digits: int) -> float:
+    """Return |computed - exact| over the gap between doubles there; at most 1/2 for the nearest.
+
+    The gap is the one on the side of the exact value, which has that many digits.
+    """
+    with mpmath.workdps(digits):
+        away = exact - mpmath.mpf(computed)
+        beyond = math.nextafter(computed, math.inf if away > 0 else -math.inf)
+        return float(abs(away) / abs(mpmath.mpf(beyond) - mpmath.mpf(computed)))
 
 
 class _Jacobi(NamedTuple):
@@ -96,7 +121,7 @@ class _Jacobi(NamedTuple):
 
 
 def _three_real_roots(c2: Many, c1: Many, c0: Many) -> list[Many]:
-    """Of u^3 + c2 u^2 + c1 u + c0 = 0, in order, by Viete's cosines."""
+    """Return the roots of u^3 + c2 u^2 + c1 u + c0 = 0, in order, by Viete's cosines."""
     shift, p = c2 / 3, c1 - c2**2 / 3
     size = 2 * mpmath.sqrt(-p / 3)
     q = 2 * shift**3 - shift * c1 + c0
@@ -105,7 +130,7 @@ def _three_real_roots(c2: Many, c1: Many, c0: Many) -> list[Many]:
 
 
 class Reference:
-    """The exact motion of a nutating top."""
+    """The exact motion of a top that nutates under a torque."""
 
     def __init__(self, top: Top, digits: int = 50) -> None:
         """Raise LagtopError for a top that does not nutate."""
@@ -120,7 +145,8 @@ class Reference:
         tilt = mpmath.mpf(top.theta0_rad or 0)
         if top.theta0_deg is not None:
             tilt = mpmath.mpf(top.theta0_deg) * mpmath.pi / 180
-        self.u0 = mpmath.cos(tilt)
+        self.tilt, self.u0 = tilt, mpmath.cos(tilt)
+        self.psi_rate, self.at_rest = mpmath.mpf(top.psidot0), top.is_released
         around = mpmath.mpf(top.psidot0) * mpmath.sin(tilt) ** 2
         self.beta = around + self.b * self.u0
         energy = mpmath.mpf(top.thetadot0) ** 2 + around * mpmath.mpf(top.psidot0)
@@ -132,18 +158,22 @@ class Reference:
             2 * self.b * self.beta / self.a - 1,
             (alpha - self.beta**2) / self.a,
         )
+        near_u1 = abs(self.u0 - self.u1) < abs(self.u0 - self.u2)
+        self.starts_highest = near_u1 and not top.thetadot0
+        self.starts_lowest = not (near_u1 or top.thetadot0)
         if not top.thetadot0:  # the start is a root, to all digits
-            near_u1 = abs(self.u0 - self.u1) < abs(self.u0 - self.u2)
             self.u1, self.u2 = (self.u0, self.u2) if near_u1 else (self.u1, self.u0)
         self.speed = mpmath.sqrt(self.a * (self.u3 - self.u2)) / 2
         self.m = (self.u1 - self.u2) / (self.u3 - self.u2)
         self.K = mpmath.ellipk(self.m)
         self.T = 2 * self.K / self.speed
         self.w0 = self._argument(self.u0, mpmath.sign(mpmath.mpf(top.thetadot0)))
+        self.whole_south = self._whole(1 + self.u2, self.u2 - self.u1)
+        self.whole_north = self._whole(1 - self.u2, self.u1 - self.u2)
         self.start = self._halves(mpmath.mpf(0))
 
     def _argument(self, u: Many, theta_sign: Many) -> Many:
-        """w at t = 0: before the lowest point while the tilt grows."""
+        """Return w at t = 0, negative (before the lowest point) while the tilt grows."""
         s2 = (u - self.u2) / (self.u1 - self.u2)
         c2, d2 = (self.u1 - u) / (self.u1 - self.u2), (self.u3 - u) / (self.u3 - self.u2)
         w = mpmath.sqrt(s2) * mpmath.elliprf(max(c2, 0), d2, 1)
@@ -156,24 +186,29 @@ class Reference:
         return _Jacobi(turns, *(mpmath.ellipfun(f, rest, m=self.m) for f in ("sn", "cn", "dn")))
 
     def _halves(self, t: Many) -> tuple[Many, Many]:
-        """(psi + phi)/2 and (psi - phi)/2, but for their start."""
+        """Return (psi + phi)/2 and (psi - phi)/2, but for their start."""
         now, drift = self._jacobi(t), (self.r0 - self.b) * t / 2
-        plus = self._third(1 + self.u2, -(self.u1 - self.u2), now)
-        minus = self._third(1 - self.u2, self.u1 - self.u2, now)
+        band = self.u1 - self.u2
+        plus = self._third(1 + self.u2, -band, now, self.whole_south)
+        minus = self._third(1 - self.u2, band, now, self.whole_north)
         return (
             drift + (self.beta + self.b) / 2 * plus,
             -drift + (self.beta - self.b) / 2 * minus,
         )
 
-    def _third(self, gap: Many, slope: Many, now: _Jacobi) -> Many:
-        """Integral of dw / (gap - slope sn^2) over the speed: Legendre's Pi with n = slope/gap."""
+    def _whole(self, gap: Many, slope: Many) -> Many:
+        """Return the complete integral of dw/(1 - n sn^2) with n = slope/gap."""
+        n = slope / gap
+        return self.K + n / 3 * mpmath.elliprj(0, 1 - self.m, 1, 1 - n)
+
+    def _third(self, gap: Many, slope: Many, now: _Jacobi, whole: Many) -> Many:
+        """Return the integral of dt/(gap - slope sn^2): Legendre's Pi with n = slope/gap."""
         n, sn2, cn2, dn2 = slope / gap, now.sn**2, now.cn**2, now.dn**2
-        whole = self.K + n / 3 * mpmath.elliprj(0, 1 - self.m, 1, 1 - n)
         part = mpmath.elliprf(cn2, dn2, 1) + n / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, 1 - n * sn2)
         return (2 * now.turns * whole + now.sn * part) / (gap * self.speed)
 
     def at(self, t: float) -> Exact:
-        """The exact angles and rates at a time."""
+        """Return the exact angles and rates at a time."""
         with mpmath.workdps(self.digits):
             time = mpmath.mpf(t)
             _, sn, cn, dn = self._jacobi(time)
@@ -185,25 +220,36 @@ class Reference:
             plus, minus = (now - then for now, then in halves)
             sine2 = below * above
             psi_rate = (self.beta - self.b * u) / sine2
+            theta_rate = -2 * band * sn * cn * dn * self.speed / mpmath.sqrt(sine2)
+            x, y = mpmath.sqrt(below / 2), mpmath.sqrt(above / 2)
             return Exact(
                 theta=theta,
                 phi=plus - minus,
                 psi=plus + minus,
-                theta_rate=-2 * band * sn * cn * dn * self.speed / mpmath.sqrt(sine2),
+                theta_rate=theta_rate,
                 phi_rate=self.r0 - psi_rate * u,
                 psi_rate=psi_rate,
                 tau=time - mpmath.nint(time / self.T) * self.T,
+                quaternion=(
+                    x * mpmath.cos(plus),
+                    y * mpmath.cos(minus),
+                    y * mpmath.sin(minus),
+                    x * mpmath.sin(plus),
+                ),
+                turning_rate=mpmath.sqrt(theta_rate**2 + psi_rate**2 * sine2 + self.r0**2) / 2,
             )
 
     def record(self) -> dict[str, Many]:
-        """Exact values of the keys that a general start has."""
+        """Return the exact value of every number of the record; None for those it has not."""
         with mpmath.workdps(self.digits):
-            first, last = (self._halves(t) for t in (mpmath.mpf(0), self.T))
-            plus, minus = (last[i] - first[i] for i in range(2))
+            plus, minus = (
+                last - first for last, first in zip(self._halves(self.T), self.start, strict=True)
+            )
             spin, precession = (plus - minus) / self.T, (plus + minus) / self.T
-            K_prime = mpmath.ellipk(1 - self.m)
-            start, half = self.at(mpmath.mpf(0)), self.at(self.T / 2)
-            return {
+            half, K_prime = self.at(self.T / 2), mpmath.ellipk(1 - self.m)
+            return self._turning_points() | {
+                "a": self.a,
+                "b": self.b,
                 "u1": self.u1,
                 "u2": self.u2,
                 "u3": self.u3,
@@ -217,12 +263,26 @@ class Reference:
                 "T_nutation": self.T,
                 "T_spin": 2 * mpmath.pi / abs(spin),
                 "T_precession": 2 * mpmath.pi / abs(precession),
-                "theta_min_deg": mpmath.degrees(mpmath.acos(self.u1)),
-                "theta_max_deg": mpmath.degrees(mpmath.acos(self.u2)),
                 "mean_spin_rate": spin,
                 "mean_precession_rate": precession,
-                "spin_rate_start": start.phi_rate,
+                "spin_rate_start": self.r0 - self.psi_rate * self.u0,
                 "spin_rate_half": half.phi_rate,
-                "precession_rate_start": start.psi_rate,
+                "precession_rate_start": self.psi_rate,
                 "precession_rate_half": half.psi_rate,
             }
+
+    def _turning_points(self) -> dict[str, Many]:
+        """Return the tilts, u(T/4) of a start at the highest point, and (7,2) of one at rest."""
+        at_rest, highest = self.at_rest, self.starts_highest
+        amplitude = mpmath.asin(mpmath.sqrt((self.u3 - self.u2) / (self.u3 + 1)))
+        k_prime2 = (self.u3 - self.u1) / (self.u3 - self.u2)
+        quarter = mpmath.ellipfun("sn", self.K / 2, m=self.m)
+        least = self.tilt if highest else mpmath.acos(self.u1)
+        most = self.tilt if self.starts_lowest else mpmath.acos(self.u2)
+        return {
+            "theta_min_deg": mpmath.degrees(least),
+            "theta_max_deg": mpmath.degrees(most),
+            "u_quarter": self.u2 + (self.u1 - self.u2) * quarter**2 if highest else None,
+            "amplitude_deg": mpmath.degrees(amplitude) if at_rest else None,
+            "alpha": mpmath.ellipf(amplitude, k_prime2) if at_rest else None,
+        }

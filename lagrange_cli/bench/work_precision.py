@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -17,23 +17,28 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..motion.record import Regime
 from ..motion.solve import Motion
-from ..output.findings import Field, Findings, short
+from ..output.findings import Findings
 from .closed_forms import CLOSED_FORMS
+from .front import ANGLES, FIELDS, NOT_APPLICABLE, MethodRow, conclusions, is_out, with_front
 from .integrators import STEPS_PER_SECOND, integrators
-from .machine import machine, versions, warm_allocator
-from .method import FailedError, Method, NotApplicableError, Sample, Sampled
+from .machine import common_conditions, warm_allocator
+from .method import (
+    FailedError,
+    Method,
+    NotApplicableError,
+    Sample,
+    Sampled,
+    Steps,
+    silent_steps,
+)
 from .reference import Exact, Reference, angle_differences, angle_units
 
 JUDGED = 201
-"""So many of the times, the last among them, are compared with the reference."""
+"""Number of the times, the last among them, that are compared with the reference."""
 DIGITS, FEWER_DIGITS = 80, 50
-"""Of the reference, and of the one it is checked against."""
+"""Digits of the reference, and of the one that it is checked against."""
 RUNS, SECONDS_OF_RUNS = 9, 0.3
-"""A timing is repeated so often, or for so long."""
-NOT_APPLICABLE = "not applicable"
-
-Steps = Callable[[Sequence[Any], str], Iterable[Any]]
-"""Goes through a sequence, and may show how far it is, under a label."""
+"""Most repetitions of a timing, and the seconds after which there are no more."""
 
 
 class Task(NamedTuple):
@@ -49,63 +54,13 @@ class Task(NamedTuple):
 
     @property
     def periods(self) -> float:
-        """The span, in nutation periods."""
-        return float(self.times[-1]) / period_of(self.motion)
+        """The span in nutation periods."""
+        return float(self.times[-1]) / nutation_period(self.motion)
 
 
-class Row(NamedTuple):
-    """One method at one setting."""
-
-    method: str
-    setting: float | str
-    periods: float
-    theta_max: float | None = None
-    """Greatest error over the judged times, in radians; likewise the next."""
-    phi_max: float | None = None
-    psi_max: float | None = None
-    theta_end: float | None = None
-    phi_end: float | None = None
-    psi_end: float | None = None
-    error_max: float | None = None
-    """The greatest of the three."""
-    error_end: float | None = None
-    units_max: float | None = None
-    setup_s: float | None = None
-    ns_min: float | None = None
-    """Nanoseconds a sample: least and median of the runs."""
-    ns_median: float | None = None
-    runs: int | None = None
-    front: bool = False
-    """Whether no other is both faster and more accurate."""
-    remark: str | None = None
-
-
-ANGLES = ("theta", "phi", "psi")
-FIELDS = [
-    Field("method", "method", is_text=True, names_the_row=True),
-    Field("setting", "setting", names_the_row=True),
-    Field("periods"),
-    *(Field(f"{angle}_max") for angle in ANGLES),
-    *(Field(f"{angle}_end") for angle in ANGLES),
-    Field("error_max", "max error", short),
-    Field("error_end", "at the end", short),
-    Field("units_max", "units", short),
-    Field("setup_s", "set-up ms", lambda seconds: f"{1000 * seconds:.1f}"),
-    Field("ns_min", "ns/sample", lambda ns: f"{ns:.0f}"),
-    Field("ns_median", "median", lambda ns: f"{ns:.0f}"),
-    Field("runs", "runs"),
-    Field("front", "front", lambda front: "*" if front else ""),
-    Field("remark", "remark", is_text=True),
-]
-
-
-def period_of(motion: Motion) -> float:
-    """The nutation period of a scene that `check_scene` has passed."""
+def nutation_period(motion: Motion) -> float:
+    """Return the nutation period of a scene that `check_scene` has passed."""
     return float(motion.T_nutation or math.inf)
-
-
-def _silent(items: Sequence[Any], _: str) -> Iterable[Any]:
-    return items
 
 
 def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
@@ -115,9 +70,9 @@ def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Metho
 
 
 def task(
-    motion: Motion, t_max: float, count: int, *, judged: int = JUDGED, steps: Steps = _silent
+    motion: Motion, t_max: float, count: int, *, judged: int = JUDGED, steps: Steps = silent_steps
 ) -> Task:
-    """`count` times from 0 to t_max (just t_max for one), and the exact angles at some of them.
+    """Return `count` times from 0 to t_max (just t_max for one), with exact angles at a part.
 
     Raises LagtopError for a motion that the reference cannot judge, and for a time out of reach.
     """
@@ -143,9 +98,9 @@ def check_scene(motion: Motion) -> None:
         raise LagtopError("r0 or psidot0 must be other than 0: a plane pendulum has only a tilt")
 
 
-def measure(work: Task, name: str, method: Method, setting: Any) -> Row:
-    """Run, judge and time one method at one setting; what fails is told in the remark."""
-    row = Row(name, setting, work.periods)
+def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
+    """Return the judged and timed run of one method; the remark tells what failed."""
+    row = MethodRow(name, setting, work.periods)
     times = work.times[work.judged] if method.costly else work.times
     try:
         method.check_package()
@@ -175,7 +130,7 @@ def _set_up(method: Method, work: Task, setting: Any) -> tuple[Sample, float]:
 
 
 def _run(sample: Sample, times: Array) -> tuple[Sampled, list[float]]:
-    """The angles of a first run, and the seconds of those after it, which find all warm.
+    """Return the angles of a first run, and the seconds of later ones, which find all warm.
 
     A run that takes long by itself is not repeated.
     """
@@ -192,8 +147,10 @@ def _run(sample: Sample, times: Array) -> tuple[Sampled, list[float]]:
     return angles, seconds
 
 
-def _judged(row: Row, work: Task, found: Sequence[Sequence[Any]], method: Method) -> Row:
-    """The row with its errors."""
+def _judged(
+    row: MethodRow, work: Task, found: Sequence[Sequence[Any]], method: Method
+) -> MethodRow:
+    """Return the row with its errors."""
     turns = method.whole_turns
     pairs = list(zip(found, work.exact, strict=True))
     errors = [angle_differences(angles, exact, whole_turns=turns) for angles, exact in pairs]
@@ -206,77 +163,30 @@ def _judged(row: Row, work: Task, found: Sequence[Sequence[Any]], method: Method
     return row._replace(error_max=max(worst), error_end=max(end), units_max=units, **each)
 
 
-def with_front(rows: Sequence[Row]) -> list[Row]:
-    """Sorted by error, those marked that no other row beats in both error and time."""
-    rows = sorted(rows, key=lambda row: math.inf if row.error_max is None else row.error_max)
-    return [row._replace(front=is_done(row) and not rivals(row, rows)) for row in rows]
-
-
-def is_done(row: Row) -> bool:
-    """Whether it has an error and a time."""
-    return row.error_max is not None and row.ns_min is not None
-
-
-def is_out(row: Row) -> bool:
-    """Whether the method cannot do the scene, at any setting."""
-    return (row.remark or "").startswith(NOT_APPLICABLE)
-
-
-def rivals(row: Row, rows: Iterable[Row]) -> list[Row]:
-    """The rows of other methods that are at least as fast and as accurate, and better in one."""
-    mine = (row.error_max, row.ns_min)
-    return [
-        other
-        for other in rows
-        if is_done(other)
-        and (theirs := (other.error_max, other.ns_min)) != mine
-        and all(x <= y for x, y in zip(theirs, mine, strict=True))  # type: ignore[operator]
-    ]
-
-
-def report(
+def compare_methods(
     motion: Motion,
     t_max: float,
     count: int,
     methods: dict[str, Method],
     *,
     limit: float,
-    steps: Steps = _silent,
+    steps: Steps = silent_steps,
 ) -> Findings:
-    """Every method at every setting over one span.  Raises LagtopError as `task` does."""
+    """Return the report on every method at every setting.  Raises LagtopError as `task` does."""
     work = task(motion, t_max, count, steps=steps)
     runs = [(name, method, x) for name, method in methods.items() for x in method.settings]
-    found: list[Row] = []
+    found: list[MethodRow] = []
     for name, method, setting in steps(runs, "methods"):
         if not (found and found[-1].method == name and is_out(found[-1])):  # said once is enough
             found.append(measure(work, name, method, setting))
     rows = with_front(found)
-    return Findings(conditions(work, limit), FIELDS, rows, list(conclusions(rows)))
-
-
-def conclusions(rows: Sequence[Row]) -> Iterator[str]:
-    """Who beats our closed form in doubles, and by how much."""
-    for row in rows:
-        if row.method == "lagtop" and is_done(row):
-            better = rivals(row, rows)
-            for other in better:
-                yield (
-                    f"{other.method} at {other.setting} beats lagtop: {other.error_max:.1e} rad in "
-                    f"{other.ns_min:.0f} ns against {row.error_max:.1e} rad in {row.ns_min:.0f} ns"
-                )
-            if not better:
-                yield "No method is both faster and more accurate than lagtop."
-    missing = sum(not is_done(row) for row in rows)
-    if missing:
-        yield f"Without a result: {missing} (see the remarks)."
+    return Findings(conditions(work, limit), FIELDS, rows, list(conclusions(rows, methods)))
 
 
 def conditions(work: Task, limit: float) -> dict[str, str]:
-    """All that the figures depend on."""
+    """Return all that the figures depend on."""
     motion = work.motion
-    return {
-        "machine": machine(),
-        "versions": versions(),
+    return common_conditions() | {
         "scene": motion.top.options(),
         "regime": f"{motion.regime.value}, nutation period {motion.T_nutation}",
         "times": f"{work.times.size} from 0 to {float(work.times[-1])} "

@@ -63,18 +63,18 @@ def command(
     output: str,
     **options: Any,
 ) -> None:
-    """Error against run time: closed forms and integrators at the same times.
+    """Compare closed forms and integrators: error against run time at the same times.
 
     Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
-    timed on one thread.  Needs the extra `bench` for scipy and heyoka; without them their rows say
-    so.  A * marks the Pareto front: no other run is both faster and more accurate.
+    timed on one thread.  Taylor's method needs heyoka (extra `bench`); a method whose package is
+    missing says so.  A * marks the Pareto front: no other run is both faster and more accurate.
     """
     from ..bench.machine import use_one_thread
 
     use_one_thread()
-    from ..bench import long_spans as drift
     from ..bench import work_precision as bench
-    from ..bench.diagrams import check_plot, draw_drift, draw_work_precision
+    from ..bench.diagrams import check_plot, draw_long_spans, draw_work_precision
+    from ..bench.long_spans import compare_spans
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)
@@ -83,16 +83,16 @@ def command(
     motion = solved(scene, rad, False, options)
     bench.check_scene(motion)
     how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
-    end = float(PERIODS * bench.period_of(motion) if t_max is None else t_max)
+    end = float(PERIODS * bench.nutation_period(motion) if t_max is None else t_max)
 
     def find() -> Findings:
         if is_long:
-            found = drift.report(motion, count or LONG_SAMPLES, chosen, **how)
+            findings = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
         else:
-            found = bench.report(motion, end, count or SAMPLES, chosen, **how)
+            findings = bench.compare_methods(motion, end, count or SAMPLES, chosen, **how)
         if plot:
-            (draw_drift if is_long else draw_work_precision)(found, plot)
-        return found
+            (draw_long_spans if is_long else draw_work_precision)(findings, plot)
+        return findings
 
     write_report(find, fmt, output)
 

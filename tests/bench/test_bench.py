@@ -22,13 +22,13 @@ from conftest import ROOT, Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import value_text
-from lagrange_cli.bench import diagrams
-from lagrange_cli.bench import long_spans as drift
+from lagrange_cli.bench import diagrams, front, long_spans
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench import work_precision as bench
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
+from lagrange_cli.bench.front import MethodRow, conclusions, with_front
 from lagrange_cli.bench.integrators import integrators
-from lagrange_cli.bench.work_precision import Row, conclusions, measure, task, with_front
+from lagrange_cli.bench.work_precision import measure, task
 from lagrange_cli.output.findings import Findings
 
 LOOPING = Top(psidot0=-4)
@@ -38,18 +38,19 @@ METHODS = CLOSED_FORMS | integrators(10)
 @cache
 def work_on(top: Top) -> bench.Task:
     motion = solve(top)
-    return task(motion, 3.3 * bench.period_of(motion), 40, judged=10)
+    return task(motion, 3.3 * bench.nutation_period(motion), 40, judged=10)
 
 
-def run(top: Top, name: str, setting: Any) -> Row:
+def run(top: Top, name: str, setting: Any) -> MethodRow:
     return measure(work_on(top), name, METHODS[name], setting)
 
 
-def error(row: Row) -> float:
+def error(row: MethodRow) -> float:
     assert row.error_max is not None, row.remark
     return row.error_max
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", integrators(10))
 def test_integrators_agree_with_the_reference_the_better_the_tighter(name: str) -> None:
     """Worst seen at the tightest tolerance: 1.2e-6 rad (Radau, quaternion)."""
@@ -94,8 +95,8 @@ def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
     assert error(measure(work, "Taylor-euler", METHODS["Taylor-euler"], 1e-16)) < 1e-12
 
 
-def row(method: str, error_max: float | None, ns_min: float | None, **more: Any) -> Row:
-    return Row(method, "", 1.0, error_max=error_max, ns_min=ns_min, units_max=9.0, **more)
+def row(method: str, error_max: float | None, ns_min: float | None, **more: Any) -> MethodRow:
+    return MethodRow(method, "", 1.0, error_max=error_max, ns_min=ns_min, units_max=9.0, **more)
 
 
 def test_front_and_what_it_says() -> None:
@@ -104,12 +105,38 @@ def test_front_and_what_it_says() -> None:
     marked = with_front(rows)
     assert [x.method for x in marked] == ["half", "lagtop", "slow", "rough", "none"]
     assert [x.method for x in marked if x.front] == ["lagtop", "rough"]
-    assert list(conclusions(marked)) == [
-        "No method is both faster and more accurate than lagtop.",
-        "Without a result: 2 (see the remarks).",
+    table = {name: methods.Method([], ours) for name in ("lagtop", "slow", "rough", "none", "half")}
+    assert list(conclusions(marked, table)) == [
+        "None of slow, rough is both faster and more accurate than lagtop.",
+        "Nothing from outside this package was compared.",
+        "Not compared: half (None), none (failed: stopped).",
     ]
-    better = list(conclusions(with_front([*rows, row("better", 1e-16, 1.5)])))
+    table["slow"] = methods.Method([], ours, "scipy")
+    assert "Nothing from outside this package was compared." not in conclusions(marked, table)
+    marked = with_front([*rows, row("better", 1e-16, 1.5)])
+    better = list(conclusions(marked, table | {"better": methods.Method([], ours)}))
     assert better[0].startswith("better at  beats lagtop: 1.0e-16 rad in 2 ns against 1.0e-15 rad")
+
+
+def ours(*_: Any) -> Any:
+    """Stand in for a method that is not run."""
+    raise AssertionError
+
+
+def test_an_empty_field_beats_nothing() -> None:
+    alone = with_front([row("lagtop", 1e-15, 2.0)])
+    table = {"lagtop": methods.Method([], ours)}
+    assert list(conclusions(alone, table)) == ["lagtop was compared with nothing."]
+    away = row("scipy.special", None, None, remark="not applicable: needs scipy")
+    assert list(conclusions([*alone, away], table)) == [
+        "lagtop was compared with nothing.",
+        "Not compared: scipy.special (not applicable: needs scipy).",
+    ]
+    partly = [*alone, row("rough", 1e-3, 9.0), row("rough", None, None, remark="failed: slow")]
+    assert list(conclusions(partly, table | {"rough": methods.Method([], ours, "scipy")})) == [
+        "None of rough is both faster and more accurate than lagtop.",
+        "Settings without a result: 1 (see the remarks).",
+    ]
 
 
 def test_what_fails_is_told() -> None:
@@ -139,6 +166,7 @@ def test_euler_angles_on_the_vertical() -> None:
 SMALL = ["--methods", "lagtop,theta-series,DOP853-euler", "--n", 10]
 
 
+@pytest.mark.slow
 def test_formats_hold_the_same(lagtop: Lagtop) -> None:
     whole = json.loads(lagtop("bench", *SMALL, "--format", "json").stdout)
     listed = lagtop("bench", *SMALL, "--format", "csv")
@@ -160,12 +188,15 @@ def test_missing_packages_are_rows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
     names = "lagtop,scipy.special,RK45-euler,Taylor-euler"
     result = lagtop("bench", "--methods", names, "--n", 5, "--format", "json")
     assert result.exit_code == 0
-    rows = json.loads(result.stdout)["rows"]
+    whole = json.loads(result.stdout)
+    assert whole["conclusions"][0] == "lagtop was compared with nothing."
+    assert whole["conclusions"][1].startswith("Not compared: RK45-euler (not applicable: needs ")
+    rows = whole["rows"]
     assert len(rows) == 4  # one for a method, not one for each of its settings
     remarks = {x["method"]: x["remark"] for x in rows}
     assert remarks["lagtop"] is None
     for name, package in {"scipy.special": "scipy", "Taylor-euler": "heyoka"}.items():
-        assert remarks[name] == (f"not applicable: needs {package}: pip install 'lagtop[bench]'")
+        assert remarks[name] == (f"not applicable: needs {package}: pip install {package}")
 
 
 BAD = {
@@ -204,12 +235,13 @@ def test_what_cannot_be_written_is_known_before_the_work(lagtop: Lagtop, tmp_pat
         assert result.stderr.startswith(f"Error: cannot write {tmp_path}")
 
 
+@pytest.mark.slow
 def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
     rows = with_front([row("lagtop", 1e-15, 2.0), row("x-euler", 1e-3, 9.0), row("y", None, None)])
-    found = Findings({"times": "5", "scenes": "3"}, bench.FIELDS, rows, [])
+    found = Findings({"times": "5", "scenes": "3"}, front.FIELDS, rows, [])
     draws: dict[str, Callable[[Findings, str], None]] = {
         "work": diagrams.draw_work_precision,
-        "drift": diagrams.draw_drift,
+        "drift": diagrams.draw_long_spans,
     }
     for name, draw in draws.items():
         pair = [tmp_path / f"{name}{i}.svg" for i in range(2)]
@@ -225,7 +257,7 @@ def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
 def test_long_view_stops_a_method_that_has_failed(
     lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(drift, "SPANS", [1.3, 200.3, 1000.3])
+    monkeypatch.setattr(long_spans, "SPANS", [1.3, 200.3, 1000.3])
     names = "lagtop,mean-rates,DOP853-quaternion"
     line = ["--long", "--n", 50, "--limit", 0.3, "--methods", names]
     found = json.loads(lagtop("bench", *line, "--format", "json").stdout)
@@ -247,7 +279,8 @@ def test_long_view_stops_a_method_that_has_failed(
 
 def test_samples_are_taken_in_one_thread_and_scipy_stays_out_of_solve() -> None:
     code = (
-        "import os, sys\nfrom click.testing import CliRunner\nfrom lagrange_cli.cli import main\n"
+        "import os, sys\nfrom click.testing import CliRunner\n"
+        "from lagrange_cli.cli.group import main\n"
         "CliRunner().invoke(main, 'bench --n 3 --methods lagtop'.split())\n"
         "print(os.environ['OMP_NUM_THREADS'], {'scipy', 'heyoka', 'matplotlib'} & set(sys.modules))"
     )
@@ -261,6 +294,7 @@ def test_a_time_out_of_reach_is_refused_by_task() -> None:
     assert math.isfinite(np.float64(task(solve(Top()), 1e9, 2).agreement))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["stiff-top", "slow-top", "near-separatrix", "chrapan-1952"])
 def test_sample_scenes(scene: str, lagtop: Lagtop) -> None:
     path = ROOT / "sample_inputs" / f"{scene}.toml"
