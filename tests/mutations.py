@@ -213,10 +213,10 @@ def shortened(text: str) -> str:
     return f"`{line if len(line) <= 40 else line[:37] + '...'}`"
 
 
-def chosen(root: Path, count: int, seed: int) -> list[Mutation]:
-    """Return random mutations; every module is as likely as every other."""
+def chosen(root: Path, count: int, seed: int, room: str) -> list[Mutation]:
+    """Return random mutations of a room or of all; every module is as likely as every other."""
     rng = random.Random(seed)
-    paths = sorted((root / "lagrange_cli").rglob("*.py"))
+    paths = sorted((root / "lagrange_cli" / room).rglob("*.py"))
     by_module = [found for path in paths if (found := mutations(root, path))]
     picked: dict[Mutation, None] = {}
     total = sum(map(len, by_module))
@@ -279,6 +279,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", type=int)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--room", default="", help="only modules of this room")
     parser.add_argument("--out", type=Path, default=Path("mutations.csv"))
     parser.add_argument("--list", action="store_true", help="print the mutations and run nothing")
     parser.add_argument("--jobs", type=int, choices=[1, 2], default=2)
@@ -288,7 +289,8 @@ def main() -> None:
         for i in range(options.jobs):
             clones.put(Path(folder) / str(i))
             subprocess.run(["git", "clone", "-q", ROOT, Path(folder) / str(i)], check=True)
-        wanted = list(enumerate(chosen(Path(folder) / "0", options.count, options.seed), 1))
+        picked = chosen(Path(folder) / "0", options.count, options.seed, options.room)
+        wanted = list(enumerate(picked, 1))
         if options.list:
             print(*(mutation for _, mutation in wanted), sep="\n")
             return

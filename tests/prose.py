@@ -33,7 +33,7 @@ VERBS = frozenset(
     Scale Scan Search Select Send Serve Set Settle Shape Shift Show Shut Sign Simulate Skip Solve
     Sort Space Spare Split Spoil Start State Stop Store Stream Strip Subtract Sum Swap Take Tell
     Test Time Track Transform Translate Try Turn Unwrap Update Use Verify Wait Walk Warn Watch
-    Wrap Write Yield
+    Work Wrap Write Yield
     """.split()
 )
 """Imperatives that a function's docstring may begin with; further plain ones are welcome."""
@@ -88,7 +88,7 @@ def fault(node: ast.AST | None, text: str) -> str | None:
         return f"begins with {leaning.group()!r}"
     if not summary.rstrip().endswith((".", ".)", ":")):
         return "its first sentence has no full stop"
-    if not text.rstrip().endswith((".", ".)", "```")) and ">>>" not in text:
+    if not text.rstrip().endswith((".", ".)", "```", "|")) and ">>>" not in text:
         return "does not end with a full stop"
     if isinstance(node, Function) and needs_verb(node):
         word = re.split(r"\W", summary, maxsplit=1)[0]

@@ -79,6 +79,7 @@ class Integral:
         return guess
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ORBITS)
 def test_eta(name: str) -> None:
     """Within 4 units of the quadrature; the worst seen is 1.6."""

@@ -73,6 +73,7 @@ def errors(name: str, value: float, u: float) -> list[float]:
         ]
 
 
+@pytest.mark.slow
 def test_jacobi() -> None:
     """Worst seen in 20 000: 1.23 units."""
     rng = random.Random("sn")
@@ -199,6 +200,7 @@ def relative(value: Any, exact: Any) -> float:
     return float(abs(mpmath.mpf(float(value)) / exact - 1) / EPS)
 
 
+@pytest.mark.slow
 def test_carlson() -> None:
     """Worst seen, arguments over forty decades: R_F 2.2, R_C 1.6, R_D 2.6, R_J 3.5 eps."""
     rng = random.Random("Carlson")
@@ -251,6 +253,7 @@ def test_carlson_in_blocks() -> None:
     np.testing.assert_allclose(together[some], alone, rtol=8 * EPS)
 
 
+@pytest.mark.slow
 def test_incomplete_integrals() -> None:
     """Worst seen in 20 000 amplitudes up to a quarter turn: F 2.9, E 3.0 eps."""
     rng = random.Random("F")

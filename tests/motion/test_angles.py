@@ -39,6 +39,7 @@ def test_named_scenes_at_any_time(scene: dict[str, float]) -> None:
     assert worst(scene, motion, times) <= 1.5
 
 
+@pytest.mark.slow
 def test_random_scenes_at_any_time() -> None:
     """Worst seen in 3000 scenes: 1.8 units; in these: 1.4."""
     rng = random.Random(1977)

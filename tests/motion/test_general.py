@@ -296,6 +296,7 @@ def test_energy_and_momentum_from_the_samples(far: float) -> None:
         assert np.ptp(momentum) <= 4 * 2.0**-52 * (A * abs(scene["psidot0"]) + C * abs(r0) + A)
 
 
+@pytest.mark.slow
 def test_rates_are_the_derivatives_of_the_angles() -> None:
     """p, q, r and the three rates against the many-digit reference and (4,1)."""
     for scene, motion in generic_motions(10):
@@ -436,6 +437,7 @@ def test_the_reference_agrees_with_the_papers_formulas() -> None:
                 assert abs(mine - other) < 1e-35
 
 
+@pytest.mark.slow
 def test_the_reference_agrees_with_itself_at_two_precisions() -> None:
     rng = random.Random(2)
     for draw in STRATA.values():
@@ -446,6 +448,7 @@ def test_the_reference_agrees_with_itself_at_two_precisions() -> None:
             assert abs(mine - other) < 1e-25
 
 
+@pytest.mark.slow
 def test_rates_and_attitude_far_away_are_as_exact_as_near() -> None:
     for _, motion in generic_motions(6):
         t = 1e9 * period(motion) + np.linspace(0, 1, 9) * period(motion)
@@ -540,6 +543,7 @@ def test_torque_free_means_are_exact() -> None:
     assert (motion.mean_precession_rate, motion.T_precession) == (0, None)
 
 
+@pytest.mark.slow
 def test_small_times_keep_their_digits_for_any_start() -> None:
     """Worst seen: 3.0 units."""
     rng = random.Random(8)
