@@ -17,14 +17,14 @@ from lagrange_cli.cli.group import main
 from lagrange_cli.cli.options import ExamplesFirst
 
 SHORTER = {
-    "lagtop bench": "lagtop bench --limit 0.05",
+    "lagtop bench": "lagtop bench --methods lagtop,theta-series --n 3 --limit 0.5",
     "lagtop stability": "lagtop stability --samples 1 --strata fast",
     " --strata separatrix,thresholds --samples 50": "",
     " --thorough": "",
-    "--n 1e5": "--n 1e3",
+    "--t-max 100 --n 1e5": "--t-max 1 --n 1e3",
     "--n 1e6": "--n 1e4",
 }
-"""What a test has no time for: minutes of measurement.  Every option is still given once."""
+"""What a test has no time for: minutes of measurement.  Later options win over these."""
 SLOW = ("plot", "bench", "stability")
 
 
