@@ -66,6 +66,8 @@ def _client(address: str) -> Client:
         ) from None
     except OSError as error:
         raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
+    except RuntimeError as error:
+        raise UnavailableError(f"a cluster of this machine cannot be started: {error}") from None
 
 
 @contextmanager

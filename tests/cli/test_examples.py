@@ -60,7 +60,8 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "tops.csv").write_text("id,r0,theta0_deg\na,40,20\nb,-60,110\n")
     tops = [{"time": i, "top": {"r0": 40 + i}} for i in range(3)]
     (tmp_path / "log.json").write_text("".join(json.dumps(x) + "\n" for x in tops))
-    script(tmp_path / "bin" / "lagtop", "from lagrange_cli.__main__ import main; main()")
+    started = "if __name__ == '__main__':  # as pip writes it: workers import this file\n    main()"
+    script(tmp_path / "bin" / "lagtop", f"from lagrange_cli.__main__ import main\n{started}")
     script(tmp_path / "bin" / "jq", JQ)
     return tmp_path
 
@@ -99,9 +100,9 @@ def test_examples_of_the_help_run(example: str, folder: Path) -> None:
 def test_the_examples_are_so_many() -> None:
     counts = {command.name: len(command.examples) for command in commands()}
     assert counts == {
-        **{"main": 3, "solve": 6, "table": 6, "sweep": 5, "plot": 5},
+        **{"main": 3, "solve": 6, "table": 6, "sweep": 7, "plot": 5},
         **{"jacobi": 6, "eta": 5, "bench": 4, "stability": 4},
     }
-    assert len(EXAMPLES) == 41 + 3
+    assert len(EXAMPLES) == 43 + 3
     lines = [line for command in commands() for line in command.examples]
     assert all(any(long in line for line in lines) for long in SHORTER)
