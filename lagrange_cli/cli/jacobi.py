@@ -82,8 +82,10 @@ def command(
 ) -> None:
     """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
 
-    Without --u the constants; with it am, sn, cn, dn of every u, right to an ulp or two as close to
-    k = 1 as --k-prime can say, and what else is asked for, to a few roundings of 1.
+    Without --u the constants; with it am, sn, cn, dn of every u, and what else is asked for.  Each
+    is within 4 roundings of it, or of 1, and 4 roundings of u and of --param, for u and a real
+    --param within 2^50 periods and an imaginary one below K'; what is beyond is refused.  An empty
+    cell is a pole.
     """
     from ..elliptic.function_table import Request
     from ..elliptic.modulus_input import ModulusInput, constants_record

@@ -7,9 +7,8 @@ both on one side (hyperbolic motion), or one is at infinity (parabolic motion; L
 roots are exact rationals, so their gaps are; and what is made of the gaps are sums and products of
 positive numbers, so that nothing is lost as roots come close to each other.
 
-In doubles sizes are from 1e-100 to 1e100.  The error of eta is within 4 units of
-eps (the larger of |delta| and |delta*|, and |tau d eta/d tau|), tau counted from the nearest
-passage of delta*; the worst seen is in README.md.
+In doubles sizes are from 1e-100 to 1e100, and eta is within 4 units of
+eps (max(1, |eta|) + |tau d eta/d tau|), tau counted from the nearest passage of delta*.
 """
 
 from __future__ import annotations

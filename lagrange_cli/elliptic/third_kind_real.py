@@ -201,4 +201,18 @@ class RealHyperbolic:
             difference = difference + sign * (
                 near * fall + (image if self.odd else -image) * image_fall
             )
-        return ar.log1p(difference / total) / 2
+        quotient = difference / total
+        if not self.odd:
+            return ar.log1p(quotient) / 2
+        pole = quotient < -0.5  # S(a) nearly vanishes
+        there = self._odd_sum(ar, where(pole, a, 0 * a + 0.5)) / total
+        logarithm = ar.log(where(pole, there, 0 * there + 1))
+        return where(pole, logarithm, ar.log1p(where(pole, 0 * quotient, quotient))) / 2
+
+    def _odd_sum(self, ar: Arithmetic, a: Real) -> Real:
+        """Return S(a) of the odd function."""
+        c, total = self.steepness, 0 * a
+        for i in range(self.terms):
+            near = ar.exp(-c * i * (i + 1 - 2 * a))
+            total = total - (-1) ** i * near * ar.expm1(-2 * c * (2 * i + 1) * a)
+        return total
