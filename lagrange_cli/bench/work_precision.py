@@ -63,9 +63,14 @@ def nutation_period(motion: Motion) -> float:
     return float(motion.T_nutation or math.inf)
 
 
+def all_methods(limit: float) -> dict[str, Method]:
+    """Return every method by name; a run may take `limit` seconds."""
+    return CLOSED_FORMS | integrators(limit)
+
+
 def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
     """Return the methods with these names, or all.  Raises LagtopError for an unknown one."""
-    known = CLOSED_FORMS | integrators(limit)
+    known = all_methods(limit)
     return {x: known[x] for x in (known if names is None else check_names("methods", names, known))}
 
 

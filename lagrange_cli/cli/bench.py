@@ -30,9 +30,20 @@ PERIODS = 20.3
 MOST_SAMPLES = 10_000_000
 
 
+class _ListingMethods(ExamplesFirst):
+    """A command whose help ends with the names of the methods."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the names, which are imported only here."""
+        from ..bench.work_precision import all_methods
+
+        with formatter.section("Methods"):
+            formatter.write_text(", ".join(all_methods(1.0)))
+
+
 @click.command(
     "bench",
-    cls=ExamplesFirst,
+    cls=_ListingMethods,
     examples="""
         lagtop bench
         lagtop bench sample_inputs/stiff-top.toml --plot work-precision.svg

@@ -25,9 +25,20 @@ SAMPLES, THOROUGH, MOST_SAMPLES = 4, 200, 100_000
 SEED = 1952
 
 
+class _ListingStrata(ExamplesFirst):
+    """A command whose help ends with the names of the strata."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the names, which are imported only here."""
+        from ..bench.hard_scenes import STRATA
+
+        with formatter.section("Strata"):
+            formatter.write_text(", ".join(STRATA))
+
+
 @click.command(
     "stability",
-    cls=ExamplesFirst,
+    cls=_ListingStrata,
     examples="""
         lagtop stability
         lagtop stability --strata separatrix,thresholds --samples 50

@@ -27,6 +27,7 @@ from lagrange_cli.bench import method as methods
 from lagrange_cli.bench import work_precision as bench
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.front import MethodRow, conclusions, with_front
+from lagrange_cli.bench.hard_scenes import STRATA
 from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.bench.work_precision import measure, task
 from lagrange_cli.output.findings import Findings
@@ -301,3 +302,10 @@ def test_sample_scenes(scene: str, lagtop: Lagtop) -> None:
     result = lagtop("bench", path, "--methods", "lagtop", "--n", 20, "--format", "json")
     (found,) = json.loads(result.stdout)["rows"]
     assert found["units_max"] < 4
+
+
+def test_help_lists_what_is_registered(lagtop: Lagtop) -> None:
+    shown = " ".join(lagtop("bench", "--help").stdout.split())
+    assert f"Methods: {', '.join(METHODS)}" in shown
+    shown = " ".join(lagtop("stability", "--help").stdout.split())
+    assert f"Strata: {', '.join(STRATA)}" in shown
