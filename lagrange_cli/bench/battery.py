@@ -32,7 +32,7 @@ KEY_CONTRACT = 0.5 + 1e-9
 """Gaps between doubles that a key may be off: half of one, and a hair where two are as near."""
 
 DIGITS, MORE_DIGITS = 80, 110
-"""Of the reference, and of the one it is checked against."""
+"""Digits of the reference, and of the one that it is checked against."""
 
 INTEGRATOR = "DOP853-quaternion"
 INTEGRATED_PERIODS, INTEGRATOR_SECONDS = (0.7, 2.3, 4.9), 2.0

@@ -169,7 +169,7 @@ def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.
 
 
 def _forget_compiled_code(state: Any) -> None:
-    """Disable heyoka's cache of compiled code, so that set-up times can be compared."""
+    """Clear heyoka's cache of compiled code and leave it off, so that set-up times compare."""
     state.clear_memcache()
     if hasattr(state, "set_diskcache_enabled"):
         state.set_diskcache_enabled(False)

@@ -120,7 +120,7 @@ def test_front_and_what_it_says() -> None:
 
 
 def ours(*_: Any) -> Any:
-    """Stand in for a method that is not run."""
+    """Raise AssertionError in place of a method that is not run."""
     raise AssertionError
 
 
