@@ -31,7 +31,6 @@ TESTS = sorted((ROOT / "tests").rglob("*.py"))
 
 STILL_TO_REWRITE = {
     "motion": 98,
-    "bench": 2,
     "elliptic": 5,
     "sweeps": 25,
     "arithmetic": 31,
