@@ -81,8 +81,6 @@ def test_the_last_time_of_a_grid_decides_what_is_out_of_reach(side: int, away: i
         """Return ten points that end (or, backwards, begin) at a time."""
         return EvenPoints(end - 9 * step if away > 0 else end, away * step, 10)
 
-    if away < 0:
-        step = side * edge / 100
     assert next(rows(motion, grid(inside))[1]).shape == (10, 4)
     with pytest.raises(LagtopError, match="within 2\\^50 periods"):
         rows(motion, grid(outside))
