@@ -17,7 +17,7 @@ from itertools import chain, islice
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import json_text, parse_number
-from ..errors import LagtopError
+from ..errors import DataError, LagtopError
 from .block import InputArrays
 from .top import Top, overridden
 
@@ -183,8 +183,8 @@ def open_tops(
     """Return the way to read a file (standard input for `-`), and its lines, `size` at a time.
 
     Columns whose names are in `computed` are neither read nor carried through.  A `stream` that is
-    open already is read in place of the path.  Raises LagtopError for a file that cannot be read
-    or has neither a header nor an object.
+    open already is read in place of the path.  Raises LagtopError for a file that cannot be read,
+    DataError for one that has neither a header nor an object.
     """
     name = "standard input" if path == "-" else path
     lines = _lines(path, name, stream)
@@ -199,7 +199,7 @@ def open_tops(
     try:
         columns = [cell.strip() for cell in split_cells(_decoded(first))]
     except LagtopError as error:
-        raise LagtopError(f"{name}, line {start}: {error}") from None
+        raise DataError(f"{name}, line {start}: {error}") from None
     carried = [x for x in columns if x not in INPUTS and x not in computed]
     _check_spelling(carried, name)
     _check_header(columns, name)
@@ -237,7 +237,7 @@ def _check_spelling(carried: Sequence[str], name: str) -> None:
     for column in carried:
         for known in INPUTS:
             if _plain(column) == _plain(known):
-                raise LagtopError(f"{name}: the column {column} must be spelt {known}")
+                raise DataError(f"{name}: the column {column} must be spelt {known}")
 
 
 def _plain(column: str) -> str:
@@ -247,9 +247,9 @@ def _plain(column: str) -> str:
 
 def _check_header(columns: Sequence[str], name: str) -> None:
     if twice := [x for i, x in enumerate(columns) if x in columns[:i]]:
-        raise LagtopError(f"{name} must name each column once, got {twice[0]!r} twice")
+        raise DataError(f"{name} must name each column once, got {twice[0]!r} twice")
     if not set(columns) & set(INPUTS):
-        raise LagtopError(
+        raise DataError(
             f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "
             f"got {','.join(columns)[:60]!r}"
         )

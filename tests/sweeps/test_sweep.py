@@ -426,7 +426,7 @@ def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -
 )
 def test_files_that_are_none(text: str, message: str, lagtop: Lagtop) -> None:
     result = lagtop("sweep", "-", input=text)
-    assert (result.exit_code, result.stdout) == (2, "")
+    assert (result.exit_code, result.stdout) == (65, "")
     assert message in result.stderr
 
 
