@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from itertools import chain, repeat
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
@@ -43,7 +44,8 @@ def computed(
         _check_workers(client)
         yield _gathered(client, sweep, blocks)
     finally:
-        client.close(timeout=2)
+        with suppress(OSError, RuntimeError):  # what ended the sweep is what matters
+            client.close(timeout=20 if address == "local" else 2)
 
 
 def _client(address: str) -> Client:
@@ -51,7 +53,12 @@ def _client(address: str) -> Client:
         from distributed import Client
     except ImportError:
         raise LagtopError("dask needs distributed: pip install 'lagtop[cluster]'", "dask") from None
-    for name in ("distributed", "distributed.client"):  # we say ourselves, and once, what is wrong
+    for name in (
+        "distributed",
+        "distributed.client",
+        "asyncio",
+        "tornado",
+    ):  # we say ourselves, and once, what is wrong
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         if address == "local":
@@ -167,14 +174,15 @@ def _result(client: Client, future: Future[Part]) -> Part:
     """Wait for a part.  Raises UnavailableError as soon as nothing is left to wait for."""
     from distributed import KilledWorker, wait
 
-    lonely = 0.0
+    seen = monotonic()  # when there was a worker last
     try:
         while True:
             with suppress(TimeoutError):
                 wait([future], timeout=_BETWEEN_LOOKS)
-                return future.result()
-            lonely = 0.0 if _threads(client) else lonely + _BETWEEN_LOOKS
-            if lonely > PATIENCE:
+                return future.result(timeout=PATIENCE / 2)  # its worker may die before it is here
+            if _threads(client):
+                seen = monotonic()
+            elif monotonic() - seen > PATIENCE:
                 raise UnavailableError("the cluster has no worker left")
     except (ImportError, AttributeError) as error:
         raise UnavailableError(f"a worker of the cluster has no lagtop: {error}") from None
