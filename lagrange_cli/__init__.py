@@ -6,7 +6,7 @@ if TYPE_CHECKING:
     from .errors import LagtopError
     from .inputs.scene_file import read_scene
     from .inputs.top import Top
-    from .motion.record import Regime
+    from .motion.regime import Regime
     from .motion.solve import Motion, solve
     from .sweeps.records import sweep
 

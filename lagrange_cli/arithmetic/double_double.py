@@ -6,7 +6,6 @@ time exactly, however far away it is.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import frexp
 from math import sqrt as math_sqrt
 from typing import Any, NamedTuple
@@ -29,8 +28,7 @@ class Pair(NamedTuple):
 def pair(value: Any) -> Pair:
     """A many-digit number, or a fraction, as two doubles."""
     high = float(value)
-    rest = value - (Fraction(high) if isinstance(value, Fraction) else high)
-    return Pair(high, float(rest))
+    return Pair(high, float(value - type(value)(high)))
 
 
 def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:

@@ -12,6 +12,12 @@ _DECIMAL = set("0123456789.eE+-")
 _MOST_CHARACTERS = 2000
 
 
+class NumberText(str):
+    """A number written out, to be printed as it stands."""
+
+    __slots__ = ()
+
+
 def value_text(value: Any) -> str:
     """A number or a word; empty for None and NaN.  A subclass of str is a number written out."""
     if value is None or value != value:  # noqa: PLR0124 - NaN

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from ..motion.record import Regime
+from ..motion.regime import Regime
 from ..motion.solve import Motion
 from ..output.findings import Findings
 from .closed_forms import CLOSED_FORMS

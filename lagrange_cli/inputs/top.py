@@ -8,7 +8,7 @@ from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple, Self, TypeVar
 
-from ..arithmetic import decimals
+from ..arithmetic.decimals import pi_to
 from ..arithmetic.generic import Arithmetic, Number, Real, number
 from ..errors import LagtopError
 
@@ -17,7 +17,7 @@ N = TypeVar("N")
 _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
-_PI = Fraction(decimals.pi)
+_PI = Fraction(pi_to(60))
 _NOT_REAL = (bool, str, bytes, bytearray, complex)
 _SHOWN = 60
 _DIGITS_SHOWN = Context(

@@ -55,10 +55,19 @@ def growths(
     slopes: tuple[Real, Real] = (0, 0),
     starts: tuple[Real, Real] = (0, 0),
 ) -> Growths:
-    """Growth of the four angles from those of arg X and arg Y."""
+    """Return the growth of the four angles from that of spin and precession.
 
-    def growth(x: int, y: int) -> Growth:
-        step, slope, start = (x * p + y * q for p, q in (steps, slopes, starts))
+    `starts` are arg X and arg Y at t = 0.  Spin and precession come in by themselves: where one
+    of them is much the larger, sums and differences would lose the other.
+    """
+    (phi, psi), (phi_slope, psi_slope), (x, y) = steps, slopes, starts
+
+    def growth(step: Real, slope: Real, start: Real) -> Growth:
         return Growth(pair(step), pair(step / (2 * ar.pi)), float(slope), float(start))
 
-    return Growths(phi=growth(1, -1), psi=growth(1, 1), arg_x=growth(1, 0), arg_y=growth(0, 1))
+    return Growths(
+        phi=growth(phi, phi_slope, x - y),
+        psi=growth(psi, psi_slope, x + y),
+        arg_x=growth((psi + phi) / 2, (psi_slope + phi_slope) / 2, x),
+        arg_y=growth((psi - phi) / 2, (psi_slope - phi_slope) / 2, y),
+    )

@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..inputs.top import Top
-from .cubic import Start
 from .samplers import Attitude
+from .solve import Motion
 
 
 class ColumnConstants(NamedTuple):
@@ -39,20 +38,25 @@ class ColumnConstants(NamedTuple):
     """Sign of the nutation rate at the start."""
 
 
-def column_constants(top: Top, begin: Start) -> ColumnConstants:
-    """Rounded from the many-digit start of the motion."""
-    return ColumnConstants(
-        A=float(top.A),
-        C=float(top.C),
-        torque=float(begin.a) * float(top.A) / 2,
-        r0=float(begin.r0),
-        drift=float(begin.r0 - begin.b),
-        plus=float(begin.beta_plus_b / 2),
-        minus=float(begin.beta_minus_b / 2),
-        alpha=float(begin.alpha),
-        a=float(begin.a),
-        rises=-1 if begin.theta_rate < 0 else 1,
-    )
+def column_constants(motion: Motion) -> ColumnConstants:
+    """Return the constants of a motion, rounded from many digits."""
+    kind = motion.settled_kind(30)
+    state, gaps, top = kind.state, kind.gaps, motion.top
+    with kind.ar.working():
+        around = state.psi_rate * state.sin
+        energy = state.theta_rate * state.theta_rate + around * around
+        return ColumnConstants(
+            A=float(top.A),
+            C=float(top.C),
+            torque=float(state.a) * float(top.A) / 2,
+            r0=float(state.r0),
+            drift=float(state.pole_drift),
+            plus=float(gaps.beta_plus_b / 2),
+            minus=float(gaps.beta_minus_b / 2),
+            alpha=float(energy + state.a * state.cos),
+            a=float(state.a),
+            rises=-1 if state.theta_rate < 0 else 1,
+        )
 
 
 class Sample:

@@ -1,129 +1,92 @@
-"""Any number of digits of a motion: its record and its angles."""
+"""Any number of digits of the angles of a motion."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from decimal import ROUND_CEILING, Decimal
+from functools import partial
 
-from ..arithmetic.correct_digits import NumberText, TooFewDigitsError, settle
-from ..arithmetic.generic import Arithmetic, Number, Real, number
-from ..inputs.top import Top
-from .general import (
-    Solution,
-    analyse,
-    separatrix_swing,
-    steady_rates,
-    theta_constants,
-)
-from .general_record import general_record
-from .record import Regime
-from .released import released_record
-from .theta_series import ThetaConstants, evaluate, theta_series
+from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, text_of
+from ..arithmetic.decimals import Decimals
+from ..arithmetic.generic import Number
+from ..arithmetic.text import NumberText
+from .solve import Motion
 
 
-def settled_record(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
-    """The record with every number to so many significant digits, inputs read as decimals."""
-    record_in = released_record if top.is_released else general_record
-    return settle(lambda ar: record_in(ar, top).record(radians=radians, ar=ar), digits)
-
-
-def settled_rows(
-    top: Top, times: Sequence[Number], digits: int, *, radians: bool = False, wrap: bool = False
+def rows_in_digits(
+    motion: Motion,
+    times: Sequence[Number],
+    digits: int,
+    *,
+    radians: bool = False,
+    wrap: bool = False,
 ) -> list[list[NumberText]]:
-    """Rows of t, tilt, spin and precession to so many significant digits."""
+    """Return rows of t, tilt, spin and precession to so many significant digits.
 
-    def compute(ar: Arithmetic) -> dict[tuple[int, int], Real]:
-        angles_at = angles_in(ar, top)
-        unit = 1 if radians else 180 / ar.pi
-        values: dict[tuple[int, int], Real] = {}
-        for i, time in enumerate(times):
-            t = number(ar, time)
-            theta, phi, psi, noise = angles_at(t)
-            if wrap:
-                phi, psi = _wrapped(ar, phi), _wrapped(ar, psi)
-            if any(0 < abs(angle) < noise * 10**digits for angle in (theta, phi, psi)):
-                raise TooFewDigitsError
-            values |= {(i, j): x for j, x in enumerate((t, theta * unit, phi * unit, psi * unit))}
-        return values
-
-    settled = settle(compute, digits)
-    return [[settled[i, j] for j in range(4)] for i in range(len(times))]
+    Raises LagtopError where no precision tells an angle from 0.
+    """
+    table = _Table(motion, radians, wrap)
+    return [table.row(time, digits) for time in times]
 
 
-def _wrapped(ar: Arithmetic, angle: Real) -> Real:
-    """In (-pi, pi]."""
-    return angle - 2 * ar.pi * ar.ceil(angle / (2 * ar.pi) - ar.mpf(0.5))
+class _Table:
+    """Angles in digits; the attitude at each precision is made once."""
+
+    def __init__(self, motion: Motion, radians: bool, wrap: bool) -> None:
+        self.motion, self.radians, self.wrap = motion, radians, wrap
+        self.ready: dict[int, Callable[[Number], list[Decimal]]] = {}
+
+    def row(self, time: Number, digits: int) -> list[NumberText]:
+        """Return the texts of t and the three angles."""
+        computed: dict[int, list[Decimal]] = {}
+
+        def angle(column: int, working: int) -> Decimal:
+            if working not in computed:
+                if working not in self.ready:
+                    self.ready[working] = self._angles_with(working)
+                computed[working] = self.ready[working](time)
+            return computed[working][column]
+
+        first = max(32, digits + 15)
+        names = "theta", "phi", "psi"
+        texts = [
+            correctly_rounded(
+                f"{name} at t = {float(time)}",
+                partial(angle, column),
+                partial(text_of, digits=digits),
+                first=first,
+                zero_is_proved=True,
+            )
+            for column, name in enumerate(names)
+        ]
+        return [text_of(Decimal(time) if isinstance(time, float) else time, digits), *filter(None, texts)]
+
+    def _angles_with(self, working: int) -> Callable[[Number], list[Decimal]]:
+        """Return the angles at a time, computed with so many digits."""
+        kind = self.motion.settled_kind(working)
+        ar: Decimals = kind.ar
+        spinor, (tilt_sin, tilt_cos) = kind.spinor(), (kind.state.sin_half, kind.state.cos_half)
+
+        def angles(time: Number) -> list[Decimal]:
+            with ar.working():
+                t = ar.convert(time)
+                if t:
+                    at = spinor(t)
+                    theta, phi, psi = 2 * ar.atan2(at.y, at.x), at.phi, at.psi
+                    noise = at.size * ar.eps * 1000
+                    if any(0 < abs(angle) < noise for angle in (theta, phi, psi)):
+                        raise TooFewDigitsError
+                else:
+                    theta, phi, psi = 2 * ar.atan2(tilt_sin, tilt_cos), t, t
+                if self.wrap:
+                    phi, psi = wrapped(ar, phi), wrapped(ar, psi)
+                unit = Decimal(1) if self.radians else 180 / ar.pi
+                return [angle * unit for angle in (theta, phi, psi)]
+
+        return angles
 
 
-def angles_in(ar: Arithmetic, top: Top) -> Callable[[Real], tuple[Real, Real, Real, Real]]:
-    """The angles as a function of time, and how far they may be off."""
-    solution = analyse(ar, top)
-    plane = not (solution.start.beta_plus_b or solution.start.beta_minus_b)
-    if solution.regime is Regime.SEPARATRIX:
-        args = _separatrix_args(ar, solution)
-    elif solution.nutates:
-        args = _theta_args(ar, theta_constants(ar, solution))
-    else:
-        args = _steady_args(ar, top, solution)
-    start_x, start_y = args(ar.mpf(0))[1::2]
-
-    def angles_at(t: Real) -> tuple[Real, Real, Real, Real]:
-        if not t:
-            return 2 * ar.atan2(top.tilt(ar).sin_half, top.tilt(ar).cos_half), t, t, t
-        x, arg_x, y, arg_y = args(t)
-        plus, minus = arg_x - start_x, arg_y - start_y
-        theta, phi, psi = 2 * ar.atan2(y, x), plus - minus, plus + minus
-        if plane:  # over the poles in half turns
-            phi, psi = (ar.pi * ar.nint(angle / ar.pi) for angle in (phi, psi))
-        size = 1 + abs(arg_x) + abs(arg_y) + abs(t * solution.speed)
-        return theta, phi, psi, size * ar.mpf(10) ** (8 - ar.dps) if solution.speed else 0 * t
-
-    return angles_at
-
-
-Args = Callable[[Real], tuple[Real, Real, Real, Real]]
-"""|X|, arg X, |Y| and arg Y, the arguments counted on, at a time."""
-
-
-def _theta_args(ar: Arithmetic, c: ThetaConstants) -> Args:
-    terms = 4 + math.isqrt(int(ar.dps * math.log(10) / math.pi))  # the nome is at most exp(-pi)
-    series = theta_series(ar, c, terms)
-    steps = len(series.frames)
-
-    def args(t: Real) -> tuple[Real, Real, Real, Real]:
-        passed = (t / c.period + c.offset) * steps
-        step = int(ar.nint(passed))
-        phase = passed - step
-        x, arg_x, y, arg_y = evaluate(ar, series, series.frames[step % steps], phase, c.rises)
-        arg_x += step * series.turn_x + phase * series.slope_x
-        arg_y += step * series.turn_y + phase * series.slope_y
-        return x, arg_x, y, arg_y
-
-    return args
-
-
-def _steady_args(ar: Arithmetic, top: Top, solution: Solution) -> Args:
-    tilt, (spin, precession) = top.tilt(ar), steady_rates(solution.start)
-
-    def args(t: Real) -> tuple[Real, Real, Real, Real]:
-        return (
-            tilt.cos_half,
-            (precession + spin) * t / 2,
-            tilt.sin_half,
-            (precession - spin) * t / 2,
-        )
-
-    return args
-
-
-def _separatrix_args(ar: Arithmetic, solution: Solution) -> Args:
-    begin, swing = solution.start, separatrix_swing(ar, solution)
-
-    def args(t: Real) -> tuple[Real, Real, Real, Real]:
-        h = solution.speed * t + swing.offset
-        real, imag = swing.x, swing.sign * swing.y * ar.tanh(h)
-        arg_x = begin.r0 * t / 2 + (ar.atan2(imag, real) if t else swing.start)
-        return ar.hypot(real, imag), arg_x, swing.y / ar.cosh(h), (begin.b - begin.r0) * t / 2
-
-    return args
+def wrapped(ar: Decimals, angle: Decimal) -> Decimal:
+    """Return the angle in (-pi, pi] that differs by whole turns."""
+    turns = (angle / (2 * ar.pi) - Decimal("0.5")).to_integral_value(ROUND_CEILING)
+    return angle - 2 * ar.pi * turns

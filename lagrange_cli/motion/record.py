@@ -1,109 +1,77 @@
-"""The record of one motion: its regime and its numbers, under their keys."""
+"""The keys of a record, in their order: one entry each, from which tables and helps are made."""
 
 # Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
 
-import math
-from enum import Enum
-from typing import Any, NamedTuple
-
-from ..arithmetic.generic import Arithmetic, Real, where
-from ..inputs.top import Top
+from typing import NamedTuple
 
 
-class Regime(Enum):
-    """What kind of motion a scene describes; decided once."""
+class Key(NamedTuple):
+    """One key of the record and how it is shown; the unit `angle` stands for degrees or radians."""
 
-    REGULAR = "regular"
-    STEADY = "steady precession"
-    SEPARATRIX = "separatrix"
-    SLEEPING = "sleeping"
-    HANGING = "hanging"
-    TORQUE_FREE = "torque-free"
-    NO_SPIN = "no spin"
-
-
-class Record(NamedTuple):
-    """The numbers of one motion.  A number that the regime does not have is None."""
-
-    top: Top
-    regime: Regime
-    a: Real
-    b: Real
-    u1: Real | None = None
-    u2: Real | None = None
-    u3: Real | None = None
-    k: Real | None = None
-    k_prime: Real | None = None
-    modular_angle_deg: Real | None = None
-    nome: Real | None = None
-    K: Real | None = None
-    K_prime: Real | None = None
-    E: Real | None = None
-    amplitude_deg: Real | None = None
-    alpha: Real | None = None
-    T_nutation: Real | None = None
-    T_spin: Real | None = None
-    T_precession: Real | None = None
-    u_quarter: Real | None = None
-    theta_min_deg: Real | None = None
-    theta_max_deg: Real | None = None
-    mean_spin_rate: Real | None = None
-    mean_precession_rate: Real | None = None
-    spin_rate_start: Real | None = None
-    spin_rate_half: Real | None = None
-    precession_rate_start: Real | None = None
-    precession_rate_half: Real | None = None
-    path: str | None = None
-    """Of the figure axis: `cusped`, `looping` or `wavy`."""
-    remark: str | None = None
-
-    def numbers(self) -> dict[str, Real | None]:
-        """The numbers by key."""
-        return dict(zip(NUMBER_KEYS, self[2:-2], strict=True))
-
-    def record(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
-        """Inputs and results by key, in the order of the paper; `radians` renames _deg to _rad.
-
-        `ar` is the arithmetic of the numbers.
-        """
-        numbers = self.numbers()
-        if radians:
-            numbers = dict(_in_radians(ar, key, value) for key, value in numbers.items())
-        inputs = self.top.inputs(radians=radians, ar=ar)
-        if self.top.is_released:  # it starts at its least tilt, which is the tilt given
-            unit = "rad" if radians else "deg"
-            numbers[f"theta_min_{unit}"] = inputs[f"theta0_{unit}"]
-        texts = {"path": self.path, "remark": self.remark}
-        return inputs | {"regime": self.regime.value} | numbers | texts
+    name: str
+    group: str
+    symbol: str
+    meaning: str
+    unit: str = ""
+    equation: str = ""
+    cancels: bool = False
+    """A difference of numbers that may be as good as equal: only a proved zero is 0."""
 
 
-NUMBER_KEYS = Record._fields[2:-2]
+INPUTS = [
+    Key("m", "Inputs", "m", "mass", "mass"),
+    Key("A", "Inputs", "A", "equatorial moment", "mass len²"),
+    Key("C", "Inputs", "C", "polar moment", "mass len²"),
+    Key("s", "Inputs", "s", "pivot to mass centre", "len"),
+    Key("g", "Inputs", "g", "gravity", "len/time²"),
+    Key("r0", "Inputs", "r0", "spin", "rad/time"),
+    Key("theta0_deg", "Inputs", "ϑ0", "tilt at the start", "angle"),
+    Key("thetadot0", "Inputs", "ϑ'0", "nutation rate at start", "rad/time"),
+    Key("psidot0", "Inputs", "ψ'0", "precession rate at start", "rad/time"),
+]
+
+_ROOTS, _MODULI, _TURNING = "Roots", "Moduli and integrals", "Turning points and rates"
+
+NUMBERS = [
+    Key("a", "Constants", "a", "2mgs/A", "1/time²", "(4,4)"),
+    Key("b", "Constants", "b", "C r0/A", "1/time", "(4,5)"),
+    Key("u1", _ROOTS, "u1", "cos ϑ, highest", "", "(4,9)", cancels=True),
+    Key("u2", _ROOTS, "u2", "cos ϑ, lowest", "", "(4,11)", cancels=True),
+    Key("u3", _ROOTS, "u3", "third root", "", "(4,11)"),
+    Key("k", _MODULI, "k", "modulus", "", "(4,19)"),
+    Key("k_prime", _MODULI, "k'", "complementary modulus", "", "(4,21)"),
+    Key("modular_angle_deg", _MODULI, "arcsin k", "modular angle", "angle", "(4,19)"),
+    Key("nome", _MODULI, "q", "nome", "", "(2,4)"),
+    Key("K", _MODULI, "K", "first kind, k", "", "(5,1)"),
+    Key("K_prime", _MODULI, "K'", "first kind, k'", "", "(2,4)"),
+    Key("E", _MODULI, "E", "second kind, k", "", "(7,3)"),
+    Key("amplitude_deg", _MODULI, "am α", "amplitude of α", "angle", "(7,2)"),
+    Key("alpha", _MODULI, "α", "parameter", "", "(1,6)"),
+    Key("T_nutation", "Periods", "T", "of the nutation", "time", "(5,1)"),
+    Key("T_spin", "Periods", "Tφ", "of the mean spin", "time", "§8", cancels=True),
+    Key("T_precession", "Periods", "Tψ", "of the mean precession", "time", "§8", cancels=True),
+    Key("u_quarter", _TURNING, "u(T/4)", "cos ϑ at T/4", "", "(5,2)", cancels=True),
+    Key("theta_min_deg", _TURNING, "ϑ min", "least tilt", "angle", "(4,9)"),
+    Key("theta_max_deg", _TURNING, "ϑ max", "greatest tilt", "angle", "(4,9)"),
+    Key("mean_spin_rate", "Mean rates", "φ' mean", "spin", "rad/time", "(6,3)", cancels=True),
+    Key("mean_precession_rate", "Mean rates", "ψ' mean", "precession", "rad/time", "(7,3)", True),
+    Key("spin_rate_start", _TURNING, "φ'(0)", "spin", "rad/time", "(6,2)", cancels=True),
+    Key("spin_rate_half", _TURNING, "φ'(T/2)", "spin", "rad/time", "(6,2)", cancels=True),
+    Key("precession_rate_start", _TURNING, "ψ'(0)", "precession", "rad/time", "(4,7)"),
+    Key("precession_rate_half", _TURNING, "ψ'(T/2)", "precession", "rad/time", "(4,7)", True),
+]
+"""The numbers of a record, in its order; `path` and `remark` follow them, `regime` precedes."""
+
+NUMBER_KEYS = [key.name for key in NUMBERS]
+CANCELLING = {key.name for key in NUMBERS if key.cancels}
 
 
-def _in_radians(ar: Arithmetic, key: str, value: Real | None) -> tuple[str, Real | None]:
-    if not key.endswith("_deg"):
-        return key, value
-    return key.removesuffix("deg") + "rad", None if value is None else value * (ar.pi / 180)
+def unit_name(name: str, *, radians: bool) -> str:
+    """Return the name of a key in the unit of angles in use: its `_deg` becomes `_rad`."""
+    return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name
 
 
-def constant_rates(
-    tilt_deg: Real, spin_rate: Real, precession_rate: Real | None, two_pi: Real
-) -> dict[str, Any]:
-    """Numbers of the record of a motion whose tilt and rates do not change."""
-    return {
-        "theta_min_deg": tilt_deg,
-        "theta_max_deg": tilt_deg,
-        "T_spin": period_of(spin_rate, two_pi),
-        "T_precession": period_of(precession_rate, two_pi),
-        "mean_spin_rate": spin_rate,
-        "spin_rate_start": spin_rate,
-        "mean_precession_rate": precession_rate,
-        "precession_rate_start": precession_rate,
-    }
-
-
-def period_of(rate: Real | None, two_pi: Real) -> Real | None:
-    """2 pi over a mean rate (section 8); None, or NaN in an array, where it stands still."""
-    if hasattr(rate, "all"):
-        return two_pi / abs(where(rate == 0, math.nan, rate))
-    return two_pi / abs(rate) if rate else None
+def record_keys(*, radians: bool = False) -> list[str]:
+    """Return all keys of a record in their order."""
+    named = [key.name for key in INPUTS], ["regime"], NUMBER_KEYS, ["path", "remark"]
+    return [unit_name(name, radians=radians) for names in named for name in names]

@@ -145,17 +145,14 @@ class ThetaSampler(Sampler):
     scale: float
     hyperbolic: bool
     frames: Sequence[Frame]
-    """About the turning points of the even and of the odd steps; one where all steps are alike."""
+    """About the turning points of the even and of the odd steps."""
     growths: Growths
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
         """See `Sampler.attitude`."""
         step, since = reduce_phase(t, self.steps_per_time, self.offset)
         argument = (since + self.offset if self.offset else since) * self.scale
-        if len(self.frames) == 1:
-            spinor = self._spinor(self.frames[0], argument, rate)
-        else:
-            spinor = self._spinor_by_parity(step, argument, rate)
+        spinor = self._spinor_by_parity(step, argument, rate)
         return Attitude(self.growths, t, step, since, spinor)
 
     def _spinor_by_parity(self, step: Array, argument: Array, rate: bool) -> Spinor:
@@ -179,7 +176,7 @@ class ThetaSampler(Sampler):
 
 
 @dataclass(frozen=True)
-class SteadySampler(Sampler):
+class ConstantSampler(Sampler):
     """A constant tilt and constant rates of spin and precession."""
 
     x: float

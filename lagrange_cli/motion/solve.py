@@ -1,31 +1,215 @@
-"""solve(top): the constants of one motion, and from them its angles at any time."""
+"""`solve(top)`: the motion of one top, whose numbers are computed when they are asked for."""
 
 from __future__ import annotations
 
 import math
-from decimal import localcontext
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal, DivisionByZero, InvalidOperation
+from fractions import Fraction
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..arithmetic import decimals
-from ..arithmetic.generic import Real, many_digits
+from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, precisions, text_of
+from ..arithmetic.decimals import decimals
 from ..errors import LagtopError
 from ..inputs.top import Top
-from .record import Record
-from .released import released_record
+from .gaps import agree, are_told_apart, gaps_of, state
+from .kinds import Kind, kind_of
+from .rational_keys import rational_keys, starts_at_u1, starts_at_u2
+from .record import CANCELLING, NUMBER_KEYS, record_keys, unit_name
+from .regime import Exact, Regime, exact
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ..arithmetic.text import NumberText
+    from ..arithmetic.types import Array
     from .samplers import Angles, Sampler
 
+T = TypeVar("T")
 
-class Motion(Record):
-    """One motion, solved: the numbers of its record and its angles over time."""
 
-    __slots__ = ()
+def solve(top: Top) -> Motion:
+    """Return the motion of a top.  Raises LagtopError for a start that describes no motion."""
+    return Motion(exact(top))
+
+
+class Motion:
+    """The motion of one top: the numbers of its record as attributes, and its angles over time.
+
+    Each number is the double nearest to its exact value, computed when it is first asked for; one
+    that the regime does not have is None.  Their names are those of `lagtop solve`: a, b, u1, u2,
+    u3, k, T_nutation, mean_precession_rate ...; `record` gives all of them.
+    """
+
+    def __init__(self, scene: Exact) -> None:
+        self.exact = scene
+        self.kind_class = kind_of(scene.facts)
+        self._kinds: dict[int, Kind[Decimal]] = {}
+        self._rational = rational_keys(scene)
+        self._doubles: dict[str, float | None] = {}
+
+    @property
+    def top(self) -> Top:
+        """The top, and its start."""
+        return self.exact.top
+
+    @property
+    def regime(self) -> Regime:
+        """The kind of motion."""
+        return self.exact.facts.regime
+
+    @property
+    def path(self) -> str | None:
+        """Path of the figure axis: `cusped`, `looping` or `wavy`; None where it has none."""
+        path: str | None = self._settled_kind.path
+        return path
+
+    @property
+    def remark(self) -> str | None:
+        """One line on what is special about the motion, or None."""
+        remark: str | None = self._settled_kind.remark
+        return remark
+
+    def __getattr__(self, name: str) -> float | None:
+        """Return a number of the record by its key, in degrees where it is an angle."""
+        if name not in NUMBER_KEYS:
+            raise AttributeError(f"a motion has no {name!r}")
+        if name not in self._doubles:
+            self._doubles[name] = self._number(name, _nearest_double(name), _double_of_fraction)
+        return self._doubles[name]
+
+    def __dir__(self) -> Sequence[str]:
+        """Return all names, the keys of the record among them."""
+        return [*super().__dir__(), *NUMBER_KEYS]
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether the other is the motion of the same top."""
+        return isinstance(other, Motion) and other.top == self.top
+
+    def __hash__(self) -> int:
+        return hash(self.top)
+
+    def __reduce__(self) -> tuple[Callable[[Top], Motion], tuple[Top]]:
+        """Return how copies and pickles are made: from the top."""
+        return solve, (self.top,)
+
+    def record(self, *, radians: bool = False) -> dict[str, Any]:
+        """Return inputs and results by key, in the order of the paper; `radians` for all angles.
+
+        Raises LagtopError where a number leaves the range of doubles.
+        """
+        return self._record(radians, self.top.inputs(radians=radians), self._double_in)
+
+    def digits(self, digits: int, *, radians: bool = False) -> dict[str, Any]:
+        """Return the record with every number written out to so many significant digits.
+
+        The inputs count as decimals and stand as they were given.  Raises LagtopError where no
+        precision tells a number from 0.
+        """
+
+        def number(name: str, radians: bool) -> NumberText | None:
+            return self._number(
+                name, lambda x: text_of(x, digits), lambda x: text_of(x, digits), digits, radians
+            )
+
+        ar = decimals(digits + 10)
+        with ar.working():
+            inputs = {
+                name: text_of(x if isinstance(x, Decimal) else Fraction(x), digits)
+                for name, x in self.top.inputs(radians=radians, ar=ar).items()
+            }
+        return self._record(radians, inputs, number)
+
+    def _record(
+        self,
+        radians: bool,
+        inputs: Mapping[str, Any],
+        number: Callable[[str, bool], Any],
+    ) -> dict[str, Any]:
+        values = dict(inputs) | {"regime": self.regime.value}
+        for name in NUMBER_KEYS:
+            values[unit_name(name, radians=radians)] = number(name, radians)
+        values |= {"path": self.path, "remark": self.remark}
+        return {name: values[name] for name in record_keys(radians=radians)}
+
+    def _double_in(self, name: str, radians: bool) -> float | None:
+        if not (radians and name.endswith("_deg")):
+            value: float | None = getattr(self, name)
+            return value
+        return self._number(name, _nearest_double(name), _double_of_fraction, radians=True)
+
+    def _number(
+        self,
+        name: str,
+        rounding: Callable[[Decimal], T],
+        of_fraction: Callable[[Fraction], T],
+        digits: int = 0,
+        radians: bool = False,
+    ) -> T | None:
+        """Return a number of the record, rounded correctly: the fraction where it is one."""
+        if name in self.kind_class.lacks:
+            return None
+        in_radians = radians and name.endswith("_deg")
+        rational = self._radians_given(name) if in_radians else self._rational.get(name)
+        if rational is not None:
+            return of_fraction(rational)
+
+        def value_in(digits: int) -> Decimal | None:
+            kind = self.kind(digits)
+            value: Decimal | None = getattr(kind, name)
+            if not in_radians or value is None:
+                return value
+            with kind.ar.working():
+                return value * kind.degree
+
+        return correctly_rounded(
+            name,
+            value_in,
+            rounding,
+            first=max(32, digits + 10),
+            zero_is_proved=name not in CANCELLING,
+        )
+
+    def _radians_given(self, name: str) -> Fraction | None:
+        at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
+        return self.exact.cosine.radians if at is not None and at(self.exact) else None
+
+    def kind(self, digits: int) -> Kind[Decimal]:
+        """Return the motion computed with so many decimal digits.
+
+        Raises TooFewDigitsError where these do not tell the roots apart.
+        """
+        if digits not in self._kinds:
+            ar = decimals(digits)
+            with ar.working():
+                start = state(ar, self.exact)
+                gaps = gaps_of(ar, self.exact.facts, start)
+                if not are_told_apart(self.exact.facts, gaps):
+                    raise TooFewDigitsError
+            self._kinds[digits] = self.kind_class(ar, self.exact.facts, start, gaps)
+        return self._kinds[digits]
+
+    @property
+    def _settled_kind(self) -> Kind[Decimal]:
+        return self.settled_kind(8)
+
+    def settled_kind(self, digits: int) -> Kind[Decimal]:
+        """Return the motion computed with enough digits that so many of every gap are right."""
+        previous: Kind[Decimal] | None = None
+        first = max(32, digits * 5 // 4)
+        for working in precisions(first):
+            try:
+                kind = self.kind(working)
+            except (TooFewDigitsError, InvalidOperation, DivisionByZero):
+                continue
+            if previous is not None and agree(kind.gaps, previous.gaps, digits):
+                return kind
+            previous = kind
+        raise LagtopError("the roots of the cubic cannot be told apart")
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """Tilt, spin and precession (radians) at the times t, in the shape of t.
+        """Return tilt, spin and precession (radians) at the times t, in the shape of t.
 
         Spin and precession are unwrapped and 0 at t = 0; `wrap` brings them to (-pi, pi].
         Raises LagtopError for a time that is not finite or beyond 2^50 nutation periods.
@@ -33,36 +217,26 @@ class Motion(Record):
         return self.sampler().angles(t, wrap=wrap)
 
     def sampler(self) -> Sampler:
-        """The series behind `angles`."""
-        from .make_sampler import sampler_of
-
-        return sampler_of(self.top)
+        """Return the series behind `angles`, the same object for the same top."""
+        return _sampler(self.top)
 
 
-def solve(top: Top) -> Motion:
-    """The constants of the motion of a top.
-
-    Every number is the double nearest to its exact value.  Raises LagtopError for a start that
-    describes no motion, and where a number leaves the range of doubles.
-    """
-    if top.is_released:
-        with localcontext(decimals.context()):
-            return _rounded(released_record(decimals, top))
-    from .general import digits_for_record
-    from .general_record import general_record
-
-    return _rounded(general_record(many_digits(digits_for_record(top)), top))
+@lru_cache(maxsize=128)
+def _sampler(top: Top) -> Sampler:
+    return solve(top).settled_kind(48).sampler()
 
 
-def _rounded(exact: Record) -> Motion:
-    rounded: dict[str, Any] = {key: _double(key, value) for key, value in exact.numbers().items()}
-    return Motion(*exact._replace(**rounded))
+def _nearest_double(name: str) -> Callable[[Decimal], float]:
+    def rounding(value: Decimal) -> float:
+        nearest = float(value)
+        if not math.isfinite(nearest):
+            raise LagtopError(
+                f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
+            )
+        return nearest
+
+    return rounding
 
 
-def _double(name: str, value: Real | None) -> float | None:
-    if value is None:
-        return None
-    nearest = float(value)
-    if not math.isfinite(nearest):
-        raise LagtopError(f"{name} must be within 1.8e308 in size, got {value}: change the units")
-    return nearest
+def _double_of_fraction(value: Fraction) -> float:
+    return float(value)

@@ -13,7 +13,7 @@ from ..inputs.names import check_names
 from .solve import Motion
 
 if TYPE_CHECKING:
-    from ..arithmetic.correct_digits import NumberText
+    from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
     from .columns import Column, Sample
     from .samplers import Sampler
@@ -91,9 +91,8 @@ def _samples(
     motion: Motion, sampler: Sampler, times: Points, rate: bool, wrap: bool
 ) -> Iterator[Sample]:
     from .columns import Sample, column_constants
-    from .make_sampler import solution_of
 
-    constants = column_constants(motion.top, solution_of(motion.top).start)
+    constants = column_constants(motion)
     for t in times.blocks():
         sampler.check(t)
         for part, attitude in sampler.attitudes(t, rate=rate):
@@ -114,8 +113,8 @@ def digit_rows(
     motion: Motion, times: Points, digits: int, *, radians: bool = False, wrap: bool = False
 ) -> Iterator[list[list[NumberText]]]:
     """Lists of rows, t and the three angles to so many digits; times read as decimals."""
-    from .digits import settled_rows
+    from .digits import rows_in_digits
 
     waiting = times.decimals()
     while some := list(islice(waiting, DIGIT_ROWS)):
-        yield settled_rows(motion.top, some, digits, radians=radians, wrap=wrap)
+        yield rows_in_digits(motion, some, digits, radians=radians, wrap=wrap)

@@ -4,7 +4,8 @@ X = cos(theta/2) exp(i (psi + phi)/2) goes as theta2(x - i s+ y+) and
 Y = sin(theta/2) exp(i (psi - phi)/2) as theta1(x - i s- y-), with x = pi t/T counted from a passage
 of u1.  While K <= K' the series run in the nome q; beyond, Jacobi's imaginary transformation gives
 series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so four terms are enough for
-doubles.  About u1 alone they serve a start at u1 in q; everything else takes the nearer of u1, u2.
+doubles.  The phase is counted from the nearer of u1 and u2: no argument is ever near the end of
+its branch, and none can leap there.
 
 sin and cos of multiples of x are polynomials in s = sin^2 x (times S = sin x, C = cos x or S C),
 all four families by one recurrence; sinh and cosh are the same with s -> -sinh^2.
@@ -54,7 +55,7 @@ class Frame(NamedTuple):
 
 
 class ThetaConstants(NamedTuple):
-    """What the series need to know of a nutating top, in an mpmath context."""
+    """What the series need to know of a nutating top."""
 
     period: Real
     quarter: Real
@@ -83,33 +84,19 @@ class ThetaConstants(NamedTuple):
     """-du/dt near a passage of u1 is `nutation` times the phase x."""
 
 
-class Swing(NamedTuple):
-    """The separatrix, 1 - u = (1 - u2)/cosh^2 h with h = speed t + offset."""
-
-    offset: Real
-    x: Real
-    """cos(theta_max/2)."""
-    y: Real
-    """sin(theta_max/2)."""
-    sign: int
-    """Of b."""
-    start: Real
-    """arg X at t = 0."""
-
-
 class Series(NamedTuple):
-    """The series about each turning point that a step may be near, in the caller's digits."""
+    """The series about u1 and about u2, in the caller's digits; a step is half a period."""
 
     hyperbolic: bool
     frames: list[Frame]
     scale: Real
     """Argument of the functions per step of the phase."""
-    turn_x: Real
-    """Growth of arg X over a step."""
-    turn_y: Real
-    slope_x: Real
-    """The part of it that is linear within the step; the rest is in the series."""
-    slope_y: Real
+    spin_step: Real
+    """Growth of the spin per step."""
+    precession_step: Real
+    spin_slope: Real
+    """The part of `spin_step` that is linear within the step; the rest is in the series."""
+    precession_slope: Real
 
 
 def theta_series(ar: Arithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
@@ -119,48 +106,43 @@ def theta_series(ar: Arithmetic, c: ThetaConstants, terms: int = TERMS) -> Serie
 
 
 def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
-    """The series wind by +-pi over a period; the rest of the advance is linear.
-
-    A step is a period where the motion starts at u1, and half a period where it does not: small
-    times then keep their digits, because the argument is never near pi/2.
-    """
-    q = ar.exp(-ar.pi * c.quarter_prime / c.quarter) if c.quarter_prime else ar.mpf(0)
+    """Return the series in q, which wind by +-pi over a period; the rest of the growth is linear."""
+    zero = 0 * c.quarter
+    q = ar.exp(-ar.pi * c.quarter_prime / c.quarter) if c.quarter_prime is not None else zero
     weights = _weights(q, terms)
     y_plus, y_minus = (ar.pi * eta / (2 * c.quarter) for eta in (c.eta_plus, c.eta_minus))
     x = _circular_components(ar, weights, y_plus, c.x_size, c.sign_plus)
     y = _circular_components(ar, weights, y_minus, c.y_size, c.sign_minus)
-    steps = 2 if c.offset else 1
-    turn_x, turn_y = (c.precession + c.spin) / (2 * steps), (c.precession - c.spin) / (2 * steps)
+    quarter_turn = ar.pi / 2
     return Series(
         hyperbolic=False,
-        frames=_frames(x, y, _rate(weights, 1, c.nutation))[:steps],
-        scale=ar.pi / steps,
-        turn_x=turn_x,
-        turn_y=turn_y,
-        slope_x=turn_x - c.sign_plus * ar.pi / steps,
-        slope_y=turn_y - c.sign_minus * ar.pi / steps,
+        frames=_frames(x, y, _rate(weights, 1, c.nutation)),
+        scale=quarter_turn,
+        spin_step=c.spin / 2,
+        precession_step=c.precession / 2,
+        spin_slope=c.spin / 2 - (c.sign_plus - c.sign_minus) * quarter_turn,
+        precession_slope=c.precession / 2 - (c.sign_plus + c.sign_minus) * quarter_turn,
     )
 
 
 def _hyperbolic_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
-    """A step is half a period; the transformation adds a linear exponent of its own."""
+    """Return the series in q'; Jacobi's transformation adds a linear exponent of its own."""
     ratio: Real = c.quarter / c.quarter_prime
     q = ar.exp(-ar.pi * ratio)
     v_plus, v_minus = (ar.pi * eta / (2 * c.quarter_prime) for eta in (c.eta_plus, c.eta_minus))
-    even = [(2 if n else 1) * q ** (n * n) for n in range(terms)]
+    even = [(2 if n else 1) * _power(q, n * n) for n in range(terms)]
     odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(q, terms)]
     x = _hyperbolic_components(ar, even, odd, v_plus, c.sign_plus, c.x_size)
     y = _hyperbolic_components(ar, even, odd, v_minus, c.sign_minus, c.y_size)
-    rate = _rate(odd, -1, c.nutation / ratio)
-    turn_x, turn_y = (c.precession + c.spin) / 4, (c.precession - c.spin) / 4
+    slope_x, slope_y = c.sign_plus * (v_plus - ar.pi / 2), c.sign_minus * (v_minus - ar.pi / 2)
     return Series(
         hyperbolic=True,
-        frames=_frames(x, y, rate),
+        frames=_frames(x, y, _rate(odd, -1, c.nutation / ratio)),
         scale=ar.pi / 2 * ratio,
-        turn_x=turn_x,
-        turn_y=turn_y,
-        slope_x=turn_x + c.sign_plus * (v_plus - ar.pi / 2),
-        slope_y=turn_y + c.sign_minus * (v_minus - ar.pi / 2),
+        spin_step=c.spin / 2,
+        precession_step=c.precession / 2,
+        spin_slope=c.spin / 2 + slope_x - slope_y,
+        precession_slope=c.precession / 2 + slope_x + slope_y,
     )
 
 
@@ -187,7 +169,12 @@ def _circular_components(
 
 def _weights(q: Real, terms: int) -> list[Real]:
     """q^(n(n+1)), the weights of theta1 and theta2 over 2 q^(1/4)."""
-    return [q ** (n * (n + 1)) for n in range(terms)]
+    return [_power(q, n * (n + 1)) for n in range(terms)]
+
+
+def _power(q: Real, n: int) -> Real:
+    """Return q^n, which is 1 for n = 0 even where q = 0."""
+    return q**n if n else 0 * q + 1
 
 
 def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
@@ -250,8 +237,8 @@ def evaluate(
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
 
     def polar(c: Component, side: int) -> tuple[Real, Real]:
-        P, Q = (sum(p * (S * S) ** i for i, p in enumerate(poly)) for poly in (c.real, c.imag))
+        P, Q = (sum(p * _power(S * S, i) for i, p in enumerate(poly)) for poly in (c.real, c.imag))
         real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
-        return ar.hypot(real, imag), ar.atan2(imag if P or S else side * Q, real)
+        return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
 
     return *polar(frame.x, -rises), *polar(frame.y, rises)

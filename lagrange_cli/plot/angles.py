@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
-from ..motion.record import Regime
+from ..motion.regime import Regime
 from ..motion.solve import Motion
 from .curves import phase_times, refined, span
 from .motion_facts import nutation_period

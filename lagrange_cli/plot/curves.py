@@ -16,7 +16,7 @@ from ..arithmetic.generic import Number
 from ..arithmetic.types import Array
 from ..elliptic import carlson_rf, complete_k
 from ..errors import LagtopError
-from ..motion.record import Regime
+from ..motion.regime import Regime
 from ..motion.solve import Motion
 from .motion_facts import nutation_period, periods_since_highest, separatrix_swing
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..motion.columns import COLUMNS, Sample, column_constants
 from ..motion.make_sampler import solution_of
-from ..motion.record import Regime
+from ..motion.regime import Regime
 from ..motion.solve import Motion
 
 _CELLS = 64

@@ -20,7 +20,7 @@ from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
-from ..motion.record import NUMBER_KEYS, Regime
+from ..motion.record import NUMBER_KEYS
 from ..motion.released import STILL, Nutation, remark, unmoved
 from ..motion.solve import solve
 from .start_arrays import starts

@@ -24,7 +24,7 @@ from ..elliptic import complete_k
 from ..motion.cubic import Place, Start
 from ..motion.general import Solution
 from ..motion.general_record import GeneralNutation, half_rates, mean_rates
-from ..motion.record import Regime
+from ..motion.regime import Regime
 from ..motion.released import complement, modulus, phase_rate
 from ..motion.roots import Roots
 from .top_arrays import Tops

@@ -13,7 +13,7 @@ import numpy as np
 from ..arithmetic.double_double import Twofold, two_sum
 from ..arithmetic.types import Array, Mask
 from ..inputs.top import Tilt
-from ..motion.record import Regime
+from ..motion.regime import Regime
 from ..motion.roots import Invariants
 
 _LARGE, _SMALL = 1e30, 1e-30

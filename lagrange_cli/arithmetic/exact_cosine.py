@@ -1,0 +1,185 @@
+"""Signs and zeros of polynomials in the cosine of a given angle, decided exactly.
+
+The inputs of a scene are rational numbers, so most questions about its motion ("is the precession
+steady?", "does the axis meet the pole?") ask for the sign of a polynomial with rational
+coefficients at u = cos(theta0).  A sign that is not 0 shows itself in enough digits; a zero has to
+be proved.  The cosine of an angle of k/n turns is algebraic of known degree: the polynomial
+vanishes there just if the cyclotomic polynomial of n divides it.  The cosine of any other angle in
+radians is transcendental (Lindemann), so that only the zero polynomial vanishes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
+from functools import lru_cache, reduce
+from typing import NamedTuple, TypeVar
+
+from .decimals import Decimals, decimals
+
+N = TypeVar("N", float, Fraction, Decimal)
+
+_CERTAIN = 1e-12
+"""More than the rounding of a value whose coefficients have the sum 1 in size."""
+
+
+class Polynomial:
+    """A polynomial with rational coefficients, the lowest power first."""
+
+    __slots__ = ("coefficients",)
+
+    def __init__(self, *coefficients: Fraction | int) -> None:
+        self.coefficients = coefficients
+
+    def __add__(self, other: object) -> Polynomial:
+        """Return the sum with a polynomial or a rational number."""
+        p, q = self.coefficients, _polynomial(other).coefficients
+        if len(p) < len(q):
+            p, q = q, p
+        return Polynomial(*(x + y for x, y in zip(p, q, strict=False)), *p[len(q) :])
+
+    def __mul__(self, other: object) -> Polynomial:
+        """Return the product with a polynomial or a rational number."""
+        p, q = self.coefficients, _polynomial(other).coefficients
+        product: list[Fraction | int] = [0] * (len(p) + len(q) - 1)
+        for i, x in enumerate(p):
+            for j, y in enumerate(q):
+                product[i + j] += x * y
+        return Polynomial(*product)
+
+    def __rmul__(self, other: object) -> Polynomial:
+        """Return the product with a rational number."""
+        return self * other
+
+    def __sub__(self, other: object) -> Polynomial:
+        """Return the difference from a polynomial or a rational number."""
+        return self + _polynomial(other) * -1
+
+    def __rsub__(self, other: object) -> Polynomial:
+        """Return the difference of a rational number and the polynomial."""
+        return _polynomial(other) - self
+
+    def __radd__(self, other: object) -> Polynomial:
+        """Return the sum with a rational number."""
+        return self + other
+
+
+U = Polynomial(0, 1)
+"""The cosine itself."""
+
+
+def _polynomial(value: object) -> Polynomial:
+    if isinstance(value, Polynomial):
+        return value
+    assert isinstance(value, int | Fraction)
+    return Polynomial(value)
+
+
+class Cosine(NamedTuple):
+    """The cosine of an angle that is given exactly, in degrees or else in radians."""
+
+    degrees: Fraction | None
+    radians: Fraction | None
+
+    @property
+    def rational(self) -> Fraction | None:
+        """The value, where it is rational (Niven: at multiples of 60 and 90 degrees only)."""
+        if self.radians is not None:
+            return Fraction(1) if self.radians == 0 else None
+        known = {0: 2, 60: 1, 90: 0, 120: -1, 180: -2}
+        twice = known.get(self.degrees) if self.degrees is not None else None
+        return None if twice is None else Fraction(twice, 2)
+
+    def vanishes(self, polynomial: Polynomial) -> bool:
+        """Return whether a polynomial is exactly 0 here."""
+        coefficients = [Fraction(x) for x in polynomial.coefficients]
+        while coefficients and not coefficients[-1]:
+            coefficients.pop()
+        if not coefficients:
+            return True
+        rational = self.rational
+        if rational is not None:
+            return not _value(coefficients, rational)
+        if self.degrees is None or len(coefficients) == 1:
+            return False
+        n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
+        if n > 8 * degree * degree:  # phi(n) >= sqrt(n/2): its degree is too high
+            return False
+        return not any(_remainder(_in_roots_of_unity(coefficients), cyclotomic(n)))
+
+    def sign(self, polynomial: Polynomial) -> int:
+        """Return the sign of a polynomial, -1, 0 or 1."""
+        coefficients = polynomial.coefficients
+        size = sum(abs(x) for x in coefficients)
+        if size:
+            cosine = math.cos(self._in_radians())
+            value = _value([float(x / size) for x in coefficients], cosine)
+            if abs(value) > _CERTAIN:
+                return 1 if value > 0 else -1
+        return 0 if self.vanishes(polynomial) else self._sign_in_digits(coefficients)
+
+    def _sign_in_digits(self, coefficients: Sequence[Fraction | int]) -> int:
+        digits, size = 50, sum(abs(x) for x in coefficients)
+        while True:
+            ar = decimals(digits)
+            with ar.working():
+                value = _value([ar.convert(x / size) for x in coefficients], self._value(ar))
+                if abs(value) > 1000 * ar.eps:
+                    return 1 if value > 0 else -1
+            digits *= 2
+
+    def _in_radians(self) -> float:
+        return (
+            float(self.radians or 0) if self.degrees is None else math.radians(float(self.degrees))
+        )
+
+    def _value(self, ar: Decimals) -> Decimal:
+        if self.degrees is None:
+            return ar.cos(ar.convert(self.radians or 0))
+        return ar.sin(ar.convert(90 - self.degrees) * ar.pi / 180)
+
+
+def _value(coefficients: Sequence[N], x: N) -> N:
+    """Return the polynomial at x."""
+    return reduce(lambda value, coefficient: value * x + coefficient, reversed(coefficients))
+
+
+def _in_roots_of_unity(coefficients: Sequence[Fraction]) -> list[Fraction]:
+    """Return z^d P((z + 1/z)/2) for a polynomial P of degree d."""
+    degree = len(coefficients) - 1
+    half, total, power = Polynomial(Fraction(1, 2), 0, Fraction(1, 2)), Polynomial(0), Polynomial(1)
+    for j, coefficient in enumerate(coefficients):
+        shift = Polynomial(*[0] * (degree - j), coefficient)
+        total, power = total + power * shift, power * half
+    return [Fraction(x) for x in total.coefficients]
+
+
+@lru_cache(maxsize=256)
+def cyclotomic(n: int) -> tuple[Fraction, ...]:
+    """Return the cyclotomic polynomial of n, the lowest power first: x^n - 1 over those of the
+    proper divisors of n."""
+    quotient = [Fraction(-1)] + [Fraction(0)] * (n - 1) + [Fraction(1)]
+    for divisor in range(1, n):
+        if n % divisor == 0:
+            quotient = _divided(quotient, cyclotomic(divisor))[0]
+    return tuple(quotient)
+
+
+def _remainder(dividend: Sequence[Fraction], divisor: Sequence[Fraction]) -> list[Fraction]:
+    return _divided(dividend, divisor)[1]
+
+
+def _divided(
+    dividend: Sequence[Fraction], divisor: Sequence[Fraction]
+) -> tuple[list[Fraction], list[Fraction]]:
+    """Return quotient and remainder by a polynomial whose leading coefficient is 1."""
+    rest, size = list(dividend), len(divisor) - 1
+    quotient = [Fraction(0)] * max(len(rest) - size, 1)
+    for i in range(len(rest) - 1, size - 1, -1):
+        quotient[i - size] = factor = rest[i]
+        if factor:
+            for j, coefficient in enumerate(divisor):
+                rest[i - size + j] -= factor * coefficient
+    return quotient, rest[:size]

@@ -1,0 +1,234 @@
+"""The cubic behind the nutation (section 4): its roots u2 <= u1 <= 1 <= u3, as distances.
+
+With u = u0 + x, counted from the start u0 = cos(theta0), every later formula needs only the gaps
+between the roots, the poles and the start.  Gaps to the far root carry the factor a, so that they
+stay finite without torque.  Equation numbers in parentheses are Chrapan's; what is without number
+continues him to starts that are not at rest.
+"""
+
+# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
+
+from decimal import Decimal
+from typing import Generic, NamedTuple
+
+from ..arithmetic.protocol import Arithmetic, R
+from .regime import Exact, Facts
+
+
+class State(NamedTuple, Generic[R]):
+    """Constants of the motion and the state at t = 0, each rounded once from its exact value."""
+
+    a: R
+    """2mgs/A (4,4)."""
+    b: R
+    """C r0/A (4,5)."""
+    r0: R
+    sleep: R
+    """b^2/2 - a."""
+    spin_drift: R
+    """r0 - b/2 = r0 (1 - C/2A), the spin rate less what the nutation does to it (6,1)."""
+    pole_drift: R
+    """r0 - b, the spin rate less what both poles do to it."""
+    sin: R
+    cos: R
+    sin_half: R
+    cos_half: R
+    theta_rate: R
+    psi_rate: R
+
+    @property
+    def below(self) -> R:
+        """1 + cos(theta0)."""
+        return 2 * self.cos_half * self.cos_half
+
+    @property
+    def above(self) -> R:
+        """1 - cos(theta0)."""
+        return 2 * self.sin_half * self.sin_half
+
+
+class Gaps(NamedTuple, Generic[R]):
+    """Distances between roots, poles and start, and beta - b u (4,7) at the roots and the poles."""
+
+    u1_u: R
+    u_u2: R
+    u1_u2: R
+    below_u1: R
+    """1 + u1."""
+    below_u2: R
+    """1 + u2."""
+    above_u1: R
+    """1 - u1."""
+    above_u2: R
+    """1 - u2."""
+    a_u3_u: R
+    """a (u3 - u0)."""
+    a_u3_u1: R
+    a_u3_u2: R
+    a_u3_above: R
+    """a (u3 - 1)."""
+    a_below_u3: R
+    """a (1 + u3)."""
+    momentum_u1: R
+    """beta - b u1."""
+    momentum_u2: R
+    """beta - b u2."""
+    beta_plus_b: R
+    beta_minus_b: R
+
+
+def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
+    """Return constants and start of one top in an arithmetic."""
+    a, b, r0 = exact.a, exact.b, exact.r0
+    tilt = exact.top.tilt(ar)
+    cosine = exact.cosine.rational
+    return State(
+        a=ar.convert(a),
+        b=ar.convert(b),
+        r0=ar.convert(r0),
+        sleep=ar.convert(b * b / 2 - a),
+        spin_drift=ar.convert(r0 - b / 2),
+        pole_drift=ar.convert(r0 - b),
+        sin=tilt.sin,
+        cos=tilt.cos if cosine is None else ar.convert(cosine),
+        sin_half=tilt.sin_half,
+        cos_half=tilt.cos_half,
+        theta_rate=ar.convert(exact.theta_rate),
+        psi_rate=ar.convert(exact.psi_rate),
+    )
+
+
+def gaps_of(ar: Arithmetic[R], facts: Facts, state: State[R]) -> Gaps[R]:
+    """Return the gaps of any top."""
+    if facts.at_rest and not (facts.steady or facts.regime == "separatrix"):
+        return gaps_from_rest(ar, state)
+    return gaps_from_start(ar, state, facts)
+
+
+def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
+    """Return the gaps after release from rest, (4,11)-(4,18) times a; nothing cancels.
+
+    With S, Q = sin^2, cos^2 of theta0/2 and b^2 = 2 a lambda:  a (u3 - u1) (u1 - u2) = 4 a S Q,
+    a (u3 - 1) (1 - u2) = 2 b^2 S,  a (u3 + 1) (1 + u2) = 2 b^2 Q; in each pair the larger factor is
+    a sum of positive terms and the smaller one the quotient.
+    """
+    a, b, sleep, above, below = start.a, start.b, start.sleep, start.above, start.below
+    zero = 0 * start.cos
+    x = ar.where(above <= below, sleep + a * above, b * b / 2 + a - a * below)
+    a_sin = a * start.sin
+    rho = ar.sqrt(x * x + a_sin * a_sin)
+    larger = rho + abs(x)
+    upward = x >= 0
+    larger_1 = rho + abs(sleep)
+    smaller_1 = b * b * (above / larger_1)
+    fast = sleep >= 0
+    u1_u2 = ar.where(upward, start.sin * (a_sin / larger), larger / a)
+    a_below_u3 = b * b / 2 + a + rho
+    a_u3_u1 = ar.where(upward, larger, a_sin * (a_sin / larger))
+    return Gaps(
+        u1_u=zero,
+        u_u2=u1_u2,
+        u1_u2=u1_u2,
+        below_u1=below,
+        below_u2=b * b * below / a_below_u3,
+        above_u1=above,
+        above_u2=ar.where(fast, smaller_1, larger_1 / a),
+        a_u3_u=a_u3_u1,
+        a_u3_u1=a_u3_u1,
+        a_u3_u2=2 * rho,
+        a_u3_above=ar.where(fast, larger_1, a * smaller_1),
+        a_below_u3=a_below_u3,
+        momentum_u1=zero,
+        momentum_u2=b * u1_u2,
+        beta_plus_b=b * below,
+        beta_minus_b=-b * above,
+    )
+
+
+def gaps_from_start(ar: Arithmetic[R], start: State[R], facts: Facts) -> Gaps[R]:
+    """Return the gaps of any start: the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0 in x = u - u0.
+
+    D = a (u3 - u0) is its largest root times a; the other two solve a quadratic equation whose
+    discriminant is a sum of positive terms.  A gap that is exactly 0 is put in as 0.
+    """
+    a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
+    zero = 0 * u0
+    around = start.psi_rate * start.sin
+    energy, momentum = start.theta_rate * start.theta_rate + around * around, around * start.sin
+    c0 = (start.sin * start.theta_rate) * (start.sin * start.theta_rate)
+    c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
+    c2 = 2 * a * u0 - energy - b * b
+    if facts.regime == "separatrix" or facts.upper_root == 3:
+        D = a * above
+    elif facts.steady:
+        D = -c2
+    else:
+        D = largest_root(ar, c2, a * c1, a * a * c0, energy + b * b + 2 * a)
+    if facts.steady:
+        x1, x2 = zero, zero
+    elif facts.regime == "separatrix":
+        x1, x2 = above, -c0 / (D * above)
+    else:
+        x1, x2 = two_roots(ar, (c1 + a * c0 / D) / D, -c0 / D)
+    x1 = above if facts.upper_root == 1 else x1
+    x2 = -below if facts.over_bottom else x2
+    return Gaps(
+        u1_u=x1,
+        u_u2=-x2,
+        u1_u2=x1 - x2,
+        below_u1=below + x1,
+        below_u2=below + x2,
+        above_u1=above - x1,
+        above_u2=above - x2,
+        a_u3_u=D,
+        a_u3_u1=D - a * x1,
+        a_u3_u2=D - a * x2,
+        a_u3_above=D - a * above,
+        a_below_u3=D + a * below,
+        momentum_u1=zero if facts.cusp or facts.upper_root == 1 else momentum - b * x1,
+        momentum_u2=zero if facts.over_bottom else momentum - b * x2,
+        beta_plus_b=zero if facts.over_bottom else below * (start.psi_rate * above + b),
+        beta_minus_b=zero if facts.upper_root else above * (start.psi_rate * below - b),
+    )
+
+
+def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
+    """Return the roots x1 >= 0 >= x2 of x^2 - total x + product, for product <= 0."""
+    spread = ar.sqrt(total * total - 4 * product)
+    larger = (abs(total) + spread) / 2
+    smaller = -product / larger
+    upward = total >= 0
+    return ar.where(upward, larger, smaller), -ar.where(upward, smaller, larger)
+
+
+def largest_root(ar: Arithmetic[R], c2: R, c1: R, c0: R, bound: R) -> R:
+    """Return the largest root of x^3 + c2 x^2 + c1 x + c0, by Newton's method from a bound above it.
+
+    There the method falls monotonically; it has settled where it falls no more.
+    """
+    x = bound
+    while True:
+        slope = (3 * x + 2 * c2) * x + c1
+        following = x - (((x + c2) * x + c1) * x + c0) / slope
+        if not ar.anywhere(following < x):
+            return x
+        x = following
+
+
+def are_told_apart(facts: Facts, gaps: Gaps[Decimal]) -> bool:
+    """Return whether every gap that is not exactly 0 has come out positive."""
+    touches = facts.regime == "separatrix"
+    zeros = {
+        "u1_u2": facts.steady,
+        "above_u1": facts.upper_root == 1 or touches,
+        "below_u2": facts.over_bottom,
+        "a_u3_u1": touches,
+        "a_u3_above": facts.upper_root == 3 or touches,
+    }
+    return facts.steady or all(zero or getattr(gaps, name) > 0 for name, zero in zeros.items())
+
+
+def agree(gaps: Gaps[Decimal], others: Gaps[Decimal], digits: int) -> bool:
+    """Return whether two computations of the same gaps agree to so many digits of each."""
+    tolerance = Decimal(10) ** -digits
+    return all(abs(x - y) <= tolerance * abs(x) for x, y in zip(gaps, others, strict=True))

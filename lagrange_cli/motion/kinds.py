@@ -1,0 +1,187 @@
+"""The four kinds of motion, each with the numbers of its record under their keys.
+
+`kind_of` is the only place that chooses.  `lacks` names the keys that a kind does not have.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from ..arithmetic.protocol import R
+from .moduli import Moduli
+from .quantity import quantity
+from .regime import Facts, Regime
+from .spin_precession import SpinPrecession, period_of
+
+if TYPE_CHECKING:
+    from .samplers import Sampler
+    from .series_constants import Spinor
+
+
+class Nutating(SpinPrecession[R]):
+    """A top whose tilt goes to and fro between u1 and u2."""
+
+    lacks: frozenset[str] = frozenset()
+    remark: str | None = None
+
+    def spinor(self) -> Spinor[R]:
+        """Return the attitude as a function of time, in the arithmetic of this motion."""
+        from .series_constants import nutating_spinor
+
+        return nutating_spinor(self)
+
+    def sampler(self) -> Sampler:
+        """Return the attitude as a function of arrays of doubles."""
+        from .series_constants import nutating_sampler
+
+        return nutating_sampler(self)
+
+
+class Constant(Moduli[R]):
+    """A motion at constant tilt, with constant rates of spin and precession."""
+
+    lacks = frozenset("amplitude_deg alpha u_quarter spin_rate_half precession_rate_half".split())
+    path: str | None = None
+
+    @property
+    def remark(self) -> str | None:
+        """Nothing to add."""
+        return None
+
+    @quantity
+    def T_nutation(self) -> R | None:
+        """The period (5,1) of a small nutation; None where nothing moves."""
+        moves = self.argument_rate > 0
+        if not self.ar.anywhere(moves):
+            return None
+        return 2 * self.K / self.ar.where(moves, self.argument_rate, self.ar.nan)
+
+    @quantity
+    def theta_min_deg(self) -> R:
+        """The tilt, in degrees."""
+        return 2 * self.ar.atan2(self.state.sin_half, self.state.cos_half) / self.degree
+
+    @property
+    def theta_max_deg(self) -> R:
+        """The tilt, in degrees."""
+        return self.theta_min_deg
+
+    @quantity
+    def mean_spin_rate(self) -> R:
+        """The spin rate (4,8), which is constant; on the vertical all rotation counts as spin."""
+        if self.facts.pole:
+            return self.r0
+        return self.r0 - self.state.psi_rate * self.state.cos
+
+    @property
+    def spin_rate_start(self) -> R:
+        """The spin rate, which is constant."""
+        return self.mean_spin_rate
+
+    @property
+    def mean_precession_rate(self) -> R:
+        """The precession rate, which is constant."""
+        return self.state.psi_rate
+
+    @property
+    def precession_rate_start(self) -> R:
+        """The precession rate, which is constant."""
+        return self.mean_precession_rate
+
+    @quantity
+    def T_spin(self) -> R | None:
+        """One turn at the spin rate (section 8)."""
+        return period_of(self.ar, self.mean_spin_rate)
+
+    @quantity
+    def T_precession(self) -> R | None:
+        """One turn at the precession rate (section 8)."""
+        return period_of(self.ar, self.mean_precession_rate)
+
+    def spinor(self) -> Spinor[R]:
+        """Return the attitude as a function of time, in the arithmetic of this motion."""
+        from .series_constants import constant_spinor
+
+        return constant_spinor(self)
+
+    def sampler(self) -> Sampler:
+        """Return the attitude as a function of arrays of doubles."""
+        from .series_constants import constant_sampler
+
+        return constant_sampler(self)
+
+
+class Steady(Constant[R]):
+    """A steady precession, or a top without torque that turns about an axis of its own."""
+
+
+class Vertical(Constant[R]):
+    """An upright or hanging top: of phi and psi only the sum or the difference has a meaning."""
+
+    lacks = Constant.lacks | set(
+        "u3 k k_prime modular_angle_deg nome K K_prime E T_nutation "
+        "mean_precession_rate precession_rate_start T_precession".split()
+    )
+
+    @property
+    def remark(self) -> str | None:
+        """Which angles have a meaning, and whether the motion is stable."""
+        return vertical_remark(self.facts.regime, bool(self.facts.stable))
+
+
+def vertical_remark(regime: Regime, stable: bool) -> str:
+    """Return what there is to say of an upright or hanging top."""
+    if regime is Regime.HANGING:
+        return "only phi - psi is defined; stable"
+    word, sign = ("stable", ">=") if stable else ("unstable", "<")
+    return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
+
+
+class Separatrix(SpinPrecession[R]):
+    """The swing up to the vertical in infinite time: u1 = u3 = 1, k = 1."""
+
+    lacks = frozenset(
+        "amplitude_deg alpha K T_nutation T_spin T_precession u_quarter mean_spin_rate "
+        "mean_precession_rate spin_rate_half precession_rate_half".split()
+    )
+    remark = "rises to the vertical in infinite time"
+
+    @quantity
+    def m(self) -> R:
+        """The parameter k^2, which is 1."""
+        return 0 * self.a + 1
+
+    @quantity
+    def nome(self) -> R:
+        """The nome, which is 1."""
+        return self.m
+
+    @quantity
+    def E(self) -> R:
+        """The complete integral of the second kind, which is 1."""
+        return self.m
+
+    def spinor(self) -> Spinor[R]:
+        """Return the attitude as a function of time, in the arithmetic of this motion."""
+        from .series_constants import separatrix_spinor
+
+        return separatrix_spinor(self)
+
+    def sampler(self) -> Sampler:
+        """Return the attitude as a function of arrays of doubles."""
+        from .series_constants import separatrix_sampler
+
+        return separatrix_sampler(self)
+
+
+Kind: TypeAlias = Nutating[R] | Steady[R] | Vertical[R] | Separatrix[R]
+"""Any of the four."""
+
+
+def kind_of(facts: Facts) -> type[Kind[Any]]:
+    """Return the class of the motion that some facts describe."""
+    if facts.regime in {Regime.SLEEPING, Regime.HANGING}:
+        return Vertical
+    if facts.steady:
+        return Steady
+    return Separatrix if facts.regime is Regime.SEPARATRIX else Nutating

@@ -1,0 +1,120 @@
+"""Keys whose value is rational: rounded from the fraction, where no computing could decide.
+
+A computed number that comes out as 0 may only be too small for its digits, and one that lies
+midway between two doubles has no nearest one at any precision.  What is exactly 0, and what may be
+such a tie, is told here from the inputs.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ..arithmetic.exact_cosine import U, Polynomial
+from .regime import Exact
+
+
+def rational_keys(exact: Exact) -> dict[str, Fraction]:
+    """Return the keys of a record that are known as fractions, zeros above all."""
+    keys = {"a": exact.a, "b": exact.b}
+    facts, cosine = exact.facts, exact.cosine.rational
+    keys |= _tilt_keys(exact)
+    spin = None if cosine is None else exact.r0 - exact.psi_rate * cosine
+    if not spin and exact.cosine.vanishes(exact.r0 - exact.psi_rate * U):
+        spin = Fraction(0)
+    if facts.pole:
+        spin = exact.r0
+    if facts.steady or not facts.pole:  # on the vertical neither rate has a meaning of its own
+        keys["precession_rate_start"] = exact.psi_rate
+        keys |= {} if spin is None else {"spin_rate_start": spin}
+    if facts.steady:
+        keys["mean_precession_rate"] = exact.psi_rate
+        return keys | ({} if spin is None else {"mean_spin_rate": spin})
+    if facts.free or (facts.upper_root == 1 and facts.over_bottom):  # half turns about both poles
+        if facts.sign_plus == facts.sign_minus:
+            keys["mean_spin_rate"] = exact.r0 - exact.b
+        else:
+            keys["mean_precession_rate"] = Fraction(0)
+    return keys | _zeros_of_roots(exact) | _half_rates(exact)
+
+
+def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
+    """Return what follows from a start on a turning point: its tilt and, for some, its cosine."""
+    facts, cosine, tilt = exact.facts, exact.cosine.rational, exact.cosine.degrees
+    keys: dict[str, Fraction] = {}
+    for end, at in (("1", starts_at_u1(exact)), ("2", starts_at_u2(exact))):
+        if at and cosine is not None:
+            keys[f"u{end}"] = cosine
+        if at and tilt is not None:
+            keys["theta_min_deg" if end == "1" else "theta_max_deg"] = tilt
+    if facts.at_rest and facts.regime == "no spin" and tilt is not None:
+        keys["modular_angle_deg"] = 90 - tilt / 2
+    return keys
+
+
+def starts_at_u1(exact: Exact) -> bool:
+    """Return whether the start is the upper turning point."""
+    return exact.facts.steady or (not exact.theta_rate and _fall(exact) < 0)
+
+
+def starts_at_u2(exact: Exact) -> bool:
+    """Return whether the start is the lower turning point."""
+    return exact.facts.steady or (not exact.theta_rate and _fall(exact) > 0)
+
+
+def _fall(exact: Exact) -> int:
+    """Return the sign of u'' for a start without nutation rate: that of c1/sin^2 theta0."""
+    psi = exact.psi_rate
+    return exact.cosine.sign(2 * exact.b * psi - exact.a - 2 * psi * psi * U)
+
+
+def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
+    """Return u1 = 0 or u2 = 0 where f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0."""
+    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
+    energy = exact.theta_rate**2 + psi * psi * sin2
+    beta = psi * sin2 + b * U
+    keys: dict[str, Fraction] = {}
+    if exact.cosine.vanishes(energy + a * U - beta * beta):
+        sign = exact.cosine.sign(U)
+        if sign:
+            keys["u2" if sign > 0 else "u1"] = Fraction(0)
+        else:  # the start is horizontal, and on one of the two
+            keys["u1" if starts_at_u1(exact) else "u2"] = Fraction(0)
+    if starts_at_u1(exact) and not exact.facts.free and _quarter_is_level(exact, energy):
+        keys["u_quarter"] = Fraction(0)
+    return keys
+
+
+def _quarter_is_level(exact: Exact, energy: Polynomial) -> bool:
+    """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
+
+    Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3; with x2 + x3 = -c2/a, x2 x3 = c1/a its square
+    is a polynomial in u0.
+    """
+    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
+    c2 = 2 * a * U - energy - b * b
+    c1 = 2 * b * psi * sin2 - a * sin2 - 2 * (U * energy)
+    product = a * (U * U) - U * c2 + c1  # a u2 u3
+    level = (U * U) * (c2 * c2 - 4 * a * c1) - product * product
+    return (
+        exact.cosine.vanishes(level)
+        and exact.cosine.sign(U) > 0
+        and exact.cosine.sign(product) < 0
+    )
+
+
+def _half_rates(exact: Exact) -> dict[str, Fraction]:
+    """Return the rates at T/2 that are known: after release from rest psi' = a/b (4,7)."""
+    facts, a, b = exact.facts, exact.a, exact.b
+    if facts.cusp and starts_at_u2(exact):
+        return {"precession_rate_half": Fraction(0)}
+    if facts.plane and exact.theta_rate:
+        return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
+    if not (facts.at_rest and facts.spins):
+        return {}
+    keys = {"precession_rate_half": a / b}
+    level = exact.r0 * b / a  # the u2 at which phi' = r0 - (a/b) u2 is 0
+    if abs(level) <= 1 and exact.cosine.vanishes(
+        level * level - b * b / a * level + b * b / a * U - 1
+    ):
+        keys["spin_rate_half"] = Fraction(0)
+    return keys

@@ -1,0 +1,167 @@
+"""What kind of motion a scene describes, decided once and exactly, in fractions.
+
+Every degenerate motion is a polynomial in u = cos(theta0), with rational coefficients, that
+vanishes.  Nothing later compares a computed gap with a threshold.  Equation numbers are Chrapan's.
+"""
+
+# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
+
+from collections.abc import Iterator
+from enum import StrEnum
+from fractions import Fraction
+from typing import Any, NamedTuple, TypeVar
+
+from ..arithmetic.exact_cosine import Cosine, Polynomial, U
+from ..errors import LagtopError
+from ..inputs.top import Top
+
+
+B = TypeVar("B", bound=Any)
+"""A truth, or an array of truths."""
+
+
+class Regime(StrEnum):
+    """Kind of motion; each compares equal to its text."""
+
+    REGULAR = "regular"
+    STEADY = "steady precession"
+    SEPARATRIX = "separatrix"
+    SLEEPING = "sleeping"
+    HANGING = "hanging"
+    TORQUE_FREE = "torque-free"
+    NO_SPIN = "no spin"
+
+
+class Facts(NamedTuple):
+    """What is decided before anything is computed; each a truth, or an array of truths."""
+
+    regime: Regime
+    """The regime, the same for a whole array."""
+    at_rest: bool
+    """Release from rest in nutation and precession, the case of the paper."""
+    steady: bool
+    """The tilt does not change."""
+    free: bool
+    """No torque."""
+    spins: bool
+    """r0 is not 0."""
+    pole: int = 0
+    """1 where the axis starts upright, -1 where it hangs, else 0."""
+    upper_root: int = 0
+    """Which root of the cubic is exactly 1: 1, 3, or 0 where none is."""
+    over_bottom: bool = False
+    """u2 is exactly -1."""
+    cusp: bool = False
+    """The precession stands still at u1."""
+    sign_plus: Any = 1
+    """Sign of beta + b; 1 where it is 0, the limit being the same from both sides."""
+    sign_minus: Any = 1
+    """Sign of beta - b; 1 where it is 0."""
+    stable: Any = True
+    """b^2 >= 2a: an upright top stays upright."""
+
+
+    @property
+    def plane(self) -> bool:
+        """The axis moves in a vertical plane, over the lower pole: beta = b = 0."""
+        return self.over_bottom and not self.spins
+
+
+class Exact(NamedTuple):
+    """A scene in exact arithmetic: constants of (4,4), (4,5), the start, and the facts."""
+
+    top: Top
+    a: Fraction
+    """2mgs/A (4,4)."""
+    b: Fraction
+    """C r0/A (4,5)."""
+    r0: Fraction
+    theta_rate: Fraction
+    psi_rate: Fraction
+    cosine: Cosine
+    facts: Facts
+
+
+def exact(top: Top) -> Exact:
+    """Return a top in fractions, with the facts of its motion.
+
+    Raises LagtopError for a start that describes no motion: precession on the vertical.
+    """
+    m, A, C, s, g, r0, theta_rate, psi_rate = (
+        Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.thetadot0, top.psidot0)
+    )
+    if top.pole and psi_rate:
+        raise LagtopError(
+            f"psidot0 must be 0 where the axis is vertical, got {float(psi_rate)} "
+            "(nothing precesses there; count it as spin)",
+            "psidot0",
+        )
+    a, b = 2 * m * g * s / A, C * r0 / A
+    degrees, radians = (None if x is None else Fraction(x) for x in (top.theta0_deg, top.theta0_rad))
+    cosine = Cosine(degrees, radians)
+    return Exact(
+        top, a, b, r0, theta_rate, psi_rate, cosine, _facts(top.pole, a, b, theta_rate, psi_rate, cosine)
+    )
+
+
+def _facts(
+    pole: int, a: Fraction, b: Fraction, theta_rate: Fraction, psi_rate: Fraction, cosine: Cosine
+) -> Facts:
+    minus = 0 if pole == 1 else cosine.sign(psi_rate * (1 + U) - b)
+    plus = 0 if pole == -1 else cosine.sign(psi_rate * (1 - U) + b)
+    energy_above_top = 0
+    if not minus:  # alpha - a, where beta = b
+        energy_above_top = cosine.sign(theta_rate**2 - (1 - U) * (a - psi_rate * b))
+    vertical = bool(pole) and not theta_rate
+    steady = not theta_rate and (
+        vertical or cosine.vanishes(2 * b * psi_rate - a - 2 * psi_rate**2 * U)
+    )
+    separatrix = not minus and not energy_above_top and bool(a) and not vertical
+    still = (b * psi_rate - a) * psi_rate * (1 - U * U) + b * theta_rate**2
+    upper_root = 0
+    if not minus and not vertical and not separatrix:
+        upper_root = 3 if energy_above_top < 0 else 1
+    named = regimes(
+        upright=vertical and pole > 0,
+        hanging=vertical and pole < 0,
+        free=not a,
+        separatrix=separatrix,
+        steady=steady,
+        no_spin=not b,
+    )
+    return Facts(
+        regime=next(regime for regime, holds in named if holds),
+        at_rest=not theta_rate and not psi_rate,
+        steady=steady,
+        free=not a,
+        spins=bool(b),
+        pole=pole,
+        upper_root=upper_root,
+        over_bottom=not plus and not vertical,
+        cusp=bool(b) and minus * (1 if b > 0 else -1) < 0 and cosine.vanishes(still),
+        sign_plus=plus or 1,
+        sign_minus=minus or 1,
+        stable=b * b >= 2 * a,
+    )
+
+
+def regimes(
+    *, upright: B, hanging: B, free: B, separatrix: B, steady: B, no_spin: B
+) -> Iterator[tuple[Regime, B]]:
+    """Yield each regime with its condition; of those that hold only the first stays true.
+
+    The conditions are truths, or masks of an array of tops.
+    """
+    left = upright == upright
+    for regime, condition in (
+        (Regime.SLEEPING, upright),
+        (Regime.HANGING, hanging),
+        (Regime.TORQUE_FREE, free),
+        (Regime.SEPARATRIX, separatrix),
+        (Regime.STEADY, steady),
+        (Regime.NO_SPIN, no_spin),
+        (Regime.REGULAR, left),
+    ):
+        holds = left & condition
+        left = left ^ holds
+        yield regime, holds

@@ -1,0 +1,160 @@
+"""Sections 6 and 7, spin and precession: mean rates, rates at the start and half a period later.
+
+Both rates are partial fractions about the two poles: with psi' = (beta - b u)/(1 - u^2) (4,7),
+
+    south = (beta - b u)/(2 (1 + u)),   north = (beta - b u)/(2 (1 - u)),
+    psi' = south + north,               phi' = r0 + south - north.
+
+Equation numbers in parentheses are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from ..arithmetic.protocol import Arithmetic, R
+from ..elliptic import period_mean
+from .nutation import Nutation
+from .quantity import quantity
+
+
+class SpinPrecession(Nutation[R]):
+    """The numbers of sections 6 and 7 of a motion, under their keys; None where it has none."""
+
+    @quantity
+    def spin_growth(self) -> R:
+        """Growth of the spin over a nutation period."""
+        return self.mean_spin_rate * self.T_nutation
+
+    @quantity
+    def precession_growth(self) -> R:
+        """Growth of the precession over a nutation period."""
+        return self.mean_precession_rate * self.T_nutation
+
+    @quantity
+    def half_turn_rate(self) -> R:
+        """Half a turn per nutation period."""
+        return self.ar.pi / self.T_nutation
+
+    @quantity
+    def _south(self) -> R:
+        """The mean of (beta + b)/(2 (1 + u)), half a turn per period where the axis hangs once."""
+        gaps = self.gaps
+        if self.facts.free or self.facts.over_bottom:
+            return self.facts.sign_plus * self.half_turn_rate
+        return self._mean_over(gaps.below_u1, gaps.below_u2, gaps.beta_plus_b, gaps.beta_plus_b)
+
+    @quantity
+    def _north(self) -> R:
+        """The mean of (beta - b)/(2 (1 - u)), half a turn per period where the axis stands once."""
+        gaps = self.gaps
+        if self.facts.free or self.facts.upper_root == 1:
+            return self.facts.sign_minus * self.half_turn_rate
+        return self._mean_over(gaps.above_u1, gaps.above_u2, gaps.beta_minus_b, gaps.beta_minus_b)
+
+    @property
+    def _meets_a_pole(self) -> bool:
+        return self.facts.over_bottom or self.facts.upper_root == 1
+
+    @quantity
+    def _whole_south(self) -> R:
+        """The mean of (beta - b u)/(2 (1 + u))."""
+        gaps = self.gaps
+        return self._mean_over(gaps.below_u1, gaps.below_u2, gaps.momentum_u1, gaps.momentum_u2)
+
+    @quantity
+    def _whole_north(self) -> R:
+        """The mean of (beta - b u)/(2 (1 - u))."""
+        gaps = self.gaps
+        return self._mean_over(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
+
+    def _mean_over(self, from_u1: R, from_u2: R, at_u1: R, at_u2: R) -> R:
+        """Return half the mean of a quotient of numbers linear in u, by their values at u1, u2."""
+        mc = self.k_prime * self.k_prime
+        mean = period_mean(self.ar, self.k_prime, mc * from_u2 / from_u1, at_u1, mc * at_u2)
+        return mean / from_u1 / 2
+
+    @quantity
+    def mean_spin_rate(self) -> R:
+        """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation."""
+        if self.facts.at_rest:
+            half_turn = self.half_turn_rate
+            return self.state.spin_drift + self.ar.where(self.r0 < 0, -half_turn, half_turn)
+        if self.facts.free or self._meets_a_pole:
+            return self.state.pole_drift + self._south - self._north
+        return self.r0 + self._whole_south - self._whole_north
+
+    @quantity
+    def mean_precession_rate(self) -> R:
+        """The mean precession rate (7,3)."""
+        if self.facts.free or self._meets_a_pole:
+            return self._south + self._north
+        return self._whole_south + self._whole_north
+
+    @quantity
+    def T_spin(self) -> R | None:
+        """One turn at the mean spin rate (section 8)."""
+        return period_of(self.ar, self.mean_spin_rate)
+
+    @quantity
+    def T_precession(self) -> R | None:
+        """One turn at the mean precession rate (section 8)."""
+        return period_of(self.ar, self.mean_precession_rate)
+
+    @quantity
+    def spin_rate_start(self) -> R | None:
+        """The spin rate at the start (4,8); None on the vertical."""
+        return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
+
+    @quantity
+    def precession_rate_start(self) -> R | None:
+        """The precession rate at the start, as given; None on the vertical."""
+        return None if self.facts.pole else self.state.psi_rate
+
+    @property
+    def _half_over_pole(self) -> bool:
+        """Whether the axis is on a pole half a period after the start: it was at u1 or u2."""
+        if self.facts.over_bottom:
+            return self.ar.everywhere(self.gaps.u1_u <= 0)
+        return self.facts.upper_root == 1 and self.ar.everywhere(self.gaps.u_u2 <= 0)
+
+    @quantity
+    def _half(self) -> tuple[R, R]:
+        """1 + u and 1 - u half a period after the start."""
+        gaps = self.gaps
+        below = gaps.below_u2 + gaps.u1_u * (gaps.a_u3_u2 / gaps.a_u3_u)
+        above = gaps.above_u1 + gaps.u_u2 * (gaps.a_u3_u1 / gaps.a_u3_u)
+        return below, above
+
+    @quantity
+    def precession_rate_half(self) -> R | None:
+        """The precession rate (4,7) half a period after the start; None over a pole."""
+        if self._half_over_pole:
+            return None
+        from_u2 = self.gaps.u1_u * (self.gaps.a_u3_u2 / self.gaps.a_u3_u)
+        momentum = self.gaps.momentum_u2 - self.b * from_u2
+        return momentum / self._half[0] / self._half[1]
+
+    @quantity
+    def spin_rate_half(self) -> R | None:
+        """The spin rate (4,8) half a period after the start; None over a pole."""
+        if self.precession_rate_half is None:
+            return None
+        below, above = self._half
+        return self.r0 - (below - above) / 2 * self.precession_rate_half
+
+    @property
+    def path(self) -> str | None:
+        """Path of the axis by where the precession stands still: at u1, within, or nowhere."""
+        facts, gaps = self.facts, self.gaps
+        if facts.cusp:
+            return "cusped"
+        if facts.plane:
+            return None
+        return "looping" if self.b * gaps.momentum_u1 < 0 < self.b * gaps.momentum_u2 else "wavy"
+
+
+def period_of(ar: Arithmetic[R], rate: R) -> R | None:
+    """Return 2 pi over a mean rate; None, or NaN in an array, where it is 0."""
+    stands = abs(rate) <= 0
+    if ar.everywhere(stands):
+        return None
+    return 2 * ar.pi / ar.where(stands, ar.nan, abs(rate))
