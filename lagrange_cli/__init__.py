@@ -16,7 +16,7 @@ __all__ = ["LagtopError", "Motion", "Regime", "Top", "__version__", "read_scene"
 _MODULES = {
     "LagtopError": "errors",
     "Motion": "motion.solve",
-    "Regime": "motion.record",
+    "Regime": "motion.regime",
     "Top": "inputs.top",
     "read_scene": "inputs.scene_file",
     "solve": "motion.solve",

@@ -27,7 +27,7 @@ from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records, sweep
-from lagrange_cli.sweeps.top_arrays import Tops
+from lagrange_cli.sweeps.top_arrays import TopArrays
 
 COUNT = 1_000_000
 TOP = {name: np.nan if x is None else float(x) for name, x in Top()._asdict().items()}
@@ -76,7 +76,7 @@ def sweeps(rng: np.random.Generator) -> None:
     count = COUNT // 4
     inputs = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
     record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"])
-    tops = Tops(*(np.broadcast_to(inputs.get(x, given), (count,)) for x, given in TOP.items()))
+    tops = TopArrays(*(np.broadcast_to(inputs.get(x, given), (count,)) for x, given in TOP.items()))
     blocks = [tops.part(slice(i, i + BLOCK_ROWS)) for i in range(0, count, BLOCK_ROWS)]
 
     def solved(keys: Sequence[str]) -> None:

@@ -97,5 +97,3 @@ def text_of(value: Decimal | Fraction, digits: int) -> NumberText:
     else:
         body = f"{text[0]}.{text[1:] or '0'}e{exponent:+d}"
     return NumberText("-" * sign + body)
-
-

@@ -7,13 +7,11 @@ time exactly, however far away it is.
 from __future__ import annotations
 
 from math import frexp
-from math import sqrt as math_sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .types import Array
+from .types import Array, Mask
 
 _SPLITTER = 2.0**27 + 1
 
@@ -74,45 +72,51 @@ def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
     return root, ((high - square) - error + low) / np.where(root > 0, 2 * root, 1.0)
 
 
-class Twofold:
+class DoubleDouble:
     """The numbers high + low, where high is the double nearest to the sum.
 
     Sums, products, quotients and square roots are good to a few units of 2^-104, of the larger part
-    in a sum.  This module is an arithmetic for the formulas of `elliptic` and `general_record`.
+    in a sum.  `arrays.Pairs` is the arithmetic of these numbers.
     """
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
         self.high = high
         self.low = np.zeros_like(high) if low is None else low
 
-    def scaled(self, power: float) -> Twofold:
+    def scaled(self, power: float) -> DoubleDouble:
         """Times a power of two, exactly."""
-        return Twofold(self.high * power, self.low * power)
+        return DoubleDouble(self.high * power, self.low * power)
 
-    def _like(self, other: Twofold | float) -> Twofold:
-        return other if isinstance(other, Twofold) else Twofold(np.full_like(self.high, other))
+    def _like(self, other: DoubleDouble | float) -> DoubleDouble:
+        return (
+            other
+            if isinstance(other, DoubleDouble)
+            else DoubleDouble(np.full_like(self.high, other))
+        )
 
-    def __add__(self, other: Twofold | float) -> Twofold:
+    def __add__(self, other: DoubleDouble | float) -> DoubleDouble:
         other = self._like(other)
         high, error = two_sum(self.high, other.high)
         low, rest = two_sum(self.low, other.low)
         total = _renormalised(high, error + low)
         return _renormalised(total.high, total.low + rest)
 
-    def __neg__(self) -> Twofold:
-        return Twofold(-self.high, -self.low)
+    def __neg__(self) -> DoubleDouble:
+        return DoubleDouble(-self.high, -self.low)
 
-    def __abs__(self) -> Twofold:
+    def __abs__(self) -> DoubleDouble:
         sign = np.where(self.high < 0, -1.0, 1.0)
-        return Twofold(self.high * sign, self.low * sign)
+        return DoubleDouble(self.high * sign, self.low * sign)
 
-    def __sub__(self, other: Twofold | float) -> Twofold:
+    def __sub__(self, other: DoubleDouble | float) -> DoubleDouble:
         return self + -self._like(other)
 
-    def __rsub__(self, other: float) -> Twofold:
+    def __rsub__(self, other: float) -> DoubleDouble:
         return self._like(other) - self
 
-    def __mul__(self, other: Twofold | float) -> Twofold:
+    def __mul__(self, other: DoubleDouble | float) -> DoubleDouble:
+        if not isinstance(other, DoubleDouble) and frexp(other)[0] == 0.5:
+            return self.scaled(other)
         other = self._like(other)
         high, low = two_product(self.high, other.high)
         low += self.high * other.low + self.low * other.high
@@ -120,8 +124,8 @@ class Twofold:
 
     __radd__, __rmul__ = __add__, __mul__
 
-    def __truediv__(self, other: Twofold | float) -> Twofold:
-        if not isinstance(other, Twofold) and frexp(other)[0] == 0.5:
+    def __truediv__(self, other: DoubleDouble | float) -> DoubleDouble:
+        if not isinstance(other, DoubleDouble) and frexp(other)[0] == 0.5:
             return self.scaled(1 / other)
         other = self._like(other)
         high = self.high / other.high
@@ -129,21 +133,39 @@ class Twofold:
         rest = (self.high - product) - error + self.low - high * other.low
         return _renormalised(high, rest / other.high)
 
-    def __gt__(self, other: Twofold | float) -> NDArray[np.bool_]:
+    def __gt__(self, other: DoubleDouble | float) -> Mask:
         return self.high > self._like(other).high
 
-    def __le__(self, other: Twofold | float) -> NDArray[np.bool_]:
+    def __le__(self, other: DoubleDouble | float) -> Mask:
         return self.high <= self._like(other).high
 
+    def __rtruediv__(self, other: float) -> DoubleDouble:
+        return self._like(other) / self
 
-eps = 2.0**-104
+    def __lt__(self, other: DoubleDouble | float) -> Mask:
+        return self.high < self._like(other).high
+
+    def __ge__(self, other: DoubleDouble | float) -> Mask:
+        return self.high >= self._like(other).high
+
+    def sqrt(self) -> DoubleDouble:
+        """Return the square root of numbers >= 0."""
+        return _renormalised(*sqrt_pair(self.high, self.low))
+
+    @classmethod
+    def choose(
+        cls, condition: Mask, yes: DoubleDouble | float, no: DoubleDouble | float
+    ) -> DoubleDouble:
+        """Return one of two numbers, element by element."""
+        one, other = (
+            x if isinstance(x, DoubleDouble) else cls(np.full(np.shape(condition), float(x)))
+            for x in (yes, no)
+        )
+        return cls(
+            np.where(condition, one.high, other.high), np.where(condition, one.low, other.low)
+        )
 
 
-def sqrt(x: Twofold | float) -> Any:
-    """The square root of a number >= 0."""
-    return _renormalised(*sqrt_pair(x.high, x.low)) if isinstance(x, Twofold) else math_sqrt(x)
-
-
-def _renormalised(high: Array, low: Array) -> Twofold:
+def _renormalised(high: Array, low: Array) -> DoubleDouble:
     total = high + low
-    return Twofold(total, low - (total - high))
+    return DoubleDouble(total, low - (total - high))

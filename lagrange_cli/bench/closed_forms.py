@@ -20,20 +20,16 @@ from .method import Method, NotApplicableError, Sample, Sampled
 
 
 def _ours(top: Top, _: str) -> Sample:
-    from ..motion.make_sampler import sampler_of, solution_of
-
-    sampler_of.cache_clear()  # or the set-up would be timed once and found ready ever after
-    solution_of.cache_clear()
-    return sampler_of(top).angles
+    return solve(top).sampler().angles
 
 
 def _ours_in_digits(top: Top, digits: int) -> Sample:
     import mpmath
 
-    from ..motion.digits import settled_rows
+    from ..motion.digits import rows_in_digits
 
     def sample(t: Array) -> Sampled:
-        rows = settled_rows(top, t.tolist(), digits, radians=True)
+        rows = rows_in_digits(solve(top), t.tolist(), digits, radians=True)
         with mpmath.workdps(digits + 10):
             return [[mpmath.mpf(row[i]) for row in rows] for i in (1, 2, 3)]
 

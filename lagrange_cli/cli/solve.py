@@ -57,9 +57,7 @@ def command(
     if digits is None:
         record = motion.record(radians=rad)
     else:
-        from ..motion.digits import settled_record
-
-        record = settled_record(motion.top, digits, radians=rad)
+        record = motion.digits(digits, radians=rad)
     if key is None:
         write_record(record, fmt, output)
         return

@@ -7,13 +7,14 @@ Chrapan's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arithmetic.types import Array
+from ..inputs.names import check_names
 from .samplers import Attitude
 from .solve import Motion
 
@@ -67,6 +68,13 @@ class Sample:
     ) -> None:
         self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
         self.x, self.y = attitude.spinor.x, attitude.spinor.y
+        self._groups: dict[str, Sequence[Array]] = {}
+
+    def group(self, name: str) -> Sequence[Array]:
+        """Return the columns of one entry of `COLUMNS`, computed once."""
+        if name not in self._groups:
+            self._groups[name] = COLUMNS[name].compute(self)
+        return self._groups[name]
 
     @cached_property
     def norm(self) -> Array:
@@ -157,9 +165,10 @@ def _over(value: Array, divisor: Array) -> Array:
 
 
 class Column(NamedTuple):
-    """A column by name: its headings (a `*` stands for the angle unit) and how to compute it."""
+    """One or several columns by name: their headings and how to compute them."""
 
     headings: Sequence[str]
+    """A `*` stands for the unit of angles."""
     compute: Callable[[Sample], Sequence[Array]]
     needs_rate: bool = False
 
@@ -181,3 +190,57 @@ COLUMNS: dict[str, Column] = {
     "energy": Column(["energy"], lambda s: [s.energy()], True),
     "Lz": Column(["Lz"], lambda s: [s.vertical_momentum()]),
 }
+
+_SINGLE = {
+    heading: (name, i)
+    for name, column in COLUMNS.items()
+    if len(column.headings) > 1
+    for i, heading in enumerate(column.headings)
+}
+"""Each column of a group by its own name."""
+
+
+class Chosen(NamedTuple):
+    """One column that was asked for."""
+
+    name: str
+    """The heading without a unit."""
+    heading: str
+    group: str
+    index: int
+
+    def compute(self, sample: Sample) -> Array:
+        """Return the column; a group is computed once per sample."""
+        return sample.group(self.group)[self.index]
+
+
+def chosen_columns(names: Sequence[str]) -> list[Chosen]:
+    """Return the columns of some names, groups expanded.
+
+    Raises LagtopError for a name that is unknown or comes twice.
+    """
+    check_names("columns", names, [*COLUMNS, *_SINGLE])
+    chosen = []
+    for name in names:
+        group, index = _SINGLE.get(name, (name, None))
+        for i, heading in enumerate(COLUMNS[group].headings):
+            if index in {None, i}:
+                chosen.append(Chosen(heading.removesuffix("_*"), heading, group, i))
+    headings = [column.heading for column in chosen]
+    check_names("columns", headings, headings)
+    return chosen
+
+
+def need_rate(chosen: Sequence[Chosen]) -> bool:
+    """Return whether one of the columns needs the nutation rate."""
+    return any(COLUMNS[column.group].needs_rate for column in chosen)
+
+
+def samples(
+    motion: Motion, t: Array, chosen: Sequence[Chosen], *, wrap: bool
+) -> Iterator[tuple[slice, Sample]]:
+    """Yield the motion at the times t, a block at a time, with what some columns need."""
+    sampler, constants = motion.sampler(), column_constants(motion)
+    sampler.check(t)
+    for part, attitude in sampler.attitudes(t, rate=need_rate(chosen)):
+        yield part, Sample(t[part], attitude, constants, wrap)

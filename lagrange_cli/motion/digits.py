@@ -59,7 +59,10 @@ class _Table:
             )
             for column, name in enumerate(names)
         ]
-        return [text_of(Decimal(time) if isinstance(time, float) else time, digits), *filter(None, texts)]
+        return [
+            text_of(Decimal(time) if isinstance(time, float) else time, digits),
+            *filter(None, texts),
+        ]
 
     def _angles_with(self, working: int) -> Callable[[Number], list[Decimal]]:
         """Return the angles at a time, computed with so many digits."""

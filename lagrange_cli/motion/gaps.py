@@ -8,6 +8,7 @@ continues him to starts that are not at rest.
 
 # Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
 
+from collections.abc import Callable
 from decimal import Decimal
 from typing import Generic, NamedTuple
 
@@ -145,11 +146,14 @@ def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
     )
 
 
-def gaps_from_start(ar: Arithmetic[R], start: State[R], facts: Facts) -> Gaps[R]:
+def gaps_from_start(
+    ar: Arithmetic[R], start: State[R], facts: Facts, find_root: Callable[..., R] | None = None
+) -> Gaps[R]:
     """Return the gaps of any start: the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0 in x = u - u0.
 
     D = a (u3 - u0) is its largest root times a; the other two solve a quadratic equation whose
-    discriminant is a sum of positive terms.  A gap that is exactly 0 is put in as 0.
+    discriminant is a sum of positive terms.  A gap that is exactly 0 is put in as 0.  `find_root`
+    may replace `largest_root`.
     """
     a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
     zero = 0 * u0
@@ -163,7 +167,8 @@ def gaps_from_start(ar: Arithmetic[R], start: State[R], facts: Facts) -> Gaps[R]
     elif facts.steady:
         D = -c2
     else:
-        D = largest_root(ar, c2, a * c1, a * a * c0, energy + b * b + 2 * a)
+        bound = energy + b * b + 2 * a
+        D = (find_root or largest_root)(ar, c2, a * c1, a * a * c0, bound)
     if facts.steady:
         x1, x2 = zero, zero
     elif facts.regime == "separatrix":

@@ -47,7 +47,9 @@ class Nutation(Moduli[R]):
         if not self.facts.at_rest:
             return None
         a_below_u2 = self.a * self.gaps.below_u2
-        return self.ar.atan2(self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(a_below_u2)) / self.degree
+        return (
+            self.ar.atan2(self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(a_below_u2)) / self.degree
+        )
 
     @quantity
     def alpha(self) -> R | None:
@@ -73,6 +75,4 @@ class Nutation(Moduli[R]):
         """The distance of X from its zero at the bottom: F of sn^2 = (1 + u2)/(1 + u1)."""
         gaps = self.gaps
         middle = gaps.u1_u2 * (gaps.a_below_u3 / gaps.a_u3_u2)
-        return self.ar.sqrt(gaps.below_u2) * carlson_rf(
-            self.ar, gaps.u1_u2, middle, gaps.below_u1
-        )
+        return self.ar.sqrt(gaps.below_u2) * carlson_rf(self.ar, gaps.u1_u2, middle, gaps.below_u1)

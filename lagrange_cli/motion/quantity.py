@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 V = TypeVar("V")
 
 
-class quantity(Generic[V]):  # noqa: N801 - used as a decorator, like `property`
+class quantity(Generic[V]):
     """A lazy attribute whose formula runs within the precision of the arithmetic of its object."""
 
     def __init__(self, formula: Callable[[Any], V]) -> None:

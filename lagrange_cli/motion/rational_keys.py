@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..arithmetic.exact_cosine import U, Polynomial
+from ..arithmetic.exact_cosine import Polynomial, U
 from .regime import Exact
 
 
@@ -96,9 +96,7 @@ def _quarter_is_level(exact: Exact, energy: Polynomial) -> bool:
     product = a * (U * U) - U * c2 + c1  # a u2 u3
     level = (U * U) * (c2 * c2 - 4 * a * c1) - product * product
     return (
-        exact.cosine.vanishes(level)
-        and exact.cosine.sign(U) > 0
-        and exact.cosine.sign(product) < 0
+        exact.cosine.vanishes(level) and exact.cosine.sign(U) > 0 and exact.cosine.sign(product) < 0
     )
 
 

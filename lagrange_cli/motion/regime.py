@@ -11,10 +11,9 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from ..arithmetic.exact_cosine import Cosine, Polynomial, U
+from ..arithmetic.exact_cosine import Cosine, U
 from ..errors import LagtopError
 from ..inputs.top import Top
-
 
 B = TypeVar("B", bound=Any)
 """A truth, or an array of truths."""
@@ -60,7 +59,6 @@ class Facts(NamedTuple):
     stable: Any = True
     """b^2 >= 2a: an upright top stays upright."""
 
-
     @property
     def plane(self) -> bool:
         """The axis moves in a vertical plane, over the lower pole: beta = b = 0."""
@@ -97,10 +95,19 @@ def exact(top: Top) -> Exact:
             "psidot0",
         )
     a, b = 2 * m * g * s / A, C * r0 / A
-    degrees, radians = (None if x is None else Fraction(x) for x in (top.theta0_deg, top.theta0_rad))
+    degrees, radians = (
+        None if x is None else Fraction(x) for x in (top.theta0_deg, top.theta0_rad)
+    )
     cosine = Cosine(degrees, radians)
     return Exact(
-        top, a, b, r0, theta_rate, psi_rate, cosine, _facts(top.pole, a, b, theta_rate, psi_rate, cosine)
+        top,
+        a,
+        b,
+        r0,
+        theta_rate,
+        psi_rate,
+        cosine,
+        _facts(top.pole, a, b, theta_rate, psi_rate, cosine),
     )
 
 

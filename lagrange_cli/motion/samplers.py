@@ -103,7 +103,7 @@ class Sampler:
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """See `Motion.angles`."""
-        times = np.asarray(t, dtype=np.float64)
+        times = times_of(t)
         self.check(times)
         flat = np.ascontiguousarray(times).reshape(-1)
         angles = Angles(*(np.empty_like(flat) for _ in range(3)))
@@ -124,7 +124,7 @@ class Sampler:
 
     def check(self, t: ArrayLike) -> None:
         """Raise LagtopError where a time is not finite or names no phase."""
-        times = np.asarray(t, dtype=np.float64)
+        times = times_of(t)
         bad = ~(np.abs(times) <= min(self.max_time, MAX_TIME))
         if bad.any():
             raise LagtopError(
@@ -215,6 +215,19 @@ class SeparatrixSampler(Sampler):
         falling = -4.0 * self.speed * y * y * tanh if rate else None
         zero = np.zeros_like(h)
         return Attitude(self.growths, t, t, zero, Spinor(x, y, arg_x, zero, falling))
+
+
+def times_of(t: ArrayLike) -> Array:
+    """Return times as float64.  Raises LagtopError for what is not an array of real numbers."""
+    if np.ma.isMaskedArray(t) and np.ma.getmaskarray(t).any():
+        raise LagtopError("t must not be masked: fill it or leave the elements out", "t")
+    try:
+        times = np.asarray(t)
+        if times.size and times.dtype.kind not in "iufO":
+            raise TypeError(times.dtype)
+        return times.astype(np.float64, copy=False)
+    except (TypeError, ValueError, OverflowError):
+        raise LagtopError(f"t must be real numbers, got {repr(t)[:60]}", "t") from None
 
 
 def _circular(x: Array) -> tuple[Array, None, Array]:

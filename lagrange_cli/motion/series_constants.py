@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import R
 from ..elliptic import carlson_rf
-from .theta_series import Component, Frame, Polynomial, Series, ThetaConstants, evaluate, theta_series
+from .theta_series import (
+    Component,
+    Frame,
+    Polynomial,
+    Series,
+    ThetaConstants,
+    evaluate,
+    theta_series,
+)
 
 if TYPE_CHECKING:
     from .kinds import Constant, Nutating, Separatrix
@@ -255,9 +263,7 @@ def _rounded(frame: Frame, series: Series) -> Frame:
         real, imag = (_trimmed(x, series.hyperbolic) for x in (c.real, c.imag))
         return Component(real, imag, c.even)
 
-    return Frame(
-        component(frame.x), component(frame.y), _trimmed(frame.rate, series.hyperbolic)
-    )
+    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, series.hyperbolic))
 
 
 def _trimmed(polynomial: Polynomial, hyperbolic: bool) -> Polynomial:

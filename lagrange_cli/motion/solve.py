@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, precisions, text_of
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..arithmetic.text import NumberText
-    from ..arithmetic.types import Array
     from .samplers import Angles, Sampler
 
 T = TypeVar("T")
@@ -48,6 +46,7 @@ class Motion:
         self._kinds: dict[int, Kind[Decimal]] = {}
         self._rational = rational_keys(scene)
         self._doubles: dict[str, float | None] = {}
+        self._sampler: Sampler | None = None
 
     @property
     def top(self) -> Top:
@@ -208,6 +207,9 @@ class Motion:
             previous = kind
         raise LagtopError("the roots of the cubic cannot be told apart")
 
+    def __repr__(self) -> str:
+        return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
+
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Return tilt, spin and precession (radians) at the times t, in the shape of t.
 
@@ -216,14 +218,27 @@ class Motion:
         """
         return self.sampler().angles(t, wrap=wrap)
 
+    def table(
+        self,
+        t: ArrayLike,
+        columns: Sequence[str] = ("t", "theta", "phi", "psi"),
+        *,
+        wrap: bool = False,
+    ) -> dict[str, Array]:
+        """Return columns of `lagtop table` by name, each a float64 array in the shape of t.
+
+        Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
+        may also be named singly.  Raises LagtopError for an unknown column or a time out of reach.
+        """
+        from .table import table
+
+        return table(self, t, columns, wrap=wrap)
+
     def sampler(self) -> Sampler:
-        """Return the series behind `angles`, the same object for the same top."""
-        return _sampler(self.top)
-
-
-@lru_cache(maxsize=128)
-def _sampler(top: Top) -> Sampler:
-    return solve(top).settled_kind(48).sampler()
+        """Return the series behind `angles`, made once."""
+        if self._sampler is None:
+            self._sampler = self.settled_kind(48).sampler()
+        return self._sampler
 
 
 def _nearest_double(name: str) -> Callable[[Decimal], float]:

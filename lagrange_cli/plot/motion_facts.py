@@ -13,8 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..motion.columns import COLUMNS, Sample, column_constants
-from ..motion.make_sampler import solution_of
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 
@@ -29,11 +27,7 @@ def columns_at(motion: Motion, t: Array, names: Sequence[str]) -> list[Array]:
 
     Raises LagtopError for a time out of reach.
     """
-    sampler = motion.sampler()
-    sampler.check(t)
-    constants = column_constants(motion.top, solution_of(motion.top).start)
-    sample = Sample(t, sampler.attitude(t, True), constants, wrap=False)
-    return [column for name in names for column in COLUMNS[name].compute(sample)]
+    return list(motion.table(t, names).values())
 
 
 def axis_at(motion: Motion, t: Array) -> Array:

@@ -16,7 +16,7 @@ from ..inputs.block import Block
 from ..output.formats import Columns
 from ..output.write import block_text
 from .records import Column, records
-from .top_arrays import Tops
+from .top_arrays import TopArrays
 
 NumberedBlock = tuple[int, Block]
 """The number of a part, and the tops that it is made of."""
@@ -51,7 +51,9 @@ class Sweep(NamedTuple):
         """Compute one part."""
         number, block = numbered
         given = block.arrays(self.shared)
-        tops = Tops(*(_filled(given.inputs.get(name), given.size) for name in Tops._fields))
+        tops = TopArrays(
+            *(_filled(given.inputs.get(name), given.size) for name in TopArrays._fields)
+        )
         columns = records(tops, [*self.keys, "error"], radians=self.radians, errors=given.errors)
         errors = [(row, error) for row, error in enumerate(columns["error"]) if error]
         if given.lines is not None:

@@ -1,6 +1,6 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
-Tops released from rest go through the formulas of `released` as arrays of doubles, others through
+TopArrays released from rest go through the formulas of `released` as arrays of doubles, others through
 those of `general_record`.  What is not usual (a size beyond 1e+-30, lambda within 2^-44 of 1, roots
 of a general start that nearly meet) goes through `solve`, one by one, and a top that cannot be gets
 an error in place of its numbers.
@@ -8,38 +8,36 @@ an error in place of its numbers.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
-from ..motion.record import NUMBER_KEYS
-from ..motion.released import STILL, Nutation, remark, unmoved
+from ..motion import record as motion_record
+from ..motion.gaps import gaps_of
+from ..motion.kinds import kind_of, vertical_remark
+from ..motion.regime import Facts, Regime
 from ..motion.solve import solve
-from .start_arrays import starts
-from .top_arrays import Tops
+from .start_arrays import StartArrays
+from .top_arrays import TopArrays
 
 Column = Array | NDArray[np.object_]
 """Numbers, NaN where a regime has none; or texts, None where there is none."""
 
 BLOCK_ROWS = 1 << 12
-"""Tops that are computed together: their arrays stay in the cache."""
+"""TopArrays that are computed together: their arrays stay in the cache."""
 
 _TEXT_KEYS = ("regime", "path", "remark")
 
 
 def record_keys(*, radians: bool = False) -> list[str]:
     """The keys of a record, and `error`."""
-    inputs = list(Top().inputs(radians=radians))
-    names = [re.sub("_deg$", "_rad", key) if radians else key for key in NUMBER_KEYS]
-    return [*inputs, "regime", *names, "path", "remark", "error"]
+    return [*motion_record.record_keys(radians=radians), "error"]
 
 
 def sweep(
@@ -52,18 +50,18 @@ def sweep(
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
     chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
-    if unknown := set(inputs) - set(Tops._fields):
-        raise LagtopError(f"inputs must be among {' '.join(Tops._fields)}, got {min(unknown)}")
+    if unknown := set(inputs) - set(TopArrays._fields):
+        raise LagtopError(f"inputs must be among {' '.join(TopArrays._fields)}, got {min(unknown)}")
     given = Top().inputs() | {"theta0_rad": np.nan}
     if "theta0_rad" in inputs and "theta0_deg" not in inputs:
         given["theta0_deg"] = np.nan
-    doubles = [_doubles(name, (given | inputs)[name]) for name in Tops._fields]
+    doubles = [_doubles(name, (given | inputs)[name]) for name in TopArrays._fields]
     try:
         arrays = np.broadcast_arrays(*doubles)
     except ValueError as error:
         raise LagtopError(f"the inputs do not go together: {error}") from None
     shape = arrays[0].shape
-    tops = Tops(*(x.ravel() for x in arrays))
+    tops = TopArrays(*(x.ravel() for x in arrays))
     blocks = [
         records(tops.part(slice(first, first + BLOCK_ROWS)), chosen, radians=radians)
         for first in range(0, max(tops.m.size, 1), BLOCK_ROWS)
@@ -91,7 +89,7 @@ def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
 
 
 def records(
-    tops: Tops,
+    tops: TopArrays,
     keys: Sequence[str],
     *,
     radians: bool = False,
@@ -115,7 +113,7 @@ def records(
 class _Block:
     """The columns of a block of tops, while they are being filled."""
 
-    def __init__(self, tops: Tops, keys: Sequence[str], radians: bool) -> None:
+    def __init__(self, tops: TopArrays, keys: Sequence[str], radians: bool) -> None:
         self.tops, self.radians = tops, radians
         tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
         given = tops._asdict() | tilt
@@ -129,50 +127,49 @@ class _Block:
         self.columns |= {key: np.full(tops.m.size, np.nan) for key in self.numbers}
 
     def fill(self, rows: Mask, regime: Regime) -> None:
-        """Rows of one regime, by the formulas of release from rest."""
+        """Fill the rows of one regime, all released from rest, by the formulas over doubles."""
         chosen = slice(None) if rows.all() else rows
         tops = self.tops.part(chosen)
-        inv = tops.invariants()
-        value_of: Callable[[str], Any]
-        texts: dict[str, Any] = {"regime": regime.value}
-        if regime in STILL:
-            value_of = unmoved(np, regime, inv, tops.tilt(), tops.r0).get
-            texts["remark"] = [remark(regime, stable) for stable in inv.lam_minus_1 >= 0]
-        else:
-            motion = Nutation(np, inv, tops.tilt(), tops.r0, spins=regime is Regime.REGULAR)
-            value_of = partial(getattr, motion)
-            texts["path"] = motion.path
-        for key in self.texts:
-            self.columns[key][chosen] = texts.get(key)
-        for key in self.numbers:
-            value = value_of(key.replace("_rad", "_deg"))
-            if key.startswith("theta_min"):  # it starts there
-                value = tops.tilt_in(self.radians)
-            elif key.endswith("_rad") and value is not None:
-                value = np.radians(value)
-            if value is not None:
-                self.columns[key][chosen] = value
+        facts, state = _facts(regime, tops.r0), tops.state()
+        with ARRAYS.working():
+            gaps = gaps_of(ARRAYS, facts, state)
+            motion = kind_of(facts)(ARRAYS, facts, state, gaps)
+            for key in self.numbers:
+                if key.startswith("theta_min"):  # the start
+                    self.columns[key][chosen] = tops.tilt_in(self.radians)
+                    continue
+                name = key.replace("_rad", "_deg")
+                value = None if name in motion.lacks else getattr(motion, name)
+                if value is not None:
+                    self.columns[key][chosen] = np.radians(value) if key != name else value
+        remarks: list[str] | None = None
+        if regime in {Regime.SLEEPING, Regime.HANGING}:
+            remarks = [vertical_remark(regime, stable) for stable in state.sleep >= 0]
+        path = "cusped" if regime is Regime.REGULAR else None
+        for key, texts in (("regime", regime.value), ("path", path), ("remark", remarks)):
+            if key in self.texts:
+                self.columns[key][chosen] = texts
 
     def fill_moving(self, left: Mask) -> Mask:
-        """Rows that start with other rates, by the formulas of any start; returns what is left."""
+        """Fill rows that start with other rates as far as they can be trusted; return the rest."""
         rows = np.flatnonzero(left & self.tops.moving())
         if not rows.size:
             return left
-        found = starts(self.tops.part(rows))
-        rows, motion = rows[found.clear], found.nutation()
-        texts = {
-            "regime": np.where(self.tops.r0[rows] == 0, Regime.NO_SPIN.value, Regime.REGULAR.value),
-            "path": motion.path,
-        }
-        for key in self.texts:
-            self.columns[key][rows] = texts.get(key)
+        motions = StartArrays(self.tops.part(rows))
+        trusted = motions.trusted
+        rows = rows[trusted]
+        regimes = np.where(self.tops.r0[rows] == 0, Regime.NO_SPIN.value, Regime.REGULAR.value)
+        for key, texts in (("regime", regimes), ("path", motions.paths()[trusted])):
+            if key in self.texts:
+                self.columns[key][rows] = texts
         for key in self.numbers:
-            value = getattr(motion, key.replace("_rad", "_deg"))
+            value = motions.number(key.replace("_rad", "_deg"))
             if value is not None:
+                value = value[trusted]
                 self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
-        still = left.copy()
-        still[rows] = False
-        return still
+        rest = left.copy()
+        rest[rows] = False
+        return rest
 
     def solve(self, row: int) -> None:
         """One row, by itself."""
@@ -184,3 +181,24 @@ class _Block:
         for key in (*self.texts, *self.numbers):
             if record[key] is not None:
                 self.columns[key][row] = record[key]
+
+
+def _facts(regime: Regime, r0: Array) -> Facts:
+    """Return what the regime of tops released from rest says of all of them."""
+    stays = regime not in {Regime.REGULAR, Regime.NO_SPIN}
+    pole = {Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0)
+    plane = regime is Regime.NO_SPIN
+    sign = np.where(r0 < 0, -1, 1)
+    return Facts(
+        regime=regime,
+        at_rest=True,
+        steady=stays,
+        free=regime is Regime.TORQUE_FREE,
+        spins=regime is Regime.REGULAR,
+        pole=pole,
+        upper_root=3 if plane else 0,
+        over_bottom=plane,
+        cusp=regime is Regime.REGULAR,
+        sign_plus=sign,
+        sign_minus=1 if plane else -sign,
+    )

@@ -1,249 +1,201 @@
-"""Roots of the cubic for arrays of tops that start with any rates, in pairs of doubles.
+"""Arrays of tops that start with any rates: gaps in pairs of doubles, and which to trust.
 
-In x = u - u0 the cubic (4,9) is a x^3 + c2 x^2 + c1 x + (sin(theta0) thetadot0)^2.  Its largest
-root x3 comes from Newton's method, x1 >= 0 >= x2 from a quadratic equation whose discriminant is a
-sum of positive terms; so the gaps between them have the digits of a double unless the top is close
-to a steady precession, the separatrix or a pole.  `clear` says which are not.
+The formulas are those of `motion.gaps`.  Beside each gap goes a bound of its error, found from the
+sizes of the numbers that were subtracted; a top whose digits such a difference has used up is not
+trusted, and solved by itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from fractions import Fraction
-from functools import cached_property
 from math import factorial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic import double_double as twofold
-from ..arithmetic.double_double import Twofold
+from ..arithmetic.arrays import ARRAYS, PAIRS
+from ..arithmetic.double_double import DoubleDouble, pair
 from ..arithmetic.types import Array, Mask
-from ..elliptic import complete_k
-from ..motion.cubic import Place, Start
-from ..motion.general import Solution
-from ..motion.general_record import GeneralNutation, half_rates, mean_rates
-from ..motion.regime import Regime
-from ..motion.released import complement, modulus, phase_rate
-from ..motion.roots import Roots
-from .top_arrays import Tops
+from ..motion.gaps import Gaps, State, gaps_from_start
+from ..motion.kinds import Nutating
+from ..motion.record import CANCELLING
+from ..motion.regime import Facts, Regime
+from .top_arrays import TopArrays
 
-_CLEAR = 2.0**-40
-"""Of its parts at least, so that a difference of pairs has the digits of a double."""
-_NEWTON_STEPS = 80
+_EPS = 2.0**-100
+"""Relative error of a few operations on pairs."""
+_GOOD = 2.0**-54
+"""Relative error at which a gap, or a rate, is trusted."""
+_SURE = 2.0**-10
+"""Relative error at which a sign is trusted."""
+_FACTS = Facts(regime=Regime.REGULAR, at_rest=False, steady=False, free=False, spins=True)
+_NEWTON_STEPS = 200
 
 
-class State(NamedTuple):
-    """The state at t = 0 and constants of the motion, to about 100 bits."""
+class StartArrays:
+    """Motions of many tops with a torque, off the poles; `trusted` marks those that are sure."""
 
-    a: Twofold
-    b: Twofold
-    r0: Twofold
-    below: Twofold
-    """1 + cos(theta0)."""
-    above: Twofold
-    """1 - cos(theta0)."""
-    sin: Twofold
-    theta_rate: Twofold
-    psi_rate: Twofold
+    def __init__(self, tops: TopArrays) -> None:
+        with PAIRS.working():  # what overflows or divides by zero is not trusted
+            state = _state(tops)
+            self.roots = _Roots(state)
+            gaps = gaps_from_start(PAIRS, state, _FACTS, self.roots.largest)
+            self.fine = Nutating(PAIRS, _FACTS, state, gaps)
+            self.rough = Nutating(ARRAYS, _FACTS, _rounded(state), _rounded(gaps))
+            self.errors = _Errors(state, gaps, self.roots)
+            self.trusted: Mask = self.errors.small & self._rates_are_sure()
 
-    @property
-    def u(self) -> Twofold:
-        """cos(theta0)."""
-        return (self.below - self.above).scaled(0.5)
+    def number(self, key: str) -> Array | None:
+        """Return the numbers of a key, an array over all tops; None where no top has one."""
+        with PAIRS.working():
+            if key in {"T_spin", "T_precession"}:
+                mean = (
+                    self.fine.mean_spin_rate if key == "T_spin" else self.fine.mean_precession_rate
+                )
+                return np.asarray(2 * np.pi / abs(mean.high))
+            if key in CANCELLING and key != "u_quarter":
+                value: Any = getattr(self.fine, key)
+                return None if value is None else value.high
+            rough: Array | None = None if key in Nutating.lacks else getattr(self.rough, key)
+            return rough
 
-    @property
-    def around(self) -> Twofold:
-        """psidot0 sin(theta0)."""
-        return self.psi_rate * self.sin
+    def paths(self) -> NDArray[np.object_]:
+        """Return the paths of the axis."""
+        b, gaps = self.fine.b, self.fine.gaps
+        looping = ((b * gaps.momentum_u1).high < 0) & ((b * gaps.momentum_u2).high > 0)
+        return np.where(looping, "looping", "wavy").astype(object)
 
-    def start(self) -> Start:
-        """It in doubles."""
-        momentum = self.around * self.sin
-        energy = self.theta_rate * self.theta_rate + self.around * self.around
-        return Start(
-            a=self.a.high,
-            b=self.b.high,
-            r0=self.r0.high,
-            psi_rate=self.psi_rate.high,
-            theta_rate=self.theta_rate.high,
-            u=self.u.high,
-            alpha=(energy + self.a * self.u).high,
-            beta=(momentum + self.b * self.u).high,
-            beta_plus_b=(momentum + self.b * self.below).high,
-            beta_minus_b=(momentum - self.b * self.above).high,
-            drift=(self.r0 - self.b).high,
+    def _rates_are_sure(self) -> Mask:
+        """Return where the mean rates keep their digits, however their parts cancel."""
+        fine, rough = self.fine, self.rough
+        mc, gaps, sizes = rough.k_prime * rough.k_prime, rough.gaps, self.errors.momenta
+        noise = self.errors.worst + _EPS
+
+        def size_of_part(from_u1: Array, from_u2: Array) -> Array:
+            """Return the part of the rate if nothing in it had cancelled."""
+            return sizes[0] / from_u1 + sizes[1] * mc / (
+                from_u1 * np.minimum(mc * from_u2 / from_u1, 1.0)
+            )
+
+        parts = size_of_part(gaps.below_u1, gaps.below_u2) + size_of_part(
+            gaps.above_u1, gaps.above_u2
         )
+        sure: Mask = noise * parts < _GOOD * abs(fine.mean_precession_rate.high)
+        sure &= noise * (parts + abs(rough.r0)) < _GOOD * abs(fine.mean_spin_rate.high)
+        spin_parts = abs(rough.r0) + abs(rough.state.psi_rate)
+        sure &= _EPS * spin_parts < _GOOD * abs(fine.spin_rate_start.high)
+        return sure
 
 
-class Starts(NamedTuple):
-    """An array of tops, and where what is said of them is to be trusted."""
+class _Roots:
+    """The largest root of the cubic by Newton's method, and a bound of its relative error."""
 
-    state: State
-    roots: Roots
-    place: Place
-    path: NDArray[np.object_]
-    clear: Mask
+    def __init__(self, state: State[DoubleDouble]) -> None:
+        self.error: Array = np.full_like(state.a.high, np.inf)
 
-    def nutation(self) -> GeneralNutation:
-        """The numbers of the clear ones."""
-        state, roots, place = (_part(x, self.clear) for x in (self.state, self.roots, self.place))
-        return PairedNutation(state, roots, place, self.path[self.clear])
+    def largest(self, ar: Any, c2: Any, c1: Any, c0: Any, bound: Any) -> DoubleDouble:
+        """Return the root of x^3 + c2 x^2 + c1 x + c0; the first steps in doubles, from above."""
+        b2, b1, b0, x = c2.high, c1.high, c0.high, bound.high
+        for _ in range(_NEWTON_STEPS):
+            step = (((x + b2) * x + b1) * x + b0) / ((3 * x + 2 * b2) * x + b1)
+            x = np.where(step > 0, x - step, x)
+            if not (step > 1e-9 * x).any():
+                break
+        root = DoubleDouble(x)
+        for _ in range(4):
+            value = ((root + c2) * root + c1) * root + c0
+            slope = (3 * root.high + 2 * b2) * root.high + b1
+            step = value.high / slope
+            root = root - DoubleDouble(step)
+        x = abs(root.high)
+        terms = ((x + abs(b2)) * x + abs(b1)) * x + abs(b0)
+        noise = _EPS * terms / abs(slope)
+        self.error = (noise + abs(step) * (abs(step) > noise)) / x
+        return root
 
 
-class PairedNutation(GeneralNutation):
-    """Numbers in doubles, from pairs; the rates, whose parts may cancel, in pairs to the end."""
+class _Errors:
+    """Bounds of the relative errors of the gaps, and the sizes of what gave beta - b u."""
 
-    def __init__(self, state: State, roots: Roots, place: Place, path: Any) -> None:
-        self.pairs = state, roots, place
-        rounded, where = Roots(*_rounded(roots)), Place(*_rounded(place))
-        k, k_prime = modulus(np, rounded), complement(np, rounded)
-        speed = phase_rate(np, state.a.high, rounded)
-        period = 2 * complete_k(np, k_prime) / speed
-        solution = Solution(
-            Regime.REGULAR, state.start(), rounded, where, k, k_prime, speed, period
+    def __init__(self, state: State[DoubleDouble], gaps: Gaps[DoubleDouble], roots: _Roots) -> None:
+        start, doubles, error = _rounded(state), _rounded(gaps), roots.error
+        a, b, above, below = start.a, start.b, start.above, start.below
+        D, x1, x2 = doubles.a_u3_u, doubles.u1_u, doubles.u_u2
+        around = start.psi_rate * start.sin
+        momentum, energy = around * start.sin, start.theta_rate**2 + around**2
+        c0 = (start.sin * start.theta_rate) ** 2
+        c1_parts = abs(2 * b * momentum) + a * start.sin**2 + abs(2 * start.cos * energy)
+        of_total = (_EPS * c1_parts + 2 * error * (c1_parts + a * c0 / D)) / D
+        larger, smaller = np.maximum(x1, x2), np.minimum(x1, x2)
+        of_larger = of_total + larger * (error + _EPS)
+        of_smaller = smaller * (error + _EPS + of_larger / larger)
+        of_x1 = np.where(x1 >= x2, of_larger, of_smaller)
+        of_x2 = np.where(x1 >= x2, of_smaller, of_larger)
+        of_D = error * D
+        self.momenta = abs(momentum) + abs(b) * x1, abs(momentum) + abs(b) * x2
+        self.worst: Array = np.maximum.reduce(
+            [
+                (of_x1 + of_x2) / doubles.u1_u2,
+                (_EPS * above + of_x1) / doubles.above_u1,
+                (_EPS * above + of_x2) / doubles.above_u2,
+                (_EPS * below + of_x1) / doubles.below_u1,
+                (_EPS * below + of_x2) / doubles.below_u2,
+                (of_D + _EPS * D + a * of_x1) / doubles.a_u3_u1,
+                (of_D + _EPS * D) / doubles.a_u3_above,
+            ]
         )
-        super().__init__(np, solution, path)
-
-    @cached_property
-    def spin_rate_start(self) -> Array:
-        """As given."""
-        state, _, _ = self.pairs
-        return (state.r0 - state.psi_rate * state.u).high
-
-    @cached_property
-    def _mean_rates(self) -> tuple[Array, Array]:
-        state, roots, place = self.pairs
-        k_prime = twofold.sqrt(roots.u3_u1 / roots.u3_u2)
-        spin, precession = mean_rates(twofold, state.r0, roots, place, k_prime)
-        return spin.high, precession.high
-
-    @cached_property
-    def _half_rates(self) -> tuple[Array, Array]:
-        state, roots, place = self.pairs
-        spin, precession = half_rates(state.r0, state.b, roots, place)
-        assert spin is not None
-        assert precession is not None
-        return spin.high, precession.high
+        positive = np.minimum.reduce([getattr(doubles, name) for name in _POSITIVE]) > 0
+        signs = [
+            (_EPS * self.momenta[0] + abs(b) * of_x1) < _SURE * abs(doubles.momentum_u1),
+            (_EPS * self.momenta[1] + abs(b) * of_x2) < _SURE * abs(doubles.momentum_u2),
+        ]
+        self.small: Mask = positive & (self.worst < _GOOD) & signs[0] & signs[1]
 
 
-def _rounded(pairs: Iterable[Any]) -> list[Array]:
-    return [x.high for x in pairs]
+_POSITIVE = ("u1_u2", "above_u1", "above_u2", "below_u1", "below_u2", "a_u3_u1", "a_u3_above")
 
 
-def _part(values: Any, rows: Mask) -> Any:
-    """Some of the rows of a named tuple of pairs."""
-    return type(values)(*(Twofold(x.high[rows], x.low[rows]) for x in values))
+def _rounded(pairs: Any) -> Any:
+    """Return a named tuple of pairs as one of doubles."""
+    return type(pairs)(*(x.high for x in pairs))
 
 
-def starts(tops: Tops) -> Starts:
-    """Roots, constants and paths of tops with a torque, off the poles, of usual sizes."""
-    state = _state(tops)
-    with np.errstate(all="ignore"):  # what overflows or divides by zero is not clear
-        return _solved(state)
-
-
-def _state(tops: Tops) -> State:
+def _state(tops: TopArrays) -> State[DoubleDouble]:
     m, A, C, s, g, r0, theta_rate, psi_rate = (
-        Twofold(x) for x in (*tops[:6], tops.thetadot0, tops.psidot0)
+        DoubleDouble(x) for x in (*tops[:6], tops.thetadot0, tops.psidot0)
     )
+    a, b = (m * g * s / A).scaled(2), C * r0 / A
     sine, cosine = _half_tilt(tops)
     return State(
-        a=(m * g * s / A).scaled(2),
-        b=C * r0 / A,
+        a=a,
+        b=b,
         r0=r0,
-        below=(cosine * cosine).scaled(2),
-        above=(sine * sine).scaled(2),
+        sleep=(b * b).scaled(0.5) - a,
+        spin_drift=r0 - b.scaled(0.5),
+        pole_drift=r0 - b,
         sin=(sine * cosine).scaled(2),
+        cos=(cosine - sine) * (cosine + sine),
+        sin_half=sine,
+        cos_half=cosine,
         theta_rate=theta_rate,
         psi_rate=psi_rate,
     )
 
 
-def _half_tilt(tops: Tops) -> tuple[Twofold, Twofold]:
-    """Sine and cosine of theta0/2, from the nearer pole."""
+def _half_tilt(tops: TopArrays) -> tuple[DoubleDouble, DoubleDouble]:
+    """Return sine and cosine of theta0/2, from the nearer pole."""
     nearer, down = tops.arc_from_pole()
     sine = _sine(nearer.scaled(0.5))
-    cosine = twofold.sqrt(1.0 - sine * sine)
-    return _either(down, cosine, sine), _either(down, sine, cosine)
+    cosine = (1.0 - sine * sine).sqrt()
+    return DoubleDouble.choose(down, cosine, sine), DoubleDouble.choose(down, sine, cosine)
 
 
-def _either(condition: Mask, yes: Twofold, no: Twofold) -> Twofold:
-    return Twofold(np.where(condition, yes.high, no.high), np.where(condition, yes.low, no.low))
-
-
-def _sine(x: Twofold) -> Twofold:
-    """The Taylor series, for |x| <= pi/4."""
+def _sine(x: DoubleDouble) -> DoubleDouble:
+    """Return the sine by its Taylor series, for |x| <= pi/4."""
     square = x * x
-    total = Twofold(np.zeros_like(x.high))
+    total = DoubleDouble(np.zeros_like(x.high))
     for n in range(29, 0, -2):
-        term = Fraction((-1) ** (n // 2), factorial(n))
-        high = float(term)
-        total = total * square + Twofold(
-            np.full_like(x.high, high), np.full_like(x.high, float(term - Fraction(high)))
-        )
+        high, low = pair(Fraction((-1) ** (n // 2), factorial(n)))
+        total = total * square + DoubleDouble(np.full_like(x.high, high), np.full_like(x.high, low))
     return total * x
-
-
-def _solved(state: State) -> Starts:
-    a, b, u, sin, around = state.a, state.b, state.u, state.sin, state.around
-    energy = state.theta_rate * state.theta_rate + around * around
-    c0 = (sin * state.theta_rate) * (sin * state.theta_rate)
-    parts = (b * around * sin).scaled(2), -(a * sin * sin), -(u * energy).scaled(2)
-    c1 = parts[0] + parts[1] + parts[2]
-    c2 = (a * u).scaled(2) - energy - b * b
-    x3 = _largest_root(a, c2, c1, c0)
-    product = -(c0 / (a * x3))
-    total = (c1 / a - product) / x3
-    spread = twofold.sqrt(total * total - product.scaled(4))
-    larger = (abs(total) + spread).scaled(0.5)
-    smaller = product / larger
-    up = total.high >= 0  # the two have opposite signs
-    x1, x2 = _either(up, larger, -smaller), _either(up, smaller, -larger)
-    gaps = {
-        "u3_u1": (x3, x1),
-        "below_u1": (state.below, -x1),
-        "below_u2": (state.below, -x2),
-        "above_u1": (state.above, x1),
-        "above_u2": (state.above, x2),
-        "u3_above": (x3, state.above),
-    }
-    differences = {name: more - less for name, (more, less) in gaps.items()}
-    clear = np.isfinite(x3.high) & (x3.high - x1.high > 2.0**-20 * x3.high)
-    for name, (more, less) in gaps.items():
-        clear &= differences[name].high > _CLEAR * np.maximum(abs(more.high), abs(less.high))
-    noise = sum(abs(part.high) for part in parts)
-    clear &= a.high * x3.high * spread.high > 64 * _CLEAR * noise
-    roots = Roots(
-        u1=u + x1,
-        u2=u + x2,
-        u3=u + x3,
-        u1_u2=spread,
-        u3_u2=x3 - x2,
-        below_u3=state.below + x3,
-        **differences,
-    )
-    momentum = around * sin
-    place = Place(x1, -x2, x3, momentum - b * x1, momentum - b * x2)
-    still = momentum / b - x1  # from u1 to where the precession would stand still
-    clear &= (b.high == 0) | (abs(still.high) > 1e-6 * spread.high)
-    looping = (b.high != 0) & (still.high < 0) & (still.high > -spread.high)
-    return Starts(state, roots, place, np.where(looping, "looping", "wavy").astype(object), clear)
-
-
-def _largest_root(a: Twofold, c2: Twofold, c1: Twofold, c0: Twofold) -> Twofold:
-    """By Newton's method from above, where it is monotonic; the last steps in pairs."""
-    b2, b1, b0 = c2.high / a.high, c1.high / a.high, c0.high / a.high
-    x = 2 * np.maximum(abs(b2), np.maximum(np.sqrt(abs(b1)), np.cbrt(abs(b0))))
-    for _ in range(_NEWTON_STEPS):
-        step = (((x + b2) * x + b1) * x + b0) / ((3 * x + 2 * b2) * x + b1)
-        x = x - step
-        if not (abs(step) > 1e-9 * x).any():
-            break
-    root = Twofold(x)
-    for _ in range(3):
-        value = ((a * root + c2) * root + c1) * root + c0
-        slope = (3 * a.high * root.high + 2 * c2.high) * root.high + c1.high
-        root = root - Twofold(value.high / slope)
-    return root

@@ -10,20 +10,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Twofold, two_sum
+from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.types import Array, Mask
 from ..inputs.top import Tilt
-from ..motion.regime import Regime
-from ..motion.roots import Invariants
+from ..motion.gaps import State
+from ..motion.regime import Regime, regimes
 
 _LARGE, _SMALL = 1e30, 1e-30
 """Between these sizes no formula leaves the range of doubles."""
-_DEGREE = Twofold(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
+_DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _LEAST_DISTANCE = 2.0**-45
 """Of lambda from 1: from here on a pair of doubles gives lambda - 1 to its last bit."""
 
 
-class Tops(NamedTuple):
+class TopArrays(NamedTuple):
     """The inputs of `Top`, an array each; the tilt is NaN in the unit it is not given in."""
 
     m: Array
@@ -37,9 +37,9 @@ class Tops(NamedTuple):
     psidot0: Array
     theta0_rad: Array
 
-    def part(self, rows: Any) -> Tops:
+    def part(self, rows: Any) -> TopArrays:
         """Some of them."""
-        return Tops(*(x[rows] for x in self))
+        return TopArrays(*(x[rows] for x in self))
 
     def one(self, row: int) -> dict[str, float]:
         """The inputs of one of them."""
@@ -56,28 +56,26 @@ class Tops(NamedTuple):
         return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
 
     def regimes(self) -> dict[Regime, Mask]:
-        """The rows of each regime, of tops released from rest whose numbers are of a usual size.
+        """Return the rows of each regime, of tops released from rest whose sizes are usual.
 
-        The others may be general starts, out of range or wrong, and are in none.
+        The others start with other rates, are out of range or invalid; they belong to none here.
         """
         with np.errstate(all="ignore"):  # of wrong inputs too
-            left = self._usual()
-        upright = (self.theta0_deg == 0) | (self.theta0_rad == 0)
-        found = {}
-        for regime, mask in (
-            (Regime.SLEEPING, upright),
-            (Regime.HANGING, self.theta0_deg == 180),
-            (Regime.TORQUE_FREE, (self.s == 0) | (self.g == 0)),
-            (Regime.NO_SPIN, self.r0 == 0),
-            (Regime.REGULAR, left),
-        ):
-            if (rows := left & mask).any():
-                found[regime] = rows
-                left = left & ~rows
-        return found
+            usual = self._usual()
+        none = np.zeros_like(usual)
+        named = regimes(
+            upright=(self.theta0_deg == 0) | (self.theta0_rad == 0),
+            hanging=self.theta0_deg == 180,
+            free=(self.s == 0) | (self.g == 0),
+            separatrix=none,
+            steady=none,
+            no_spin=self.r0 == 0,
+        )
+        rows = {regime: usual & holds for regime, holds in named}
+        return {regime: mask for regime, mask in rows.items() if mask.any()}
 
     def moving(self) -> Mask:
-        """Tops of usual sizes, with a torque and off the vertical, that start with other rates."""
+        """TopArrays of usual sizes, with a torque and off the vertical, that start with other rates."""
         with np.errstate(all="ignore"):
             usual = self._usual_sizes() & (self.g > 0) & (self.s > 0)
             for rate in (self.thetadot0, self.psidot0):
@@ -87,17 +85,17 @@ class Tops(NamedTuple):
             usual &= (self.thetadot0 != 0) | (self.psidot0 != 0)
             return usual
 
-    def arc_from_pole(self) -> tuple[Twofold, Mask]:
+    def arc_from_pole(self) -> tuple[DoubleDouble, Mask]:
         """Angle between the axis and the nearer pole, in radians, and whether that is the lower."""
         in_radians = ~np.isnan(self.theta0_rad)
         down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
         degrees = np.where(down, 180 - self.theta0_deg, self.theta0_deg)
-        arc = Twofold(degrees) * _DEGREE
-        given = Twofold(np.where(in_radians, self.theta0_rad, 0.0))
-        other = Twofold(np.full_like(given.high, 180.0)) * _DEGREE - given
+        arc = DoubleDouble(degrees) * _DEGREE
+        given = DoubleDouble(np.where(in_radians, self.theta0_rad, 0.0))
+        other = DoubleDouble(np.full_like(given.high, 180.0)) * _DEGREE - given
         high = np.where(in_radians, np.where(down, other.high, given.high), arc.high)
         low = np.where(in_radians, np.where(down, other.low, given.low), arc.low)
-        return Twofold(high, low), down
+        return DoubleDouble(high, low), down
 
     def _usual(self) -> Mask:
         usual = self._usual_sizes()
@@ -121,25 +119,26 @@ class Tops(NamedTuple):
         usual &= one_tilt & ratio & far
         return usual
 
-    def invariants(self) -> Invariants:
-        """(4,4), (4,5) and their combinations, each rounded once."""
-        m, A, C, s, g, r0 = (Twofold(x) for x in self[:6])
-        torque, momentum = m * g * s, C * r0
-        with np.errstate(divide="ignore", invalid="ignore"):  # 0/0 without torque
-            lam = momentum * momentum / (torque * A)
-            lam = lam.scaled(0.25)
-            rate_half = (torque / momentum).high * 2
-            less, less_rest = two_sum(-1.0, lam.high)
-        lam_minus_1 = less + (less_rest + lam.low)
-        free = torque.high == 0
-        more = Twofold(*two_sum(2 * self.A, -self.C))
-        return Invariants(
-            a=2 * (torque / A).high,
-            b=(momentum / A).high,
-            lam=np.where(free, 0.0, lam.high),
-            lam_minus_1=np.where(free, -1.0, lam_minus_1),
-            drift=(r0 * more / A).high / 2,
-            rate_half=np.where(self.r0 == 0, np.nan, rate_half),
+    def state(self) -> State[Array]:
+        """Return constants and start of tops released from rest, each rounded once."""
+        m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
+        a, b = (m * g * s / A).scaled(2), C * r0 / A
+        more = DoubleDouble(*two_sum(2 * self.A, -self.C))
+        sin, cos, sin_half, cos_half = self.tilt()
+        zero = np.zeros_like(sin)
+        return State(
+            a=a.high,
+            b=b.high,
+            r0=self.r0,
+            sleep=((b * b).scaled(0.5) - a).high,
+            spin_drift=(r0 * more / A).high / 2,
+            pole_drift=(r0 - b).high,
+            sin=sin,
+            cos=cos,
+            sin_half=sin_half,
+            cos_half=cos_half,
+            theta_rate=zero,
+            psi_rate=zero,
         )
 
     def tilt(self) -> Tilt:
@@ -160,9 +159,9 @@ def _tilt_of_radians(tilt: Array) -> Tilt:
 
 def _tilt_of_degrees(tilt: Array) -> Tilt:
     nearer = np.minimum(tilt, 180 - tilt)
-    arc, rest = _in_radians(Twofold(nearer))
+    arc, rest = _in_radians(DoubleDouble(nearer))
     sin, sin_half, cos_half = np.sin(arc), np.sin(arc / 2), np.cos(arc / 2)
-    up, up_rest = _in_radians(Twofold(*two_sum(90.0, -nearer)))
+    up, up_rest = _in_radians(DoubleDouble(*two_sum(90.0, -nearer)))
     cos = np.sin(up) + up_rest * sin
     sin += rest * cos
     near, far = sin_half + rest / 2 * cos_half, cos_half - rest / 2 * sin_half
@@ -170,6 +169,6 @@ def _tilt_of_degrees(tilt: Array) -> Tilt:
     return Tilt(sin, np.where(low, -cos, cos), np.where(low, far, near), np.where(low, near, far))
 
 
-def _in_radians(degrees: Twofold) -> tuple[Array, Array]:
+def _in_radians(degrees: DoubleDouble) -> tuple[Array, Array]:
     arc = degrees * _DEGREE
     return arc.high, arc.low

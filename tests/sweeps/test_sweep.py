@@ -29,7 +29,7 @@ from lagrange_cli.motion.roots import invariants
 from lagrange_cli.sweeps import records as sweeps
 from lagrange_cli.sweeps.records import record_keys, sweep
 from lagrange_cli.sweeps.start_arrays import starts
-from lagrange_cli.sweeps.top_arrays import Tops
+from lagrange_cli.sweeps.top_arrays import TopArrays
 
 Record = dict[str, Any]
 
@@ -85,10 +85,10 @@ def test_as_solve_over_all_ranges() -> None:
             assert off <= 4 or off <= 4 * condition(scene, key), (key, off, scene)
 
 
-def tops_of(inputs: dict[str, Any]) -> Tops:
+def tops_of(inputs: dict[str, Any]) -> TopArrays:
     """Return the inputs as arrays, those of the worked example where there are no others."""
     given = {name: np.nan if x is None else x for name, x in Top()._asdict().items()} | inputs
-    return Tops(*np.broadcast_arrays(*(np.asarray(given[x], float) for x in Tops._fields)))
+    return TopArrays(*np.broadcast_arrays(*(np.asarray(given[x], float) for x in TopArrays._fields)))
 
 
 def test_what_the_formulas_start_from_is_rounded_once() -> None:

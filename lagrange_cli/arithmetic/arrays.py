@@ -1,0 +1,90 @@
+"""Arithmetics of arrays: doubles, and pairs of doubles."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from .double_double import DoubleDouble, pair
+from .types import Array
+
+
+class Arrays:
+    """The arithmetic of float64 arrays."""
+
+    eps = 2.0**-52
+    pi: Any = np.pi
+    nan: Any = np.nan
+
+    @staticmethod
+    def working() -> AbstractContextManager[object]:
+        """Return a context manager in which NumPy says nothing of overflow and 0/0."""
+        return np.errstate(all="ignore")
+
+    @staticmethod
+    def convert(value: float | Fraction) -> Any:
+        """Return the double nearest to an exact value."""
+        return float(value)
+
+    @staticmethod
+    def sqrt(x: Any) -> Any:
+        """Return the square roots."""
+        return np.sqrt(x)
+
+    @staticmethod
+    def sin(x: Array) -> Array:
+        """Return the sines."""
+        return np.sin(x)
+
+    @staticmethod
+    def cos(x: Array) -> Array:
+        """Return the cosines."""
+        return np.cos(x)
+
+    @staticmethod
+    def atan2(y: Array, x: Array) -> Array:
+        """Return the angles of the points (x, y)."""
+        return np.arctan2(y, x)
+
+    @staticmethod
+    def where(condition: Any, yes: Any, no: Any) -> Any:
+        """Choose element by element."""
+        return np.where(condition, yes, no)
+
+    @staticmethod
+    def anywhere(condition: Any) -> bool:
+        """Return whether a condition holds for some element; NaN compares false, so loops end."""
+        return bool(np.any(condition))
+
+    @staticmethod
+    def everywhere(condition: Any) -> bool:
+        """Return whether a condition holds for every element."""
+        return bool(np.all(condition))
+
+
+class Pairs(Arrays):
+    """The arithmetic of arrays of pairs of doubles, as far as it is needed: no functions."""
+
+    eps = 2.0**-104
+
+    @staticmethod
+    def convert(value: float | Fraction) -> Any:
+        """Return an exact value as a pair with one element, which goes with any array."""
+        high, low = pair(Fraction(value))
+        return DoubleDouble(np.array([high]), np.array([low]))
+
+    @staticmethod
+    def sqrt(x: Any) -> Any:
+        """Return the square roots; of a plain number, a double."""
+        return x.sqrt() if isinstance(x, DoubleDouble) else np.sqrt(float(x))
+
+    @staticmethod
+    def where(condition: Any, yes: Any, no: Any) -> Any:
+        """Choose element by element."""
+        return DoubleDouble.choose(condition, yes, no)
+
+
+ARRAYS, PAIRS = Arrays(), Pairs()
