@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property, partial
 from typing import Any
@@ -11,7 +11,20 @@ import pytest
 
 from lagrange_cli import Top
 from lagrange_cli.arithmetic.generic import many_digits
-from lagrange_cli.motion.digits import settled_record, settled_rows
+from lagrange_cli.motion.digits import rows_in_digits
+from lagrange_cli.motion.solve import solve
+
+
+def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
+    """Return the record of a top with so many digits."""
+    record: dict[str, Any] = solve(top).digits(digits, radians=radians)
+    return record
+
+
+def rows_of(top: Top, times: Sequence[Any], digits: int, **options: bool) -> list[list[Any]]:
+    """Return rows of t and the three angles with so many digits."""
+    return [list(row) for row in rows_in_digits(solve(top), times, digits, **options)]
+
 
 DIGITS = 150
 ar = many_digits(DIGITS + 10)
@@ -32,7 +45,7 @@ class Motion:
     @cached_property
     def numbers(self) -> dict[str, Any]:
         """Numbers of the record, in all the digits."""
-        texts = settled_record(self.top, DIGITS)
+        texts = record_of(self.top, DIGITS)
         return {key: ar.mpf(text) for key, text in texts.items() if _is_number(text)}
 
     def __getattr__(self, key: str) -> Any:
@@ -71,7 +84,7 @@ class Motion:
     def _compute(self, times: Iterable[Any]) -> None:
         """Compute rows at many times and their neighbours: one by one they are much slower."""
         exact = [_fraction(t + i * STEP) for t in times for i in range(-2, 3)]
-        for t, row in zip(exact, settled_rows(self.top, exact, DIGITS, radians=True), strict=True):
+        for t, row in zip(exact, rows_of(self.top, exact, DIGITS, radians=True), strict=True):
             theta, phi, psi = (ar.mpf(text) for text in row[1:])
             self._rows[t] = theta, phi, psi
 

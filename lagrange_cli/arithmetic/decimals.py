@@ -56,7 +56,7 @@ class Decimals:
         return Decimal(exact.numerator) / Decimal(exact.denominator)
 
     @staticmethod
-    def sqrt(x: Decimal) -> Decimal:
+    def sqrt(x: Decimal | int) -> Decimal:
         """Return the square root of x >= 0."""
         return Decimal(x).sqrt()
 

@@ -88,8 +88,8 @@ class Cosine(NamedTuple):
         """The value, where it is rational (Niven: at multiples of 60 and 90 degrees only)."""
         if self.radians is not None:
             return Fraction(1) if self.radians == 0 else None
-        known = {0: 2, 60: 1, 90: 0, 120: -1, 180: -2}
-        twice = known.get(self.degrees) if self.degrees is not None else None
+        known: dict[Fraction | int, int] = {0: 2, 60: 1, 90: 0, 120: -1, 180: -2}
+        twice = None if self.degrees is None else known.get(self.degrees)
         return None if twice is None else Fraction(twice, 2)
 
     def vanishes(self, polynomial: Polynomial) -> bool:
@@ -107,11 +107,11 @@ class Cosine(NamedTuple):
         n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
         if n > 8 * degree * degree:  # phi(n) >= sqrt(n/2): its degree is too high
             return False
-        return not any(_remainder(_in_roots_of_unity(coefficients), cyclotomic(n)))
+        return not any(x != 0 for x in _remainder(_in_roots_of_unity(coefficients), cyclotomic(n)))
 
     def sign(self, polynomial: Polynomial) -> int:
         """Return the sign of a polynomial, -1, 0 or 1."""
-        coefficients = polynomial.coefficients
+        coefficients = [Fraction(x) for x in polynomial.coefficients]
         size = sum(abs(x) for x in coefficients)
         if size:
             cosine = math.cos(self._in_radians())
@@ -120,7 +120,7 @@ class Cosine(NamedTuple):
                 return 1 if value > 0 else -1
         return 0 if self.vanishes(polynomial) else self._sign_in_digits(coefficients)
 
-    def _sign_in_digits(self, coefficients: Sequence[Fraction | int]) -> int:
+    def _sign_in_digits(self, coefficients: Sequence[Fraction]) -> int:
         digits, size = 50, sum(abs(x) for x in coefficients)
         while True:
             ar = decimals(digits)

@@ -6,13 +6,15 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import wraps
-from typing import Any
+from typing import Any, TypeVar, cast
 
 Arithmetic = Any
 """`decimals`, an mpmath context, `math` or `numpy`."""
 
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 Real = Any
 """A number of the arithmetic in use: Decimal, mpf, float or float64 array."""
@@ -48,11 +50,9 @@ def many_digits(digits: int = 50) -> Arithmetic:
 
     By default for constants that are rounded to doubles; 34 digits would do, the rest is margin.
     """
-    import mpmath
+    from .many_digits import ManyDigits
 
-    context = mpmath.mp.clone()
-    context.dps = digits
-    return context
+    return ManyDigits(digits)
 
 
 def has_arrays(ar: Arithmetic) -> bool:
@@ -84,7 +84,7 @@ def polynomial(coefficients: Sequence[Real], x: Real) -> Real:
     return value
 
 
-def blockwise(function: Callable[..., Real]) -> Callable[..., Real]:
+def blockwise(function: F) -> F:
     """A formula f(ar, *arguments), evaluated block by block where the arguments are long arrays."""
 
     @wraps(function)
@@ -98,4 +98,4 @@ def blockwise(function: Callable[..., Real]) -> Callable[..., Real]:
         parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
         return ar.concatenate(parts).reshape(arrays[0].shape)
 
-    return evaluate
+    return cast(F, evaluate)

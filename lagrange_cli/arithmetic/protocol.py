@@ -34,6 +34,11 @@ R = TypeVar("R", bound=Real)
 """The numbers of the arithmetic in use."""
 
 
+def absolute(x: R) -> R:
+    """Return |x|, with the type of x."""
+    return x.__abs__()
+
+
 class Arithmetic(Protocol[R]):
     """What the formulas of the record need."""
 
@@ -59,7 +64,7 @@ class Arithmetic(Protocol[R]):
     def convert(self, value: float | Fraction, /) -> R:
         """Return the number nearest to an exact value."""
 
-    def sqrt(self, x: R, /) -> R:
+    def sqrt(self, x: R | int, /) -> R:
         """Return the square root of x >= 0."""
 
     def sin(self, x: R, /) -> R:

@@ -5,10 +5,11 @@ Every loop adds and multiplies positive numbers only, so each result is good to 
 
 from __future__ import annotations
 
-from ..arithmetic.generic import Arithmetic, Real, anywhere, epsilon, where
+from ..arithmetic.generic import anywhere, epsilon, where
+from ..arithmetic.protocol import Arithmetic, R
 
 
-def agm(ar: Arithmetic, a: Real, b: Real) -> Real:
+def agm(ar: Arithmetic[R], a: R | int, b: R) -> R:
     """Arithmetic-geometric mean of a > 0 and b > 0 (quadratic convergence, DLMF 19.8.1)."""
     tolerance = ar.sqrt(epsilon(ar))
     while anywhere(abs(a - b) > tolerance * a):
@@ -16,12 +17,12 @@ def agm(ar: Arithmetic, a: Real, b: Real) -> Real:
     return (a + b) / 2
 
 
-def complete_k(ar: Arithmetic, k_prime: Real) -> Real:
+def complete_k(ar: Arithmetic[R], k_prime: R) -> R:
     """K = F(pi/2, k), the quarter period, from the complement k' in (0, 1] (DLMF 19.8.5)."""
     return ar.pi / (2 * agm(ar, 1, k_prime))
 
 
-def period_mean(ar: Arithmetic, k_prime: Real, p: Real, a: Real, b: Real) -> Real:
+def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | int) -> R:
     """Mean over a period of (a cn^2 + b sn^2) / (cn^2 + p sn^2), for k', p > 0 and a, b >= 0.
 
     Bulirsch's complete integral cel(k', p, a, b) is K times this mean (DLMF 19.2.11), so
@@ -40,12 +41,12 @@ def period_mean(ar: Arithmetic, k_prime: Real, p: Real, a: Real, b: Real) -> Rea
     return (a * mean + b) / (mean + p)
 
 
-def complete_e(ar: Arithmetic, k_prime: Real) -> Real:
+def complete_e(ar: Arithmetic[R], k_prime: R) -> R:
     """E = E(pi/2, k), the complete integral of the second kind, from k' in (0, 1]."""
     return complete_k(ar, k_prime) * period_mean(ar, k_prime, 1, 1, k_prime * k_prime)
 
 
-def nome(ar: Arithmetic, *, m: Real, k_prime: Real) -> Real:
+def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     """q = exp(-pi K'/K), equation (2,4), to a few eps however small q is (parameter m = k^2 < 1).
 
     The exponential would lose log(1/q) digits.  Instead: along the AGM of (1, k') the nome is

@@ -17,6 +17,7 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.generic import Arithmetic, Real, many_digits, number, where
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from . import agm
@@ -231,7 +232,7 @@ def rows(quadrature: Quadrature, times: Points, c3: Fraction) -> tuple[list[str]
     shift = float(offset - exact.nint(offset))
     c, band = EtaConstants(*map(float, exactly)), band_of(np, quadrature)
     check_reach("tau", times, min(MAX_PERIODS * c.period, MAX_TIME))
-    half_period = 2 * complete_k(np, np.float64(c.k1_prime))
+    half_period = 2 * complete_k(DOUBLES, float(c.k1_prime))
 
     def block(tau: Array) -> Array:
         with np.errstate(all="ignore"):  # squares of small numbers may leave the doubles

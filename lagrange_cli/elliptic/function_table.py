@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.double_double import pair
+from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.generic import Arithmetic, Real, many_digits, number
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..errors import LagtopError
@@ -145,7 +146,7 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
         name = request.modulus.name
         raise LagtopError(f"{name}: k' is too small for doubles (give --digits)", name)
     has_periods = exact.k_prime > 0
-    limit = MAX_PERIODS * 2 * complete_k(math, in_doubles.k_prime) if has_periods else MAX_TIME
+    limit = MAX_PERIODS * 2 * complete_k(DOUBLES, in_doubles.k_prime) if has_periods else MAX_TIME
     check_reach("u", arguments, min(limit, MAX_TIME))
     parameter = float(request.parameter)
     if request.has_parameter and has_periods and not request.imaginary:

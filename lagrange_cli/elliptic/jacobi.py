@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.double_double import Pair, reduce_phase
 from ..arithmetic.generic import Arithmetic, Real, blocks, has_arrays, polynomial
 from ..arithmetic.types import Array
@@ -87,9 +88,9 @@ def _series(modulus: Modulus) -> _Series:
     finite = np.where(k_prime > 0, k_prime, 1.0)
     rate = rate_of_half_periods(np, finite, modulus.rest)
     if np.all(k <= k_prime):
-        q = nome(np, m=k * k, k_prime=k_prime)
+        q = nome(ARRAYS, m=k * k, k_prime=k_prime)
         return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)
-    q = nome(np, m=k_prime * k_prime, k_prime=k)
+    q = nome(ARRAYS, m=k_prime * k_prime, k_prime=k)
     usual = q > _SMALL
     stretch = -np.where(usual, np.log(np.where(usual, q, 1.0)), 2 * np.log(finite / 4))  # pi K/K'
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
+from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.generic import Arithmetic, Real, has_arrays, many_digits
 from ..arithmetic.points import MAX_PERIODS
 from ..errors import LagtopError
@@ -80,7 +81,7 @@ def check_parameter(ar: Arithmetic, v: Complex, modulus: Modulus) -> None:
 
 def check_near(v: float, modulus: Modulus) -> None:
     """Raise LagtopError where a real parameter is more than 2^50 periods from 0."""
-    limit = MAX_PERIODS * 2 * float(complete_k(math, float(modulus.k_prime)))
+    limit = MAX_PERIODS * 2 * float(complete_k(DOUBLES, float(modulus.k_prime)))
     if abs(v) > limit:
         raise LagtopError(
             f"param must be within 2^50 periods = {limit:.3g} of 0, got {v} (or give --digits)",

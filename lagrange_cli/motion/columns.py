@@ -207,11 +207,11 @@ class Chosen(NamedTuple):
     """The heading without a unit."""
     heading: str
     group: str
-    index: int
+    part: int
 
     def compute(self, sample: Sample) -> Array:
         """Return the column; a group is computed once per sample."""
-        return sample.group(self.group)[self.index]
+        return sample.group(self.group)[self.part]
 
 
 def chosen_columns(names: Sequence[str]) -> list[Chosen]:

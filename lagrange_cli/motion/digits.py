@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from decimal import ROUND_CEILING, Decimal
 from functools import partial
+from typing import cast
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, text_of
 from ..arithmetic.decimals import Decimals
@@ -67,7 +68,7 @@ class _Table:
     def _angles_with(self, working: int) -> Callable[[Number], list[Decimal]]:
         """Return the angles at a time, computed with so many digits."""
         kind = self.motion.settled_kind(working)
-        ar: Decimals = kind.ar
+        ar = cast(Decimals, kind.ar)
         spinor, (tilt_sin, tilt_cos) = kind.spinor(), (kind.state.sin_half, kind.state.cos_half)
 
         def angles(time: Number) -> list[Decimal]:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from decimal import Decimal
 from typing import Generic, NamedTuple
 
-from ..arithmetic.protocol import Arithmetic, R
+from ..arithmetic.protocol import Arithmetic, R, absolute
 from .regime import Exact, Facts
 
 
@@ -118,9 +118,9 @@ def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
     x = ar.where(above <= below, sleep + a * above, b * b / 2 + a - a * below)
     a_sin = a * start.sin
     rho = ar.sqrt(x * x + a_sin * a_sin)
-    larger = rho + abs(x)
+    larger = rho + absolute(x)
     upward = x >= 0
-    larger_1 = rho + abs(sleep)
+    larger_1 = rho + absolute(sleep)
     smaller_1 = b * b * (above / larger_1)
     fast = sleep >= 0
     u1_u2 = ar.where(upward, start.sin * (a_sin / larger), larger / a)
@@ -162,7 +162,8 @@ def gaps_from_start(
     c0 = (start.sin * start.theta_rate) * (start.sin * start.theta_rate)
     c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
     c2 = 2 * a * u0 - energy - b * b
-    if facts.regime == "separatrix" or facts.upper_root == 3:
+    separatrix = facts.regime == "separatrix"
+    if separatrix or facts.upper_root == 3:
         D = a * above
     elif facts.steady:
         D = -c2
@@ -171,7 +172,7 @@ def gaps_from_start(
         D = (find_root or largest_root)(ar, c2, a * c1, a * a * c0, bound)
     if facts.steady:
         x1, x2 = zero, zero
-    elif facts.regime == "separatrix":
+    elif separatrix:
         x1, x2 = above, -c0 / (D * above)
     else:
         x1, x2 = two_roots(ar, (c1 + a * c0 / D) / D, -c0 / D)
@@ -190,26 +191,26 @@ def gaps_from_start(
         a_u3_u2=D - a * x2,
         a_u3_above=D - a * above,
         a_below_u3=D + a * below,
-        momentum_u1=zero if facts.cusp or facts.upper_root == 1 else momentum - b * x1,
+        momentum_u1=zero if facts.cusp or facts.upper_root == 1 or separatrix else momentum - b * x1,
         momentum_u2=zero if facts.over_bottom else momentum - b * x2,
         beta_plus_b=zero if facts.over_bottom else below * (start.psi_rate * above + b),
-        beta_minus_b=zero if facts.upper_root else above * (start.psi_rate * below - b),
+        beta_minus_b=zero if facts.upper_root or separatrix else above * (start.psi_rate * below - b),
     )
 
 
 def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
     """Return the roots x1 >= 0 >= x2 of x^2 - total x + product, for product <= 0."""
     spread = ar.sqrt(total * total - 4 * product)
-    larger = (abs(total) + spread) / 2
+    larger = (absolute(total) + spread) / 2
     smaller = -product / larger
     upward = total >= 0
     return ar.where(upward, larger, smaller), -ar.where(upward, smaller, larger)
 
 
 def largest_root(ar: Arithmetic[R], c2: R, c1: R, c0: R, bound: R) -> R:
-    """Return the largest root of x^3 + c2 x^2 + c1 x + c0, by Newton's method from a bound above it.
+    """Return the largest root of x^3 + c2 x^2 + c1 x + c0 by Newton's method, from a bound.
 
-    There the method falls monotonically; it has settled where it falls no more.
+    Above the root the method falls monotonically; it has settled where it falls no more.
     """
     x = bound
     while True:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..arithmetic.protocol import R
@@ -24,13 +25,13 @@ class Nutating(SpinPrecession[R]):
     lacks: frozenset[str] = frozenset()
     remark: str | None = None
 
-    def spinor(self) -> Spinor[R]:
+    def spinor(self: Nutating[Decimal]) -> Spinor[Decimal]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
         from .series_constants import nutating_spinor
 
         return nutating_spinor(self)
 
-    def sampler(self) -> Sampler:
+    def sampler(self: Nutating[Decimal]) -> Sampler:
         """Return the attitude as a function of arrays of doubles."""
         from .series_constants import nutating_sampler
 
@@ -98,13 +99,13 @@ class Constant(Moduli[R]):
         """One turn at the precession rate (section 8)."""
         return period_of(self.ar, self.mean_precession_rate)
 
-    def spinor(self) -> Spinor[R]:
+    def spinor(self: Constant[Decimal]) -> Spinor[Decimal]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
         from .series_constants import constant_spinor
 
         return constant_spinor(self)
 
-    def sampler(self) -> Sampler:
+    def sampler(self: Constant[Decimal]) -> Sampler:
         """Return the attitude as a function of arrays of doubles."""
         from .series_constants import constant_sampler
 
@@ -161,13 +162,13 @@ class Separatrix(SpinPrecession[R]):
         """The complete integral of the second kind, which is 1."""
         return self.m
 
-    def spinor(self) -> Spinor[R]:
+    def spinor(self: Separatrix[Decimal]) -> Spinor[Decimal]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
         from .series_constants import separatrix_spinor
 
         return separatrix_spinor(self)
 
-    def sampler(self) -> Sampler:
+    def sampler(self: Separatrix[Decimal]) -> Sampler:
         """Return the attitude as a function of arrays of doubles."""
         from .series_constants import separatrix_sampler
 

@@ -63,16 +63,18 @@ class Nutation(Moduli[R]):
         sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
         """
         gaps, size = self.gaps, self.ar.sqrt(self.gaps.above_u1 * self.gaps.a_u3_u2)
-        return size * carlson_rf(
+        integral: R = carlson_rf(
             self.ar,
             gaps.a_u3_above * gaps.u1_u2,
             gaps.u1_u2 * gaps.a_u3_u1,
             gaps.a_u3_u1 * gaps.above_u2,
         )
+        return size * integral
 
     @quantity
     def eta_plus(self) -> R:
         """The distance of X from its zero at the bottom: F of sn^2 = (1 + u2)/(1 + u1)."""
         gaps = self.gaps
         middle = gaps.u1_u2 * (gaps.a_below_u3 / gaps.a_u3_u2)
-        return self.ar.sqrt(gaps.below_u2) * carlson_rf(self.ar, gaps.u1_u2, middle, gaps.below_u1)
+        integral: R = carlson_rf(self.ar, gaps.u1_u2, middle, gaps.below_u1)
+        return self.ar.sqrt(gaps.below_u2) * integral

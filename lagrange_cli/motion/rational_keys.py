@@ -79,17 +79,19 @@ def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
             keys["u2" if sign > 0 else "u1"] = Fraction(0)
         else:  # the start is horizontal, and on one of the two
             keys["u1" if starts_at_u1(exact) else "u2"] = Fraction(0)
-    if starts_at_u1(exact) and not exact.facts.free and _quarter_is_level(exact, energy):
+    if starts_at_u1(exact) and _quarter_is_level(exact, energy, beta):
         keys["u_quarter"] = Fraction(0)
     return keys
 
 
-def _quarter_is_level(exact: Exact, energy: Polynomial) -> bool:
+def _quarter_is_level(exact: Exact, energy: Polynomial, beta: Polynomial) -> bool:
     """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
 
     Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3; with x2 + x3 = -c2/a, x2 x3 = c1/a its square
-    is a polynomial in u0.
+    is a polynomial in u0.  Without torque u(T/4) is the mean of u1 and u2, and goes as beta b.
     """
+    if exact.facts.free:
+        return exact.cosine.vanishes(exact.b * beta)
     a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
     c2 = 2 * a * U - energy - b * b
     c1 = 2 * b * psi * sin2 - a * sin2 - 2 * (U * energy)

@@ -127,7 +127,7 @@ def _facts(
     still = (b * psi_rate - a) * psi_rate * (1 - U * U) + b * theta_rate**2
     upper_root = 0
     if not minus and not vertical and not separatrix:
-        upper_root = 3 if energy_above_top < 0 else 1
+        upper_root = 3 if energy_above_top < 0 else int(not steady)
     named = regimes(
         upright=vertical and pole > 0,
         hanging=vertical and pole < 0,
@@ -144,7 +144,7 @@ def _facts(
         spins=bool(b),
         pole=pole,
         upper_root=upper_root,
-        over_bottom=not plus and not vertical,
+        over_bottom=not plus and not steady,
         cusp=bool(b) and minus * (1 if b > 0 else -1) < 0 and cosine.vanishes(still),
         sign_plus=plus or 1,
         sign_minus=minus or 1,

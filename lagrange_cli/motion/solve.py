@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..arithmetic.text import NumberText
+    from ..arithmetic.types import Array
     from .samplers import Angles, Sampler
 
 T = TypeVar("T")
@@ -70,8 +71,8 @@ class Motion:
         remark: str | None = self._settled_kind.remark
         return remark
 
-    def __getattr__(self, name: str) -> float | None:
-        """Return a number of the record by its key, in degrees where it is an angle."""
+    def __getattr__(self, name: str) -> Any:
+        """Return a number of the record by its key, a float, or None where there is none."""
         if name not in NUMBER_KEYS:
             raise AttributeError(f"a motion has no {name!r}")
         if name not in self._doubles:
@@ -92,6 +93,10 @@ class Motion:
     def __reduce__(self) -> tuple[Callable[[Top], Motion], tuple[Top]]:
         """Return how copies and pickles are made: from the top."""
         return solve, (self.top,)
+
+    def numbers(self) -> dict[str, float | None]:
+        """Return the numbers of the record by key, angles in degrees."""
+        return {name: getattr(self, name) for name in NUMBER_KEYS}
 
     def record(self, *, radians: bool = False) -> dict[str, Any]:
         """Return inputs and results by key, in the order of the paper; `radians` for all angles.

@@ -10,7 +10,7 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from ..arithmetic.protocol import Arithmetic, R
+from ..arithmetic.protocol import Arithmetic, R, absolute
 from ..elliptic import period_mean
 from .nutation import Nutation
 from .quantity import quantity
@@ -39,7 +39,8 @@ class SpinPrecession(Nutation[R]):
         """The mean of (beta + b)/(2 (1 + u)), half a turn per period where the axis hangs once."""
         gaps = self.gaps
         if self.facts.free or self.facts.over_bottom:
-            return self.facts.sign_plus * self.half_turn_rate
+            half_turn: R = self.facts.sign_plus * self.half_turn_rate
+            return half_turn
         return self._mean_over(gaps.below_u1, gaps.below_u2, gaps.beta_plus_b, gaps.beta_plus_b)
 
     @quantity
@@ -47,7 +48,8 @@ class SpinPrecession(Nutation[R]):
         """The mean of (beta - b)/(2 (1 - u)), half a turn per period where the axis stands once."""
         gaps = self.gaps
         if self.facts.free or self.facts.upper_root == 1:
-            return self.facts.sign_minus * self.half_turn_rate
+            half_turn: R = self.facts.sign_minus * self.half_turn_rate
+            return half_turn
         return self._mean_over(gaps.above_u1, gaps.above_u2, gaps.beta_minus_b, gaps.beta_minus_b)
 
     @property
@@ -157,4 +159,4 @@ def period_of(ar: Arithmetic[R], rate: R) -> R | None:
     stands = abs(rate) <= 0
     if ar.everywhere(stands):
         return None
-    return 2 * ar.pi / ar.where(stands, ar.nan, abs(rate))
+    return 2 * ar.pi / ar.where(stands, ar.nan, absolute(rate))

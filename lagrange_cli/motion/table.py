@@ -39,9 +39,7 @@ def grid(
     t_min = Fraction(0) if t_min is None else t_min
     t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
     if not t_max >= t_min:
-        raise LagtopError(
-            f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max"
-        )
+        raise LagtopError(f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max")
     if n is not None and n < 1:
         raise LagtopError(f"n must be >= 1, got {n}", "n")
     if dt is not None:

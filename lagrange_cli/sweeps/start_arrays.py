@@ -26,7 +26,7 @@ from .top_arrays import TopArrays
 _EPS = 2.0**-100
 """Relative error of a few operations on pairs."""
 _GOOD = 2.0**-54
-"""Relative error at which a gap, or a rate, is trusted."""
+"""Relative error at which a gap is trusted; a rate, whose bound is wider, at eight times it."""
 _SURE = 2.0**-10
 """Relative error at which a sign is trusted."""
 _FACTS = Facts(regime=Regime.REGULAR, at_rest=False, steady=False, free=False, spins=True)
@@ -73,19 +73,26 @@ class StartArrays:
         noise = self.errors.worst + _EPS
 
         def size_of_part(from_u1: Array, from_u2: Array) -> Array:
-            """Return the part of the rate if nothing in it had cancelled."""
-            return sizes[0] / from_u1 + sizes[1] * mc / (
-                from_u1 * np.minimum(mc * from_u2 / from_u1, 1.0)
+            """Return the part of the rate if nothing in it had cancelled: a mean is <= 1/sqrt(p)."""
+            part: Array = sizes[0] / from_u1 + sizes[1] * mc / (
+                from_u1 * np.sqrt(np.minimum(mc * from_u2 / from_u1, 1.0))
             )
+            return part
 
-        parts = size_of_part(gaps.below_u1, gaps.below_u2) + size_of_part(
-            gaps.above_u1, gaps.above_u2
+        south = size_of_part(gaps.below_u1, gaps.below_u2)
+        north = size_of_part(gaps.above_u1, gaps.above_u2)
+        sure = _is_sure(noise * (south + north), fine.mean_precession_rate)
+        sure &= _is_sure(noise * (south + north + abs(rough.r0)), fine.mean_spin_rate)
+        return sure & _is_sure(
+            _EPS * (abs(rough.r0) + abs(rough.state.psi_rate)), fine.spin_rate_start
         )
-        sure: Mask = noise * parts < _GOOD * abs(fine.mean_precession_rate.high)
-        sure &= noise * (parts + abs(rough.r0)) < _GOOD * abs(fine.mean_spin_rate.high)
-        spin_parts = abs(rough.r0) + abs(rough.state.psi_rate)
-        sure &= _EPS * spin_parts < _GOOD * abs(fine.spin_rate_start.high)
-        return sure
+
+
+def _is_sure(error: Array, value: DoubleDouble | None) -> Mask:
+    """Return where a value keeps the digits of a double."""
+    assert value is not None
+    sure: Mask = error < 8 * _GOOD * abs(value.high)
+    return sure
 
 
 class _Roots:

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from scenes import EPS
 
+from lagrange_cli.arithmetic.arrays import ARRAYS
+from lagrange_cli.arithmetic.doubles import DOUBLES
 from lagrange_cli.arithmetic.generic import many_digits
 from lagrange_cli.elliptic import carlson_rf, complete_e, complete_k, nome, period_mean
 
@@ -32,12 +34,12 @@ def test_complete_integrals(kind: str) -> None:
             m = 1 - mpmath.mpf(k_prime) ** 2
             p = 10 ** rng.uniform(-8, 8)
             if kind == "K":
-                assert error(complete_k(math, k_prime), mpmath.ellipk(m)) <= 2.5
+                assert error(complete_k(DOUBLES, k_prime), mpmath.ellipk(m)) <= 2.5
             elif kind == "E":
-                assert error(complete_e(math, k_prime), mpmath.ellipe(m)) <= 4.7
+                assert error(complete_e(DOUBLES, k_prime), mpmath.ellipe(m)) <= 4.7
             else:
                 true = mpmath.elliprj(0, 1 - m, 1, p) / 3 / mpmath.ellipk(m)
-                assert error(period_mean(math, k_prime, p, 0, 1), true) <= 3.7
+                assert error(period_mean(DOUBLES, k_prime, p, 0, 1), true) <= 3.7
 
 
 def test_nome() -> None:
@@ -47,7 +49,7 @@ def test_nome() -> None:
             m = mpmath.mpf(k * k)
             if m < 1:
                 true = mpmath.exp(-mpmath.pi * mpmath.ellipk(1 - m) / mpmath.ellipk(m))
-                assert error(nome(math, m=k * k, k_prime=float(mpmath.sqrt(1 - m))), true) <= 2.2
+                assert error(nome(DOUBLES, m=k * k, k_prime=float(mpmath.sqrt(1 - m))), true) <= 2.2
 
 
 def test_carlson_rf() -> None:
@@ -63,8 +65,8 @@ def test_carlson_rf() -> None:
 def test_arrays_give_what_floats_give() -> None:
     k_prime = np.array(COMPLEMENTS)
     for function in (complete_k, complete_e):
-        alone = [function(math, x) for x in COMPLEMENTS]
-        np.testing.assert_allclose(function(np, k_prime), alone, rtol=4 * EPS)
+        alone = [function(DOUBLES, x) for x in COMPLEMENTS]
+        np.testing.assert_allclose(function(ARRAYS, k_prime), alone, rtol=4 * EPS)
 
 
 def test_a_hundred_digits() -> None:

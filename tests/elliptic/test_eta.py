@@ -11,6 +11,7 @@ import pytest
 from conftest import Lagtop
 from hypothesis import given
 from hypothesis import strategies as st
+from lagrange_cli.motion.released import released_record
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.generic import many_digits
@@ -18,7 +19,6 @@ from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import units
 from lagrange_cli.elliptic.eta import digit_rows, eta_constants, record, rows
 from lagrange_cli.elliptic.quadrature import Quadrature
-from lagrange_cli.motion.released import released_record
 
 ORBITS = {
     "generic": Quadrature(Fraction("-0.5"), Fraction("0.6"), (Fraction("-1.3"), Fraction("1.5"))),

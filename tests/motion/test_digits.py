@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -15,7 +15,18 @@ from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.bench.reference import Reference
-from lagrange_cli.motion.digits import settled_record, settled_rows
+from lagrange_cli.motion.digits import rows_in_digits
+
+
+def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
+    """Return the record of a top with so many digits."""
+    record: dict[str, Any] = solve(top).digits(digits, radians=radians)
+    return record
+
+
+def rows_of(top: Top, times: Sequence[Any], digits: int, **options: bool) -> list[list[Any]]:
+    """Return rows of t and the three angles with so many digits."""
+    return [list(row) for row in rows_in_digits(solve(top), times, digits, **options)]
 
 
 def same(text: Any, true: Any, digits: int) -> bool:
@@ -28,7 +39,7 @@ def same(text: Any, true: Any, digits: int) -> bool:
 
 @pytest.mark.parametrize("digits", [1, 20, 50, 200])
 def test_the_worked_example(digits: int) -> None:
-    record = settled_record(Top(), digits)
+    record = solve(Top()).digits(digits)
     for key, true in oracle.constants(oracle.Scene(), dps=digits + 30).items():
         assert same(record[key], true, digits) or abs(true) < 1e-60, key
 
@@ -44,7 +55,7 @@ def test_fifty_digits_on_the_command_line(lagtop: Lagtop) -> None:
 
 def test_inputs_are_decimals() -> None:
     """50.1 is no double."""
-    record = settled_record(Top(r0=Fraction("50.1"), theta0_deg=Fraction("30.1")), 40)
+    record = record_of(Top(r0=Fraction("50.1"), theta0_deg=Fraction("30.1")), 40)
     exact = oracle.constants(oracle.Scene(r0="50.1", theta0_deg="30.1"), dps=60)
     assert same(record["T_nutation"], exact["T_nutation"], 40)
     assert record["r0"] == "50.1"
@@ -52,15 +63,15 @@ def test_inputs_are_decimals() -> None:
 
 def test_a_general_start() -> None:
     start = {"psidot0": -3.0, "thetadot0": 0.5}
-    record, reference = settled_record(Top(**start), 60), Reference(Top(**start), 100)
+    record, reference = record_of(Top(**start), 60), Reference(Top(**start), 100)
     for key, true in reference.record().items():
-        assert same(record[key], true, 60), key
+        assert record[key] == true or same(record[key], true, 60), key
 
 
 @pytest.mark.parametrize("start", [{}, {"psidot0": 3.0}, {"r0": 20.0, "thetadot0": -2.0}])
 def test_angles(start: dict[str, float]) -> None:
     times = [-7.25, 0.0, 2.0**-40, 0.125, 1e6]
-    rows = settled_rows(Top(**start), times, 40, radians=True)
+    rows = rows_of(Top(**start), times, 40, radians=True)
     reference = Reference(Top(**start), 100)
     for t, row in zip(times, rows, strict=True):
         assert float(row[0]) == t
@@ -69,7 +80,7 @@ def test_angles(start: dict[str, float]) -> None:
 
 
 def test_tiny_times_have_all_their_digits() -> None:
-    (row,) = settled_rows(Top(), [1e-60], 10, radians=True)
+    (row,) = rows_of(Top(), [1e-60], 10, radians=True)
     assert same(row[2], mpmath.mpf(1e-60) * 50, 10)  # it starts as r0 t
 
 
@@ -77,8 +88,8 @@ def test_a_neighbour_of_the_separatrix_is_not_taken_for_it() -> None:
     body = UNIT | {"A": 2, "r0": 0, "theta0_deg": 90}
     for beside in ("1." + "0" * 60 + "1", "0." + "9" * 61):
         top = Top(**body, thetadot0=Fraction(beside))
-        assert settled_record(top, 5)["regime"] == "no spin"
-    assert settled_record(Top(**body, thetadot0=Fraction(1)), 5)["regime"] == "separatrix"
+        assert record_of(top, 5)["regime"] == "no spin"
+    assert record_of(Top(**body, thetadot0=Fraction(1)), 5)["regime"] == "separatrix"
 
 
 @pytest.mark.parametrize(
@@ -97,8 +108,8 @@ def test_a_neighbour_of_the_separatrix_is_not_taken_for_it() -> None:
 def test_regimes_settle(start: dict[str, float]) -> None:
     """Angles and greatest tilt in 20 digits: the motion of u = cos theta, integrated by Taylor."""
     top = Top(**(UNIT | start))
-    rows = settled_rows(top, [0.0, 0.5, 2.0], 22, radians=True)
-    theta_max = settled_record(top, 30, radians=True)["theta_max_rad"]
+    rows = rows_of(top, [0.0, 0.5, 2.0], 22, radians=True)
+    theta_max = record_of(top, 30, radians=True)["theta_max_rad"]
     with mpmath.workdps(30):
         true = integrated(top)
         for row in rows:
@@ -163,7 +174,7 @@ def integrated(top: Top) -> Callable[[Any], Any]:
 
 
 def test_wrapped_far_away() -> None:
-    (row,) = settled_rows(Top(), [1e12], 30, wrap=True)
+    (row,) = rows_of(Top(), [1e12], 30, wrap=True)
     assert -180 < float(row[2]) <= 180
     exact = Reference(Top(), 100).at(1e12)
     with mpmath.workdps(100):
@@ -180,7 +191,7 @@ def test_bad_numbers_of_digits(digits: str, lagtop: Lagtop) -> None:
 
 def test_a_vertical_start_is_refused_here_too() -> None:
     with pytest.raises(LagtopError, match="psidot0 must be 0"):
-        settled_record(Top(theta0_deg=0, psidot0=1.0), 20)
+        record_of(Top(theta0_deg=0, psidot0=1.0), 20)
 
 
 @pytest.mark.parametrize(
@@ -194,24 +205,24 @@ def test_a_vertical_start_is_refused_here_too() -> None:
 def test_small_angles_are_not_taken_for_zero(
     start: dict[str, float], t: float, digits: int, psi: float
 ) -> None:
-    (row,) = settled_rows(Top(**(UNIT | start)), [t], digits, radians=True)
+    (row,) = rows_of(Top(**(UNIT | start)), [t], digits, radians=True)
     assert float(row[3]) == pytest.approx(psi, rel=10.0 ** (1 - digits))
 
 
 def test_far_times_do_not_lose_their_phase() -> None:
     top = Top(**UNIT, r0=5, theta0_deg=30)
     exact = Reference(top, 160).at(1e63)
-    (row,) = settled_rows(top, [1e63], 10, radians=True, wrap=True)
+    (row,) = rows_of(top, [1e63], 10, radians=True, wrap=True)
     assert same(row[1], exact.theta, 10)
 
 
 def test_the_separatrix() -> None:
     top = Top(**(UNIT | {"A": 2}), r0=0, theta0_deg=90, thetadot0=1)
-    (row,) = settled_rows(top, [0.25], 30, radians=True)
+    (row,) = rows_of(top, [0.25], 30, radians=True)
     with mpmath.workdps(50):
         h = mpmath.mpf(0.25) * mpmath.sqrt(0.5) - mpmath.asinh(1)
         assert same(row[1], 2 * mpmath.atan(1 / mpmath.sinh(-h)), 30)
     spinning = Top(**(UNIT | {"C": 0.5}), r0=-2, theta0_deg=90, thetadot0=1, psidot0=-1)
-    (row,) = settled_rows(spinning, [0.7], 20, radians=True)
+    (row,) = rows_of(spinning, [0.7], 20, radians=True)
     angles = solve(spinning).angles(0.7)
     assert list(map(float, row[1:])) == pytest.approx(list(map(float, angles)), rel=1e-15)

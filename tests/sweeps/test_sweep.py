@@ -8,7 +8,6 @@ import itertools
 import json
 import math
 import random
-from decimal import localcontext
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -21,14 +20,16 @@ from hypothesis import strategies as st
 from scenes import EPS, random_scene
 
 from lagrange_cli import LagtopError, Motion, Top, solve
-from lagrange_cli.arithmetic import decimals
+from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.bench.hard_scenes import STRATA
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.motion.record import NUMBER_KEYS, Regime
-from lagrange_cli.motion.roots import invariants
+from lagrange_cli.motion.gaps import state as state_of
+from lagrange_cli.motion.record import NUMBER_KEYS
+from lagrange_cli.motion.regime import Regime
+from lagrange_cli.motion.regime import exact as exact_of
 from lagrange_cli.sweeps import records as sweeps
 from lagrange_cli.sweeps.records import record_keys, sweep
-from lagrange_cli.sweeps.start_arrays import starts
+from lagrange_cli.sweeps.start_arrays import StartArrays
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
 Record = dict[str, Any]
@@ -88,7 +89,9 @@ def test_as_solve_over_all_ranges() -> None:
 def tops_of(inputs: dict[str, Any]) -> TopArrays:
     """Return the inputs as arrays, those of the worked example where there are no others."""
     given = {name: np.nan if x is None else x for name, x in Top()._asdict().items()} | inputs
-    return TopArrays(*np.broadcast_arrays(*(np.asarray(given[x], float) for x in TopArrays._fields)))
+    return TopArrays(
+        *np.broadcast_arrays(*(np.asarray(given[x], float) for x in TopArrays._fields))
+    )
 
 
 def test_what_the_formulas_start_from_is_rounded_once() -> None:
@@ -97,12 +100,13 @@ def test_what_the_formulas_start_from_is_rounded_once() -> None:
     scenes = [random_scene(rng) for _ in range(2000)]
     tops = tops_of(arrays(scenes))
     regular = tops.regimes()[Regime.REGULAR]
-    found, tilts = tops.invariants(), tops.tilt()
+    ar, found, tilts = decimals(40), tops.state(), tops.tilt()
     for i in np.flatnonzero(regular).tolist():
         top = Top(**scenes[i])
-        assert [np.asarray(x)[i] for x in found] == list(invariants(math, top))
-        with localcontext(decimals.context()):
-            exact = [float(x) for x in top.tilt(decimals)]
+        with ar.working():
+            state = state_of(ar, exact_of(top))
+            exact = [float(x) for x in top.tilt(ar)]
+        assert [x[i] for x in found[:6]] == [float(x) for x in state[:6]]
         assert [x[i] for x in tilts] == pytest.approx(exact, rel=1.0 * EPS, abs=0)
 
 
@@ -146,7 +150,7 @@ def test_no_top_of_a_usual_grid_is_solved_alone() -> None:
         }
     )
     assert tops.moving().all()
-    assert starts(tops).clear.all()
+    assert StartArrays(tops).trusted.all()
 
 
 def test_few_tops_of_a_grid_need_the_exact_way() -> None:

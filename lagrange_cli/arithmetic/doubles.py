@@ -1,0 +1,39 @@
+"""The arithmetic of plain floats, from the module `math`."""
+
+from __future__ import annotations
+
+import math
+from contextlib import AbstractContextManager, nullcontext
+from fractions import Fraction
+from typing import Any
+
+
+class Doubles:
+    """The arithmetic of floats."""
+
+    eps = 2.0**-52
+    pi = math.pi
+    nan = math.nan
+    sqrt = staticmethod(math.sqrt)
+    sin = staticmethod(math.sin)
+    cos = staticmethod(math.cos)
+    atan2 = staticmethod(math.atan2)
+    anywhere = everywhere = staticmethod(bool)
+
+    @staticmethod
+    def working() -> AbstractContextManager[object]:
+        """Return a context manager that has nothing to do."""
+        return nullcontext()
+
+    @staticmethod
+    def convert(value: float | Fraction) -> float:
+        """Return the double nearest to an exact value."""
+        return float(value)
+
+    @staticmethod
+    def where(condition: Any, yes: float, no: float) -> float:
+        """Return one of two numbers."""
+        return yes if condition else no
+
+
+DOUBLES = Doubles()

@@ -1,0 +1,33 @@
+"""The arithmetic of mpmath: any number of digits, complex numbers, and special functions."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+from mpmath.ctx_mp import MPContext
+
+
+class ManyDigits(MPContext):  # type: ignore[misc]
+    """An mpmath context of its own: nobody else's precision is touched."""
+
+    def __init__(self, digits: int) -> None:
+        super().__init__()
+        self.dps = digits
+
+    @staticmethod
+    def working() -> AbstractContextManager[object]:
+        """Return a context manager that has nothing to do: the numbers know their context."""
+        return nullcontext()
+
+    @staticmethod
+    def where(condition: Any, yes: Any, no: Any) -> Any:
+        """Return one of two numbers."""
+        return yes if condition else no
+
+    @staticmethod
+    def anywhere(condition: Any) -> bool:
+        """Return whether the condition holds."""
+        return bool(condition)
+
+    everywhere = anywhere
