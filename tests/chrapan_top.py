@@ -1,4 +1,4 @@
-"""TopArrays of Chrapan's text: the record and the angles of the program in 150 digits, by his names."""
+"""Tops of Chrapan's text: the record and the angles of the program in 150 digits, by his names."""
 
 from __future__ import annotations
 

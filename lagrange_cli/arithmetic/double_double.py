@@ -29,6 +29,21 @@ def pair(value: Any) -> Pair:
     return Pair(high, float(value - type(value)(high)))
 
 
+class Triple(NamedTuple):
+    """A number to three times the precision."""
+
+    high: float
+    middle: float
+    low: float
+
+
+def triple(value: Any) -> Triple:
+    """Return a many-digit number as three doubles."""
+    high, middle = pair(value)
+    kind = type(value)
+    return Triple(float(high), float(middle), float(value - kind(high) - kind(middle)))
+
+
 def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
     """x * factor and its rounding error, exactly (Dekker)."""
     scaled = factor * _SPLITTER
@@ -56,6 +71,16 @@ def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Arra
     since -= step
     since += rest
     return step, since
+
+
+def fraction_of_product(t: Array, rate: Triple) -> Array:
+    """Return t * rate less whole numbers, free of cancellation, within a few halves of 0."""
+    total = np.multiply(t, rate.low)
+    for part in (rate.middle, rate.high):
+        product, error = two_product(t, part)
+        total += error - np.rint(error)
+        total += product - np.rint(product)
+    return total
 
 
 def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:

@@ -54,10 +54,7 @@ def command(
     CSV hold the same keys; what a regime does not have is null or empty.
     """
     motion = solved(scene, rad, digits is not None, options)
-    if digits is None:
-        record = motion.record(radians=rad)
-    else:
-        record = motion.digits(digits, radians=rad)
+    record = motion.digits(digits, radians=rad) if digits else motion.record(radians=rad)
     if key is None:
         write_record(record, fmt, output)
         return

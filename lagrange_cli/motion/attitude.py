@@ -1,4 +1,4 @@
-"""How spin and precession grow: so much with each step of the phase, and a series within it."""
+"""How spin and precession grow: at a mean rate, and by a series within each half period."""
 
 from __future__ import annotations
 
@@ -6,38 +6,43 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Pair, pair, reduce_phase
+from ..arithmetic.double_double import Pair, Triple, fraction_of_product, pair, triple
 from ..arithmetic.generic import Arithmetic, Real
 from ..arithmetic.types import Array
 
 
 class Growth(NamedTuple):
-    """How an angle grows: per step, in turns per step and within a step; its series at t = 0."""
+    """How an angle grows with time, beside its series."""
 
-    step: Pair
-    turns: Pair
+    rate: Pair
+    """Its mean rate."""
+    turns: Triple
+    """Its mean rate in turns, good enough for the fraction of a turn after any time."""
     slope: float
+    """What has to be added per step of the phase, since the series winds by itself."""
     start: float
+    """The value of the series at t = 0."""
 
-    def unwrapped(self, step: Array, since: Array, series: Array) -> Array:
-        """The angle, counted on from 0 at t = 0; `series` is overwritten."""
-        if self.start:
-            series -= self.start
-        series += since * self.slope
-        series += step * self.step.low
-        series += step * self.step.high
+    def unwrapped(self, t: Array, since: Array, series: Array) -> Array:
+        """Return the angle, counted on from 0 at t = 0; `series` is overwritten."""
+        self._within(since, series)
+        series += t * self.rate.low
+        series += t * self.rate.high
         return series
 
-    def wrapped(self, step: Array, since: Array, series: Array) -> Array:
-        """The same in (-pi, pi], as exact far away as near; `series` is overwritten."""
-        _, turns = reduce_phase(step, self.turns)
-        if self.start:
-            series -= self.start
-        series += since * self.slope
-        series += turns * (2.0 * np.pi)
+    def wrapped(self, t: Array, since: Array, series: Array) -> Array:
+        """Return the angle in (-pi, pi], as exact far away as near; `series` is overwritten."""
+        self._within(since, series)
+        series += fraction_of_product(t, self.turns) * (2.0 * np.pi)
         series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
         series[series <= -np.pi] = np.pi
         return np.minimum(series, np.pi, out=series)
+
+    def _within(self, since: Array, series: Array) -> None:
+        if self.start:
+            series -= self.start
+        if self.slope:
+            series += since * self.slope
 
 
 class Growths(NamedTuple):
@@ -51,7 +56,7 @@ class Growths(NamedTuple):
 
 def growths(
     ar: Arithmetic,
-    steps: tuple[Real, Real],
+    rates: tuple[Real, Real],
     slopes: tuple[Real, Real] = (0, 0),
     starts: tuple[Real, Real] = (0, 0),
 ) -> Growths:
@@ -60,10 +65,10 @@ def growths(
     `starts` are arg X and arg Y at t = 0.  Spin and precession come in by themselves: where one
     of them is much the larger, sums and differences would lose the other.
     """
-    (phi, psi), (phi_slope, psi_slope), (x, y) = steps, slopes, starts
+    (phi, psi), (phi_slope, psi_slope), (x, y) = rates, slopes, starts
 
-    def growth(step: Real, slope: Real, start: Real) -> Growth:
-        return Growth(pair(step), pair(step / (2 * ar.pi)), float(slope), float(start))
+    def growth(rate: Real, slope: Real, start: Real) -> Growth:
+        return Growth(pair(rate), triple(rate / (2 * ar.pi)), float(slope), float(start))
 
     return Growths(
         phi=growth(phi, phi_slope, x - y),

@@ -191,10 +191,14 @@ def gaps_from_start(
         a_u3_u2=D - a * x2,
         a_u3_above=D - a * above,
         a_below_u3=D + a * below,
-        momentum_u1=zero if facts.cusp or facts.upper_root == 1 or separatrix else momentum - b * x1,
+        momentum_u1=zero
+        if facts.cusp or facts.upper_root == 1 or separatrix
+        else momentum - b * x1,
         momentum_u2=zero if facts.over_bottom else momentum - b * x2,
         beta_plus_b=zero if facts.over_bottom else below * (start.psi_rate * above + b),
-        beta_minus_b=zero if facts.upper_root or separatrix else above * (start.psi_rate * below - b),
+        beta_minus_b=zero
+        if facts.upper_root or separatrix
+        else above * (start.psi_rate * below - b),
     )
 
 

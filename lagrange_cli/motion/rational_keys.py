@@ -53,11 +53,15 @@ def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
 
 def starts_at_u1(exact: Exact) -> bool:
     """Return whether the start is the upper turning point."""
+    if exact.facts.pole:
+        return exact.facts.pole == 1
     return exact.facts.steady or (not exact.theta_rate and _fall(exact) < 0)
 
 
 def starts_at_u2(exact: Exact) -> bool:
     """Return whether the start is the lower turning point."""
+    if exact.facts.pole:
+        return exact.facts.pole == -1
     return exact.facts.steady or (not exact.theta_rate and _fall(exact) > 0)
 
 
@@ -105,10 +109,16 @@ def _quarter_is_level(exact: Exact, energy: Polynomial, beta: Polynomial) -> boo
 def _half_rates(exact: Exact) -> dict[str, Fraction]:
     """Return the rates at T/2 that are known: after release from rest psi' = a/b (4,7)."""
     facts, a, b = exact.facts, exact.a, exact.b
+    below = facts.over_bottom and starts_at_u1(exact)
+    above = facts.upper_root == 1 and starts_at_u2(exact)
+    if below or above:  # on a pole, where no rate has a meaning
+        return {}
+    if facts.plane:
+        return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
     if facts.cusp and starts_at_u2(exact):
         return {"precession_rate_half": Fraction(0)}
-    if facts.plane and exact.theta_rate:
-        return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
+    if facts.free:
+        return _free_half_rates(exact)
     if not (facts.at_rest and facts.spins):
         return {}
     keys = {"precession_rate_half": a / b}
@@ -116,5 +126,24 @@ def _half_rates(exact: Exact) -> dict[str, Fraction]:
     if abs(level) <= 1 and exact.cosine.vanishes(
         level * level - b * b / a * level + b * b / a * U - 1
     ):
+        keys["spin_rate_half"] = Fraction(0)
+    return keys
+
+
+def _free_half_rates(exact: Exact) -> dict[str, Fraction]:
+    """Return the rates at T/2 that are 0 without torque, where u(T/2) = u1 + u2 - u0.
+
+    The roots of (4,9) have the sum 2 beta b/D with D = energy + b^2; the rates vanish where
+    beta - b u and r0 (1 - u^2) - u (beta - b u) do, at u = u(T/2).
+    """
+    b, psi, sin2 = exact.b, exact.psi_rate, 1 - U * U
+    beta = psi * sin2 + b * U
+    D = exact.theta_rate**2 + psi * psi * sin2 + b * b
+    D_u = 2 * b * beta - U * D
+    still = D * beta - b * D_u
+    keys: dict[str, Fraction] = {}
+    if exact.cosine.vanishes(still):
+        keys["precession_rate_half"] = Fraction(0)
+    if exact.cosine.vanishes(exact.r0 * (D * D - D_u * D_u) - D_u * still):
         keys["spin_rate_half"] = Fraction(0)
     return keys

@@ -99,6 +99,7 @@ def exact(top: Top) -> Exact:
         None if x is None else Fraction(x) for x in (top.theta0_deg, top.theta0_rad)
     )
     cosine = Cosine(degrees, radians)
+    facts = _facts(top.pole, a, b, (theta_rate, psi_rate), cosine)
     return Exact(
         top,
         a,
@@ -107,13 +108,14 @@ def exact(top: Top) -> Exact:
         theta_rate,
         psi_rate,
         cosine,
-        _facts(top.pole, a, b, theta_rate, psi_rate, cosine),
+        facts,
     )
 
 
 def _facts(
-    pole: int, a: Fraction, b: Fraction, theta_rate: Fraction, psi_rate: Fraction, cosine: Cosine
+    pole: int, a: Fraction, b: Fraction, rates: tuple[Fraction, Fraction], cosine: Cosine
 ) -> Facts:
+    theta_rate, psi_rate = rates
     minus = 0 if pole == 1 else cosine.sign(psi_rate * (1 + U) - b)
     plus = 0 if pole == -1 else cosine.sign(psi_rate * (1 - U) + b)
     energy_above_top = 0
@@ -159,7 +161,8 @@ def regimes(
 
     The conditions are truths, or masks of an array of tops.
     """
-    left = upright == upright
+    none: B = upright ^ upright
+    left = none ^ True
     for regime, condition in (
         (Regime.SLEEPING, upright),
         (Regime.HANGING, hanging),

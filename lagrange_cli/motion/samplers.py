@@ -62,7 +62,6 @@ class Attitude:
 
     growths: Growths
     t: Array
-    step: Array
     since: Array
     """The part of a step that has passed since the whole ones."""
     spinor: Spinor
@@ -90,7 +89,7 @@ class Attitude:
 
     def _angle(self, growth: Growth, series: Array, wrap: bool) -> Array:
         grow = growth.wrapped if wrap else growth.unwrapped
-        angle: Array = grow(self.step, self.since, series)
+        angle: Array = grow(self.t, self.since, series)
         if growth.start:
             angle[self.t == 0] = 0.0
         return angle
@@ -153,7 +152,7 @@ class ThetaSampler(Sampler):
         step, since = reduce_phase(t, self.steps_per_time, self.offset)
         argument = (since + self.offset if self.offset else since) * self.scale
         spinor = self._spinor_by_parity(step, argument, rate)
-        return Attitude(self.growths, t, step, since, spinor)
+        return Attitude(self.growths, t, since, spinor)
 
     def _spinor_by_parity(self, step: Array, argument: Array, rate: bool) -> Spinor:
         half = step * 0.5
@@ -188,7 +187,7 @@ class ConstantSampler(Sampler):
         """A step is a unit of time, and there is no phase."""
         zero = np.zeros_like(t)
         x, y = np.full_like(t, self.x), np.full_like(t, self.y)
-        return Attitude(self.growths, t, t, zero, Spinor(x, y, zero, zero, zero if rate else None))
+        return Attitude(self.growths, t, zero, Spinor(x, y, zero, zero, zero if rate else None))
 
 
 @dataclass(frozen=True)
@@ -214,7 +213,7 @@ class SeparatrixSampler(Sampler):
         y = self.y * sech
         falling = -4.0 * self.speed * y * y * tanh if rate else None
         zero = np.zeros_like(h)
-        return Attitude(self.growths, t, t, zero, Spinor(x, y, arg_x, zero, falling))
+        return Attitude(self.growths, t, zero, Spinor(x, y, arg_x, zero, falling))
 
 
 def times_of(t: ArrayLike) -> Array:

@@ -63,8 +63,6 @@ def theta_constants(motion: Nutating[R]) -> ThetaConstants:
             eta_minus=motion.eta_minus,
             x_size=ar.sqrt(gaps.below_u1 / 2),
             y_size=ar.sqrt(motion.k_prime * gaps.above_u2 / 2),
-            spin=motion.spin_growth,
-            precession=motion.precession_growth,
             sign_plus=facts.sign_plus,
             sign_minus=facts.sign_minus,
             offset=periods_since_top(motion),
@@ -86,7 +84,7 @@ def periods_since_top(motion: Nutating[R]) -> R:
         return zero + 1 / (zero + 2)
     scale = gaps.a_u3_u * gaps.u1_u2
     sn2, cn2 = gaps.u1_u * gaps.a_u3_u2 / scale, gaps.a_u3_u1 * gaps.u_u2 / scale
-    w = ar.sqrt(sn2) * carlson_rf(ar, cn2, gaps.a_u3_u1 / gaps.a_u3_u, zero + 1)
+    w: R = ar.sqrt(sn2) * carlson_rf(ar, cn2, gaps.a_u3_u1 / gaps.a_u3_u, zero + 1)
     return _direction(motion) * w / (2 * motion.K)
 
 
@@ -103,27 +101,28 @@ def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
         terms = 4 + math.isqrt(int(ar.digits * math.log(10) / math.pi))  # nome <= exp(-pi)
         series = theta_series(ar, constants, terms)
 
-    def position(t: Decimal) -> tuple[Decimal, Decimal, Decimal, Decimal, int, Decimal]:
+    def position(t: Decimal) -> tuple[Decimal, Decimal, Decimal, Decimal, Decimal]:
         passed = (t / constants.period + constants.offset) * 2
         step = ar.nint(passed)
         phase = passed - step
         frame = series.frames[step % 2]
-        return *evaluate(ar, series, frame, phase, constants.rises), step, phase
+        return *evaluate(ar, series, frame, phase, constants.rises), phase
 
     with ar.working():
-        _, x_start, _, y_start, first, since_first = position(0 * motion.K)
+        _, x_start, _, y_start, since_first = position(0 * motion.K)
+        rates = motion.mean_spin_rate, motion.mean_precession_rate
+        rate_size = max(map(abs, rates)) + 4 / constants.period
 
     def spinor(t: Decimal) -> Attitude[Decimal]:
         with ar.working():
-            x, arg_x, y, arg_y, step, phase = position(t)
-            steps, within = step - first, phase - since_first
+            x, arg_x, y, arg_y, phase = position(t)
+            within, size = phase - since_first, 8 + abs(t) * rate_size
             plus, minus = arg_x - x_start, arg_y - y_start
-            phi = steps * series.spin_step + within * series.spin_slope + (plus - minus)
-            psi = steps * series.precession_step + within * series.precession_slope + plus + minus
+            phi = t * rates[0] + within * series.spin_slope + (plus - minus)
+            psi = t * rates[1] + within * series.precession_slope + (plus + minus)
             if motion.facts.plane:  # in half turns
                 phi, psi = (ar.pi * ar.nint(angle / ar.pi) for angle in (phi, psi))
-            growth = max(abs(series.spin_step), abs(series.precession_step))
-            return Attitude(x, y, phi, psi, 8 + abs(steps) * (1 + growth))
+            return Attitude(x, y, phi, psi, size)
 
     return spinor
 
@@ -141,7 +140,7 @@ def constant_spinor(motion: Constant[Decimal]) -> Spinor[Decimal]:
 
 
 def separatrix_spinor(motion: Separatrix[Decimal]) -> Spinor[Decimal]:
-    """Return the attitude on the separatrix, 1 - u = (1 - u2)/cosh^2 h with h = speed t + offset."""
+    """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
     ar: Any = motion.ar
     with ar.working():
         swing = _swing(motion)
@@ -209,7 +208,7 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
             frames=[_rounded(frame, series) for frame in frames],
             growths=growths(
                 ar,
-                steps=(series.spin_step, series.precession_step),
+                rates=(motion.mean_spin_rate, motion.mean_precession_rate),
                 slopes=(series.spin_slope, series.precession_slope),
                 starts=evaluate(ar, series, frames[0], offset, c.rises)[1::2],
             ),

@@ -20,16 +20,6 @@ class SpinPrecession(Nutation[R]):
     """The numbers of sections 6 and 7 of a motion, under their keys; None where it has none."""
 
     @quantity
-    def spin_growth(self) -> R:
-        """Growth of the spin over a nutation period."""
-        return self.mean_spin_rate * self.T_nutation
-
-    @quantity
-    def precession_growth(self) -> R:
-        """Growth of the precession over a nutation period."""
-        return self.mean_precession_rate * self.T_nutation
-
-    @quantity
     def half_turn_rate(self) -> R:
         """Half a turn per nutation period."""
         return self.ar.pi / self.T_nutation
@@ -114,9 +104,9 @@ class SpinPrecession(Nutation[R]):
     @property
     def _half_over_pole(self) -> bool:
         """Whether the axis is on a pole half a period after the start: it was at u1 or u2."""
-        if self.facts.over_bottom:
-            return self.ar.everywhere(self.gaps.u1_u <= 0)
-        return self.facts.upper_root == 1 and self.ar.everywhere(self.gaps.u_u2 <= 0)
+        below = self.facts.over_bottom and self.ar.everywhere(self.gaps.u1_u <= 0)
+        above = self.facts.upper_root == 1 and self.ar.everywhere(self.gaps.u_u2 <= 0)
+        return below or above
 
     @quantity
     def _half(self) -> tuple[R, R]:

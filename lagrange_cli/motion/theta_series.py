@@ -70,10 +70,6 @@ class ThetaConstants(NamedTuple):
     """|X| at u1, which is cos(theta_min/2)."""
     y_size: Real
     """|Y| at u2, sin(theta_max/2), times sqrt(k') as theta3(x)/theta3(0) shrinks on the way."""
-    spin: Real
-    """Advance of the spin over a period."""
-    precession: Real
-    """Advance of the precession over a period."""
     sign_plus: int
     sign_minus: int
     offset: Real
@@ -91,11 +87,8 @@ class Series(NamedTuple):
     frames: list[Frame]
     scale: Real
     """Argument of the functions per step of the phase."""
-    spin_step: Real
-    """Growth of the spin per step."""
-    precession_step: Real
     spin_slope: Real
-    """The part of `spin_step` that is linear within the step; the rest is in the series."""
+    """What the spin has over its mean growth per step; the series winds by as much less."""
     precession_slope: Real
 
 
@@ -106,7 +99,7 @@ def theta_series(ar: Arithmetic, c: ThetaConstants, terms: int = TERMS) -> Serie
 
 
 def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
-    """Return the series in q, which wind by +-pi over a period; the rest of the growth is linear."""
+    """Return the series in q, which wind by +-pi over a period."""
     zero = 0 * c.quarter
     q = ar.exp(-ar.pi * c.quarter_prime / c.quarter) if c.quarter_prime is not None else zero
     weights = _weights(q, terms)
@@ -118,10 +111,8 @@ def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
         hyperbolic=False,
         frames=_frames(x, y, _rate(weights, 1, c.nutation)),
         scale=quarter_turn,
-        spin_step=c.spin / 2,
-        precession_step=c.precession / 2,
-        spin_slope=c.spin / 2 - (c.sign_plus - c.sign_minus) * quarter_turn,
-        precession_slope=c.precession / 2 - (c.sign_plus + c.sign_minus) * quarter_turn,
+        spin_slope=-(c.sign_plus - c.sign_minus) * quarter_turn,
+        precession_slope=-(c.sign_plus + c.sign_minus) * quarter_turn,
     )
 
 
@@ -139,10 +130,8 @@ def _hyperbolic_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
         hyperbolic=True,
         frames=_frames(x, y, _rate(odd, -1, c.nutation / ratio)),
         scale=ar.pi / 2 * ratio,
-        spin_step=c.spin / 2,
-        precession_step=c.precession / 2,
-        spin_slope=c.spin / 2 + slope_x - slope_y,
-        precession_slope=c.precession / 2 + slope_x + slope_y,
+        spin_slope=slope_x - slope_y,
+        precession_slope=slope_x + slope_y,
     )
 
 

@@ -1,9 +1,8 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
-TopArrays released from rest go through the formulas of `released` as arrays of doubles, others through
-those of `general_record`.  What is not usual (a size beyond 1e+-30, lambda within 2^-44 of 1, roots
-of a general start that nearly meet) goes through `solve`, one by one, and a top that cannot be gets
-an error in place of its numbers.
+Tops released from rest go through the formulas of `motion` as arrays of doubles, others as arrays
+of pairs of doubles.  A top whose sizes are unusual (beyond 1e+-30), or whose digits a cancellation
+uses up, goes through `solve` by itself; an invalid one gets an `error` and no numbers.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ Column = Array | NDArray[np.object_]
 """Numbers, NaN where a regime has none; or texts, None where there is none."""
 
 BLOCK_ROWS = 1 << 12
-"""TopArrays that are computed together: their arrays stay in the cache."""
+"""Tops that are computed together: their arrays stay in the cache."""
 
 _TEXT_KEYS = ("regime", "path", "remark")
 

@@ -73,7 +73,7 @@ class StartArrays:
         noise = self.errors.worst + _EPS
 
         def size_of_part(from_u1: Array, from_u2: Array) -> Array:
-            """Return the part of the rate if nothing in it had cancelled: a mean is <= 1/sqrt(p)."""
+            """Return the part of the rate if nothing in it cancelled: a mean <= 1/sqrt(p)."""
             part: Array = sizes[0] / from_u1 + sizes[1] * mc / (
                 from_u1 * np.sqrt(np.minimum(mc * from_u2 / from_u1, 1.0))
             )
