@@ -16,6 +16,8 @@ FIRST_DIGITS = 32
 _TIE = Decimal("1e-300")
 """Two values that differ by less, of their size, stay on both sides of a tie for ever."""
 _MOST_DIGITS = 2_000
+_PATIENCE = 2
+"""Precisions to try before asking whether a number is known exactly."""
 
 
 class TooFewDigitsError(Exception):
@@ -37,15 +39,19 @@ def correctly_rounded(
     *,
     first: int = FIRST_DIGITS,
     zero_is_proved: bool = False,
+    exactly: Callable[[], T | None] = lambda: None,
 ) -> T | None:
     """Return the rounding of a number that can be computed with any number of digits (Ziv 1991).
 
     The difference of two precisions in a row bounds the error of the better one; both ends of that
     interval have to round alike.  A computed 0 is believed only where it cannot be what is left of
-    a cancellation.  Raises LagtopError where no precision is enough.
+    a cancellation.  Where two precisions are not enough, `exactly` is asked once: it may know the
+    number.  Raises LagtopError where no precision is enough.
     """
     previous: Decimal | None = None
-    for digits in precisions(first):
+    for i, digits in enumerate(precisions(first)):
+        if i == _PATIENCE and (known := exactly()) is not None:
+            return known
         try:
             value = value_in(digits)
         except (TooFewDigitsError, InvalidOperation, DivisionByZero):

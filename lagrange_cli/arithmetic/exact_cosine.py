@@ -23,6 +23,8 @@ N = TypeVar("N", float, Fraction, Decimal)
 
 _CERTAIN = 1e-12
 """More than the rounding of a value whose coefficients have the sum 1 in size."""
+_SMALL = 1e-250
+"""Below this sum of coefficients some of them may have left the range of doubles."""
 
 
 class Polynomial:
@@ -94,6 +96,28 @@ class Cosine(NamedTuple):
 
     def vanishes(self, polynomial: Polynomial) -> bool:
         """Return whether a polynomial is exactly 0 here."""
+        return self._clear_sign(polynomial) is None and self._vanishes(polynomial)
+
+    def sign(self, polynomial: Polynomial) -> int:
+        """Return the sign of a polynomial, -1, 0 or 1."""
+        sign = self._clear_sign(polynomial)
+        if sign is None:
+            sign = 0 if self._vanishes(polynomial) else self._sign_in_digits(polynomial)
+        return sign
+
+    def _clear_sign(self, polynomial: Polynomial) -> int | None:
+        """Return the sign where doubles are enough to see it."""
+        try:
+            coefficients = [float(x) for x in polynomial.coefficients]
+            size = sum(map(abs, coefficients))
+            value = _value(coefficients, math.cos(self._in_radians()))
+        except OverflowError:
+            return None
+        if not abs(value) > _CERTAIN * size or size < _SMALL:
+            return None
+        return 1 if value > 0 else -1
+
+    def _vanishes(self, polynomial: Polynomial) -> bool:
         coefficients = [Fraction(x) for x in polynomial.coefficients]
         while coefficients and not coefficients[-1]:
             coefficients.pop()
@@ -109,18 +133,8 @@ class Cosine(NamedTuple):
             return False
         return not any(x != 0 for x in _remainder(_in_roots_of_unity(coefficients), cyclotomic(n)))
 
-    def sign(self, polynomial: Polynomial) -> int:
-        """Return the sign of a polynomial, -1, 0 or 1."""
+    def _sign_in_digits(self, polynomial: Polynomial) -> int:
         coefficients = [Fraction(x) for x in polynomial.coefficients]
-        size = sum(abs(x) for x in coefficients)
-        if size:
-            cosine = math.cos(self._in_radians())
-            value = _value([float(x / size) for x in coefficients], cosine)
-            if abs(value) > _CERTAIN:
-                return 1 if value > 0 else -1
-        return 0 if self.vanishes(polynomial) else self._sign_in_digits(coefficients)
-
-    def _sign_in_digits(self, coefficients: Sequence[Fraction]) -> int:
         digits, size = 50, sum(abs(x) for x in coefficients)
         while True:
             ar = decimals(digits)

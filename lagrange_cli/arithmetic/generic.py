@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import wraps
+from functools import lru_cache, wraps
 from typing import Any, TypeVar, cast
 
 Arithmetic = Any
@@ -23,6 +23,12 @@ Real = Any
 def epsilon(ar: Arithmetic) -> Real:
     """Distance from 1 to the next number of the arithmetic."""
     return getattr(ar, "eps", sys.float_info.epsilon)
+
+
+@lru_cache(maxsize=256)
+def root_of_epsilon(eps: Any, over: int, degree: int) -> Any:
+    """Return (eps/over)^(1/degree): where a series with so many orders is exact."""
+    return (eps / over) ** (eps / eps / degree)
 
 
 def everywhere(condition: Any) -> bool:

@@ -21,6 +21,7 @@ from ..arithmetic.generic import (
     epsilon,
     everywhere,
     has_arrays,
+    root_of_epsilon,
     where,
 )
 
@@ -105,7 +106,7 @@ def _spread(ar: Arithmetic, mean: Real, *arguments: Real) -> Real:
     """Return the greatest distance from the mean, over the one at which the series is exact."""
     distances = [abs(mean - x) for x in arguments]
     greatest = reduce(lambda a, b: where(a > b, a, b), distances)
-    return greatest / (epsilon(ar) / 4) ** (ar.sqrt(1) / 8)
+    return greatest / root_of_epsilon(epsilon(ar), 4, 8)
 
 
 def _rc_from_one(ar: Arithmetic, y: Real) -> Real:

@@ -5,7 +5,7 @@ Every loop adds and multiplies positive numbers only, so each result is good to 
 
 from __future__ import annotations
 
-from ..arithmetic.generic import anywhere, epsilon, where
+from ..arithmetic.generic import anywhere, epsilon, root_of_epsilon, where
 from ..arithmetic.protocol import Arithmetic, R
 
 
@@ -52,7 +52,7 @@ def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     The exponential would lose log(1/q) digits.  Instead: along the AGM of (1, k') the nome is
     squared at each step, until the series q = e + 2 e^5 + 15 e^9 ... (DLMF 19.5.5) is short.
     """
-    tolerance = 2 * (epsilon(ar) / 20910) ** (ar.sqrt(1) / 20)
+    tolerance = 2 * root_of_epsilon(epsilon(ar), 20910, 20)
     a, b = (1 + k_prime) / 2, ar.sqrt(k_prime)
     c, squarings = m / (4 * a), []
     while anywhere(c > tolerance * a):

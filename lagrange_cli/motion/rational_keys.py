@@ -68,7 +68,7 @@ def starts_at_u2(exact: Exact) -> bool:
 def _fall(exact: Exact) -> int:
     """Return the sign of u'' for a start without nutation rate: that of c1/sin^2 theta0."""
     psi = exact.psi_rate
-    return exact.cosine.sign(2 * exact.b * psi - exact.a - 2 * psi * psi * U)
+    return exact.cosine.sign(Polynomial(2 * exact.b * psi - exact.a, -2 * psi * psi))
 
 
 def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:

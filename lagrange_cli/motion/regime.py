@@ -11,7 +11,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, NamedTuple, TypeVar
 
-from ..arithmetic.exact_cosine import Cosine, U
+from ..arithmetic.exact_cosine import Cosine, Polynomial
 from ..errors import LagtopError
 from ..inputs.top import Top
 
@@ -116,17 +116,19 @@ def _facts(
     pole: int, a: Fraction, b: Fraction, rates: tuple[Fraction, Fraction], cosine: Cosine
 ) -> Facts:
     theta_rate, psi_rate = rates
-    minus = 0 if pole == 1 else cosine.sign(psi_rate * (1 + U) - b)
-    plus = 0 if pole == -1 else cosine.sign(psi_rate * (1 - U) + b)
+    minus = 0 if pole == 1 else cosine.sign(Polynomial(psi_rate - b, psi_rate))
+    plus = 0 if pole == -1 else cosine.sign(Polynomial(psi_rate + b, -psi_rate))
     energy_above_top = 0
     if not minus:  # alpha - a, where beta = b
-        energy_above_top = cosine.sign(theta_rate**2 - (1 - U) * (a - psi_rate * b))
+        slope = a - psi_rate * b
+        energy_above_top = cosine.sign(Polynomial(theta_rate * theta_rate - slope, slope))
     vertical = bool(pole) and not theta_rate
     steady = not theta_rate and (
-        vertical or cosine.vanishes(2 * b * psi_rate - a - 2 * psi_rate**2 * U)
+        vertical or cosine.vanishes(Polynomial(2 * b * psi_rate - a, -2 * psi_rate * psi_rate))
     )
     separatrix = not minus and not energy_above_top and bool(a) and not vertical
-    still = (b * psi_rate - a) * psi_rate * (1 - U * U) + b * theta_rate**2
+    stands = (b * psi_rate - a) * psi_rate
+    still = Polynomial(stands + b * theta_rate * theta_rate, 0, -stands)
     upper_root = 0
     if not minus and not vertical and not separatrix:
         upper_root = 3 if energy_above_top < 0 else int(not steady)

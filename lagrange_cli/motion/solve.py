@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, precisions, text_of
@@ -14,7 +15,6 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from .gaps import agree, are_told_apart, gaps_of, state
 from .kinds import Kind, kind_of
-from .rational_keys import rational_keys, starts_at_u1, starts_at_u2
 from .record import CANCELLING, NUMBER_KEYS, record_keys, unit_name
 from .regime import Exact, Regime, exact
 
@@ -45,9 +45,14 @@ class Motion:
         self.exact = scene
         self.kind_class = kind_of(scene.facts)
         self._kinds: dict[int, Kind[Decimal]] = {}
-        self._rational = rational_keys(scene)
         self._doubles: dict[str, float | None] = {}
         self._sampler: Sampler | None = None
+
+    @cached_property
+    def _rational(self) -> dict[str, Fraction]:
+        from .rational_keys import rational_keys  # for few tops only
+
+        return rational_keys(self.exact)
 
     @property
     def top(self) -> Top:
@@ -155,9 +160,10 @@ class Motion:
         if name in self.kind_class.lacks:
             return None
         in_radians = radians and name.endswith("_deg")
-        rational = self._radians_given(name) if in_radians else self._rational.get(name)
-        if rational is not None:
-            return of_fraction(rational)
+
+        def exactly() -> T | None:
+            known = self._radians_given(name) if in_radians else self._rational.get(name)
+            return None if known is None else of_fraction(known)
 
         def value_in(digits: int) -> Decimal | None:
             kind = self.kind(digits)
@@ -173,9 +179,12 @@ class Motion:
             rounding,
             first=max(32, digits + 10),
             zero_is_proved=name not in CANCELLING,
+            exactly=exactly,
         )
 
     def _radians_given(self, name: str) -> Fraction | None:
+        from .rational_keys import starts_at_u1, starts_at_u2
+
         at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
         return self.exact.cosine.radians if at is not None and at(self.exact) else None
 

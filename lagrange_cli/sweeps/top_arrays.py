@@ -75,7 +75,7 @@ class TopArrays(NamedTuple):
         return {regime: mask for regime, mask in rows.items() if mask.any()}
 
     def moving(self) -> Mask:
-        """Return the tops of usual sizes with a torque, off the vertical, that do not start at rest."""
+        """Return the tops of usual sizes, with a torque, off the vertical, that start moving."""
         with np.errstate(all="ignore"):
             usual = self._usual_sizes() & (self.g > 0) & (self.s > 0)
             for rate in (self.thetadot0, self.psidot0):
