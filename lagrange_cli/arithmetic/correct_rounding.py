@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from decimal import ROUND_HALF_EVEN, Context, Decimal, DivisionByZero, InvalidOperation
+from decimal import (
+    MAX_EMAX,
+    MIN_EMIN,
+    ROUND_HALF_EVEN,
+    Context,
+    Decimal,
+    DivisionByZero,
+    InvalidOperation,
+)
 from fractions import Fraction
 from typing import TypeVar
 
@@ -16,6 +24,7 @@ FIRST_DIGITS = 32
 _TIE = Decimal("1e-300")
 """Two values that differ by less, of their size, stay on both sides of a tie for ever."""
 _MOST_DIGITS = 2_000
+_WIDE = Context(prec=2 * _MOST_DIGITS, Emin=MIN_EMIN, Emax=MAX_EMAX, traps=[])
 _PATIENCE = 2
 """Precisions to try before asking whether a number is known exactly."""
 
@@ -40,13 +49,15 @@ def correctly_rounded(
     first: int = FIRST_DIGITS,
     zero_is_proved: bool = False,
     exactly: Callable[[], T | None] = lambda: None,
+    lost: int | None = None,
 ) -> T | None:
     """Return the rounding of a number that can be computed with any number of digits (Ziv 1991).
 
     The difference of two precisions in a row bounds the error of the better one; both ends of that
     interval have to round alike.  A computed 0 is believed only where it cannot be what is left of
     a cancellation.  Where two precisions are not enough, `exactly` is asked once: it may know the
-    number.  Raises LagtopError where no precision is enough.
+    number.  Where nothing cancels, `lost` says how many digits roundings may take, and one
+    precision is enough.  Raises LagtopError where none is.
     """
     previous: Decimal | None = None
     for i, digits in enumerate(precisions(first)):
@@ -61,6 +72,8 @@ def correctly_rounded(
             return None
         if not value and zero_is_proved:
             return rounding(value)
+        if lost is not None:
+            previous = _WIDE.add(value, value.scaleb(lost - digits, _WIDE))
         if value and previous is not None:
             settled = _rounded(value, previous, rounding)
             if settled is not None:
@@ -70,7 +83,7 @@ def correctly_rounded(
 
 
 def _rounded(value: Decimal, previous: Decimal, rounding: Callable[[Decimal], T]) -> T | None:
-    wide = Context(prec=2 * _MOST_DIGITS)
+    wide = _WIDE
     error = abs(wide.subtract(value, previous))
     if error > wide.multiply(abs(value), Decimal("1e-3")):
         return None

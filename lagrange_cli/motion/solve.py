@@ -180,6 +180,7 @@ class Motion:
             first=max(32, digits + 10),
             zero_is_proved=name not in CANCELLING,
             exactly=exactly,
+            lost=8 if self.exact.facts.at_rest and name not in CANCELLING else None,
         )
 
     def _radians_given(self, name: str) -> Fraction | None:
