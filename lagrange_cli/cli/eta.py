@@ -9,6 +9,7 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
+from ..output.layouts import ETA
 from ..output.write import write_record, write_table
 from .options import (
     MOST_TABLE_DIGITS,
@@ -83,7 +84,7 @@ def command(
     times = listed("tau", single, grid)
     quadrature = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
     if times is None:
-        write_record(record(quadrature, digits), fmt, output, "eta")
+        write_record(record(quadrature, digits), fmt, output, lambda: ETA)
     elif digits is None:
         header, blocks = rows(quadrature, times, c3)
         write_table(header, with_progress(blocks, times.count, 3_000_000), fmt, output)

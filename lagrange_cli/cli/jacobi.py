@@ -10,6 +10,7 @@ import click
 from .. import __version__
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
+from ..output.layouts import JACOBI
 from ..output.write import write_record, write_table
 from .options import (
     COUNT,
@@ -106,7 +107,7 @@ def command(
     if arguments is None:
         if families:
             raise LagtopError(f"--{families[0]} needs --u or --u-range")
-        write_record(constants_record(modulus, digits), fmt, output, "jacobi")
+        write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
         return
     request = Request(modulus, families, *_parameter(param, families), radians=rad)
     _write_rows(arguments, request, digits, fmt, output)

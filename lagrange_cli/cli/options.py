@@ -23,6 +23,7 @@ from ..output.write import write_findings
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..output.findings import Findings
+    from ..output.layouts import Line
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -87,11 +88,22 @@ class ExamplesFirst(click.Command):
             raise
 
 
+def top_layout() -> dict[str, list[Line]]:
+    """Return the keys of the record of a top as the lines of a table, by their groups."""
+    from ..motion.record import KEYS
+    from ..output.layouts import Line
+
+    layout: dict[str, list[Line]] = {}
+    for name, (group, symbol, meaning, unit, equation, _) in KEYS.items():
+        if meaning:
+            line = Line(name.removesuffix("_deg"), symbol, meaning, unit, equation)
+            layout.setdefault(group, []).append(line)
+    return layout
+
+
 def write_keys(formatter: click.HelpFormatter) -> None:
     """Write the keys of the record of a top, by their groups."""
-    from ..output.layouts import LAYOUTS
-
-    for group, lines in LAYOUTS["top"].items():
+    for group, lines in top_layout().items():
         with formatter.section(f"Keys: {group}"):
             formatter.write_dl(
                 [

@@ -17,6 +17,7 @@ from .options import (
     output_options,
     scene_options,
     solved,
+    top_layout,
 )
 
 
@@ -56,7 +57,7 @@ def command(
     motion = solved(scene, rad, digits is not None, options)
     record = motion.digits(digits, radians=rad) if digits else motion.record(radians=rad)
     if key is None:
-        write_record(record, fmt, output)
+        write_record(record, fmt, output, top_layout)
         return
     exclude({"--get": key, "--format": fmt if given("fmt") else None})
     if key not in record:

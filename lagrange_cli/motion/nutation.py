@@ -8,18 +8,18 @@ from __future__ import annotations
 from ..arithmetic.protocol import R
 from ..elliptic import carlson_rf
 from .moduli import Moduli
-from .quantity import quantity
+from .quantity import key, quantity
 
 
 class Nutation(Moduli[R]):
     """The numbers of section 5 of a motion, under their keys; None where it has none."""
 
-    @quantity
+    @key("Periods", "T", "of the nutation", "time", "(5,1)")
     def T_nutation(self) -> R:
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate
 
-    @quantity
+    @key("Turning points", "u(T/4)", "cos ϑ at T/4", "", "(5,2)", cancels=True)
     def u_quarter(self) -> R | None:
         """u(T/4) after a start at u1 (5,2), written from u1 downwards: a large u3 does no harm."""
         value = self.u1 - self.gaps.u1_u2 * (self.k_prime / (1 + self.k_prime))
@@ -28,12 +28,12 @@ class Nutation(Moduli[R]):
             return None
         return self.ar.where(starts_at_u1, value, self.ar.nan)
 
-    @quantity
+    @key("Turning points", "ϑ min", "least tilt", "angle", "(4,9)")
     def theta_min_deg(self) -> R:
         """The tilt at u1, in degrees."""
         return self._tilt_deg(self.gaps.above_u1, self.gaps.below_u1)
 
-    @quantity
+    @key("Turning points", "ϑ max", "greatest tilt", "angle", "(4,9)")
     def theta_max_deg(self) -> R:
         """The tilt at u2, in degrees."""
         return self._tilt_deg(self.gaps.above_u2, self.gaps.below_u2)
@@ -41,7 +41,7 @@ class Nutation(Moduli[R]):
     def _tilt_deg(self, above: R, below: R) -> R:
         return 2 * self.ar.atan2(self.ar.sqrt(above), self.ar.sqrt(below)) / self.degree
 
-    @quantity
+    @key("Moduli and integrals", "am α", "amplitude of α", "angle", "(7,2)")
     def amplitude_deg(self) -> R | None:
         """The amplitude of alpha (7,2) in degrees, by its tangent; after release from rest."""
         if not self.facts.at_rest:
@@ -51,7 +51,7 @@ class Nutation(Moduli[R]):
             self.ar.atan2(self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(a_below_u2)) / self.degree
         )
 
-    @quantity
+    @key("Moduli and integrals", "α", "parameter", "", "(1,6)")
     def alpha(self) -> R | None:
         """The parameter alpha = F(amplitude, k') (1,6) after release from rest."""
         return self.eta_minus if self.facts.at_rest else None

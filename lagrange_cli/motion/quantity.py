@@ -1,18 +1,30 @@
 """A quantity of a motion: a formula that is evaluated when it is asked for, and only once."""
 
-from __future__ import annotations
+# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
 
 from collections.abc import Callable
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 V = TypeVar("V")
+
+
+class Key(NamedTuple):
+    """How a key of the record is shown; the unit `angle` stands for degrees or radians."""
+
+    group: str
+    symbol: str
+    meaning: str
+    unit: str = ""
+    equation: str = ""
+    cancels: bool = False
+    """A difference of numbers that may be as good as equal: only a proved zero is 0."""
 
 
 class quantity(Generic[V]):
     """A lazy attribute whose formula runs within the precision of the arithmetic of its object."""
 
-    def __init__(self, formula: Callable[[Any], V]) -> None:
-        self.formula = formula
+    def __init__(self, formula: Callable[[Any], V], key: Key | None = None) -> None:
+        self.formula, self.key = formula, key
         self.__doc__ = formula.__doc__
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -24,3 +36,31 @@ class quantity(Generic[V]):
             value = self.formula(motion)
         vars(motion)[self.name] = value
         return value
+
+
+def key(
+    group: str,
+    symbol: str,
+    meaning: str,
+    unit: str = "",
+    equation: str = "",
+    *,
+    cancels: bool = False,
+) -> Callable[[Callable[[Any], V]], quantity[V]]:
+    """Make a method a quantity that is a key of the record; see `Key` for what is shown."""
+    shown = Key(group, symbol, meaning, unit, equation, cancels)
+
+    def decorate(formula: Callable[[Any], V]) -> quantity[V]:
+        return quantity(formula, shown)
+
+    return decorate
+
+
+def keys_of(owner: type) -> dict[str, Key]:
+    """Return the keys of the record that a class computes, base classes first."""
+    return {
+        name: attribute.key
+        for base in reversed(owner.__mro__)
+        for name, attribute in vars(base).items()
+        if isinstance(attribute, quantity) and attribute.key is not None
+    }

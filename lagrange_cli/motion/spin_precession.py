@@ -13,7 +13,7 @@ from __future__ import annotations
 from ..arithmetic.protocol import Arithmetic, R, absolute
 from ..elliptic import period_mean
 from .nutation import Nutation
-from .quantity import quantity
+from .quantity import key, quantity
 
 
 class SpinPrecession(Nutation[R]):
@@ -64,7 +64,7 @@ class SpinPrecession(Nutation[R]):
         mean = period_mean(self.ar, self.k_prime, mc * from_u2 / from_u1, at_u1, mc * at_u2)
         return mean / from_u1 / 2
 
-    @quantity
+    @key("Mean rates", "φ' mean", "spin", "rad/time", "(6,3)", cancels=True)
     def mean_spin_rate(self) -> R:
         """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation."""
         if self.facts.at_rest:
@@ -74,32 +74,49 @@ class SpinPrecession(Nutation[R]):
             return self.state.pole_drift + self._south - self._north
         return self.r0 + self._whole_south - self._whole_north
 
-    @quantity
+    @key("Mean rates", "ψ' mean", "precession", "rad/time", "(7,3)", cancels=True)
     def mean_precession_rate(self) -> R:
         """The mean precession rate (7,3)."""
         if self.facts.free or self._meets_a_pole:
             return self._south + self._north
         return self._whole_south + self._whole_north
 
-    @quantity
+    @key("Periods", "Tφ", "of the mean spin", "time", "§8", cancels=True)
     def T_spin(self) -> R | None:
         """One turn at the mean spin rate (section 8)."""
         return period_of(self.ar, self.mean_spin_rate)
 
-    @quantity
+    @key("Periods", "Tψ", "of the mean precession", "time", "§8", cancels=True)
     def T_precession(self) -> R | None:
         """One turn at the mean precession rate (section 8)."""
         return period_of(self.ar, self.mean_precession_rate)
 
-    @quantity
+    @key("Rates", "φ'(0)", "spin", "rad/time", "(6,2)", cancels=True)
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
         return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
-    @quantity
+    @key("Rates", "φ'(T/2)", "spin", "rad/time", "(6,2)", cancels=True)
+    def spin_rate_half(self) -> R | None:
+        """The spin rate (4,8) half a period after the start; None over a pole."""
+        if self.precession_rate_half is None:
+            return None
+        below, above = self._half
+        return self.r0 - (below - above) / 2 * self.precession_rate_half
+
+    @key("Rates", "ψ'(0)", "precession", "rad/time", "(4,7)")
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
+
+    @key("Rates", "ψ'(T/2)", "precession", "rad/time", "(4,7)", cancels=True)
+    def precession_rate_half(self) -> R | None:
+        """The precession rate (4,7) half a period after the start; None over a pole."""
+        if self._half_over_pole:
+            return None
+        from_u2 = self.gaps.u1_u * (self.gaps.a_u3_u2 / self.gaps.a_u3_u)
+        momentum = self.gaps.momentum_u2 - self.b * from_u2
+        return momentum / self._half[0] / self._half[1]
 
     @property
     def _half_over_pole(self) -> bool:
@@ -115,23 +132,6 @@ class SpinPrecession(Nutation[R]):
         below = gaps.below_u2 + gaps.u1_u * (gaps.a_u3_u2 / gaps.a_u3_u)
         above = gaps.above_u1 + gaps.u_u2 * (gaps.a_u3_u1 / gaps.a_u3_u)
         return below, above
-
-    @quantity
-    def precession_rate_half(self) -> R | None:
-        """The precession rate (4,7) half a period after the start; None over a pole."""
-        if self._half_over_pole:
-            return None
-        from_u2 = self.gaps.u1_u * (self.gaps.a_u3_u2 / self.gaps.a_u3_u)
-        momentum = self.gaps.momentum_u2 - self.b * from_u2
-        return momentum / self._half[0] / self._half[1]
-
-    @quantity
-    def spin_rate_half(self) -> R | None:
-        """The spin rate (4,8) half a period after the start; None over a pole."""
-        if self.precession_rate_half is None:
-            return None
-        below, above = self._half
-        return self.r0 - (below - above) / 2 * self.precession_rate_half
 
     @property
     def path(self) -> str | None:

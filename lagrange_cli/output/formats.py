@@ -8,7 +8,7 @@ doubles only.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from io import BytesIO
 from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
@@ -19,6 +19,7 @@ from .terminal import View
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .findings import Findings
+    from .layouts import Layout
 
 QUOTE = '"'
 _SPECIAL = {QUOTE, ",", "\n", "\r"}
@@ -49,8 +50,8 @@ class Format:
         """Return rows of numbers that are written out already."""
         raise NotImplementedError
 
-    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
-        """Return one record of a kind, `top`, `jacobi` or `eta`."""
+    def record(self, record: Mapping[str, Any], layout: Callable[[], Layout], view: View) -> bytes:
+        """Return one record; `layout` gives its groups to the format that needs them."""
         raise NotImplementedError
 
     def findings(self, findings: Findings, view: View) -> bytes:
@@ -119,7 +120,7 @@ class Csv(Format):
         """Return a line per row."""
         return "".join(",".join(row) + "\n" for row in rows).encode()
 
-    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+    def record(self, record: Mapping[str, Any], layout: Callable[[], Layout], view: View) -> bytes:
         """Return a header and one line."""
         cells = ",".join(map(value_text, record.values()))
         return f"{','.join(record)}\n{cells}\n".encode()
@@ -161,7 +162,7 @@ class Json(Format):
         members = (zip(names, (x or "null" for x in row), strict=True) for row in rows)
         return b",\n".join(map(_object, members))
 
-    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+    def record(self, record: Mapping[str, Any], layout: Callable[[], Layout], view: View) -> bytes:
         """Return one object on one line."""
         return _object((key, _json_value(value)) for key, value in record.items()) + b"\n"
 
@@ -199,11 +200,11 @@ class DrawnTable(Format):
 
     name = "table"
 
-    def record(self, record: Mapping[str, Any], kind: str, view: View) -> bytes:
+    def record(self, record: Mapping[str, Any], layout: Callable[[], Layout], view: View) -> bytes:
         """Return a line per key, in groups."""
         from .rich_tables import record_table
 
-        return record_table(record, kind, view)
+        return record_table(record, layout(), view)
 
     def findings(self, findings: Findings, view: View) -> bytes:
         """Return conditions, rows and conclusions."""

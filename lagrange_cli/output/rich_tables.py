@@ -18,7 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..arithmetic.text import value_text
-from .layouts import LAYOUTS, Line
+from .layouts import Layout, Line
 
 if TYPE_CHECKING:
     from .findings import Findings
@@ -53,12 +53,12 @@ class Column(NamedTuple):
         return self._replace(cells=["\n".join(_chunks(cell, width)) for cell in self.cells])
 
 
-def record_table(record: Mapping[str, Any], kind: str, view: View) -> bytes:
-    """Return a record by the groups of its kind, a line per key with a value, its remark last."""
+def record_table(record: Mapping[str, Any], layout: Layout, view: View) -> bytes:
+    """Return a record by the groups of its layout, a line per key with a value, its remark last."""
     angle = "rad" if any(key.endswith("_rad") for key in record) else "deg"
     groups = {
         name: [cells for line in lines if (cells := _cells(record, line, angle, view))]
-        for name, lines in LAYOUTS[kind].items()
+        for name, lines in layout.items()
     }
     groups = {name: lines for name, lines in groups.items() if lines}
     text = _drawn(_record(groups), view)

@@ -16,6 +16,7 @@ from .terminal import view_of
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .findings import Findings
+    from .layouts import Layout
 
 MAX_TABLE_ROWS = 10_000
 """The most rows that are drawn: more of them are neither read nor quickly made."""
@@ -33,9 +34,11 @@ def write_bytes(path: str, make: Callable[[], bytes]) -> None:
         stream.write(make())
 
 
-def write_record(record: Mapping[str, Any], fmt: str, path: str, kind: str = "top") -> None:
-    """Write one record of a kind (`top`, `jacobi` or `eta`) as `table`, `csv` or `json`."""
-    text = FORMATS[fmt].record(record, kind, view_of(path))
+def write_record(
+    record: Mapping[str, Any], fmt: str, path: str, layout: Callable[[], Layout]
+) -> None:
+    """Write one record as a `table` of this layout, `csv` or `json`."""
+    text = FORMATS[fmt].record(record, layout, view_of(path))
     with opened(path) as stream:
         stream.write(text)
 

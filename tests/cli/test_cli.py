@@ -15,8 +15,8 @@ from conftest import ROOT, Lagtop
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, errors, solve, sweep
+from lagrange_cli.cli.options import top_layout
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.output.layouts import LAYOUTS
 
 Solved = Callable[..., dict[str, Any]]
 KEYS = """
@@ -62,13 +62,13 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
     assert {str(value) for value in solved().values() if value is not None} <= words
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
-    order = [shown.index(group) for group in LAYOUTS["top"]]
+    order = [shown.index(group) for group in top_layout()]
     assert order == sorted(order)
 
 
 def test_table_explains_every_key() -> None:
     angles = {"theta0", "modular_angle", "amplitude", "theta_min", "theta_max"}
-    keys = [row.key for group in LAYOUTS["top"].values() for row in group]
+    keys = [row.key for group in top_layout().values() for row in group]
     shown = [f"{key}_deg" if key in angles else key for key in keys]
     assert sorted([*shown, "remark"]) == sorted(KEYS)
 

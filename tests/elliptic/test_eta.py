@@ -11,7 +11,6 @@ import pytest
 from conftest import Lagtop
 from hypothesis import given
 from hypothesis import strategies as st
-from lagrange_cli.motion.released import released_record
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.generic import many_digits
@@ -103,21 +102,14 @@ def test_eta(name: str) -> None:
             assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
 
 
-def rational(value: Any) -> Fraction:
-    """Return a many-digit number as the fraction it is."""
-    sign, digits, exponent, _ = value._mpf_
-    size: Fraction = int(digits) * Fraction(2) ** exponent
-    return -size if sign else size
-
-
 def test_the_top_is_the_cubic_case() -> None:
     """u(t) another way: the roots put into the satellite's routine.  Half a period is c3."""
-    exact = released_record(many_digits(50), Top())
-    u1, u2, u3 = map(rational, exact[4:7])
-    of = Quadrature(u2, u1, (u3,), rational(exact.a))
+    kind = solve(Top()).kind(50)
+    u1, u2, u3 = (Fraction(x) for x in (kind.u1, kind.u2, kind.u3))
+    of = Quadrature(u2, u1, (u3,), Fraction(kind.a))
     times = np.linspace(-3, 400, 1001)
     block = next(
-        rows(of, ListedPoints([Fraction(t) for t in times]), rational(exact.T_nutation) / 2)[1]
+        rows(of, ListedPoints([Fraction(t) for t in times]), Fraction(kind.T_nutation) / 2)[1]
     )
     assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
     assert float(eta_constants(many_digits(50), of).period) == solve(Top()).T_nutation
