@@ -102,9 +102,16 @@ def test_eta(name: str) -> None:
             assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
 
 
+def rational(value: Any) -> Fraction:
+    """Return a many-digit number as the fraction it is."""
+    sign, digits, exponent, _ = value._mpf_
+    size: Fraction = int(digits) * Fraction(2) ** exponent
+    return -size if sign else size
+
+
 def test_the_top_is_the_cubic_case() -> None:
     """u(t) another way: the roots put into the satellite's routine.  Half a period is c3."""
-    kind = solve(Top()).kind(50)
+    kind: Any = solve(Top()).kind(50)
     u1, u2, u3 = (Fraction(x) for x in (kind.u1, kind.u2, kind.u3))
     of = Quadrature(u2, u1, (u3,), Fraction(kind.a))
     times = np.linspace(-3, 400, 1001)
