@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property, partial
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 
 from lagrange_cli import Top
 from lagrange_cli.arithmetic.generic import many_digits
-from lagrange_cli.motion.digits import rows_in_digits
+from lagrange_cli.motion.digits import DigitTable, rows_in_digits
 from lagrange_cli.motion.solve import solve
 
 
@@ -41,6 +42,7 @@ class Motion:
         self.m, self.A, self.C, self.s, self.g, self.r0 = map(ar.mpf, inputs_in_order)
         self.mgs, self.sigma = self.m * self.g * self.s, ar.sign(self.r0)
         self._rows: dict[Fraction, tuple[Any, Any, Any]] = {}
+        self._table = DigitTable(solve(top), radians=True)
 
     @cached_property
     def numbers(self) -> dict[str, Any]:
@@ -71,22 +73,12 @@ class Motion:
         return ar.pi * self.alpha / self.K / 2
 
     def angles(self, t: Any) -> tuple[Any, Any, Any]:
-        """Return theta, phi, psi at a time, computed once together with its neighbours."""
-        if _fraction(t) not in self._rows:
-            self._compute([t])
-        return self._rows[_fraction(t)]
-
-    def prepare(self) -> None:
-        """Compute the angles at all the times that most equations need."""
-        if not self._rows:
-            self._compute(part * self.T for part in [*PARTS, *FAR, *TURNS])
-
-    def _compute(self, times: Iterable[Any]) -> None:
-        """Compute rows at many times and their neighbours: one by one they are much slower."""
-        exact = [_fraction(t + i * STEP) for t in times for i in range(-2, 3)]
-        for t, row in zip(exact, rows_of(self.top, exact, DIGITS, radians=True), strict=True):
-            theta, phi, psi = (ar.mpf(text) for text in row[1:])
-            self._rows[t] = theta, phi, psi
+        """Return theta, phi, psi at a time, computed once."""
+        exact = _fraction(t)
+        if exact not in self._rows:
+            theta, phi, psi = (ar.mpf(text) for text in self._table.row(exact, DIGITS)[1:])
+            self._rows[exact] = theta, phi, psi
+        return self._rows[exact]
 
     def rates(self, t: Any) -> list[Any]:
         """Return the slopes of theta, phi, psi."""
@@ -213,12 +205,11 @@ TURNS = [ar.mpf(i) / 4 for i in range(5)]
 def moments(*parts: Any) -> Iterator[tuple[Motion, Any]]:
     """Yield each top with times given in its periods."""
     for motion in MOTIONS:
-        motion.prepare()
         for part in parts or PARTS:
             yield motion, part * motion.T
 
 
-def spoil(patch: pytest.MonkeyPatch) -> None:
-    """Put tops in place whose record and angles are slightly wrong."""
-    for i, motion in enumerate(SPOILED):
-        patch.setitem(MOTIONS, i, motion)  # type: ignore[arg-type]
+def spoil(patch: pytest.MonkeyPatch, module: str) -> None:
+    """Put tops in place, here and in a module, whose record and angles are slightly wrong."""
+    for name in (__name__, module):
+        patch.setattr(sys.modules[name], "MOTIONS", SPOILED)

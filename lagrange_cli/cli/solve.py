@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from ..errors import AbsentError, LagtopError
+from ..motion.record import record_keys
 from ..output.write import write_record, write_value
 from .options import (
     MOST_RECORD_DIGITS,
@@ -54,14 +55,20 @@ def command(
     Every number is the double nearest to its exact value, or has --digits right digits.  JSON and
     CSV hold the same keys; what a regime does not have is null or empty.
     """
+    if key is not None:
+        exclude({"--get": key, "--format": fmt if given("fmt") else None})
+        names = record_keys(radians=rad)
+        if key not in names:
+            raise LagtopError(f"--get must be among {' '.join(names)}, got {key!r}")
+    keys = None if key is None else [key]
     motion = solved(scene, rad, digits is not None, options)
-    record = motion.digits(digits, radians=rad) if digits else motion.record(radians=rad)
+    if digits:
+        record = motion.digits(digits, radians=rad, keys=keys)
+    else:
+        record = motion.record(radians=rad, keys=keys)
     if key is None:
         write_record(record, fmt, output, top_layout)
         return
-    exclude({"--get": key, "--format": fmt if given("fmt") else None})
-    if key not in record:
-        raise LagtopError(f"--get must be among {' '.join(record)}, got {key!r}")
     if record[key] is None:
-        raise AbsentError(f"a top of the regime {record['regime']!r} has no {key}")
+        raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
     write_value(record[key], output)

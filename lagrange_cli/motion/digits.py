@@ -26,14 +26,14 @@ def rows_in_digits(
 
     Raises LagtopError where no precision tells an angle from 0.
     """
-    table = _Table(motion, radians, wrap)
+    table = DigitTable(motion, radians=radians, wrap=wrap)
     return [table.row(time, digits) for time in times]
 
 
-class _Table:
+class DigitTable:
     """Angles in digits; the attitude at each precision is made once."""
 
-    def __init__(self, motion: Motion, radians: bool, wrap: bool) -> None:
+    def __init__(self, motion: Motion, *, radians: bool = False, wrap: bool = False) -> None:
         self.motion, self.radians, self.wrap = motion, radians, wrap
         self.ready: dict[int, Callable[[Number], list[Decimal]]] = {}
 

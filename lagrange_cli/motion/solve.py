@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
 from functools import cached_property
@@ -103,18 +103,23 @@ class Motion:
         """Return the numbers of the record by key, angles in degrees."""
         return {name: getattr(self, name) for name in NUMBER_KEYS}
 
-    def record(self, *, radians: bool = False) -> dict[str, Any]:
+    def record(
+        self, *, radians: bool = False, keys: Collection[str] | None = None
+    ) -> dict[str, Any]:
         """Return inputs and results by key, in the order of the paper; `radians` for all angles.
 
-        Raises LagtopError where a number leaves the range of doubles.
+        `keys` asks for some of them only.  Raises LagtopError where one of these leaves the range
+        of doubles.
         """
-        return self._record(radians, self.top.inputs(radians=radians), self._double_in)
+        return self._record(radians, keys, self.top.inputs(radians=radians), self._double_in)
 
-    def digits(self, digits: int, *, radians: bool = False) -> dict[str, Any]:
+    def digits(
+        self, digits: int, *, radians: bool = False, keys: Collection[str] | None = None
+    ) -> dict[str, Any]:
         """Return the record with every number written out to so many significant digits.
 
-        The inputs count as decimals and stand as they were given.  Raises LagtopError where no
-        precision tells a number from 0.
+        `keys` asks for some of them only.  The inputs count as decimals and stand as they were
+        given.  Raises LagtopError where no precision tells a number from 0.
         """
 
         def number(name: str, radians: bool) -> NumberText | None:
@@ -128,19 +133,24 @@ class Motion:
                 name: text_of(x if isinstance(x, Decimal) else Fraction(x), digits)
                 for name, x in self.top.inputs(radians=radians, ar=ar).items()
             }
-        return self._record(radians, inputs, number)
+        return self._record(radians, keys, inputs, number)
 
     def _record(
         self,
         radians: bool,
+        keys: Collection[str] | None,
         inputs: Mapping[str, Any],
         number: Callable[[str, bool], Any],
     ) -> dict[str, Any]:
+        names = record_keys(radians=radians)
+        wanted = set(names if keys is None else keys)
         values = dict(inputs) | {"regime": self.regime.value}
         for name in NUMBER_KEYS:
-            values[unit_name(name, radians=radians)] = number(name, radians)
-        values |= {"path": self.path, "remark": self.remark}
-        return {name: values[name] for name in record_keys(radians=radians)}
+            shown = unit_name(name, radians=radians)
+            if shown in wanted:
+                values[shown] = number(name, radians)
+        values |= {name: getattr(self, name) for name in wanted & {"path", "remark"}}
+        return {name: values[name] for name in names if name in wanted}
 
     def _double_in(self, name: str, radians: bool) -> float | None:
         if not (radians and name.endswith("_deg")):

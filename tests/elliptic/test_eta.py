@@ -45,6 +45,7 @@ ORBITS = {
     "cubic, root below": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction("-0.4"),)),
     "equal outer roots": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction(2), Fraction(2))),
 }
+TOP_KEYS = ["a", "u1", "u2", "u3", "T_nutation"]
 PARTS = [1e-6, 0.21, 0.4999, 0.62, 3.3, -7.7]
 
 
@@ -111,13 +112,10 @@ def rational(value: Any) -> Fraction:
 
 def test_the_top_is_the_cubic_case() -> None:
     """u(t) another way: the roots put into the satellite's routine.  Half a period is c3."""
-    kind: Any = solve(Top()).kind(50)
-    u1, u2, u3 = (Fraction(x) for x in (kind.u1, kind.u2, kind.u3))
-    of = Quadrature(u2, u1, (u3,), Fraction(kind.a))
+    exact = {key: Fraction(x) for key, x in solve(Top()).digits(50, keys=TOP_KEYS).items()}
+    of = Quadrature(exact["u2"], exact["u1"], (exact["u3"],), exact["a"])
     times = np.linspace(-3, 400, 1001)
-    block = next(
-        rows(of, ListedPoints([Fraction(t) for t in times]), Fraction(kind.T_nutation) / 2)[1]
-    )
+    block = next(rows(of, ListedPoints([Fraction(t) for t in times]), exact["T_nutation"] / 2)[1])
     assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
     assert float(eta_constants(many_digits(50), of).period) == solve(Top()).T_nutation
 
@@ -218,3 +216,61 @@ def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
 def test_check_names_the_root() -> None:
     with pytest.raises(LagtopError, match="outer roots must lie outside"):
         record(Quadrature(Fraction(0), Fraction(1), (Fraction(1, 2),)))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "--delta -1.8182535735868077 --delta-star -1.8182538837638382 --p -0.00043 --q 1.7e308",
+        "--delta 1 --delta-star 0 --gap-above 1e200",
+        "--delta 1 --delta-star 0 --gap-below 1e-200",
+        "--delta 1 --delta-star 0 --gap-below 1 --g 1e300",
+    ],
+)
+def test_sizes_that_doubles_cannot_hold_are_refused(lagtop: Lagtop, line: str) -> None:
+    """No infinity is ever printed, JSON or not; with --digits there is no such bound."""
+    refused = lagtop("eta", *line.split(), "--format", "json")
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "must be from 1e-100 to 1e100 in size" in refused.stderr
+    digits = lagtop("eta", *line.split(), "--format", "json", "--digits", "5")
+    assert digits.exit_code == 0
+    assert "inf" not in digits.stdout
+
+
+@pytest.mark.parametrize(
+    ("quadrature", "zeros"),
+    [
+        (Quadrature(Fraction(-1), Fraction(1), (Fraction(-2), Fraction(2))), "p d gamma"),
+        (Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2))), "delta_star d"),
+        (Quadrature(Fraction(0), Fraction(1), (Fraction(2), Fraction(2))), "delta_star q k k1"),
+        (Quadrature(Fraction(1), Fraction(1), (Fraction(2),)), "k k1 s d"),
+        (Quadrature(Fraction(-1), Fraction(1), (Fraction(2),)), ""),
+        # m'^2 = 4 m''^2, so that m'' delta = m' delta*
+        (Quadrature(Fraction(1), Fraction(2), (Fraction(2, 3),)), "s"),
+        # m'^2 = 4 m''^2, so that m'' delta = -m' delta*
+        (Quadrature(Fraction(-1), Fraction(2), (Fraction(-2),)), "gamma"),
+    ],
+)
+def test_zeros_of_the_constants_are_exact(quadrature: Quadrature, zeros: str) -> None:
+    """A constant is printed as 0 just where it is 0, in doubles and in digits.
+
+    The judge is (3.2.3) and (3.2.12) in fractions, m' and m'' by their squares.
+    """
+    in_digits, in_doubles = record(quadrature, 20), record(quadrature)
+    assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())
+    assert {key for key, x in in_doubles.items() if x == 0} == set(zeros.split())
+
+
+def test_constants_that_nearly_vanish_have_their_digits() -> None:
+    """d = (m''^2 - m'^2)/(m' + m'')^2 with m'^2 = 1 + x and m''^2 = 1 exactly: about -x/4."""
+    x = Fraction("1e-80")
+    quadrature = Quadrature(Fraction(0), x, (Fraction(-1), 1 + 2 * x))
+    lower, upper, outer = quadrature.lower, quadrature.upper, quadrature.outer
+    square1 = abs((upper - outer[0]) * (upper - outer[1]))
+    square2 = abs((lower - outer[0]) * (lower - outer[1]))
+    with mpmath.workdps(200):
+        first, second, difference = (
+            mpmath.mpf(y.numerator) / y.denominator for y in (square1, square2, square2 - square1)
+        )
+        exact = difference / (mpmath.sqrt(first) + mpmath.sqrt(second)) ** 2
+        assert abs(mpmath.mpf(record(quadrature, 20)["d"]) / exact - 1) < 1e-19

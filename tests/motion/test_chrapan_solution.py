@@ -549,4 +549,4 @@ class TestChrapan(EquationTests):
 
     def spoil(self, patch: pytest.MonkeyPatch) -> None:
         """Put tops in place whose record and angles are wrong."""
-        spoil(patch)
+        spoil(patch, __name__)

@@ -1,0 +1,197 @@
+"""Numbers whose parts cancel: what is exactly 0 is 0, what is nearly 0 has all its digits.
+
+Values in comments and tables are worked out outside the program: exact fractions, published digits,
+or ball arithmetic (`ball_judge`).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from ball_judge import Judge
+from conftest import Lagtop
+from scenes import UNIT
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.motion.record import NUMBER_KEYS
+
+HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
+
+
+def assert_nearest(scene: dict[str, float]) -> None:
+    """Check that every key of a record is the double nearest to its value, and 0 where that is."""
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+    for key in NUMBER_KEYS:
+        computed = getattr(motion, key)
+        if computed is None:
+            assert judge.record.get(key) is None, key
+        else:
+            assert judge.ulps(key, computed) <= 0.5 + 1e-9, key
+
+
+# Doubles
+
+
+@pytest.mark.parametrize(
+    ("C", "r0"), [(1e-40, 1e40), (1e-45, 1e45), (1e-60, 1e60), (1e-80, 1e80), (1e-60, -1e60)]
+)
+def test_precession_of_a_tiny_body_that_spins_fast(C: float, r0: float) -> None:
+    """The same motion of the axis as with C = r0 = 1, since only b = C r0/A moves it."""
+    psi = math.degrees(
+        float(solve(Top(**UNIT | {"C": C, "r0": r0, "theta0_deg": 60})).angles(10)[2])
+    )
+    assert psi == pytest.approx(math.copysign(347.515112335317602, r0), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("scene", "key", "value"),
+    [
+        ({"r0": 0, "theta0_deg": 60}, "u_quarter", 0.0),
+        (UNIT | {"r0": 2, "theta0_deg": 60}, "u2", 0.0),
+        (UNIT | {"C": 0.5, "r0": -2, "theta0_deg": 60, "psidot0": -2}, "u2", 0.0),
+        ({"r0": 1e14, "theta0_deg": 90}, "u2", -1.5950259308558893963e-25),
+        ({"r0": 1e20, "theta0_deg": 90}, "u2", -1.5950259308558893963e-37),
+    ],
+)
+def test_keys_that_cancel(scene: dict[str, float], key: str, value: float) -> None:
+    assert getattr(solve(Top(**scene)), key) == value
+    assert_nearest(scene)
+
+
+@pytest.mark.parametrize("thetadot0", [1e20, 1e26, 1e28, 1e34, -1e28, 1e60])
+def test_mean_precession_of_a_top_that_whirls(thetadot0: float) -> None:
+    """The leading term is 1/thetadot0^2 here, and the next smaller by a factor of thetadot0^2."""
+    scene = UNIT | {"r0": 1, "theta0_deg": 60, "thetadot0": thetadot0}
+    assert solve(Top(**scene)).mean_precession_rate == float(1 / Fraction(thetadot0) ** 2)
+    assert_nearest(scene)
+
+
+@pytest.mark.parametrize("A", [3, 39032, 7, 0.1, 1.7])
+def test_a_pendulum_from_60_degrees_is_level_at_a_quarter_of_its_period(A: float) -> None:
+    scene = {"m": 1, "A": A, "C": 0.05, "s": 1, "g": 981, "r0": 0, "theta0_deg": 60}
+    assert solve(Top(**scene)).u_quarter == 0.0
+    assert solve(Top(**scene)).digits(16)["u_quarter"] == "0.0"
+
+
+@pytest.mark.parametrize(
+    ("inputs", "key", "value"),
+    [
+        # r0 - psidot0 cos 120 = 2^53 + 1, midway: the even neighbour
+        ({"r0": 2.0**53, "theta0_deg": 120, "psidot0": 2.0}, "spin_rate_start", 2.0**53),
+        ({"r0": 2.0**53 + 2, "theta0_deg": 120, "psidot0": 2.0}, "spin_rate_start", 2.0**53 + 4),
+        ({"r0": -(2.0**53), "theta0_deg": 60, "psidot0": 2.0}, "spin_rate_start", -(2.0**53)),
+        # 90 - theta0/2 midway between two doubles
+        ({"r0": 0, "theta0_deg": 53 + 2.0**-47}, "modular_angle_deg", 63.5),
+        ({"r0": 0, "theta0_deg": 53 + 3 * 2.0**-47}, "modular_angle_deg", 63.5 - 2.0**-46),
+        # without torque the mean spin after release from rest is r0 - b + b/2 + b/2
+        ({"g": 0, "r0": 3, "theta0_deg": 50}, "mean_spin_rate", 3.0),
+    ],
+)
+def test_ties_and_fractions_are_rounded_from_the_fraction(
+    inputs: dict[str, float], key: str, value: float
+) -> None:
+    assert getattr(solve(Top(**UNIT | inputs)), key) == value
+
+
+@pytest.mark.parametrize(
+    ("inputs", "key"),
+    [
+        ({"r0": 1, "theta0_deg": 60, "psidot0": 2}, "spin_rate_start"),
+        ({"r0": -1, "theta0_deg": 120, "psidot0": 2}, "spin_rate_start"),
+        ({"r0": 0, "theta0_deg": 90}, "u1"),
+        ({"r0": 2, "theta0_deg": 60}, "u2"),
+        ({"r0": 0, "theta0_deg": 60}, "u_quarter"),
+        ({"r0": 0, "theta0_deg": 90, "g": 0, "psidot0": 1, "thetadot0": 1}, "spin_rate_half"),
+        ({"r0": 1, "theta0_deg": 90, "g": 0, "thetadot0": 1}, "mean_precession_rate"),
+    ],
+)
+def test_exact_zeros_are_printed_as_zeros(inputs: dict[str, float], key: str) -> None:
+    scene = UNIT | inputs
+    assert getattr(solve(Top(**scene)), key) == 0
+    assert solve(Top(**scene)).digits(7)[key] == "0.0"
+    assert_nearest(scene)
+
+
+@pytest.mark.parametrize("thetadot0", [0.0, 0.5, 1.0, 2.4390005, -1.7, 2.5, -2.5, 4.0, 20.0])
+def test_record_and_angles_agree_over_the_pole(thetadot0: float) -> None:
+    """The axis passes exactly over the top, beta = b, where spin and precession leap half a turn.
+
+    The mean rates are what the angles grow by, turn for turn.
+    """
+    scene = UNIT | {"theta0_deg": 120, "psidot0": 1, "r0": 0.5, "thetadot0": thetadot0}
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+    T = motion.T_nutation
+    grown = motion.angles([1000 * T, -1000 * T])
+    for angle, key in ((grown.phi, "mean_spin_rate"), (grown.psi, "mean_precession_rate")):
+        rate = getattr(motion, key)
+        assert angle == pytest.approx([1000 * T * rate, -1000 * T * rate], rel=1e-9, abs=1e-6)
+        assert judge.ulps(key, rate) <= 0.5 + 1e-9
+
+
+# Any number of digits
+
+
+@pytest.mark.parametrize(
+    ("inputs", "digits", "key", "text"),
+    [
+        ({"r0": 1, "thetadot0": Fraction(10) ** 20}, 1, "mean_precession_rate", "1.0e-40"),
+        ({"r0": 1, "thetadot0": Fraction(10) ** 28}, 1, "mean_precession_rate", "1.0e-56"),
+        (
+            {"r0": 1, "thetadot0": Fraction(10) ** 28},
+            20,
+            "T_precession",
+            "6.2831853071795864769e+56",
+        ),
+        ({"psidot0": 1, "r0": HALF_AND_A_HAIR}, 5, "spin_rate_start", "1.0e-81"),
+        ({"psidot0": 1, "r0": HALF_AND_A_HAIR}, 60, "spin_rate_start", "1.0e-81"),
+        ({"psidot0": 1, "r0": Fraction(1, 2)}, 5, "spin_rate_start", "0.0"),
+    ],
+)
+def test_no_zero_is_false(inputs: dict[str, Any], digits: int, key: str, text: str) -> None:
+    motion = solve(Top(**UNIT | {"theta0_deg": 60} | inputs))
+    assert motion.digits(digits)[key] == text
+
+
+def test_no_zero_is_false_in_the_command(lagtop: Lagtop) -> None:
+    start = ["--theta0", "60", "--psidot0", "1", "--r0", f"0.5{'0' * 80}1"]
+    unit = [word for name in "mACsg" for word in (f"--{name}", "1")]
+    asked = ["--digits", "5", "--get", "spin_rate_start"]
+    assert lagtop("solve", *unit, *start, *asked).stdout == "1.0e-82\n"
+
+
+@pytest.mark.parametrize(
+    ("theta0_deg", "thetadot0", "most"),
+    [(1e-150, 5e-324, 364), (1e-150, 1e-200, 364), (1e-100, 0, 48), (1e-12, 1e-13, 48)],
+)
+def test_tiny_tilts_take_few_digits(
+    theta0_deg: float, thetadot0: float, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What an upright start costs is counted in digits, not in seconds."""
+    used = []
+    motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": theta0_deg, "thetadot0": thetadot0}))
+    kind = motion.kind
+
+    def counted(digits: int) -> Any:
+        used.append(digits)
+        return kind(digits)
+
+    monkeypatch.setattr(motion, "kind", counted)
+    assert motion.T_nutation is not None
+    assert max(used) <= most
+
+
+def test_a_number_out_of_range_spoils_only_itself() -> None:
+    motion = solve(Top(r0=2e-307, theta0_deg=30))
+    assert motion.T_nutation == solve(Top(r0=0, theta0_deg=30)).T_nutation
+    assert motion.u2 == -1
+    with pytest.raises(LagtopError, match=r"spin_rate_half must be within 1\.8e308 in size"):
+        _ = motion.spin_rate_half
+
+
+def test_a_number_out_of_range_does_not_spoil_what_is_asked_for(lagtop: Lagtop) -> None:
+    result = lagtop("solve", "--r0", "2e-307", "--theta0", "30", "--get", "T_nutation")
+    assert (result.exit_code, json.loads(result.stdout)) == (0, solve(Top(r0=0)).T_nutation)
