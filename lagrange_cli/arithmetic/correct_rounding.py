@@ -24,7 +24,23 @@ FIRST_DIGITS = 32
 _TIE = Decimal("1e-300")
 """Two values that differ by less, of their size, stay on both sides of a tie for ever."""
 _MOST_DIGITS = 2_000
-_WIDE = Context(prec=2 * _MOST_DIGITS, Emin=MIN_EMIN, Emax=MAX_EMAX, traps=[])
+
+
+def _context(digits: int) -> Context:
+    """Return a context that owes nothing to the one of the host program."""
+    return Context(
+        prec=digits,
+        rounding=ROUND_HALF_EVEN,
+        Emin=MIN_EMIN,
+        Emax=MAX_EMAX,
+        capitals=1,
+        clamp=0,
+        flags=[],
+        traps=[],
+    )
+
+
+_WIDE = _context(2 * _MOST_DIGITS)
 _PATIENCE = 2
 """Precisions to try before asking whether a number is known exactly."""
 
@@ -84,20 +100,20 @@ def correctly_rounded(
 
 def _rounded(value: Decimal, previous: Decimal, rounding: Callable[[Decimal], T]) -> T | None:
     wide = _WIDE
-    error = abs(wide.subtract(value, previous))
-    if error > wide.multiply(abs(value), Decimal("1e-3")):
+    error, size = wide.abs(wide.subtract(value, previous)), wide.abs(value)
+    if wide.compare(error, wide.multiply(size, Decimal("1e-3"))) > 0:
         return None
     low, high = rounding(wide.subtract(value, error)), rounding(wide.add(value, error))
     if low == high:
         return low
-    if error < wide.multiply(abs(value), _TIE):
-        return rounding(Context(prec=250).plus(value))
+    if wide.compare(error, wide.multiply(size, _TIE)) < 0:
+        return rounding(_context(250).plus(value))
     return None
 
 
 def text_of(value: Decimal | Fraction, digits: int) -> NumberText:
     """Return a number with so many significant digits, in full where its size is usual."""
-    context = Context(prec=digits, rounding=ROUND_HALF_EVEN)
+    context = _context(digits)
     if isinstance(value, Fraction):
         rounded = context.divide(Decimal(value.numerator), Decimal(value.denominator))
     else:

@@ -227,8 +227,9 @@ class Motion:
                 kind = self.kind(working)
             except (TooFewDigitsError, InvalidOperation, DivisionByZero):
                 continue
-            if previous is not None and agree(kind.gaps, previous.gaps, digits):
-                return kind
+            with kind.ar.working():
+                if previous is not None and agree(kind.gaps, previous.gaps, digits):
+                    return kind
             previous = kind
         raise LagtopError("the roots of the cubic cannot be told apart")
 

@@ -133,7 +133,7 @@ class SpinPrecession(Nutation[R]):
         above = gaps.above_u1 + gaps.u_u2 * (gaps.a_u3_u1 / gaps.a_u3_u)
         return below, above
 
-    @property
+    @quantity
     def path(self) -> str | None:
         """Path of the axis by where the precession stands still: at u1, within, or nowhere."""
         facts, gaps = self.facts, self.gaps
