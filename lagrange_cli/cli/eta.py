@@ -76,8 +76,12 @@ def command(
 ) -> None:
     """The oscillation of eta between delta* and delta, from its quadrature (Aksenov, 3.2).
 
-    Without --tau the constants; with it eta and its rate.  With one gap alone the other outer root
-    is at infinity, as for Lagrange's top.
+    (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2), the motion of a satellite
+    in latitude.
+
+    Without --tau the constants are written; with it eta and its rate.  The outer roots are given by
+    --p and --q, or by the gaps to them; with one gap alone the other outer root is at infinity, as
+    for Lagrange's top.
     """
     from ..elliptic.eta import digit_rows, record, rows
 

@@ -98,7 +98,24 @@ def _suggestion(word: str) -> str:
 def main(ctx: click.Context) -> None:
     """The Lagrange top, a heavy symmetric top with a fixed point, in closed form.
 
+    theta is the tilt, phi the spin and psi the precession; most books swap phi and psi.
+
     Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.
+
+    \b
+    Exit codes:
+      0   fine
+      1   tops with an error, a number that does not exist, a promise exceeded
+      2   bad usage or a bad value
+      65  a file that is read holds bad data
+      69  a cluster or a method is not available
+      74  the output cannot be written
+
+    \b
+    Completion, in ~/.bashrc (in ~/.zshrc with zsh_source):
+      eval "$(_LAGTOP_COMPLETE=bash_source lagtop)"
+    and for fish:
+      _LAGTOP_COMPLETE=fish_source lagtop > ~/.config/fish/completions/lagtop.fish
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

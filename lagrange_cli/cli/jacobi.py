@@ -52,11 +52,11 @@ MOST_TERMS = 10_000
 @click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
 @click.option("--u", "single", type=NUMBER, multiple=True, help="Argument; may be repeated.")
 @click.option("--u-range", "grid", type=RANGE, help="Arguments, as [log:]start:stop:count.")
-@click.option("--theta", is_flag=True, help="Theta functions of u, too.")
-@click.option("--zeta", is_flag=True, help="Zeta functions, too.")
-@click.option("--omega", is_flag=True, help="Omega functions of u and --param, too.")
-@click.option("--pi", is_flag=True, help="Pi functions of u and --param, too.")
-@click.option("--param", metavar="V|Vi", help="Their parameter, real or imaginary.")
+@click.option("--theta", is_flag=True, help="Theta functions of u too.")
+@click.option("--zeta", is_flag=True, help="Their logarithmic derivatives too.")
+@click.option("--omega", is_flag=True, help="Chrapan's Omega functions of u and --param too.")
+@click.option("--pi", is_flag=True, help="Chrapan's Pi functions of u and --param too.")
+@click.option("--param", metavar="V|Vi", help="Parameter of Omega and Pi, real or imaginary.")
 @click.option(
     "--series", "terms", type=COUNT, metavar="N", help="Partial sums of the nome series instead."
 )
@@ -83,10 +83,12 @@ def command(
 ) -> None:
     """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
 
-    Without --u the constants; with it am, sn, cn, dn of every u, and what else is asked for.  Each
-    is within 4 roundings of it, or of 1, and 4 roundings of u and of --param, for u and a real
-    --param within 2^50 periods and an imaginary one below K'; what is beyond is refused.  An empty
-    cell is a pole.
+    Without --u the constants of the modulus are written; with it am, sn, cn, dn of every u, and
+    what else is asked for.
+
+    Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param,
+    u and a real v less whole periods.  u and a real v go up to 2^50 periods, an imaginary v up to
+    K'; what is beyond is refused.  An empty cell is a pole.
     """
     from ..elliptic.function_table import Request
     from ..elliptic.modulus_input import ModulusInput, constants_record

@@ -102,15 +102,21 @@ def top_layout() -> dict[str, list[Line]]:
 
 
 def write_keys(formatter: click.HelpFormatter) -> None:
-    """Write the keys of the record of a top, by their groups."""
+    """Write the keys of the record of a top, by their groups, with symbol, name and equation."""
     for group, lines in top_layout().items():
         with formatter.section(f"Keys: {group}"):
             formatter.write_dl(
                 [
-                    (f"{line.key}_deg" if line.unit == "angle" else line.key, line.name)
+                    (f"{line.key}_deg" if line.unit == "angle" else line.key, _meaning(line))
                     for line in lines
                 ]
             )
+
+
+def _meaning(line: Line) -> str:
+    """Return the symbol of a key, where it is another word, its name and its equation."""
+    symbol = "" if line.symbol in {"", line.key} else f"{line.symbol}: "
+    return f"{symbol}{line.name} {line.equation}".rstrip()
 
 
 def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
@@ -199,7 +205,7 @@ _SCENE_OPTIONS = [
     ("--C", "Polar moment of inertia, at most 2A."),
     ("--s", "Distance from the pivot to the centre of mass."),
     ("--g", "Gravity."),
-    ("--r0", "Spin: angular velocity about the figure axis."),
+    ("--r0", "Total rate about the figure axis, phi' + psi' cos(theta)."),
     ("--theta0", "Tilt of the axis from the upward vertical, 0 to 180 degrees."),
     ("--thetadot0", "Nutation rate at the start."),
     ("--psidot0", "Precession rate at the start."),

@@ -68,10 +68,10 @@ def command(
 ) -> None:
     """Judge random scenes of every hard kind by a reference of 80 digits.
 
-    Every key of the record, the angles and the quaternion, at times next to half, quarter and whole
-    periods among others, up to 1e14 periods on both sides of the start.  The same scenes go through
-    scipy.special and DOP853.  Exits with 1 where an error exceeds what is promised: 4 units an
-    angle or a part of the quaternion, and the nearest double for a key.
+    Judged are every key of the record, which must be the nearest double, and the angles and the
+    quaternion, within 4 units, at times up to 1e14 periods on both sides of the start, some of them
+    next to half, quarter and whole periods.  The same scenes go through scipy.special and DOP853.
+    The exit code is 1 where a promise is exceeded.
     """
     exclude({"--samples": samples, "--thorough": thorough or None})
     if samples is not None and not 1 <= samples <= MOST_SAMPLES:

@@ -54,9 +54,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
 )
 @click.argument("files", nargs=-1, type=click.Path(), metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
 @input_options(Parsed("range", _parse_values))
-@click.option(
-    "--keys", type=NAMES, help="Compute and print only these keys of the record, with commas."
-)
+@click.option("--keys", type=NAMES, help="Compute and print only these keys, with commas between.")
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
 @click.option(
     "--shard", type=Parsed("I/N", _parse_shard), help="Only every N-th part, from the I-th on."
@@ -90,7 +88,7 @@ def command(
     """The record of `solve` for each top of a grid or of a file.
 
     An input is a number, a list 1,2,3 or a range [log:]start:stop:count.  The grid is the product
-    of all, the last option fastest.
+    of all; the last option varies fastest.
 
     A file is CSV with a header, or JSON lines, whose names are those of a record.  What a row lacks
     comes from the options and the scene; other columns are carried through.  A top that cannot be

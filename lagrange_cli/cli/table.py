@@ -34,9 +34,20 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 """Rows that are known to take longer than a moment."""
 
 
+class _ListingColumns(ExamplesFirst):
+    """A command whose help ends with the columns."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the names, which are imported only here."""
+        from ..motion.columns import COLUMNS
+
+        with formatter.section("Columns"):
+            formatter.write_dl([(name, column.meaning) for name, column in COLUMNS.items()])
+
+
 @click.command(
     "table",
-    cls=ExamplesFirst,
+    cls=_ListingColumns,
     examples="""
         lagtop table --t-max 1 > out.csv
         lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
@@ -55,13 +66,12 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
     "--times",
     type=click.Path(allow_dash=True),
     metavar="FILE|-",
-    help="Times from a file, one a line, instead of a grid.",
+    help="Times from a file, one per line, instead of a grid.",
 )
 @click.option(
     "--columns",
     type=NAMES,
-    help="Of t theta phi psi u thetadot phidot psidot p q r axis quaternion energy Lz, with commas "
-    "between.  [default: t,theta,phi,psi]",
+    help="Names of columns, with commas between; they stand below.  [default: t,theta,phi,psi]",
 )
 @click.option(
     "--tops",
@@ -88,10 +98,12 @@ def command(
     output: str,
     **options: Any,
 ) -> None:
-    """Tilt theta, spin phi and precession psi over time, and more with --columns.
+    """Tilt theta, spin phi and precession psi over time, or other --columns.
 
-    Right to a few roundings of the angle (or of 1 rad, if that is larger) at any time up to 2^50
-    nutation periods away.  Spin and precession count on from 0 at t = 0 unless --wrap.
+    Angles are within 4 units at times up to 2^50 nutation periods; a unit is 2^-52 times the angle,
+    or 1 rad if that is larger, and more where an angle sweeps round next to a pole.  Spin and
+    precession count on from 0 at t = 0 unless --wrap.  The times are t-min + i dt, each rounded
+    once.
     """
     from ..motion.table import DEFAULT_COLUMNS
 

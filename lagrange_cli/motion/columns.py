@@ -169,26 +169,41 @@ class Column(NamedTuple):
 
     headings: Sequence[str]
     """A `*` stands for the unit of angles."""
+    meaning: str
     compute: Callable[[Sample], Sequence[Array]]
     needs_rate: bool = False
 
 
 COLUMNS: dict[str, Column] = {
-    "t": Column(["t"], lambda s: [s.t]),
-    "theta": Column(["theta_*"], lambda s: [s.attitude.theta()]),
-    "phi": Column(["phi_*"], lambda s: [s.attitude.phi(wrap=s.wrap)]),
-    "psi": Column(["psi_*"], lambda s: [s.attitude.psi(wrap=s.wrap)]),
-    "u": Column(["u"], lambda s: [s.u]),
-    "thetadot": Column(["thetadot"], lambda s: [s.theta_rate], True),
-    "phidot": Column(["phidot"], lambda s: [s.phi_rate()]),
-    "psidot": Column(["psidot"], lambda s: [s.psi_rate()]),
-    "p": Column(["p"], lambda s: s.body_rates[:1], True),
-    "q": Column(["q"], lambda s: s.body_rates[1:], True),
-    "r": Column(["r"], lambda s: [np.full_like(s.t, s.constants.r0)]),
-    "axis": Column(["axis_x", "axis_y", "axis_z"], Sample.axis),
-    "quaternion": Column([f"quaternion_{part}" for part in "wxyz"], Sample.quaternion),
-    "energy": Column(["energy"], lambda s: [s.energy()], True),
-    "Lz": Column(["Lz"], lambda s: [s.vertical_momentum()]),
+    "t": Column(["t"], "time", lambda s: [s.t]),
+    "theta": Column(["theta_*"], "tilt", lambda s: [s.attitude.theta()]),
+    "phi": Column(["phi_*"], "spin", lambda s: [s.attitude.phi(wrap=s.wrap)]),
+    "psi": Column(["psi_*"], "precession", lambda s: [s.attitude.psi(wrap=s.wrap)]),
+    "u": Column(["u"], "cos(theta)", lambda s: [s.u]),
+    "thetadot": Column(["thetadot"], "rate of the tilt", lambda s: [s.theta_rate], True),
+    "phidot": Column(["phidot"], "rate of the spin", lambda s: [s.phi_rate()]),
+    "psidot": Column(["psidot"], "rate of the precession", lambda s: [s.psi_rate()]),
+    "p": Column(["p"], "angular velocity along body x", lambda s: s.body_rates[:1], True),
+    "q": Column(["q"], "angular velocity along body y", lambda s: s.body_rates[1:], True),
+    "r": Column(
+        ["r"],
+        "angular velocity along body z, the figure axis",
+        lambda s: [np.full_like(s.t, s.constants.r0)],
+    ),
+    "axis": Column(
+        ["axis_x", "axis_y", "axis_z"], "figure axis in space: axis_x, axis_y, axis_z", Sample.axis
+    ),
+    "quaternion": Column(
+        [f"quaternion_{part}" for part in "wxyz"],
+        "from body to space: quaternion_w, quaternion_x, ...",
+        Sample.quaternion,
+    ),
+    "energy": Column(["energy"], "energy; constant but for rounding", lambda s: [s.energy()], True),
+    "Lz": Column(
+        ["Lz"],
+        "vertical angular momentum; constant but for rounding",
+        lambda s: [s.vertical_momentum()],
+    ),
 }
 
 _SINGLE = {

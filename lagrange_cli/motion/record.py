@@ -11,7 +11,7 @@ _INPUTS = {
     "C": Key("Inputs", "C", "polar moment", "mass len²"),
     "s": Key("Inputs", "s", "pivot to mass centre", "len"),
     "g": Key("Inputs", "g", "gravity", "len/time²"),
-    "r0": Key("Inputs", "r0", "spin", "rad/time"),
+    "r0": Key("Inputs", "r0", "total spin rate", "rad/time"),
     "theta0_deg": Key("Inputs", "ϑ0", "tilt at the start", "angle"),
     "thetadot0": Key("Inputs", "ϑ'0", "nutation rate at start", "rad/time"),
     "psidot0": Key("Inputs", "ψ'0", "precession rate at start", "rad/time"),

@@ -91,12 +91,12 @@ class SpinPrecession(Nutation[R]):
         """One turn at the mean precession rate (section 8)."""
         return period_of(self.ar, self.mean_precession_rate)
 
-    @key("Rates", "φ'(0)", "spin", "rad/time", "(6,2)", cancels=True)
+    @key("Rates", "φ'(0)", "spin at the start", "rad/time", "(6,2)", cancels=True)
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
         return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
-    @key("Rates", "φ'(T/2)", "spin", "rad/time", "(6,2)", cancels=True)
+    @key("Rates", "φ'(T/2)", "spin at T/2", "rad/time", "(6,2)", cancels=True)
     def spin_rate_half(self) -> R | None:
         """The spin rate (4,8) half a period after the start; None over a pole."""
         if self.precession_rate_half is None:
@@ -104,12 +104,12 @@ class SpinPrecession(Nutation[R]):
         below, above = self._half
         return self.r0 - (below - above) / 2 * self.precession_rate_half
 
-    @key("Rates", "ψ'(0)", "precession", "rad/time", "(4,7)")
+    @key("Rates", "ψ'(0)", "precession at start", "rad/time", "(4,7)")
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
 
-    @key("Rates", "ψ'(T/2)", "precession", "rad/time", "(4,7)", cancels=True)
+    @key("Rates", "ψ'(T/2)", "precession at T/2", "rad/time", "(4,7)", cancels=True)
     def precession_rate_half(self) -> R | None:
         """The precession rate (4,7) half a period after the start; None over a pole."""
         if self._half_over_pole:
