@@ -100,8 +100,6 @@ def main(ctx: click.Context) -> None:
 
     theta is the tilt, phi the spin and psi the precession; most books swap phi and psi.
 
-    Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.
-
     \b
     Exit codes:
       0   fine
@@ -116,6 +114,8 @@ def main(ctx: click.Context) -> None:
       eval "$(_LAGTOP_COMPLETE=bash_source lagtop)"
     and for fish:
       _LAGTOP_COMPLETE=fish_source lagtop > ~/.config/fish/completions/lagtop.fish
+
+    Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
