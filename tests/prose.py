@@ -38,7 +38,7 @@ VERBS = frozenset(
 )
 """Imperatives that a function's docstring may begin with; further plain ones are welcome."""
 
-NOUN_DECORATORS = {"property", "cached_property", "setter"}
+NOUN_DECORATORS = {"property", "cached_property", "quantity", "key", "setter"}
 HELP_DECORATORS = {"command", "group"}
 
 

@@ -62,22 +62,26 @@ def _parse_range(text: str) -> Points:
 
 
 class ExamplesFirst(click.Command):
-    """A command whose help starts with its examples and may end with the keys of a record."""
+    """A command whose help starts with its examples and may end with keys or columns."""
 
     def __init__(
-        self, *args: Any, examples: str = "", shows_keys: bool = False, **kwargs: Any
+        self,
+        *args: Any,
+        examples: str = "",
+        shows: Callable[[click.HelpFormatter], None] | None = None,
+        **kwargs: Any,
     ) -> None:
         super().__init__(*args, **kwargs)
-        self.shows_keys = shows_keys
+        self.shows = shows
         self.examples = [line.strip() for line in examples.strip().splitlines()]
 
     def format_help(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the examples, what click writes, and the keys."""
+        """Write the examples, what click writes, and what the command `shows` below."""
         formatter.write("Examples:\n")
         formatter.write("".join(f"  {line}\n" for line in self.examples) + "\n")
         super().format_help(ctx, formatter)
-        if self.shows_keys:
-            write_keys(formatter)
+        if self.shows:
+            self.shows(formatter)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; an error about an argument names its option."""
@@ -117,6 +121,14 @@ def _meaning(line: Line) -> str:
     """Return the symbol of a key, where it is another word, its name and its equation."""
     symbol = "" if line.symbol in {"", line.key} else f"{line.symbol}: "
     return f"{symbol}{line.name} {line.equation}".rstrip()
+
+
+def write_columns(formatter: click.HelpFormatter) -> None:
+    """Write the columns of a table over time."""
+    from ..motion.columns import COLUMNS
+
+    with formatter.section("Columns"):
+        formatter.write_dl([(name, column.meaning) for name, column in COLUMNS.items()])
 
 
 def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:

@@ -19,13 +19,14 @@ from .options import (
     scene_options,
     solved,
     top_layout,
+    write_keys,
 )
 
 
 @click.command(
     "solve",
     cls=ExamplesFirst,
-    shows_keys=True,
+    shows=write_keys,
     examples="""
         lagtop solve --theta0 30
         lagtop solve sample_inputs/simo-wong-1991.toml --r0 40

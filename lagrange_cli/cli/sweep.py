@@ -17,6 +17,7 @@ from .options import (
     exclude,
     input_options,
     output_options,
+    write_keys,
 )
 from .progress import with_count, with_progress
 
@@ -41,7 +42,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
 @click.command(
     "sweep",
     cls=ExamplesFirst,
-    shows_keys=True,
+    shows=write_keys,
     examples="""
         lagtop sweep --r0 10:200:1000 --theta0 5,10,30 > tops.csv
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate

@@ -23,6 +23,7 @@ from .options import (
     output_options,
     scene_options,
     solved,
+    write_columns,
 )
 from .progress import with_count, with_progress
 
@@ -34,20 +35,10 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 """Rows that are known to take longer than a moment."""
 
 
-class _ListingColumns(ExamplesFirst):
-    """A command whose help ends with the columns."""
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the names, which are imported only here."""
-        from ..motion.columns import COLUMNS
-
-        with formatter.section("Columns"):
-            formatter.write_dl([(name, column.meaning) for name, column in COLUMNS.items()])
-
-
 @click.command(
     "table",
-    cls=_ListingColumns,
+    cls=ExamplesFirst,
+    shows=write_columns,
     examples="""
         lagtop table --t-max 1 > out.csv
         lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
@@ -71,7 +62,8 @@ class _ListingColumns(ExamplesFirst):
 @click.option(
     "--columns",
     type=NAMES,
-    help="Names of columns, with commas between; they stand below.  [default: t,theta,phi,psi]",
+    help="Names of columns, which stand below, with commas between; parts such as quaternion_w "
+    "are columns too.  [default: t,theta,phi,psi]",
 )
 @click.option(
     "--tops",

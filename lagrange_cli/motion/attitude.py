@@ -15,9 +15,9 @@ class Growth(NamedTuple):
     """How an angle grows with time, beside its series."""
 
     rate: Pair
-    """Its mean rate."""
+    """Mean rate of the angle."""
     turns: Triple
-    """Its mean rate in turns, good enough for the fraction of a turn after any time."""
+    """Mean rate in turns, good enough for the fraction of a turn after any time."""
     slope: float
     """What has to be added per step of the phase, since the series winds by itself."""
     start: float

@@ -1,208 +1,47 @@
-"""The columns of `lagtop table`: angles, rates, attitude and the conserved quantities.
-
-Each is computed from X and Y (see `angles`) when it is asked for: with N = |X|^2 + |Y|^2,
-1 + u = 2 |X|^2/N and 1 - u = 2 |Y|^2/N keep their digits next to the poles.  Equation numbers are
-Chrapan's.
-"""
+"""The columns of `lagtop table` by name: their headings, and the formula of `sample` for each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
+from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
-from ..arithmetic.types import Array
 from ..inputs.names import check_names
-from .samplers import Attitude
-from .solve import Motion
-
-
-class ColumnConstants(NamedTuple):
-    """What the columns need of a top, as doubles."""
-
-    A: float
-    C: float
-    torque: float
-    """mgs."""
-    r0: float
-    drift: float
-    """r0 - b."""
-    plus: float
-    """(beta + b)/2."""
-    minus: float
-    """(beta - b)/2."""
-    alpha: float
-    a: float
-    rises: int
-    """Sign of the nutation rate at the start."""
-
-
-def column_constants(motion: Motion) -> ColumnConstants:
-    """Return the constants of a motion, rounded from many digits."""
-    kind = motion.settled_kind(30)
-    state, gaps, top = kind.state, kind.gaps, motion.top
-    with kind.ar.working():
-        around = state.psi_rate * state.sin
-        energy = state.theta_rate * state.theta_rate + around * around
-        return ColumnConstants(
-            A=float(top.A),
-            C=float(top.C),
-            torque=float(state.a) * float(top.A) / 2,
-            r0=float(state.r0),
-            drift=float(state.pole_drift),
-            plus=float(gaps.beta_plus_b / 2),
-            minus=float(gaps.beta_minus_b / 2),
-            alpha=float(energy + state.a * state.cos),
-            a=float(state.a),
-            rises=-1 if state.theta_rate < 0 else 1,
-        )
-
-
-class Sample:
-    """The motion at a block of times; a quantity is computed once, and only when asked for."""
-
-    def __init__(
-        self, t: Array, attitude: Attitude, constants: ColumnConstants, wrap: bool
-    ) -> None:
-        self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
-        self.x, self.y = attitude.spinor.x, attitude.spinor.y
-        self._groups: dict[str, Sequence[Array]] = {}
-
-    def group(self, name: str) -> Sequence[Array]:
-        """Return the columns of one entry of `COLUMNS`, computed once."""
-        if name not in self._groups:
-            self._groups[name] = COLUMNS[name].compute(self)
-        return self._groups[name]
-
-    @cached_property
-    def norm(self) -> Array:
-        """N."""
-        return self.x * self.x + self.y * self.y
-
-    @cached_property
-    def u(self) -> Array:
-        """cos(theta) (4,6)."""
-        return (self.x - self.y) * (self.x + self.y) / self.norm
-
-    @cached_property
-    def sine(self) -> Array:
-        """sin(theta)."""
-        return 2.0 * self.x * self.y / self.norm
-
-    @cached_property
-    def poles(self) -> tuple[Array, Array]:
-        """(beta + b)/2/(1 + u) and (beta - b)/2/(1 - u), the two parts of the precession rate."""
-        return (
-            _over(self.constants.plus * self.norm, 2.0 * self.x * self.x),
-            _over(self.constants.minus * self.norm, 2.0 * self.y * self.y),
-        )
-
-    def phi_rate(self) -> Array:
-        """(4,8)."""
-        south, north = self.poles
-        return self.constants.drift + south - north
-
-    def psi_rate(self) -> Array:
-        """(4,7)."""
-        south, north = self.poles
-        return south + north
-
-    @cached_property
-    def theta_rate(self) -> Array:
-        """(5,3), with its sign; on a pole by the energy (4,2), with the sign of the start."""
-        product = 2.0 * self.norm * self.x * self.y
-        rate = self.attitude.spinor.rate
-        assert rate is not None
-        speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
-        speed *= self.constants.rises
-        return np.divide(rate, product, out=speed, where=product != 0.0)
-
-    @cached_property
-    def across(self) -> Array:
-        """psi' sin(theta), the angular velocity across the line of nodes (4,1)."""
-        south = _over(self.constants.plus * self.y, self.x)
-        return south + _over(self.constants.minus * self.x, self.y)
-
-    @cached_property
-    def body_rates(self) -> tuple[Array, Array]:
-        """p and q (4,1)."""
-        phi = self.attitude.phi(wrap=True)
-        sin, cos = np.sin(phi), np.cos(phi)
-        return (
-            self.across * sin + self.theta_rate * cos,
-            self.across * cos - self.theta_rate * sin,
-        )
-
-    def axis(self) -> list[Array]:
-        """The figure axis in space: x and y horizontal, the line of nodes along x at psi = 0."""
-        psi = self.attitude.psi(wrap=True)
-        return [self.sine * np.sin(psi), -self.sine * np.cos(psi), self.u]
-
-    def quaternion(self) -> list[Array]:
-        """w, x, y, z of the rotation from body to space: X = w + i z, Y = x + i y, normalised."""
-        arg_x, arg_y = self.attitude.args()
-        size = np.sqrt(self.norm)
-        x, y = self.x / size, self.y / size
-        return [x * np.cos(arg_x), y * np.cos(arg_y), y * np.sin(arg_y), x * np.sin(arg_x)]
-
-    def energy(self) -> Array:
-        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs cos(theta), constant (4,2)."""
-        c = self.constants
-        swing = self.theta_rate**2 + self.across**2
-        return 0.5 * c.A * swing + 0.5 * c.C * c.r0 * c.r0 + c.torque * self.u
-
-    def vertical_momentum(self) -> Array:
-        """A psi' sin^2 theta + C r0 cos(theta), constant (4,3)."""
-        c = self.constants
-        return c.A * self.across * self.sine + c.C * c.r0 * self.u
-
-
-def _over(value: Array, divisor: Array) -> Array:
-    """The quotient, and 0 where both vanish: a top that crosses a pole has no momentum about it."""
-    return np.divide(value, divisor, out=np.zeros_like(divisor), where=divisor != 0.0)
 
 
 class Column(NamedTuple):
-    """One or several columns by name: their headings and how to compute them."""
+    """One or several columns by name."""
 
     headings: Sequence[str]
     """A `*` stands for the unit of angles."""
+    method: str
+    """The method of `sample.Sample` that computes them."""
     meaning: str
-    compute: Callable[[Sample], Sequence[Array]]
     needs_rate: bool = False
 
 
 COLUMNS: dict[str, Column] = {
-    "t": Column(["t"], "time", lambda s: [s.t]),
-    "theta": Column(["theta_*"], "tilt", lambda s: [s.attitude.theta()]),
-    "phi": Column(["phi_*"], "spin", lambda s: [s.attitude.phi(wrap=s.wrap)]),
-    "psi": Column(["psi_*"], "precession", lambda s: [s.attitude.psi(wrap=s.wrap)]),
-    "u": Column(["u"], "cos(theta)", lambda s: [s.u]),
-    "thetadot": Column(["thetadot"], "rate of the tilt", lambda s: [s.theta_rate], True),
-    "phidot": Column(["phidot"], "rate of the spin", lambda s: [s.phi_rate()]),
-    "psidot": Column(["psidot"], "rate of the precession", lambda s: [s.psi_rate()]),
-    "p": Column(["p"], "angular velocity along body x", lambda s: s.body_rates[:1], True),
-    "q": Column(["q"], "angular velocity along body y", lambda s: s.body_rates[1:], True),
-    "r": Column(
-        ["r"],
-        "angular velocity along body z, the figure axis",
-        lambda s: [np.full_like(s.t, s.constants.r0)],
-    ),
+    "t": Column(["t"], "times", "time"),
+    "theta": Column(["theta_*"], "theta", "tilt"),
+    "phi": Column(["phi_*"], "phi", "spin"),
+    "psi": Column(["psi_*"], "psi", "precession"),
+    "u": Column(["u"], "cosine", "cos(theta)"),
+    "thetadot": Column(["thetadot"], "nutation_rate", "nutation rate", True),
+    "phidot": Column(["phidot"], "phi_rate", "spin rate"),
+    "psidot": Column(["psidot"], "psi_rate", "precession rate"),
+    "p": Column(["p"], "p", "angular velocity about the body's x axis", True),
+    "q": Column(["q"], "q", "angular velocity about the body's y axis", True),
+    "r": Column(["r"], "r", "angular velocity about the figure axis"),
     "axis": Column(
-        ["axis_x", "axis_y", "axis_z"], "figure axis in space: axis_x, axis_y, axis_z", Sample.axis
+        ["axis_x", "axis_y", "axis_z"], "axis", "figure axis in space: axis_x, axis_y, axis_z"
     ),
     "quaternion": Column(
-        [f"quaternion_{part}" for part in "wxyz"],
-        "from body to space: quaternion_w, quaternion_x, ...",
-        Sample.quaternion,
+        ["quaternion_w", "quaternion_x", "quaternion_y", "quaternion_z"],
+        "quaternion",
+        "from body to space, scalar first: quaternion_w, quaternion_x, ...",
     ),
-    "energy": Column(["energy"], "energy; constant but for rounding", lambda s: [s.energy()], True),
+    "energy": Column(["energy"], "energy", "energy; constant but for rounding", True),
     "Lz": Column(
-        ["Lz"],
-        "vertical angular momentum; constant but for rounding",
-        lambda s: [s.vertical_momentum()],
+        ["Lz"], "vertical_momentum", "vertical angular momentum; constant but for rounding"
     ),
 }
 
@@ -223,10 +62,6 @@ class Chosen(NamedTuple):
     heading: str
     group: str
     part: int
-
-    def compute(self, sample: Sample) -> Array:
-        """Return the column; a group is computed once per sample."""
-        return sample.group(self.group)[self.part]
 
 
 def chosen_columns(names: Sequence[str]) -> list[Chosen]:
@@ -249,13 +84,3 @@ def chosen_columns(names: Sequence[str]) -> list[Chosen]:
 def need_rate(chosen: Sequence[Chosen]) -> bool:
     """Return whether one of the columns needs the nutation rate."""
     return any(COLUMNS[column.group].needs_rate for column in chosen)
-
-
-def samples(
-    motion: Motion, t: Array, chosen: Sequence[Chosen], *, wrap: bool
-) -> Iterator[tuple[slice, Sample]]:
-    """Yield the motion at the times t, a block at a time, with what some columns need."""
-    sampler, constants = motion.sampler(), column_constants(motion)
-    sampler.check(t)
-    for part, attitude in sampler.attitudes(t, rate=need_rate(chosen)):
-        yield part, Sample(t[part], attitude, constants, wrap)

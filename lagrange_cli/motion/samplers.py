@@ -67,21 +67,21 @@ class Attitude:
     spinor: Spinor
 
     def theta(self) -> Array:
-        """Tilt."""
+        """Return the tilt."""
         theta: Array = np.arctan2(self.spinor.y, self.spinor.x)
         theta *= 2.0
         return theta
 
     def phi(self, *, wrap: bool = False) -> Array:
-        """Spin = arg X - arg Y."""
+        """Return the spin, arg X - arg Y."""
         return self._angle(self.growths.phi, self.spinor.arg_x - self.spinor.arg_y, wrap)
 
     def psi(self, *, wrap: bool = False) -> Array:
-        """Precession = arg X + arg Y."""
+        """Return the precession, arg X + arg Y."""
         return self._angle(self.growths.psi, self.spinor.arg_x + self.spinor.arg_y, wrap)
 
     def args(self) -> tuple[Array, Array]:
-        """(psi + phi)/2 and (psi - phi)/2, each in (-pi, pi]."""
+        """Return (psi + phi)/2 and (psi - phi)/2, each in (-pi, pi]."""
         return (
             self._angle(self.growths.arg_x, self.spinor.arg_x.copy(), True),
             self._angle(self.growths.arg_y, self.spinor.arg_y.copy(), True),
@@ -101,7 +101,7 @@ class Sampler:
     max_time: float
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
-        """See `Motion.angles`."""
+        """Return tilt, spin and precession at the times t; see `Motion.angles`."""
         times = times_of(t)
         self.check(times)
         flat = np.ascontiguousarray(times).reshape(-1)
@@ -113,12 +113,12 @@ class Sampler:
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
     def attitudes(self, t: Array, *, rate: bool = False) -> Iterator[tuple[slice, Attitude]]:
-        """The attitude block by block; with the nutation rate where `rate` asks for it."""
+        """Yield the attitude block by block, with the nutation rate where `rate` asks for it."""
         for part in blocks(t.size):
             yield part, self.attitude(t[part], rate)
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
-        """The attitude at a block of times."""
+        """Return the attitude at a block of times."""
         raise NotImplementedError
 
     def check(self, t: ArrayLike) -> None:
@@ -148,7 +148,7 @@ class ThetaSampler(Sampler):
     growths: Growths
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
-        """See `Sampler.attitude`."""
+        """Return the attitude at a block of times, by the series about the nearer turning point."""
         step, since = reduce_phase(t, self.steps_per_time, self.offset)
         argument = (since + self.offset if self.offset else since) * self.scale
         spinor = self._spinor_by_parity(step, argument, rate)
@@ -184,7 +184,7 @@ class ConstantSampler(Sampler):
     max_time: float
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
-        """A step is a unit of time, and there is no phase."""
+        """Return the attitude at a block of times: there is no phase."""
         zero = np.zeros_like(t)
         x, y = np.full_like(t, self.x), np.full_like(t, self.y)
         return Attitude(self.growths, t, zero, Spinor(x, y, zero, zero, zero if rate else None))
@@ -205,7 +205,7 @@ class SeparatrixSampler(Sampler):
     max_time: float
 
     def attitude(self, t: Array, rate: bool) -> Attitude:
-        """1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
+        """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
         h = t * self.speed + self.offset
         shrink = np.exp(-np.abs(h))
         sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
@@ -230,7 +230,7 @@ def times_of(t: ArrayLike) -> Array:
 
 
 def _circular(x: Array) -> tuple[Array, None, Array]:
-    """S, C and s for angles; X and Y share the factor cos x, which is divided out."""
+    """Return S, C and s of angles; X and Y share the factor cos x, which is divided out."""
     tangent = np.tan(x)
     square = tangent * tangent
     square /= square + 1.0
@@ -244,7 +244,7 @@ def _hyperbolic(x: Array) -> tuple[Array, Array, Array]:
 
 
 def _component(component: Component, S: Array, C: Array | None, s: Array) -> tuple[Array, Array]:
-    """Real and imaginary part."""
+    """Return real and imaginary part of X or Y."""
     real, imag = polynomial(component.real, s), polynomial(component.imag, s)
     imag *= S
     if C is not None:
@@ -261,7 +261,7 @@ def _rate(coefficients: Polynomial, S: Array, C: Array | None, s: Array) -> Arra
 
 
 def _polar(real: Array, imag: Array) -> tuple[Array, Array]:
-    """Modulus and argument."""
+    """Return modulus and argument."""
     square = real * real
     square += imag * imag
     modulus: Array = np.sqrt(square, out=square)

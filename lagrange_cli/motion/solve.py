@@ -236,6 +236,15 @@ class Motion:
     def __repr__(self) -> str:
         return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
 
+    def _repr_html_(self) -> str:
+        """Return the record as a table for a notebook."""
+        rows = "".join(
+            f"<tr><th>{name}</th><td>{value}</td></tr>"
+            for name, value in self.record().items()
+            if value is not None
+        )
+        return f"<table>{rows}</table>"
+
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Return tilt, spin and precession (radians) at the times t, in the shape of t.
 

@@ -69,7 +69,8 @@ def rows(
     """
     import numpy as np
 
-    from .columns import chosen_columns, samples
+    from .columns import chosen_columns
+    from .sample import samples
 
     chosen, header = chosen_columns(columns), headings(columns, radians=radians)
     motion.sampler().check(times.bounds())  # none where times are read as they are needed
@@ -77,7 +78,7 @@ def rows(
     def blocks() -> Iterator[Array]:
         for t in times.blocks():
             for _, sample in samples(motion, t, chosen, wrap=wrap):
-                block = np.stack([column.compute(sample) for column in chosen], axis=1)
+                block = np.stack([sample.column(column) for column in chosen], axis=1)
                 for i, heading in enumerate(header):
                     if heading.endswith("_deg"):
                         np.degrees(block[:, i], out=block[:, i])
@@ -100,7 +101,8 @@ def table(
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
     import numpy as np
 
-    from .columns import chosen_columns, samples
+    from .columns import chosen_columns
+    from .sample import samples
     from .samplers import times_of
 
     chosen, times = chosen_columns(columns), times_of(t)
@@ -109,7 +111,7 @@ def table(
     found = {column.name: np.empty_like(flat) for column in chosen}
     for part, sample in samples(motion, flat, chosen, wrap=wrap):
         for column in chosen:
-            found[column.name][part] = column.compute(sample)
+            found[column.name][part] = sample.column(column)
     return {name: values.reshape(times.shape) for name, values in found.items()}
 
 

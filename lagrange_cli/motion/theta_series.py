@@ -93,7 +93,7 @@ class Series(NamedTuple):
 
 
 def theta_series(ar: Arithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
-    """Series in the smaller nome."""
+    """Return the series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and c.quarter > c.quarter_prime
     return (_hyperbolic_series if hyperbolic else _circular_series)(ar, c, terms)
 
@@ -136,14 +136,14 @@ def _hyperbolic_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
 
 
 def _frames(x: Components, y: Components, rate: Polynomial) -> list[Frame]:
-    """About u1 and about u2: half a period turns theta2 into theta1 and theta1 into theta2."""
+    """Return the series about u1 and u2: half a period turns theta2 into theta1 and back."""
     return [Frame(x[0], y[1], rate), Frame(x[1], y[0], [-coefficient for coefficient in rate])]
 
 
 def _circular_components(
     ar: Arithmetic, weights: list[Real], y: Real, size: Real, sign: int
 ) -> Components:
-    """theta2(x - i sign y) and theta1(x - i sign y), turned so that each is real at x = 0."""
+    """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0."""
     cosh = [w * ar.cosh((2 * n + 1) * y) for n, w in enumerate(weights)]
     sinh = [w * ar.sinh((2 * n + 1) * y) for n, w in enumerate(weights)]
     unit = size / sum(cosh)
@@ -157,7 +157,7 @@ def _circular_components(
 
 
 def _weights(q: Real, terms: int) -> list[Real]:
-    """q^(n(n+1)), the weights of theta1 and theta2 over 2 q^(1/4)."""
+    """Return q^(n(n+1)), the weights of theta1 and theta2 over 2 q^(1/4)."""
     return [_power(q, n * (n + 1)) for n in range(terms)]
 
 
@@ -169,7 +169,7 @@ def _power(q: Real, n: int) -> Real:
 def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
     ar: Arithmetic, even: list[Real], odd: list[Real], v: Real, sign: int, size: Real
 ) -> Components:
-    """The same two functions after Jacobi's transformation: theta4 and theta1 of v + i h."""
+    """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h."""
     cos_even = _alternate([w * ar.cos(2 * n * v) for n, w in enumerate(even)])
     sin_even = _alternate([w * ar.sin(2 * n * v) for n, w in enumerate(even)])
     cos_odd = _alternate([w * ar.cos((2 * n + 1) * v) for n, w in enumerate(odd)])
@@ -184,7 +184,7 @@ def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
 
 
 def _rate(weights: list[Real], curvature: int, nutation: Real) -> Polynomial:
-    """theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
+    """Return theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
     terms = [0 * nutation] * (2 * len(weights))
     terms[1::2] = _alternate(weights)
     unit = nutation / sum(2 * n * term for n, term in enumerate(terms))
@@ -198,7 +198,7 @@ def _alternate(terms: list[Real]) -> list[Real]:
 def _sum(
     family: tuple[list[int], list[int]], curvature: int, unit: Real, weights: list[Real]
 ) -> Polynomial:
-    """Weighted sum of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
+    """Return a weighted sum of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
     total: Polynomial = [0 * unit] * len(weights)
     power, following = family
     for weight in weights:
@@ -217,7 +217,7 @@ def _next(previous: list[int], current: list[int]) -> list[int]:
 def evaluate(
     ar: Arithmetic, series: Series, frame: Frame, phase: Real, rises: int
 ) -> tuple[Real, Real, Real, Real]:
-    """|X|, arg X, |Y| and arg Y about a turning point, in many digits.
+    """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
     On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
     that just before; on the lower pole, where X = 0, the other way round.

@@ -348,9 +348,8 @@ def test_help_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
         _, *sections = lagtop(command, "--help").stdout.split("\nKeys: ")
         keys = [line.split()[0] for text in sections for line in text.splitlines()[1:] if line]
         assert sorted(keys) == sorted(set(KEYS) - {"remark"})
-    _, shown = lagtop("table", "--help").stdout.split("\nColumns:\n")
-    lines = dict(line.split(maxsplit=1) for line in shown.splitlines())
-    assert lines == {name: column.meaning for name, column in COLUMNS.items()}
+    columns = lagtop("table", "--help").stdout.split("\nColumns:\n")[1]
+    assert [line.split()[0] for line in columns.splitlines()] == list(COLUMNS)
 
 
 def test_commands_and_options_that_are_nearly_right_are_suggested(lagtop: Lagtop) -> None:

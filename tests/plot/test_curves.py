@@ -178,4 +178,4 @@ def test_pictures_ask_a_motion_only_what_everybody_sees() -> None:
             continue
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("motion."):
-                assert node.module in {"motion.solve", "motion.record"}, path
+                assert node.module in {"motion.solve", "motion.record", "motion.regime"}, path
