@@ -100,7 +100,7 @@ def drawing() -> str:
         label(1.42 * node, "line of nodes", RED, "start"),
         label(middle(x, node, 0.68), "ψ", RED),
         label(middle(z, bz, 0.8), "ϑ", RED),
-        label(middle(node, bx, 0.66), "φ", RED),
+        label(middle(node, 0.3 * bx, 0.92), "φ", RED),
     ]
     style = 'font-family="DejaVu Sans, Arial, sans-serif" font-size="15"'
     lines = [
