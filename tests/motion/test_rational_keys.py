@@ -1,0 +1,72 @@
+"""Keys that are known as fractions, against the formulas in sixty digits."""
+
+from __future__ import annotations
+
+import random
+from decimal import Decimal
+from fractions import Fraction
+
+import pytest
+from fuzz_scenes import KINDS
+from scenes import UNIT
+
+from lagrange_cli import LagtopError, Motion, Top, solve
+from lagrange_cli.motion.rational_keys import rational_keys
+from lagrange_cli.motion.record import CANCELLING, NUMBER_KEYS
+
+SMALL = Decimal("1e-50")
+SCALE_KEYS = ("r0", "psidot0", "thetadot0")
+
+
+def values(motion: Motion) -> dict[str, Decimal]:
+    """Return the numbers of a motion in some seventy digits, without what it does not have."""
+    kind = motion.settled_kind(70)
+    names = [name for name in NUMBER_KEYS if name not in motion.kind_class.lacks]
+    computed = {name: getattr(kind, name) for name in names}
+    return {name: value for name, value in computed.items() if value is not None}
+
+
+@pytest.mark.parametrize("kind", ["nice numbers", "steady", "over a pole"])
+def test_fractions_are_what_the_formulas_give(kind: str) -> None:
+    """Each fraction is the number; what cancels to 0 in 50 digits is known to be 0."""
+    rng, told, zeros = random.Random(f"fractions of {kind}"), 0, 0
+    for _ in range(40):
+        scene = KINDS[kind](rng)
+        try:
+            motion = solve(Top(**scene))
+        except LagtopError:
+            continue
+        known = rational_keys(motion.exact)
+        size = 1 + max(abs(Decimal(scene.get(key, 0))) for key in SCALE_KEYS)
+        for key, value in values(motion).items():
+            if key in known:
+                fraction = Decimal(known[key].numerator) / Decimal(known[key].denominator)
+                assert abs(value - fraction) <= Decimal("1e-25") * (size + abs(value)), (key, scene)
+                told += 1
+                zeros += not known[key]
+            elif key in CANCELLING:
+                assert abs(value) > SMALL, (key, scene)
+    assert told > 100
+    assert zeros > 5
+
+
+LEVELS: list[tuple[dict[str, float | Fraction], str]] = [
+    ({"r0": 0, "theta0_deg": 60}, "u_quarter"),
+    ({"r0": 2, "theta0_deg": 60}, "u2"),
+    ({"r0": Fraction(1, 2), "theta0_deg": 90, "g": 0, "thetadot0": 1}, "precession_rate_start"),
+    ({"r0": 1, "theta0_deg": 60, "psidot0": 2}, "spin_rate_start"),
+    ({"r0": -1, "theta0_deg": 120, "psidot0": 2}, "spin_rate_start"),
+]
+
+
+@pytest.mark.parametrize(("inputs", "key"), LEVELS)
+def test_zeros_are_told_and_near_misses_are_not(
+    inputs: dict[str, float | Fraction], key: str
+) -> None:
+    """A spin that differs by 1e-100 is no zero any more, and its digits are there."""
+    assert rational_keys(solve(Top(**UNIT | inputs)).exact)[key] == 0
+    if key.startswith("precession"):
+        return
+    moved = solve(Top(**UNIT | inputs | {"r0": Fraction(inputs["r0"]) + Fraction("1e-100")}))
+    assert rational_keys(moved.exact).get(key) != 0
+    assert abs(Decimal(moved.digits(3)[key])) > 0
