@@ -18,7 +18,8 @@ import orjson
 from scipy import special
 
 from lagrange_cli import Top, solve
-from lagrange_cli.arithmetic.generic import BLOCK
+from lagrange_cli.arithmetic.arrays import ARRAYS
+from lagrange_cli.arithmetic.blocks import BLOCK
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.integrators import integrators
@@ -103,27 +104,27 @@ def functions(rng: np.random.Generator) -> None:
     unbalanced = np.exp(rng.normal(0, 2, (4, COUNT)))
     pairs: dict[str, tuple[Callable[[], object], Callable[[], object]]] = {
         "am, sn, cn, dn, one modulus": (
-            lambda: jacobi(np, u, modulus(np, m=0.58)),
+            lambda: jacobi(ARRAYS, u, modulus(ARRAYS, m=0.58)),
             lambda: special.ellipj(u, 0.58),
         ),
         "am, sn, cn, dn, a modulus each": (
-            lambda: jacobi(np, u, modulus(np, m=m)),
+            lambda: jacobi(ARRAYS, u, modulus(ARRAYS, m=m)),
             lambda: special.ellipj(u, m),
         ),
         "R_J of Legendre's third integral": (
-            lambda: carlson_rj(np, *legendre),
+            lambda: carlson_rj(ARRAYS, *legendre),
             lambda: special.elliprj(*legendre),
         ),
         "R_J, lognormal arguments": (
-            lambda: carlson_rj(np, *unbalanced),
+            lambda: carlson_rj(ARRAYS, *unbalanced),
             lambda: special.elliprj(*unbalanced),
         ),
         "R_D": (
-            lambda: carlson_rd(np, *unbalanced[:3]),
+            lambda: carlson_rd(ARRAYS, *unbalanced[:3]),
             lambda: special.elliprd(*unbalanced[:3]),
         ),
         "R_F": (
-            lambda: carlson_rf(np, *unbalanced[:3]),
+            lambda: carlson_rf(ARRAYS, *unbalanced[:3]),
             lambda: special.elliprf(*unbalanced[:3]),
         ),
     }

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from lagrange_cli import Top
-from lagrange_cli.arithmetic.generic import many_digits
+from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.motion.digits import DigitTable, rows_in_digits
 from lagrange_cli.motion.solve import solve
 
@@ -28,7 +28,7 @@ def rows_of(top: Top, times: Sequence[Any], digits: int, **options: bool) -> lis
 
 
 DIGITS = 150
-ar = many_digits(DIGITS + 10)
+ar = ManyDigits(DIGITS + 10)
 """Slopes over 1e-45 leave 100 of the digits, second slopes 60."""
 J, STEP = ar.mpc(0, 1), ar.mpf(10) ** -45
 

@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 
 import pytest
 
-from lagrange_cli.arithmetic.generic import many_digits
+from lagrange_cli.arithmetic.many_digits import ManyDigits
 
-ar = many_digits(60)
+ar = ManyDigits(60)
 """Arithmetic of the identities, apart from every other context."""
 
 Sides = Iterator[tuple[Any, Any]]

@@ -1,4 +1,8 @@
-"""Arithmetics of arrays: doubles, and pairs of doubles."""
+"""Arithmetics of arrays: doubles, and pairs of doubles.
+
+`ARRAYS` is what the functions of `elliptic` take for NumPy arrays; it says nothing of overflow and
+0/0, whatever the host's `numpy.errstate` is.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +17,9 @@ from .types import Array
 
 
 class Arrays:
-    """The arithmetic of float64 arrays."""
+    """The arithmetic of float64 arrays, as far as both kinds of arrays share it."""
 
+    is_array = True
     eps = 2.0**-52
     pi: Any = np.pi
     nan: Any = np.nan
@@ -35,17 +40,17 @@ class Arrays:
         return np.sqrt(x)
 
     @staticmethod
-    def sin(x: Array) -> Array:
+    def sin(x: Any) -> Any:
         """Return the sines."""
         return np.sin(x)
 
     @staticmethod
-    def cos(x: Array) -> Array:
+    def cos(x: Any) -> Any:
         """Return the cosines."""
         return np.cos(x)
 
     @staticmethod
-    def atan2(y: Array, x: Array) -> Array:
+    def atan2(y: Any, x: Any) -> Any:
         """Return the angles of the points (x, y)."""
         return np.arctan2(y, x)
 
@@ -63,6 +68,35 @@ class Arrays:
     def everywhere(condition: Any) -> bool:
         """Return whether a condition holds for every element."""
         return bool(np.all(condition))
+
+
+class ArrayFunctions(Arrays):
+    """The arithmetic of float64 and complex128 arrays, with the functions of NumPy by our names."""
+
+    inf: Any = np.inf
+    exp = staticmethod(np.exp)
+    expm1 = staticmethod(np.expm1)
+    log = staticmethod(np.log)
+    log1p = staticmethod(np.log1p)
+    sinh = staticmethod(np.sinh)
+    cosh = staticmethod(np.cosh)
+    tanh = staticmethod(np.tanh)
+    atan = staticmethod(np.arctan)
+    atanh = staticmethod(np.arctanh)
+    sign = staticmethod(np.sign)
+    nint = staticmethod(np.rint)
+    re = staticmethod(np.real)
+    im = staticmethod(np.imag)
+
+    @staticmethod
+    def convert(value: Any) -> Any:
+        """Return the double nearest to an exact value, or an array of doubles as it is."""
+        return value if isinstance(value, np.ndarray) else float(value)
+
+    @staticmethod
+    def mpc(real: Array, imag: Array) -> Any:
+        """Return the complex numbers with these parts."""
+        return np.asarray(real) + 1j * np.asarray(imag)
 
 
 class Pairs(Arrays):
@@ -87,4 +121,4 @@ class Pairs(Arrays):
         return DoubleDouble.choose(condition, yes, no)
 
 
-ARRAYS, PAIRS = Arrays(), Pairs()
+ARRAYS, PAIRS = ArrayFunctions(), Pairs()

@@ -49,10 +49,10 @@ class TooFewDigitsError(Exception):
     """A number cannot be computed with the digits at hand."""
 
 
-def precisions(first: int = FIRST_DIGITS) -> Iterable[int]:
+def precisions(first: int = FIRST_DIGITS, most: int = _MOST_DIGITS) -> Iterable[int]:
     """Yield the precisions to try, half as much again each time."""
     digits = first
-    while digits <= _MOST_DIGITS:
+    while digits <= most:
         yield digits
         digits = digits * 3 // 2
 

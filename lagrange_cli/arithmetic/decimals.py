@@ -20,6 +20,7 @@ _GUARD = 5
 class Decimals:
     """The arithmetic of decimals with so many digits; its exponents have no bounds in practice."""
 
+    is_array = False
     nan = Decimal("NaN")
 
     def __init__(self, digits: int = 40) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 class Doubles:
     """The arithmetic of floats."""
 
+    is_array = False
     eps = 2.0**-52
     pi = math.pi
     nan = math.nan

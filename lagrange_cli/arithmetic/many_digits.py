@@ -9,9 +9,15 @@ from mpmath.ctx_mp import MPContext
 
 
 class ManyDigits(MPContext):  # type: ignore[misc]
-    """An mpmath context of its own: nobody else's precision is touched."""
+    """An mpmath context of its own: nobody else's precision is touched.
 
-    def __init__(self, digits: int) -> None:
+    By default it has the digits for constants that are rounded to doubles; 34 would do, the rest is
+    margin.
+    """
+
+    is_array = False
+
+    def __init__(self, digits: int = 50) -> None:
         super().__init__()
         self.dps = digits
 

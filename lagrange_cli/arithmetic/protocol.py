@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Protocol, Self, TypeVar
 
 
@@ -30,6 +31,9 @@ class Real(Protocol):
     def __ge__(self, other: Self | int, /) -> Any: ...
 
 
+Number = float | Fraction
+"""An input: a double, or the exact value of a decimal."""
+
 R = TypeVar("R", bound=Real)
 """The numbers of the arithmetic in use."""
 
@@ -39,15 +43,25 @@ def absolute(x: R) -> R:
     return x.__abs__()
 
 
+@lru_cache(maxsize=256)
+def root_of_epsilon(eps: Any, over: int, degree: int) -> Any:
+    """Return (eps/over)^(1/degree): where a series with so many orders is exact."""
+    return (eps / over) ** (eps / eps / degree)
+
+
 class Arithmetic(Protocol[R]):
     """What the formulas of the record need."""
+
+    @property
+    def is_array(self) -> bool:
+        """Whether its numbers are arrays, so that a condition on them is a mask."""
 
     @property
     def pi(self) -> R:
         """The number pi."""
 
     @property
-    def eps(self) -> float | R:
+    def eps(self) -> R:
         """Distance from 1 to the next number."""
 
     @property
@@ -103,3 +117,94 @@ class SeriesArithmetic(Arithmetic[R], Protocol[R]):
 
     def nint(self, x: R, /) -> int:
         """Return the integer nearest to x."""
+
+
+Value = Any
+"""A real or complex number, or an array of them, of a `FunctionArithmetic`: mpmath has no types."""
+
+
+class FunctionArithmetic(Protocol):
+    """What Jacobi's, the theta and Omega functions need: arrays of doubles, or mpmath.
+
+    Their numbers are real or complex and mix with floats, so they have no narrower type than Any:
+    float64 and complex128 arrays, or mpf and mpc.  `SeriesArithmetic` names most of these methods;
+    those that are here besides are the functions that decimals do not have.
+    """
+
+    pi: Any
+    eps: Any
+    nan: Any
+    inf: Any
+
+    @property
+    def is_array(self) -> bool:
+        """Whether its numbers are arrays, so that a condition on them is a mask."""
+
+    def working(self) -> AbstractContextManager[object]:
+        """Return a context manager inside which the host's settings do not matter."""
+
+    def convert(self, value: Any, /) -> Any:
+        """Return a number or an array as one of this arithmetic."""
+
+    def sqrt(self, x: Any, /) -> Any:
+        """Return the square root of x."""
+
+    def exp(self, x: Any, /) -> Any:
+        """Return e to the power x."""
+
+    def expm1(self, x: Any, /) -> Any:
+        """Return e to the power x, less 1."""
+
+    def log(self, x: Any, /) -> Any:
+        """Return the natural logarithm of x."""
+
+    def log1p(self, x: Any, /) -> Any:
+        """Return the natural logarithm of 1 + x."""
+
+    def sin(self, x: Any, /) -> Any:
+        """Return the sine of x."""
+
+    def cos(self, x: Any, /) -> Any:
+        """Return the cosine of x."""
+
+    def sinh(self, x: Any, /) -> Any:
+        """Return the hyperbolic sine of x."""
+
+    def cosh(self, x: Any, /) -> Any:
+        """Return the hyperbolic cosine of x."""
+
+    def tanh(self, x: Any, /) -> Any:
+        """Return the hyperbolic tangent of x."""
+
+    def atan(self, x: Any, /) -> Any:
+        """Return the arc whose tangent is x."""
+
+    def atanh(self, x: Any, /) -> Any:
+        """Return the number whose hyperbolic tangent is x."""
+
+    def atan2(self, y: Any, x: Any, /) -> Any:
+        """Return the angle of the point (x, y), in (-pi, pi]."""
+
+    def sign(self, x: Any, /) -> Any:
+        """Return 1, 0 or -1 with the sign of x."""
+
+    def nint(self, x: Any, /) -> Any:
+        """Return the integer nearest to x."""
+
+    def re(self, x: Any, /) -> Any:
+        """Return the real part of x."""
+
+    def im(self, x: Any, /) -> Any:
+        """Return the imaginary part of x."""
+
+    def mpc(self, real: Any, imag: Any, /) -> Any:
+        """Return the complex number with these parts."""
+
+    def where(self, condition: Any, yes: Any, no: Any, /) -> Any:
+        """Return one of two numbers, or choose element by element between two arrays."""
+
+    def anywhere(self, condition: Any, /) -> bool:
+        """Return whether a condition holds at all, for some element of an array."""
+
+    def everywhere(self, condition: Any, /) -> bool:
+        """Return whether a condition holds for every element of an array."""

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.points import ListedPoints
 from ..arithmetic.types import Array
 from ..inputs.top import Top
@@ -149,7 +150,7 @@ def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
 
 def conserved_changes(motion: Motion, times: Array) -> tuple[float, float]:
     """Return the changes of energy and Lz since t = 0, in eps of the sum of their terms."""
-    top, tilt = motion.top, motion.top.tilt(math)
+    top, tilt = motion.top, motion.top.tilt(DOUBLES)
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
     around = float(top.psidot0) * tilt.sin
     swing = float(top.thetadot0) ** 2 + around**2 + a * (1 + abs(tilt.cos))

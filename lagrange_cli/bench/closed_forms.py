@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.generic import many_digits
+from ..arithmetic.doubles import DOUBLES
+from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 from ..motion.solve import solve
@@ -45,7 +46,7 @@ def _legendre(top: Top, _: str) -> Sample:
     from scipy import special
 
     motion: Any = solve(top)  # nutating, so that it has all its numbers
-    u0 = math.cos(top.tilt(math).degrees(math) * math.pi / 180)
+    u0 = math.cos(top.tilt(DOUBLES).degrees(DOUBLES) * math.pi / 180)
     r0, b, (u1, u2, u3) = float(top.r0), motion.b, (motion.u1, motion.u2, motion.u3)
     beta = float(top.psidot0) * (1 - u0 * u0) + b * u0
     K, T, m = motion.K, motion.T_nutation, motion.k**2
@@ -100,10 +101,10 @@ class _Paper(NamedTuple):
 def _paper(top: Top) -> _Paper:
     if not top.is_released:
         raise NotApplicableError("the paper's formulas are for a top released from rest")
-    ar = many_digits(17)  # for the tables of elliptic integrals; all else is in doubles
+    ar = ManyDigits(17)  # for the tables of elliptic integrals; all else is in doubles
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
     r0, b = float(top.r0), float(top.C) * float(top.r0) / float(top.A)
-    u1, sigma = top.tilt(math).cos, 1 if r0 > 0 else -1
+    u1, sigma = top.tilt(DOUBLES).cos, 1 if r0 > 0 else -1
     root = math.sqrt(b**4 - 4 * a * b * b * u1 + 4 * a * a)
     u2, u3 = (b * b - root) / (2 * a), (b * b + root) / (2 * a)  # (4,11)
     m, mc = (u1 - u2) / (u3 - u2), (u3 - u1) / (u3 - u2)  # (4,19), (4,21)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 from .method import FailedError, Method, NotApplicableError, Sample, Sampled
@@ -44,7 +45,7 @@ class Problem(NamedTuple):
 def problem(top: Top) -> Problem:
     """Return the problem of a top."""
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
-    b, theta0 = float(top.C) * float(top.r0) / float(top.A), top.tilt(math)
+    b, theta0 = float(top.C) * float(top.r0) / float(top.A), top.tilt(DOUBLES)
     theta_rate, psi_rate = float(top.thetadot0), float(top.psidot0)
     clock = math.sqrt(a) + abs(b) + abs(theta_rate) + abs(psi_rate)
     return Problem(

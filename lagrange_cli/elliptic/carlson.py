@@ -13,23 +13,21 @@ from functools import reduce
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.generic import (
+from ..arithmetic.blocks import blockwise, in_arithmetic
+from ..arithmetic.protocol import (
     Arithmetic,
-    Real,
-    anywhere,
-    blockwise,
-    epsilon,
-    everywhere,
-    has_arrays,
+    FunctionArithmetic,
+    R,
+    Value,
+    absolute,
     root_of_epsilon,
-    where,
 )
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
-Roots = tuple[Real, Real, Real, Real]
-Gain = Callable[[Roots, Real, Real], Real]
+Roots = tuple[Value, Value, Value, Value]
+Gain = Callable[[Roots, Value, Value], Value]
 
 _FAR_APART = 1e6
 """Ratio of arguments beyond which the rounding errors of ten steps or more add up."""
@@ -39,14 +37,14 @@ _NEAR_ONE, _TINY = 0.01, 1e-17
 
 
 @blockwise
-def carlson_rf(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
+def carlson_rf(ar: Arithmetic[R], x: R, y: R, z: R) -> R:
     """Return Carlson's R_F(x, y, z) for x, y, z >= 0, at most one of them zero (DLMF 19.36.1).
 
     F(phi, k) = sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1).
     """
     mean = (x + y + z) / 3
     spread = _spread(ar, mean, x, y, z)
-    while anywhere(spread > abs(mean)):
+    while ar.anywhere(spread > abs(mean)):
         root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x
         x, y, z, spread = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, spread / 4
@@ -60,14 +58,15 @@ def carlson_rf(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
     return (1 + series) / ar.sqrt(mean)
 
 
-def carlson_rc(ar: Arithmetic, x: Real, y: Real) -> Real:
+@in_arithmetic
+def carlson_rc(ar: FunctionArithmetic, x: Value, y: Value) -> Value:
     """Return R_C(x, y) = R_F(x, y, y) for x >= 0, y > 0 (DLMF 19.2.17)."""
-    if not has_arrays(ar):
+    if not ar.is_array:
         return carlson_rf(ar, x, y, y)
     difference, root_x = y - x, ar.sqrt(x)
     root = ar.sqrt(abs(ar.where(difference == 0, 1.0, difference)))
     far = x > 4 * y  # where the quotient of the other form could overflow
-    circular = ar.arctan2(root, root_x)
+    circular = ar.atan2(root, root_x)
     logarithm = ar.log((root_x + root) / ar.sqrt(y))
     near_one = ar.log1p(2 * root * (root_x + root) / ar.where(far, x, y)) / 2
     hyperbolic = ar.where(far, logarithm, near_one)
@@ -76,24 +75,24 @@ def carlson_rc(ar: Arithmetic, x: Real, y: Real) -> Real:
 
 
 @blockwise
-def carlson_rd(ar: Arithmetic, x: Real, y: Real, z: Real) -> Real:
+def carlson_rd(ar: FunctionArithmetic, x: Value, y: Value, z: Value) -> Value:
     """Return R_D(x, y, z) for x, y >= 0, at most one of them 0, and z > 0 (DLMF 19.36.2)."""
 
-    def gain(roots: Roots, z: Real, shift: Real) -> Real:
+    def gain(roots: Roots, z: Value, shift: Value) -> Value:
         return 3 / (roots[2] * (z + shift))
 
     return _duplicated(ar, (x, y, z, z), gain)
 
 
 @blockwise
-def carlson_rj(ar: Arithmetic, x: Real, y: Real, z: Real, p: Real) -> Real:
+def carlson_rj(ar: FunctionArithmetic, x: Value, y: Value, z: Value, p: Value) -> Value:
     """Return R_J(x, y, z, p) for x, y, z >= 0, at most one of them 0, and p > 0 (DLMF 19.36.2).
 
     Each step adds an R_C(1, 1 + e); 1 + e is formed as a quotient of sums, so that nothing cancels
     where p is much smaller than the other arguments.
     """
 
-    def gain(roots: Roots, p: Real, shift: Real) -> Real:
+    def gain(roots: Roots, p: Value, shift: Value) -> Value:
         root_x, root_y, root_z, root_p = roots
         beta = root_p * (p + shift)
         total = beta + p * (root_x + root_y + root_z) + root_x * root_y * root_z
@@ -102,24 +101,26 @@ def carlson_rj(ar: Arithmetic, x: Real, y: Real, z: Real, p: Real) -> Real:
     return _duplicated(ar, (x, y, z, p), gain)
 
 
-def _spread(ar: Arithmetic, mean: Real, *arguments: Real) -> Real:
+def _spread(ar: Arithmetic[R], mean: R, *arguments: R) -> R:
     """Return the greatest distance from the mean, over the one at which the series is exact."""
-    distances = [abs(mean - x) for x in arguments]
-    greatest = reduce(lambda a, b: where(a > b, a, b), distances)
-    return greatest / root_of_epsilon(epsilon(ar), 4, 8)
+    distances = [absolute(mean - x) for x in arguments]
+    greatest = reduce(lambda a, b: ar.where(a > b, a, b), distances)
+    eps: Any = ar.eps  # a number that can be hashed
+    scale: R = root_of_epsilon(eps, 4, 8)
+    return greatest / scale
 
 
-def _rc_from_one(ar: Arithmetic, y: Real) -> Real:
+def _rc_from_one(ar: FunctionArithmetic, y: Value) -> Value:
     """Return R_C(1, y); that of an array close to 1 is a Taylor series."""
     e = 1 - y
-    largest = float(ar.max(abs(e), initial=_TINY)) if has_arrays(ar) else 1.0
+    largest = max(_TINY, float(abs(e).max(initial=0.0))) if ar.is_array else 1.0
     if not largest <= _NEAR_ONE:
         return carlson_rc(ar, ar.sqrt(1), y)
     last = int(math.log(_TINY) / math.log(largest))
     return reduce(lambda value, n: value * e + 1 / (2 * n + 1), range(last, -1, -1), 0 * e)
 
 
-def _duplicated(ar: Arithmetic, arguments: Roots, gain: Gain) -> Real:
+def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
     """Return R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`.
 
     What remains after n steps is R_J of the new arguments over 4^n: where fewer than half of an
@@ -129,9 +130,9 @@ def _duplicated(ar: Arithmetic, arguments: Roots, gain: Gain) -> Real:
     x, y, z, p = arguments
     mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, ar.sqrt(1)
     spread = _spread(ar, mean, x, y, z, p)
-    carried = has_arrays(ar) and _far_apart(arguments)
+    carried = ar.is_array and _far_apart(ar, arguments)
     lows, lost = [0 * p] * 4, 0 * p
-    while _mostly(unequal := spread > abs(mean)):
+    while _mostly(ar, unequal := spread > abs(mean)):
         root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x
         term = gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
@@ -147,15 +148,15 @@ def _duplicated(ar: Arithmetic, arguments: Roots, gain: Gain) -> Real:
         weight, spread = weight / 4, spread / 4
         mean = (x + y + z + 2 * p) / 5
     rest = _near_mean(1 - x / mean, 1 - y / mean, 1 - z / mean) / (mean * ar.sqrt(mean))
-    if not everywhere(~unequal if has_arrays(ar) else not unequal):
+    if not ar.everywhere(~unequal if ar.is_array else not unequal):
         rest[unequal] = _duplicated(ar, (x[unequal], y[unequal], z[unequal], p[unequal]), gain)
     return total + (rest * weight + lost)
 
 
-def _far_apart(arguments: Roots) -> bool:
+def _far_apart(ar: FunctionArithmetic, arguments: Roots) -> bool:
     """Return whether some of the arguments are many decades apart."""
-    least = reduce(lambda a, b: where(a < b, a, b), arguments)
-    return anywhere(least * _FAR_APART < sum(arguments))
+    least = reduce(lambda a, b: ar.where(a < b, a, b), arguments)
+    return ar.anywhere(least * _FAR_APART < sum(arguments))
 
 
 def _shifted(highs: Roots, lows: list[Array]) -> tuple[Roots, list[Array]]:
@@ -175,12 +176,12 @@ def _shifted(highs: Roots, lows: list[Array]) -> tuple[Roots, list[Array]]:
     return (x, y, z, p), [rest for _, rest in pairs]
 
 
-def _mostly(condition: Any) -> bool:
+def _mostly(ar: FunctionArithmetic, condition: Any) -> bool:
     """Return whether a condition holds, or holds for half of the elements of an array."""
-    return 2 * condition.sum() > condition.size if hasattr(condition, "all") else bool(condition)
+    return 2 * condition.sum() > condition.size if ar.is_array else bool(condition)
 
 
-def _near_mean(dx: Real, dy: Real, dz: Real) -> Real:
+def _near_mean(dx: Value, dy: Value, dz: Value) -> Value:
     """Return the Taylor series of R_J about equal arguments, to seventh order (DLMF 19.36.2)."""
     dp = -(dx + dy + dz) / 2
     xyz, p2 = dx * dy * dz, dp * dp

@@ -9,23 +9,26 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.correct_rounding import TooFewDigitsError
 from ..arithmetic.double_double import pair
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.generic import Arithmetic, Real, many_digits, number
+from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
 from . import complete_k
 from .jacobi import jacobi
 from .modulus import Modulus
 from .modulus_input import ModulusInput
 from .periods import Complex, Periods
-from .proved_digits import TooFewDigitsError, require_digits, settled_texts
+from .proved_digits import require_digits, settled_texts
 from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
 from .third_kind import ThirdKind, check_near, check_parameter, third_kind
 
 if TYPE_CHECKING:
-    from ..arithmetic.correct_digits import NumberText
     from ..arithmetic.points import Points
+    from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
 
 THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
@@ -48,9 +51,9 @@ class Request(NamedTuple):
     imaginary: bool = False
     radians: bool = False
 
-    def parameter_in(self, ar: Arithmetic) -> Complex:
+    def parameter_in(self, ar: FunctionArithmetic) -> Complex:
         """Return the parameter in an mpmath context, rounded once."""
-        value = number(ar, self.parameter)
+        value = ar.convert(self.parameter)
         return ar.mpc(0, value) if self.imaginary else ar.mpc(value, 0)
 
     def in_doubles(self) -> Request:
@@ -77,7 +80,7 @@ class Functions(NamedTuple):
         return Functions(modulus, series, {ij: kind.rounded() for ij, kind in self.third.items()})
 
 
-def functions_in(ar: Arithmetic, request: Request) -> Functions:
+def functions_in(ar: ManyDigits, request: Request) -> Functions:
     """Return the constants of a request in an mpmath context.
 
     Raises LagtopError for a modulus or a parameter out of range.
@@ -93,12 +96,12 @@ def functions_in(ar: Arithmetic, request: Request) -> Functions:
 
 
 def values(
-    ar: Arithmetic,
-    u: Real,
+    ar: FunctionArithmetic,
+    u: Value,
     functions: Functions,
     request: Request,
     known: Mapping[str, float] = MappingProxyType({}),
-) -> dict[str, Real]:
+) -> dict[str, Value]:
     """Return the columns at u, in numpy or an mpmath context; those `known` are not computed.
 
     Omega and Pi of an imaginary parameter are given by their imaginary parts.
@@ -109,16 +112,16 @@ def values(
     if not functions.series:
         return columns
     x = in_periods(ar, u, functions.series)
-    if not hasattr(ar, "rint") and u and not x.rest:
+    if not ar.is_array and u and not x.rest:
         raise TooFewDigitsError
     for name, compute in _families(ar, x, functions, functions.series, request):
-        columns[name] = ar.mpf(known[name]) if name in known else compute()
+        columns[name] = ar.convert(known[name]) if name in known else compute()
     return columns
 
 
 def _families(
-    ar: Arithmetic, x: Periods, functions: Functions, series: ThetaSeries, request: Request
-) -> Iterator[tuple[str, Callable[[], Real]]]:
+    ar: FunctionArithmetic, x: Periods, functions: Functions, series: ThetaSeries, request: Request
+) -> Iterator[tuple[str, Callable[[], Value]]]:
     """Yield the columns of the families by name, and how to compute each."""
     suffix = "_imag" if request.imaginary else ""
     for family in request.families:
@@ -140,7 +143,7 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
     import numpy as np
 
     request = request.in_doubles()
-    exact = request.modulus.in_digits(many_digits())
+    exact = request.modulus.in_digits(ManyDigits())
     in_doubles = Modulus(float(exact.k), *pair(exact.k_prime))
     if exact.k_prime > 0 and not in_doubles.k_prime:
         name = request.modulus.name
@@ -151,11 +154,11 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
     parameter = float(request.parameter)
     if request.has_parameter and has_periods and not request.imaginary:
         check_near(parameter, in_doubles)
-    functions = functions_in(many_digits(), request).rounded(in_doubles)
+    functions = functions_in(ManyDigits(), request).rounded(in_doubles)
 
     def columns(u: Array) -> dict[str, Array]:
         with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
-            table = values(np, u, functions, request)
+            table = values(ARRAYS, u, functions, request)
         poles = abs(u) == abs(parameter)
         if request.has_parameter and parameter and not request.imaginary:
             for name in {"omega11", "pi11"} & set(table):
@@ -180,18 +183,18 @@ def digit_rows(
     """
 
     @cache
-    def at_precision(dps: int) -> tuple[Arithmetic, Functions]:
-        ar = many_digits(dps)
+    def at_precision(dps: int) -> tuple[ManyDigits, Functions]:
+        ar = ManyDigits(dps)
         return ar, functions_in(ar, request)
 
     def at(u: Fraction) -> dict[str, NumberText]:
         known = known_values(u, request)
 
-        def compute(context: Arithmetic) -> dict[str, Real]:
+        def compute(context: ManyDigits) -> dict[str, Value]:
             for far in (u, request.parameter if not request.imaginary else 0):
-                require_digits(context, digits, abs(number(context, far)))
+                require_digits(context, digits, abs(context.convert(far)))
             ar, functions = at_precision(context.dps)
-            return values(ar, number(ar, u), functions, request, known)
+            return values(ar, ar.convert(u), functions, request, known)
 
         return settled_texts(compute, digits, known)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.double_double import two_product, two_sum
-from ..arithmetic.generic import Arithmetic, Real, has_arrays
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
 from .modulus import Modulus
@@ -11,7 +12,8 @@ from .modulus import Modulus
 _PI = 3.141592653589793, 1.2246467991473532e-16
 
 
-def incomplete_f(ar: Arithmetic, phi: Real, modulus: Modulus) -> Real:
+@in_arithmetic
+def incomplete_f(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
     """Return F(phi, k), the integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 (3.1.2), for k' > 0.
 
     phi is any real amplitude in radians, of numpy or an mpmath context; |phi| <= pi/2 costs no
@@ -22,7 +24,8 @@ def incomplete_f(ar: Arithmetic, phi: Real, modulus: Modulus) -> Real:
     return half_turns * 2 * complete_k(ar, modulus.k_prime) + within
 
 
-def incomplete_e(ar: Arithmetic, phi: Real, modulus: Modulus) -> Real:
+@in_arithmetic
+def incomplete_e(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
     """Return E(phi, k), the integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi, for k' > 0.
 
     As a sum of positive terms (DLMF 19.25.10).
@@ -36,24 +39,26 @@ def incomplete_e(ar: Arithmetic, phi: Real, modulus: Modulus) -> Real:
     return half_turns * 2 * complete_e(ar, modulus.k_prime) + within
 
 
-def _parts(ar: Arithmetic, phi: Real, modulus: Modulus) -> tuple[Real, Real, Real, Real]:
+def _parts(
+    ar: FunctionArithmetic, phi: Value, modulus: Modulus
+) -> tuple[Value, Value, Value, Value]:
     """Return half turns in phi and, of the rest, sin, cos^2, 1 - k^2 sin^2 as a sum of squares."""
     half_turns, rest, low = _reduced(ar, phi)
     sine, cosine = ar.sin(rest), ar.cos(rest)
     sine, cosine = sine + low * cosine, cosine - low * sine
-    if has_arrays(ar):  # the rest may lie beyond a quarter turn by its rounding
+    if ar.is_array:  # the rest may lie beyond a quarter turn by its rounding
         beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)
         half_turns, sine = half_turns + beyond, ar.where(cosine < 0, -sine, sine)
     cosine2 = cosine * cosine
     return half_turns, sine, cosine2, cosine2 + modulus.k_prime * modulus.k_prime * (1 - cosine2)
 
 
-def _reduced(ar: Arithmetic, phi: Real) -> tuple[Real, Real, Real]:
+def _reduced(ar: FunctionArithmetic, phi: Value) -> tuple[Value, Value, Value]:
     """Return half turns, the rest (phi up to a quarter turn) and what rounding took from it."""
-    if not has_arrays(ar):
+    if not ar.is_array:
         half_turns = ar.nint(ar.re(phi) / ar.pi)
         return half_turns, phi - half_turns * ar.pi, 0 * phi
-    half_turns = ar.rint(phi / ar.pi)
+    half_turns = ar.nint(phi / ar.pi)
     product, error = two_product(half_turns, _PI[0])
     rest, low = two_sum(phi - product, -(error + half_turns * _PI[1]))
     return half_turns, rest, low

@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.blocks import blocks, in_arithmetic, polynomial
 from ..arithmetic.double_double import Pair, reduce_phase
-from ..arithmetic.generic import Arithmetic, Real, blocks, has_arrays, polynomial
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.types import Array
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
@@ -26,20 +27,21 @@ _SMALL = 1e-290
 """Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
 
 
-Polynomial = tuple[Real, ...]
+Polynomial = tuple[Value, ...]
 """Coefficients, the lowest power first."""
 
 
 class Jacobi(NamedTuple):
     """am u, unwrapped; its sine and its cosine; and dn u, the derivative of am u."""
 
-    am: Real
-    sn: Real
-    cn: Real
-    dn: Real
+    am: Value
+    sn: Value
+    cn: Value
+    dn: Value
 
 
-def jacobi(ar: Arithmetic, u: Real, modulus: Modulus) -> Jacobi:
+@in_arithmetic
+def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
     """Return am, sn, cn, dn of u (3.1.3), for k in [0, 1].
 
     numpy: real u and a modulus of shapes that broadcast; the worst error seen, also at 1e12 K and
@@ -47,7 +49,7 @@ def jacobi(ar: Arithmetic, u: Real, modulus: Modulus) -> Jacobi:
     of 2K.  mpmath: u real or complex (am then only within |Im u| < K'), to a few eps and what
     |u|/K costs.
     """
-    if not has_arrays(ar):
+    if not ar.is_array:
         return _by_theta(ar, u, modulus)
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
@@ -71,14 +73,14 @@ class _Series(NamedTuple):
     x = q' sinh^2.  All for one modulus, or for one at each element."""
 
     circular: bool
-    k_prime: Real
+    k_prime: Value
     rate: Pair
     """Half periods per unit of u, 1/(2K)."""
-    stretch: Real
+    stretch: Value
     """Argument y per half period."""
     above: Polynomial
     below: Polynomial
-    q: Real
+    q: Value
     """The nome in use."""
 
 
@@ -86,7 +88,7 @@ def _series(modulus: Modulus) -> _Series:
     """Return the coefficients of moduli that are all of one family."""
     k, k_prime = modulus.k, modulus.k_prime
     finite = np.where(k_prime > 0, k_prime, 1.0)
-    rate = rate_of_half_periods(np, finite, modulus.rest)
+    rate = rate_of_half_periods(finite, modulus.rest)
     if np.all(k <= k_prime):
         q = nome(ARRAYS, m=k * k, k_prime=k_prime)
         return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)
@@ -96,7 +98,7 @@ def _series(modulus: Modulus) -> _Series:
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
-def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
+def _circular(q: Value, root: Value) -> tuple[Polynomial, Polynomial]:
     """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
@@ -105,7 +107,7 @@ def _circular(q: Real, root: Real) -> tuple[Polynomial, Polynomial]:
     return above, tuple(root * c for c in below)
 
 
-def _hyperbolic(q: Real) -> tuple[Polynomial, Polynomial]:
+def _hyperbolic(q: Value) -> tuple[Polynomial, Polynomial]:
     """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
     q2 = q * q
     q4 = q2 * q2
@@ -164,18 +166,18 @@ def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
     return f * polynomial(series.above, x), polynomial(series.below, x)
 
 
-def _by_theta(ar: Arithmetic, u: Real, modulus: Modulus) -> Jacobi:
+def _by_theta(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
     """Return the functions of real or complex u in many digits, by quotients of theta functions."""
     u = ar.convert(u)
     if not modulus.k_prime:
         am = 2 * ar.atan(ar.tanh(u / 2))
-        return Jacobi(am, ar.tanh(u), ar.sech(u), ar.sech(u))
+        return Jacobi(am, ar.tanh(u), 1 / ar.cosh(u), 1 / ar.cosh(u))
     if not modulus.k:
         return Jacobi(u, ar.sin(u), ar.cos(u), 1 + 0 * u)
     K = complete_k(ar, modulus.k_prime)
     halves = ar.nint(ar.re(u) / (2 * K))
     x = u / (2 * K) - halves
-    zero = ar.mpf(0)
+    zero = ar.convert(0)
     sine, cosine, delta, below = (theta(ar, ij, x, modulus) for ij in ("11", "10", "00", "01"))
     at_2, at_3, at_4 = (theta(ar, ij, zero, modulus) for ij in ("10", "00", "01"))
     sn, cn, dn = (

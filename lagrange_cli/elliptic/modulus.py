@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
+from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.double_double import Pair, sqrt_pair, two_product, two_sum
-from ..arithmetic.generic import Arithmetic, Real, epsilon, everywhere, has_arrays, where
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
 from .complete import complete_e, complete_k, nome
 
@@ -15,30 +18,31 @@ _INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 class Modulus(NamedTuple):
     """k and its complement k', scalars or arrays, each good to an ulp."""
 
-    k: Real
-    k_prime: Real
-    rest: Real = 0.0
+    k: Value
+    k_prime: Value
+    rest: Value = 0.0
     """What rounding took from k' (arrays only): far away, the period must be known better."""
 
 
 class Constants(NamedTuple):
     """K, E and the nome q of k; K', E' of the complement.  K = inf and q = 1 where k = 1."""
 
-    K: Real
-    K_prime: Real
-    E: Real
-    E_prime: Real
-    q: Real
+    K: Value
+    K_prime: Value
+    E: Value
+    E_prime: Value
+    q: Value
 
 
+@in_arithmetic
 def modulus(
-    ar: Arithmetic,
+    ar: FunctionArithmetic,
     *,
-    k: Real = None,
-    k_prime: Real = None,
-    m: Real = None,
-    angle: Real = None,
-    q: Real = None,
+    k: Value = None,
+    k_prime: Value = None,
+    m: Value = None,
+    angle: Value = None,
+    q: Value = None,
 ) -> Modulus:
     """Return the modulus from exactly one of k, k', m = k^2, the modular angle, the nome q.
 
@@ -52,35 +56,36 @@ def modulus(
     if len(named) != 1:
         raise LagtopError(f"exactly one of {', '.join(names)} must be given, got {len(named)}")
     name, value = named[0]
-    value = ar.asarray(value, dtype=float) if has_arrays(ar) else ar.convert(value)
+    value = np.asarray(value, dtype=float) if ar.is_array else ar.convert(value)
     most = ar.pi / 2 if name == "angle" else 1
     inside = (value >= 0) & ((value < 1) if name == "q" else (value <= most))
-    if not everywhere(inside):
+    if not ar.everywhere(inside):
         end = {"angle": "pi/2]", "q": "1)"}.get(name, "1]")
-        wrong = value[~inside].flat[0] if has_arrays(ar) and value.ndim else value
+        wrong = value[~inside].flat[0] if ar.is_array and value.ndim else value
         raise LagtopError(f"{name} must be in [0, {end}, got {float(wrong)}", name)
     return _FROM[name](ar, value)
 
 
-def constants(ar: Arithmetic, modulus: Modulus) -> Constants:
+@in_arithmetic
+def constants(ar: FunctionArithmetic, modulus: Modulus) -> Constants:
     """Return the complete integrals and the nome (2,4), each to a few eps."""
     k, k_prime = modulus.k, modulus.k_prime
-    ordinary, other = where(k_prime > 0, k_prime, 1 + 0 * k), where(k > 0, k, 1 + 0 * k)
+    ordinary, other = ar.where(k_prime > 0, k_prime, 1 + 0 * k), ar.where(k > 0, k, 1 + 0 * k)
     infinite = ar.inf
     return Constants(
-        K=where(k_prime > 0, complete_k(ar, ordinary), infinite),
-        K_prime=where(k > 0, complete_k(ar, other), infinite),
-        E=where(k_prime > 0, complete_e(ar, ordinary), 1 + 0 * k),
-        E_prime=where(k > 0, complete_e(ar, other), 1 + 0 * k),
-        q=where(k_prime > 0, nome(ar, m=k * k, k_prime=ordinary), 1 + 0 * k),
+        K=ar.where(k_prime > 0, complete_k(ar, ordinary), infinite),
+        K_prime=ar.where(k > 0, complete_k(ar, other), infinite),
+        E=ar.where(k_prime > 0, complete_e(ar, ordinary), 1 + 0 * k),
+        E_prime=ar.where(k > 0, complete_e(ar, other), 1 + 0 * k),
+        q=ar.where(k_prime > 0, nome(ar, m=k * k, k_prime=ordinary), 1 + 0 * k),
     )
 
 
-def rate_of_half_periods(ar: Arithmetic, k_prime: Real, rest: Real) -> Pair:
+def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
     """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
-    a, a_low = two_sum(ar.asarray(k_prime) / 2, 0.5)
+    a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
     a_low += rest / 2
-    b, b_low = sqrt_pair(ar.asarray(k_prime), ar.asarray(rest))
+    b, b_low = sqrt_pair(np.asarray(k_prime), np.asarray(rest))
     while (abs(a - b) > 2.0**-26 * a).any():
         total, total_error = two_sum(a, b)
         product, product_error = two_product(a, b)
@@ -95,48 +100,48 @@ def rate_of_half_periods(ar: Arithmetic, k_prime: Real, rest: Real) -> Pair:
     return Pair(*two_sum(high, low))
 
 
-def _from_k(ar: Arithmetic, k: Real) -> Modulus:
+def _from_k(ar: FunctionArithmetic, k: Value) -> Modulus:
     return Modulus(k, *_complement(ar, k))
 
 
-def _from_k_prime(ar: Arithmetic, k_prime: Real) -> Modulus:
+def _from_k_prime(ar: FunctionArithmetic, k_prime: Value) -> Modulus:
     return Modulus(_complement(ar, k_prime)[0], k_prime, 0 * k_prime)
 
 
-def _from_m(ar: Arithmetic, m: Real) -> Modulus:
-    if not has_arrays(ar):
+def _from_m(ar: FunctionArithmetic, m: Value) -> Modulus:
+    if not ar.is_array:
         return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
-    return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(ar.ones_like(m), -m)))
+    return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(np.ones_like(m), -m)))
 
 
-def _from_angle(ar: Arithmetic, angle: Real) -> Modulus:
+def _from_angle(ar: FunctionArithmetic, angle: Value) -> Modulus:
     return Modulus(ar.sin(angle), ar.cos(angle), 0 * angle)
 
 
-def _from_q(ar: Arithmetic, q: Real) -> Modulus:
+def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
     """Return theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and k'."""
     limit = ar.exp(-ar.pi)
     large = q > limit
-    root = where(large, ar.exp(ar.pi**2 / (2 * ar.log(where(large, q, limit)))), ar.sqrt(q))
+    root = ar.where(large, ar.exp(ar.pi**2 / (2 * ar.log(ar.where(large, q, limit)))), ar.sqrt(q))
     small = root * root
     n, power, theta2, theta3, theta4 = 0, small**0, small * 0, small**0, small**0
-    while not everywhere(power <= epsilon(ar) / 4):
+    while not ar.everywhere(power <= ar.eps / 4):
         theta2 = theta2 + 2 * small ** (n * (n + 1))
         n += 1
         power = small ** (n * n)
         theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
-    if has_arrays(ar) and (root == 0)[large].any():
+    if ar.is_array and (root == 0)[large].any():
         raise LagtopError("q must be at most 0.9934 in doubles, whose range k' leaves beyond")
     one, other = root * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
-    return Modulus(where(large, other, one), where(large, one, other), 0 * q)
+    return Modulus(ar.where(large, other, one), ar.where(large, one, other), 0 * q)
 
 
-def _complement(ar: Arithmetic, k: Real) -> tuple[Real, Real]:
+def _complement(ar: FunctionArithmetic, k: Value) -> tuple[Value, Value]:
     """Return sqrt(1 - k^2) and what rounding takes from it."""
-    if not has_arrays(ar):
+    if not ar.is_array:
         return ar.sqrt((1 - k) * (1 + k)), 0 * k
     square, error = two_product(k, k)
-    difference, rest = two_sum(ar.ones_like(k), -square)
+    difference, rest = two_sum(np.ones_like(k), -square)
     return sqrt_pair(*two_sum(difference, rest - error))
 
 

@@ -6,10 +6,11 @@ import math
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..arithmetic.correct_digits import settled_or_rounded
-from ..arithmetic.generic import Arithmetic, Real, number
+from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.protocol import Value
 from ..errors import LagtopError
 from .modulus import Modulus, constants, modulus
+from .proved_digits import settled_or_rounded
 
 
 class ModulusInput(NamedTuple):
@@ -30,10 +31,19 @@ class ModulusInput(NamedTuple):
             value = float(self.value)
             raise LagtopError(f"{self.name} must be in [0, {end}, got {value}", self.name)
 
-    def in_digits(self, ar: Arithmetic) -> Modulus:
+    def zeros(self) -> set[str]:
+        """Return the constants that are exactly 0."""
+        ends = {"k": 1, "k_prime": 1, "modular_angle": None if self.radians else 90, "nome": None}
+        is_one = self.value == ends[self.name]  # pi/2 is irrational
+        k_vanishes = is_one if self.name == "k_prime" else not self.value
+        complement_vanishes = not self.value if self.name == "k_prime" else is_one
+        zeros = {"k", "nome", "modular_angle_deg", "modular_angle_rad"} if k_vanishes else set()
+        return zeros | ({"k_prime", "nome_prime"} if complement_vanishes else set())
+
+    def in_digits(self, ar: ManyDigits) -> Modulus:
         """Return the modulus in an mpmath context.  Raises LagtopError where it is out of range."""
         self.check()
-        value = number(ar, self.value)
+        value = ar.convert(self.value)
         if self.name == "nome":
             return modulus(ar, q=value)
         if self.name != "modular_angle":
@@ -43,7 +53,7 @@ class ModulusInput(NamedTuple):
         return modulus(ar, angle=value if self.radians else ar.pi * value / 180)
 
 
-def constants_in(ar: Arithmetic, modulus_input: ModulusInput) -> dict[str, Real]:
+def constants_in(ar: ManyDigits, modulus_input: ModulusInput) -> dict[str, Value]:
     """Return the record of a modulus in an mpmath context; None for what is infinite."""
     exact = modulus_input.in_digits(ar)
     K, K_prime, E, E_prime, q = constants(ar, exact)
@@ -65,4 +75,5 @@ def constants_in(ar: Arithmetic, modulus_input: ModulusInput) -> dict[str, Real]
 
 def constants_record(modulus_input: ModulusInput, digits: int | None = None) -> dict[str, Any]:
     """Return the record, each number the nearest double or to so many significant digits."""
-    return settled_or_rounded(lambda ar: constants_in(ar, modulus_input), digits)
+    zeros = modulus_input.zeros()
+    return settled_or_rounded(lambda ar: constants_in(ar, modulus_input), digits, zeros)

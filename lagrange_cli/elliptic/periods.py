@@ -11,28 +11,28 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.double_double import two_product, two_sum
-from ..arithmetic.generic import Arithmetic, Real, has_arrays, where
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.types import Array
 from .complete import complete_k
 from .modulus import Modulus, rate_of_half_periods
 
-Complex = Real
+Complex = Value
 """A real or complex number, or array, of the arithmetic in use."""
 
 
 class Periods(NamedTuple):
     """An argument in periods: whole ones and the rest, its real part within half of one."""
 
-    turns: Real
+    turns: Value
     rest: Complex
-    low: Real = 0.0
+    low: Value = 0.0
     """What rounding took from the rest (real arrays only)."""
 
-    def half_further(self, ar: Arithmetic) -> Periods:
+    def half_further(self, ar: FunctionArithmetic) -> Periods:
         """Return the place half a period further on."""
         forward = real_part(ar, self.rest) < 0
-        half, turns = where(forward, 0.5, -0.5), self.turns + where(forward, 0.0, 1.0)
-        if has_arrays(ar) and ar.isrealobj(self.rest):
+        half, turns = ar.where(forward, 0.5, -0.5), self.turns + ar.where(forward, 0.0, 1.0)
+        if ar.is_array and np.isrealobj(self.rest):
             rest, low = two_sum(self.rest, half)
             return Periods(turns, rest + (low + self.low))
         return Periods(turns, self.rest + half)
@@ -46,20 +46,20 @@ class Rate(NamedTuple):
     low: float | Array = 0.0
 
 
-def rate_of(ar: Arithmetic, modulus: Modulus) -> Rate:
+def rate_of(ar: FunctionArithmetic, modulus: Modulus) -> Rate:
     """Return the rate of a modulus with k' > 0: 48 digits in a context, 30 of arrays."""
-    if has_arrays(ar):
-        return Rate(*rate_of_half_periods(ar, modulus.k_prime, modulus.rest))
+    if ar.is_array:
+        return Rate(*rate_of_half_periods(modulus.k_prime, modulus.rest))
     exact = 1 / (2 * complete_k(ar, modulus.k_prime))
     high = float(exact)
     middle = float(exact - high)
     return Rate(high, middle, float(exact - high - middle))
 
 
-def whole_and_rest(ar: Arithmetic, x: Complex) -> Periods:
+def whole_and_rest(ar: FunctionArithmetic, x: Complex) -> Periods:
     """Return a number of periods as whole ones and the rest."""
     real = real_part(ar, x)
-    turns = ar.rint(real) if has_arrays(ar) else ar.nint(real)
+    turns = ar.nint(real)
     return Periods(turns, x - turns)
 
 
@@ -77,11 +77,11 @@ def reduced(u: Array, rate: Rate) -> Periods:
     return Periods(turns + more, rest, low)
 
 
-def real_part(ar: Arithmetic, x: Complex) -> Real:
+def real_part(ar: FunctionArithmetic, x: Complex) -> Value:
     """Return the real part of a number or an array."""
-    return ar.real(x) if has_arrays(ar) else ar.re(x)
+    return ar.re(x)
 
 
-def imaginary_part(ar: Arithmetic, x: Complex) -> Real:
+def imaginary_part(ar: FunctionArithmetic, x: Complex) -> Value:
     """Return the imaginary part of a number or an array."""
-    return ar.imag(x) if has_arrays(ar) else ar.im(x)
+    return ar.im(x)

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import islice
 
-from ..arithmetic.generic import Real, many_digits, number
+from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
+from ..arithmetic.protocol import Value
 from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from .complete import complete_k
@@ -24,11 +25,11 @@ def series_rows(
     They are (3.1.8) for K and, at u, (3.1.7), (3.1.4), (3.1.5) for am, sn, cn.  Raises LagtopError
     for k = 0 and k = 1, where the series are limits, and for u beyond 2^50 periods.
     """
-    ar = many_digits()
+    ar = ManyDigits()
     exact = modulus_input.in_digits(ar)
     if not (exact.k and exact.k_prime):
         raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(exact.k)}")
-    sums: dict[str, tuple[Iterator[Real], Real]] = {
+    sums: dict[str, tuple[Iterator[Value], Value]] = {
         "K": (k_sums(ar, exact), complete_k(ar, exact.k_prime))
     }
     if u is not None:
@@ -36,7 +37,7 @@ def series_rows(
         if abs(u) > limit:
             reach = ar.nstr(limit, 3)
             raise LagtopError(f"u must be within 2^50 periods = {reach} of 0, got {float(u)}", "u")
-        x, unit = number(ar, u), 1 if modulus_input.radians else 180 / ar.pi
+        x, unit = ar.convert(u), 1 if modulus_input.radians else 180 / ar.pi
         am, sn, cn, _ = jacobi(ar, x, exact)
         from_first_term = islice(am_sums(ar, x, exact), 1, None)
         sums["am_rad" if modulus_input.radians else "am_deg"] = (

@@ -15,15 +15,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..arithmetic.generic import (
-    Arithmetic,
-    Real,
-    epsilon,
-    everywhere,
-    has_arrays,
-    many_digits,
-    where,
-)
+import numpy as np
+
+from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
 from .complete import complete_k, nome
 from .modulus import Modulus
@@ -48,38 +44,38 @@ _SMALL_MODULUS = 1e-9
 class ThetaSeries(NamedTuple):
     """The constants of the series of one modulus, or of an array of moduli."""
 
-    circular: Real
+    circular: Value
     """Whether the Fourier series are in use, rather than the Gaussians."""
-    q: Real
+    q: Value
     """The nome, at most exp(-pi)."""
-    steepness: Real
+    steepness: Value
     """pi K/K' of the Gaussians, at least pi."""
-    even_size: Real
+    even_size: Value
     """What all terms of the even function have in common."""
-    odd_size: Real
-    rate: Real
+    odd_size: Value
+    rate: Value
     """1/(2K)."""
     exact_rate: Rate | None
     """1/(2K) to reduce arrays of real arguments with."""
 
 
-def theta_series(ar: Arithmetic, modulus: Modulus) -> ThetaSeries:
+def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     """Return the constants in an mpmath context or, for an array of moduli, in numpy."""
     k, k_prime = modulus.k, modulus.k_prime
     circular = k <= k_prime
-    quarter, other = complete_k(ar, k_prime), complete_k(ar, where(k > 0, k, 1 + 0 * k))
+    quarter, other = complete_k(ar, k_prime), complete_k(ar, ar.where(k > 0, k, 1 + 0 * k))
     limit = ar.exp(-ar.pi)
-    q = where(circular, nome(ar, m=k * k, k_prime=k_prime), limit)
-    root = where(k < _SMALL_MODULUS, ar.sqrt(k) / 2, ar.sqrt(ar.sqrt(q)))
-    if not has_arrays(ar):
+    q = ar.where(circular, nome(ar, m=k * k, k_prime=k_prime), limit)
+    root = ar.where(k < _SMALL_MODULUS, ar.sqrt(k) / 2, ar.sqrt(ar.sqrt(q)))
+    if not ar.is_array:
         root = ar.sqrt(ar.sqrt(q))
     gauss = ar.sqrt(quarter / other)
     return ThetaSeries(
         circular=circular,
         q=q,
-        steepness=where(circular, ar.pi, ar.pi * quarter / other),
-        even_size=where(circular, 1 + 0 * q, gauss),
-        odd_size=where(circular, root, gauss),
+        steepness=ar.where(circular, ar.pi, ar.pi * quarter / other),
+        even_size=ar.where(circular, 1 + 0 * q, gauss),
+        odd_size=ar.where(circular, root, gauss),
         rate=1 / (2 * quarter),
         exact_rate=rate_of(ar, modulus),
     )
@@ -92,74 +88,77 @@ def rounded(series: ThetaSeries) -> ThetaSeries:
     return ThetaSeries(series.circular, q, steepness, *sizes, rate, series.exact_rate)
 
 
-def series_for(ar: Arithmetic, modulus: Modulus) -> ThetaSeries:
+def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     """Return the constants for an arithmetic; those of a single modulus have all their digits.
 
     Raises LagtopError for k = 1.
     """
-    if not everywhere(modulus.k_prime > 0):
+    if not ar.everywhere(modulus.k_prime > 0):
         raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
-    if not has_arrays(ar) or any(ar.ndim(part) for part in modulus):
+    if not ar.is_array or any(np.ndim(part) for part in modulus):
         return theta_series(ar, modulus)
-    return rounded(theta_series(many_digits(), in_many_digits(many_digits(), modulus)))
+    return rounded(theta_series(ManyDigits(), in_many_digits(ManyDigits(), modulus)))
 
 
-def in_many_digits(ar: Arithmetic, modulus: Modulus) -> Modulus:
+def in_many_digits(ar: ManyDigits, modulus: Modulus) -> Modulus:
     """Return the modulus that doubles stand for in an mpmath context."""
     k, k_prime, rest = map(float, modulus)
     return Modulus(ar.mpf(k), ar.mpf(k_prime) + ar.mpf(rest))
 
 
-def theta(ar: Arithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
+@in_arithmetic
+def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
     """Return theta_ij(x, iK'/K) of section 1, `ij` one of 01, 00, 11, 10."""
     series = _checked(ar, ij, modulus)
     return theta_at(ar, ij, whole_and_rest(ar, x), series)
 
 
-def theta_of(ar: Arithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
+@in_arithmetic
+def theta_of(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
     """Return Theta_ij(v) = theta_ij(v/2K), which keeps its digits at large real v."""
     series = _checked(ar, ij, modulus)
     return theta_at(ar, ij, in_periods(ar, v, series), series)
 
 
-def zeta(ar: Arithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
+@in_arithmetic
+def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
     """Return Z_ij(v) = d log theta_ij(v/2K)/dv of section 1; Z_01 is Jacobi's Zeta function.
 
     Poles are infinite in arrays, and at v = 0 in many digits.
     """
     series = _checked(ar, ij, modulus)
-    if not has_arrays(ar) and v == 0:  # to all digits
+    if not ar.is_array and v == 0:  # to all digits
         return ar.inf if ij == "11" else 0 * v
     return zeta_at(ar, ij, in_periods(ar, v, series), series)
 
 
-def theta_at(ar: Arithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
+def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
     """Return theta_ij at a place in its periods."""
     size = series.odd_size if ij[0] == "1" else series.even_size
     return size * _bell(ar, ij, x.rest, series) * _with_slope(ar, ij, x, series)[0]
 
 
-def zeta_at(ar: Arithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
+def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
     """Return Z_ij at a place in its periods."""
     value, slope = _with_slope(ar, ij, x, series)
     return slope / value * series.rate
 
 
-def in_periods(ar: Arithmetic, v: Complex, series: ThetaSeries) -> Periods:
+def in_periods(ar: FunctionArithmetic, v: Complex, series: ThetaSeries) -> Periods:
     """Return v/2K; real arrays keep their digits far away and next to whole periods."""
-    if has_arrays(ar) and ar.isrealobj(v) and series.exact_rate:
+    if ar.is_array and np.isrealobj(v) and series.exact_rate:
         return reduced(v, series.exact_rate)
     return whole_and_rest(ar, v * series.rate)
 
 
-def _checked(ar: Arithmetic, ij: str, modulus: Modulus) -> ThetaSeries:
+def _checked(ar: FunctionArithmetic, ij: str, modulus: Modulus) -> ThetaSeries:
     if ij not in NAMES:
         raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
     return series_for(ar, modulus)
 
 
 def _with_slope(
-    ar: Arithmetic, ij: str, x: Periods, series: ThetaSeries
+    ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries
 ) -> tuple[Complex, Complex]:
     """Return theta_ij(x) and its derivative, both over the size of the function and its `_bell`.
 
@@ -173,22 +172,24 @@ def _with_slope(
     return _sums(ar, ij, x, series)
 
 
-def _sums(ar: Arithmetic, ij: str, x: Periods, series: ThetaSeries) -> tuple[Complex, Complex]:
+def _sums(
+    ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries
+) -> tuple[Complex, Complex]:
     """Return the sum of a series and of its derivative."""
     odd, circular = ij[0] == "1", series.circular
-    if everywhere(circular):
+    if ar.everywhere(circular):
         value, slope = _fourier(ar, ij, x.rest, series.q)
-    elif not hasattr(circular, "any") or not circular.any():
+    elif not ar.anywhere(circular):
         value, slope = _gaussians(ar, ij, x.rest, series.steepness)
     else:
         fourier = _fourier(ar, ij, x.rest, series.q)
         gauss = _gaussians(ar, ij, x.rest, series.steepness)
-        value, slope = (where(circular, *pair) for pair in zip(fourier, gauss, strict=True))
+        value, slope = (ar.where(circular, *pair) for pair in zip(fourier, gauss, strict=True))
     sign = 1 - 2 * (x.turns % 2) if odd else 1
     return sign * value, sign * slope
 
 
-def _fourier(ar: Arithmetic, ij: str, x: Complex, q: Real) -> tuple[Complex, Complex]:
+def _fourier(ar: FunctionArithmetic, ij: str, x: Complex, q: Value) -> tuple[Complex, Complex]:
     """Return the series of section 1 in q <= exp(-pi) and its derivative.
 
     01 and 00: 1 + 2 sum (-+1)^h q^(h^2) cos 2 pi h x; over q^(1/4), 11 and 10:
@@ -205,14 +206,14 @@ def _fourier(ar: Arithmetic, ij: str, x: Complex, q: Real) -> tuple[Complex, Com
     return value, slope
 
 
-def _bell(ar: Arithmetic, ij: str, x: Complex, series: ThetaSeries) -> Complex:
+def _bell(ar: FunctionArithmetic, ij: str, x: Complex, series: ThetaSeries) -> Complex:
     """Return the greatest of the Gaussians, over which their sums are; 1 for Fourier series."""
-    distance = where(real_part(ar, x) < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
+    distance = ar.where(real_part(ar, x) < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
     bell = ar.exp(-series.steepness * distance * distance)
-    return where(series.circular, 1 + 0 * bell, bell)
+    return ar.where(series.circular, 1 + 0 * bell, bell)
 
 
-def _gaussians(ar: Arithmetic, ij: str, x: Complex, c: Real) -> tuple[Complex, Complex]:
+def _gaussians(ar: FunctionArithmetic, ij: str, x: Complex, c: Value) -> tuple[Complex, Complex]:
     """Return sum (+-1)^n exp(-c (x - n)^2) and its derivative, over the greatest of them.
 
     c is the steepness; n are the half-integers for 01 and 11, the integers for 00 and 10.  A
@@ -220,7 +221,7 @@ def _gaussians(ar: Arithmetic, ij: str, x: Complex, c: Real) -> tuple[Complex, C
     """
     half, subtracted = ij[1] == "1", ij == "11"
     left = real_part(ar, x) < 0
-    x = where(left, -x, x)
+    x = ar.where(left, -x, x)
     value = slope = 0 * x
     if not half:
         value, slope = 1 + 0 * x, -2 * c * x
@@ -234,18 +235,18 @@ def _gaussians(ar: Arithmetic, ij: str, x: Complex, c: Real) -> tuple[Complex, C
             total, difference = difference, total
         value = value + total
         slope = slope - 2 * c * (x * total - n * difference)
-    turn = where(left, -1, 1)
+    turn = ar.where(left, -1, 1)
     return value * (turn if subtracted else 1), slope * (1 if subtracted else turn)
 
 
-def _fourier_terms(ar: Arithmetic, x: Complex, q: Real) -> int:
+def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
     """Return how many terms there are until q^(h^2) exp(2 pi h |Im x|) is negligible."""
-    height = where(q > 0, abs(imaginary_part(ar, x)), 0 * q)
-    peaks = -ar.pi * height / ar.log(where(q > 0, q, 0 * q + epsilon(ar)))
-    peak = float(ar.max(peaks, initial=0.0) if has_arrays(ar) else peaks)
+    height = ar.where(q > 0, abs(imaginary_part(ar, x)), 0 * q)
+    peaks = -ar.pi * height / ar.log(ar.where(q > 0, q, 0 * q + ar.eps))
+    peak = float(np.max(peaks, initial=0.0) if ar.is_array else peaks)
     return 2 + int(peak + math.sqrt(negligible(ar) / math.pi))
 
 
-def negligible(ar: Arithmetic) -> float:
+def negligible(ar: FunctionArithmetic) -> float:
     """Return -log of the largest number that does not matter beside 1."""
-    return float(-ar.log(epsilon(ar))) + 2
+    return float(-ar.log(ar.eps)) + 2

@@ -13,11 +13,15 @@ A parameter of many digits and one rounded to doubles obey the same formulas, ov
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import Any, Protocol
 
+import numpy as np
+
+from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.generic import Arithmetic, Real, has_arrays, many_digits
+from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
 from .complete import complete_k
 from .modulus import Modulus
@@ -33,10 +37,10 @@ class ThirdKind(Protocol):
     Those of an imaginary parameter are imaginary, and given without the i.
     """
 
-    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Omega at x = eta/2K."""
 
-    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Pi at x = eta/2K; not a number where it has a pole for every eta."""
 
     def rounded(self) -> ThirdKind:
@@ -49,11 +53,11 @@ class ZeroParameter:
     def __init__(self, ij: str) -> None:
         self.ij = ij
 
-    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return 0."""
         return 0 * x.rest
 
-    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return 0 or, of the function 11, not a number."""
         return (math.nan if self.ij == "11" else 0) * x.rest
 
@@ -62,7 +66,7 @@ class ZeroParameter:
         return self
 
 
-def check_parameter(ar: Arithmetic, v: Complex, modulus: Modulus) -> None:
+def check_parameter(ar: ManyDigits, v: Complex, modulus: Modulus) -> None:
     """Raise LagtopError unless v is real, or imaginary and smaller than K' in size.
 
     `ar` is an mpmath context.
@@ -89,7 +93,7 @@ def check_near(v: float, modulus: Modulus) -> None:
         )
 
 
-def third_kind(ar: Arithmetic, ij: str, v: Complex, modulus: Modulus) -> ThirdKind:
+def third_kind(ar: ManyDigits, ij: str, v: Complex, modulus: Modulus) -> ThirdKind:
     """Return Omega_ij and Pi_ij of a parameter, with constants in an mpmath context.
 
     Raises LagtopError as `check_parameter` does, and for k = 1.
@@ -102,21 +106,24 @@ def third_kind(ar: Arithmetic, ij: str, v: Complex, modulus: Modulus) -> ThirdKi
     odd, imaginary = ij[0] == "1", bool(ar.im(v))
     if imaginary and series.circular:
         y = ar.im(v) * series.rate
-        zeta = ar.im(zeta_at(ar, ij, Periods(ar.mpf(0), ar.mpc(0, abs(y))), series)) / series.rate
+        zeta = (
+            ar.im(zeta_at(ar, ij, Periods(ar.convert(0), ar.mpc(0, abs(y))), series)) / series.rate
+        )
         return ImaginaryCircular.at(ar, ij, y, zeta, series.q, terms=terms)
     if imaginary:
         y = ar.im(v) * series.rate
         return ImaginaryHyperbolic.at(ar, ij, y, series.steepness, terms)
     y = in_periods(ar, ar.re(v), series).rest
     if ij[1] == "0":
-        y = Periods(ar.mpf(0), y).half_further(ar).rest
+        y = Periods(ar.convert(0), y).half_further(ar).rest
     if series.circular:
-        zeta = zeta_at(ar, f"{ij[0]}1", Periods(ar.mpf(0), abs(y)), series) / series.rate
+        zeta = zeta_at(ar, f"{ij[0]}1", Periods(ar.convert(0), abs(y)), series) / series.rate
         return RealCircular.at(ar, odd, y, zeta, series.q, terms=terms)
     return RealHyperbolic.at(ar, odd, y, series.steepness, terms)
 
 
-def omega(ar: Arithmetic, ij: str, eta: Real, v: Complex, modulus: Modulus) -> Complex:
+@in_arithmetic
+def omega(ar: FunctionArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus) -> Complex:
     """Return Omega_ij(eta, v) of section 2, for real eta.
 
     Real v: the real part.  Imaginary v = i alpha, |alpha| < K': i times a phase continuous in eta,
@@ -126,27 +133,30 @@ def omega(ar: Arithmetic, ij: str, eta: Real, v: Complex, modulus: Modulus) -> C
     return _evaluate(ar, "omega", ij, (eta, v), modulus)
 
 
-def pi_function(ar: Arithmetic, ij: str, eta: Real, v: Complex, modulus: Modulus) -> Complex:
+@in_arithmetic
+def pi_function(
+    ar: FunctionArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus
+) -> Complex:
     """Return Pi_ij(eta, v) = eta Z_ij(v) + Omega_ij(eta, v), (3,1) and (3,2), as `omega` does."""
     return _evaluate(ar, "pi", ij, (eta, v), modulus)
 
 
 def _evaluate(
-    ar: Arithmetic, name: str, ij: str, place: tuple[Real, Complex], modulus: Modulus
+    ar: Any, name: str, ij: str, place: tuple[Value, Complex], modulus: Modulus
 ) -> Complex:
     """Return Omega or Pi of numbers of a context, or of arrays that broadcast."""
     eta, v = place
-    if not has_arrays(ar):
+    if not ar.is_array:
         v = ar.convert(v)
         series = series_for(ar, modulus)
         kind = third_kind(ar, ij, v, modulus)
         value = getattr(kind, name)(ar, in_periods(ar, ar.convert(eta), series))
         return ar.mpc(0, value) if ar.im(v) else value
-    eta, v, *parts = ar.broadcast_arrays(eta, v, *modulus)
-    values = ar.zeros(eta.shape, dtype=v.dtype if ar.iscomplexobj(v) else float)
-    many = many_digits()
+    eta, v, *parts = np.broadcast_arrays(eta, v, *modulus)
+    values = np.zeros(eta.shape, dtype=v.dtype if np.iscomplexobj(v) else float)
+    many = ManyDigits()
     for pair in {tuple(pair) for pair in zip(*(x.ravel() for x in (v, *parts)), strict=True)}:
-        same = ar.all([x == y for x, y in zip((v, *parts), pair, strict=True)], axis=0)
+        same = np.all([x == y for x, y in zip((v, *parts), pair, strict=True)], axis=0)
         exact = in_many_digits(many, Modulus(*pair[1:]))
         kind = third_kind(many, ij, many.convert(complex(pair[0])), exact).rounded()
         x = in_periods(ar, eta[same], rounded(series_for(many, exact)))

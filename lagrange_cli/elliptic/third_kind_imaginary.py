@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..arithmetic.generic import Arithmetic, Real, where
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from .periods import Periods
 
 
@@ -22,23 +22,23 @@ class ImaginaryCircular:
     """Whether the function is that of x + 1/2."""
     sign: int
     """Sign of alpha."""
-    zeta: Real
+    zeta: Value
     """2K Z(i |alpha|)/i."""
-    growth: Real
+    growth: Value
     """What Pi grows by in a period: zeta, and half a turn of the odd function."""
-    floor: Real
+    floor: Value
     """theta01(i y) of the even function, which vanishes with K' - alpha."""
-    heights: tuple[Real, ...]
+    heights: tuple[Value, ...]
     """Coefficients with cosh."""
-    slants: tuple[Real, ...]
+    slants: tuple[Value, ...]
     """Coefficients with sinh."""
 
     @classmethod
     def at(
-        cls, ar: Arithmetic, ij: str, y: Real, zeta: Real, q: Real, *, terms: int
+        cls, ar: FunctionArithmetic, ij: str, y: Value, zeta: Value, q: Value, *, terms: int
     ) -> ImaginaryCircular:
         """Return the constants from y = alpha/2K, the nome and zeta = 2K Z(i |alpha|)/i."""
-        odd, size, floor = ij[0] == "1", abs(y), ar.mpf(1)
+        odd, size, floor = ij[0] == "1", abs(y), ar.convert(1)
         if odd:
             weights = [(-1) ** h * q ** (h * (h + 1)) / ar.cosh(ar.pi * size) for h in range(terms)]
             angles = [(2 * h + 1) * ar.pi * size for h in range(terms)]
@@ -55,19 +55,19 @@ class ImaginaryCircular:
         sign = -1 if y < 0 else 1
         return cls(odd, ij[1] == "0", sign, zeta, growth, floor, heights, slants)
 
-    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return the phase of the theta function."""
         half_turns, within = self._phase(ar, x)
         return self.sign * (ar.pi * half_turns + within)
 
-    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Pi, by its growth over the periods and what is left within one."""
         half_turns, within = self._phase(ar, x)
         if self.odd:
             within = within + ar.pi * (half_turns - x.turns)
         return self.sign * (self.growth * x.turns + (self.zeta * x.rest + within))
 
-    def _phase(self, ar: Arithmetic, x: Periods) -> tuple[Real, Real]:
+    def _phase(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value]:
         """Return whole half turns of the phase, and the rest of it."""
         turns, rest, _ = x.half_further(ar) if self.shifted else x
         series = list(enumerate(zip(self.heights, self.slants, strict=True)))
@@ -102,25 +102,25 @@ class ImaginaryHyperbolic:
     ij: str
     sign: int
     """Sign of alpha."""
-    steepness: Real
-    turn: Real
+    steepness: Value
+    turn: Value
     """2 c y = pi |alpha|/K', less than pi."""
-    slope: Real
+    slope: Value
     """Z of the sum alone: 2K Z(i |alpha|)/i + 2 c y."""
-    growth: Real
+    growth: Value
     """What Pi grows by in a period: 2K Z(i |alpha|)/i, and half a turn of the odd function."""
-    cosines: tuple[Real, ...]
+    cosines: tuple[Value, ...]
     """cos 2 c n y."""
-    sines: tuple[Real, ...]
+    sines: tuple[Value, ...]
     """sin 2 c n y."""
 
     @classmethod
     def at(
-        cls, ar: Arithmetic, ij: str, y: Real, steepness: Real, terms: int
+        cls, ar: FunctionArithmetic, ij: str, y: Value, steepness: Value, terms: int
     ) -> ImaginaryHyperbolic:
         """Return the constants from y = alpha/2K and the steepness."""
         c, half_turn = steepness, steepness * abs(y)
-        orders = [ar.mpf(2 * i + 1 if ij[1] == "1" else 2 * i) / 2 for i in range(terms)]
+        orders = [ar.convert(2 * i + 1 if ij[1] == "1" else 2 * i) / 2 for i in range(terms)]
         signs = [(-1) ** i if ij[0] == "1" else 1 for i in range(terms)]
         cosines = tuple(ar.cos(2 * n * half_turn) for n in orders)
         sines = tuple(ar.sin(2 * n * half_turn) for n in orders)
@@ -139,17 +139,17 @@ class ImaginaryHyperbolic:
         growth = slope - turn + ar.pi if ij[0] == "1" else slope - turn
         return cls(ij, -1 if y < 0 else 1, c, turn, slope, growth, cosines, sines)
 
-    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return the phase of the theta function."""
         half_turns = ar.pi * x.turns if self.ij[0] == "1" else 0 * x.turns
         return self.sign * (half_turns + (self.turn * x.rest + self._phase(ar, x.rest)))
 
-    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Pi, by its growth over the periods and what is left within one."""
         within = self.slope * x.rest + self._phase(ar, x.rest)
         return self.sign * (self.growth * x.turns + within)
 
-    def _phase(self, ar: Arithmetic, rest: Real) -> Real:
+    def _phase(self, ar: FunctionArithmetic, rest: Value) -> Value:
         """Return the phase of the sum alone, within a period."""
         c, size, half = self.steepness, abs(rest), self.ij[1] == "1"
         plus = minus = 0 * size, 0 * size
@@ -163,7 +163,7 @@ class ImaginaryHyperbolic:
         if self.ij != "11":
             return -ar.sign(rest) * ar.atan2(minus[1], plus[0])
         turned = ar.atan2(plus[1], minus[0])
-        return where(rest < 0, turned - ar.pi, -turned)
+        return ar.where(rest < 0, turned - ar.pi, -turned)
 
     def rounded(self) -> ImaginaryHyperbolic:
         """Return the parameter with its constants in doubles."""

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..arithmetic.generic import Arithmetic, Real, where
+from ..arithmetic.protocol import FunctionArithmetic, Value
 from .periods import Periods
 
 
-def _distance(x: Periods, size: Real, low: Real) -> Real:
+def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Value:
     """Return how far |x| and |y| are apart, |y| being size + low."""
-    return abs((abs(x.rest) - size) + (where(x.rest < 0, -x.low, x.low) - low))
+    return abs((abs(x.rest) - size) + (ar.where(x.rest < 0, -x.low, x.low) - low))
 
 
 @dataclass(frozen=True)
@@ -24,22 +24,22 @@ class RealCircular:
     odd: bool
     sign: int
     """Sign of y."""
-    growth: Real
+    growth: Value
     """2K Z(|v|), what Pi grows by in a period."""
-    cosines: tuple[Real, ...]
+    cosines: tuple[Value, ...]
     """Coefficients of the series of P (odd: of A) below."""
-    sines: tuple[Real, ...]
+    sines: tuple[Value, ...]
     """Coefficients of the series of Q (odd: of B) below."""
-    weights: tuple[Real, ...]
+    weights: tuple[Value, ...]
     """Coefficients of both, before they are multiplied by cosines and sines."""
-    size: Real
+    size: Value
     """|y|."""
-    low: Real = 0.0
+    low: Value = 0.0
     """What rounding took from |y|."""
 
     @classmethod
     def at(
-        cls, ar: Arithmetic, odd: bool, y: Real, growth: Real, q: Real, *, terms: int
+        cls, ar: FunctionArithmetic, odd: bool, y: Value, growth: Value, q: Value, *, terms: int
     ) -> RealCircular:
         """Return the constants from y and the nome.
 
@@ -59,7 +59,7 @@ class RealCircular:
         sines = tuple(weight * ar.sin(angle) for weight, angle in parts)
         return cls(odd, -1 if y < 0 else 1, growth, cosines, sines, tuple(weights), size)
 
-    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Omega = artanh Q/P or, of the odd function, -artanh B/A or A/B.
 
         Next to its pole the latter is log[(A - B)/(A + B)]/2, A - B being the series at |x| - |y|.
@@ -72,14 +72,14 @@ class RealCircular:
             return side * ar.atanh(Q / P)
         A = sum(a * ar.sin((2 * h + 1) * ar.pi * size) for h, (a, _) in series)
         B = sum(b * ar.cos((2 * h + 1) * ar.pi * size) for h, (_, b) in series)
-        near = _distance(x, self.size, self.low)
+        near = _distance(ar, x, self.size, self.low)
         close = abs(sum(w * ar.sin((2 * h + 1) * ar.pi * near) for h, w in enumerate(self.weights)))
         pole = 2 * close < A + B
-        ratio = where(A < B, A, B) / where(A < B, B, A)
-        logarithm = ar.log(where(pole, close / (A + B), 1 + 0 * A)) / 2
-        return side * where(pole, logarithm, -ar.atanh(where(pole, 0 * ratio, ratio)))
+        ratio = ar.where(A < B, A, B) / ar.where(A < B, B, A)
+        logarithm = ar.log(ar.where(pole, close / (A + B), 1 + 0 * A)) / 2
+        return side * ar.where(pole, logarithm, -ar.atanh(ar.where(pole, 0 * ratio, ratio)))
 
-    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Pi, by its growth over the periods and what is left within one."""
         return (self.sign * self.growth) * x.turns + (
             (self.sign * self.growth) * x.rest + self.omega(ar, x)
@@ -110,23 +110,25 @@ class RealHyperbolic:
     odd: bool
     sign: int
     """Sign of y."""
-    growth: Real
+    growth: Value
     """2K Z(|v|), what Pi grows by in a period."""
-    size: Real
+    size: Value
     """|y|."""
-    room: Real
+    room: Value
     """1 - 2 |y|."""
-    steepness: Real
-    slope: Real
+    steepness: Value
+    slope: Value
     """d log S/da at |y|."""
-    tilt: Real
+    tilt: Value
     """The slope and the steepness; they cancel for small y."""
     terms: int
-    low: Real = 0.0
+    low: Value = 0.0
     """What rounding took from |y|."""
 
     @classmethod
-    def at(cls, ar: Arithmetic, odd: bool, y: Real, steepness: Real, terms: int) -> RealHyperbolic:
+    def at(
+        cls, ar: FunctionArithmetic, odd: bool, y: Value, steepness: Value, terms: int
+    ) -> RealHyperbolic:
         """Return the constants from y and the steepness."""
         size, c = abs(y), steepness
         rise = total = 0 * y
@@ -141,18 +143,18 @@ class RealHyperbolic:
         room, sign = 1 - 2 * size, -1 if y < 0 else 1
         return cls(odd, sign, c * room + slope, size, room, c, slope, slope + c, terms)
 
-    def omega(self, ar: Arithmetic, x: Periods) -> Real:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Omega = -c small (1 - 2 large) + log[S(a)/S(b)]/2, of the two sizes |x|, |y|."""
-        small, room, apart = self._sorted(x)
+        small, room, apart = self._sorted(ar, x)
         main = -self.steepness * small * room
         return self.sign * ar.sign(x.rest) * (main + self._ratio(ar, small, room, apart))
 
-    def pi(self, ar: Arithmetic, x: Periods) -> Real:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Pi, by its growth over the periods and what is left within one."""
         size, c = abs(x.rest), self.steepness
-        small, room, apart = self._sorted(x)
+        small, room, apart = self._sorted(ar, x)
         if c * self.size > 1:  # the multiples of c have cancelled
-            within = size * self.slope + c * where(size < self.size, 0 * apart, apart)
+            within = size * self.slope + c * ar.where(size < self.size, 0 * apart, apart)
         else:
             within = size * self.tilt - c * small
         within = within + self._ratio(ar, small, room, apart)
@@ -174,22 +176,22 @@ class RealHyperbolic:
             low=float(self.size - size),
         )
 
-    def _sorted(self, x: Periods) -> tuple[Real, Real, Real]:
+    def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value, Value]:
         """Return the smaller of |x| and |y|, 1 - 2 times the larger, and their distance."""
         size = abs(x.rest)
-        room = (1 - 2 * size) - 2 * where(x.rest < 0, -x.low, x.low)
+        room = (1 - 2 * size) - 2 * ar.where(x.rest < 0, -x.low, x.low)
         less = size < self.size
-        apart = _distance(x, self.size, self.low)
-        return where(less, size, self.size), where(less, self.room, room), apart
+        apart = _distance(ar, x, self.size, self.low)
+        return ar.where(less, size, self.size), ar.where(less, self.room, room), apart
 
-    def _ratio(self, ar: Arithmetic, small: Real, room: Real, a: Real) -> Real:
+    def _ratio(self, ar: FunctionArithmetic, small: Value, room: Value, a: Value) -> Value:
         """Return log[S(a)/S(b)]/2 from the difference of the two, which keeps its digits.
 
         S is a sum of exp(-c i (i + 1 - 2a)) and their images exp(-c (i + 1)(i + 2a)); of the odd
         function the signs alternate and the images are subtracted.
         """
         c = self.steepness
-        apart = where(2 * small < room, 2 * small, room)
+        apart = ar.where(2 * small < room, 2 * small, room)
         b = a + apart
         difference = total = 0 * a
         for i in range(self.terms):
@@ -205,11 +207,11 @@ class RealHyperbolic:
         if not self.odd:
             return ar.log1p(quotient) / 2
         pole = quotient < -0.5  # S(a) nearly vanishes
-        there = self._odd_sum(ar, where(pole, a, 0 * a + 0.5)) / total
-        logarithm = ar.log(where(pole, there, 0 * there + 1))
-        return where(pole, logarithm, ar.log1p(where(pole, 0 * quotient, quotient))) / 2
+        there = self._odd_sum(ar, ar.where(pole, a, 0 * a + 0.5)) / total
+        logarithm = ar.log(ar.where(pole, there, 0 * there + 1))
+        return ar.where(pole, logarithm, ar.log1p(ar.where(pole, 0 * quotient, quotient))) / 2
 
-    def _odd_sum(self, ar: Arithmetic, a: Real) -> Real:
+    def _odd_sum(self, ar: FunctionArithmetic, a: Value) -> Value:
         """Return S(a) of the odd function."""
         c, total = self.steepness, 0 * a
         for i in range(self.terms):

@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterable, Mapping
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from typing import Any, NamedTuple, Self, TypeVar
+from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 from ..arithmetic.decimals import pi_to
-from ..arithmetic.generic import Arithmetic, Number, Real, number
+from ..arithmetic.doubles import DOUBLES
+from ..arithmetic.protocol import Arithmetic, Number, R
 from ..errors import LagtopError
 
 N = TypeVar("N")
@@ -33,15 +34,15 @@ _DIGITS_SHOWN = Context(
 """A context of our own, so that no message depends on the one of the caller."""
 
 
-class Tilt(NamedTuple):
+class Tilt(NamedTuple, Generic[R]):
     """Sines and cosines of theta0 and of its half."""
 
-    sin: Real
-    cos: Real
-    sin_half: Real
-    cos_half: Real
+    sin: R
+    cos: R
+    sin_half: R
+    cos_half: R
 
-    def degrees(self, ar: Arithmetic) -> Real:
+    def degrees(self, ar: Arithmetic[R]) -> R:
         """Return the angle itself, in degrees."""
         return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
 
@@ -128,32 +129,32 @@ class Top(_Inputs):
 
     _replace = replace
 
-    def inputs(self, *, radians: bool = False, ar: Arithmetic = math) -> dict[str, Any]:
+    def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
         names = ["m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"]
         values: dict[str, Any] = {name: getattr(self, name) for name in names[:6]}
         values["theta0_rad" if radians else "theta0_deg"] = self._tilt_in(radians, ar)
         return values | {name: getattr(self, name) for name in names[6:]}
 
-    def _tilt_in(self, radians: bool, ar: Arithmetic) -> Real:
+    def _tilt_in(self, radians: bool, ar: Arithmetic[Any]) -> Any:
         wanted, other = self.theta0_deg, self.theta0_rad
         if radians:
             wanted, other = other, wanted
         if wanted is not None:
             return wanted
-        return number(ar, _known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
+        return ar.convert(_known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
 
-    def tilt(self, ar: Arithmetic) -> Tilt:
+    def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
         """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
         if self.theta0_rad is not None:
-            arc = number(ar, self.theta0_rad)
+            arc = ar.convert(self.theta0_rad)
             return Tilt(ar.sin(arc), ar.cos(arc), ar.sin(arc / 2), ar.cos(arc / 2))
         tilt = Fraction(_known(self.theta0_deg))
-        nearer = number(ar, min(tilt, 180 - tilt)) * ar.pi / 180
+        nearer = ar.convert(min(tilt, 180 - tilt)) * ar.pi / 180
         sin_half, cos_half = ar.sin(nearer / 2), ar.cos(nearer / 2)
         if tilt > 90:
             sin_half, cos_half = cos_half, sin_half
-        cosine = ar.sin(number(ar, 90 - tilt) * ar.pi / 180)
+        cosine = ar.sin(ar.convert(90 - tilt) * ar.pi / 180)
         return Tilt(ar.sin(nearer), cosine, sin_half, cos_half)
 
     @property

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.double_double import Pair, Triple, fraction_of_product, pair, triple
-from ..arithmetic.generic import Arithmetic, Real
+from ..arithmetic.protocol import Arithmetic, R
 from ..arithmetic.types import Array
 
 
@@ -55,10 +55,10 @@ class Growths(NamedTuple):
 
 
 def growths(
-    ar: Arithmetic,
-    rates: tuple[Real, Real],
-    slopes: tuple[Real, Real] = (0, 0),
-    starts: tuple[Real, Real] = (0, 0),
+    ar: Arithmetic[R],
+    rates: tuple[R, R],
+    slopes: tuple[R | int, R | int] = (0, 0),
+    starts: tuple[R | int, R | int] = (0, 0),
 ) -> Growths:
     """Return the growth of the four angles from that of spin and precession.
 
@@ -67,7 +67,7 @@ def growths(
     """
     (phi, psi), (phi_slope, psi_slope), (x, y) = rates, slopes, starts
 
-    def growth(rate: Real, slope: Real, start: Real) -> Growth:
+    def growth(rate: Any, slope: Any, start: Any) -> Growth:
         return Growth(pair(rate), triple(rate / (2 * ar.pi)), float(slope), float(start))
 
     return Growths(

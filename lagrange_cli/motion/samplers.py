@@ -23,8 +23,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arithmetic.blocks import blocks, polynomial
 from ..arithmetic.double_double import Pair, reduce_phase
-from ..arithmetic.generic import blocks, polynomial
 from ..arithmetic.points import MAX_TIME
 from ..arithmetic.types import Array
 from ..errors import LagtopError

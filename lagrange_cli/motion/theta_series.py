@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..arithmetic.generic import Arithmetic, Real
+from ..arithmetic.protocol import SeriesArithmetic, Value
 
 TERMS = 4
 """Enough for doubles."""
@@ -57,26 +57,26 @@ class Frame(NamedTuple):
 class ThetaConstants(NamedTuple):
     """What the series need to know of a nutating top."""
 
-    period: Real
-    quarter: Real
+    period: Value
+    quarter: Value
     """K."""
-    quarter_prime: Real
+    quarter_prime: Value
     """K'; None where it is infinite (no torque)."""
-    eta_plus: Real
+    eta_plus: Value
     """2K y+/pi, the parameter of X."""
-    eta_minus: Real
+    eta_minus: Value
     """2K y-/pi, the parameter of Y."""
-    x_size: Real
+    x_size: Value
     """|X| at u1, which is cos(theta_min/2)."""
-    y_size: Real
+    y_size: Value
     """|Y| at u2, sin(theta_max/2), times sqrt(k') as theta3(x)/theta3(0) shrinks on the way."""
     sign_plus: int
     sign_minus: int
-    offset: Real
+    offset: Value
     """Periods since the nearest passage of u1, at t = 0."""
     rises: int
     """Sign of the nutation rate at t = 0; +1 where it is 0."""
-    nutation: Real
+    nutation: Value
     """-du/dt near a passage of u1 is `nutation` times the phase x."""
 
 
@@ -85,20 +85,20 @@ class Series(NamedTuple):
 
     hyperbolic: bool
     frames: list[Frame]
-    scale: Real
+    scale: Value
     """Argument of the functions per step of the phase."""
-    spin_slope: Real
+    spin_slope: Value
     """What the spin has over its mean growth per step; the series winds by as much less."""
-    precession_slope: Real
+    precession_slope: Value
 
 
-def theta_series(ar: Arithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
+def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and c.quarter > c.quarter_prime
     return (_hyperbolic_series if hyperbolic else _circular_series)(ar, c, terms)
 
 
-def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
+def _circular_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int) -> Series:
     """Return the series in q, which wind by +-pi over a period."""
     zero = 0 * c.quarter
     q = ar.exp(-ar.pi * c.quarter_prime / c.quarter) if c.quarter_prime is not None else zero
@@ -116,9 +116,9 @@ def _circular_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
     )
 
 
-def _hyperbolic_series(ar: Arithmetic, c: ThetaConstants, terms: int) -> Series:
+def _hyperbolic_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int) -> Series:
     """Return the series in q'; Jacobi's transformation adds a linear exponent of its own."""
-    ratio: Real = c.quarter / c.quarter_prime
+    ratio: Value = c.quarter / c.quarter_prime
     q = ar.exp(-ar.pi * ratio)
     v_plus, v_minus = (ar.pi * eta / (2 * c.quarter_prime) for eta in (c.eta_plus, c.eta_minus))
     even = [(2 if n else 1) * _power(q, n * n) for n in range(terms)]
@@ -141,7 +141,7 @@ def _frames(x: Components, y: Components, rate: Polynomial) -> list[Frame]:
 
 
 def _circular_components(
-    ar: Arithmetic, weights: list[Real], y: Real, size: Real, sign: int
+    ar: SeriesArithmetic[Any], weights: list[Value], y: Value, size: Value, sign: int
 ) -> Components:
     """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0."""
     cosh = [w * ar.cosh((2 * n + 1) * y) for n, w in enumerate(weights)]
@@ -156,18 +156,18 @@ def _circular_components(
     )
 
 
-def _weights(q: Real, terms: int) -> list[Real]:
+def _weights(q: Value, terms: int) -> list[Value]:
     """Return q^(n(n+1)), the weights of theta1 and theta2 over 2 q^(1/4)."""
     return [_power(q, n * (n + 1)) for n in range(terms)]
 
 
-def _power(q: Real, n: int) -> Real:
+def _power(q: Value, n: int) -> Value:
     """Return q^n, which is 1 for n = 0 even where q = 0."""
     return q**n if n else 0 * q + 1
 
 
 def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
-    ar: Arithmetic, even: list[Real], odd: list[Real], v: Real, sign: int, size: Real
+    ar: SeriesArithmetic[Any], even: list[Value], odd: list[Value], v: Value, sign: int, size: Value
 ) -> Components:
     """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h."""
     cos_even = _alternate([w * ar.cos(2 * n * v) for n, w in enumerate(even)])
@@ -183,7 +183,7 @@ def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
     )
 
 
-def _rate(weights: list[Real], curvature: int, nutation: Real) -> Polynomial:
+def _rate(weights: list[Value], curvature: int, nutation: Value) -> Polynomial:
     """Return theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
     terms = [0 * nutation] * (2 * len(weights))
     terms[1::2] = _alternate(weights)
@@ -191,12 +191,12 @@ def _rate(weights: list[Real], curvature: int, nutation: Real) -> Polynomial:
     return _sum(_SIN_EVEN, curvature, unit, terms)
 
 
-def _alternate(terms: list[Real]) -> list[Real]:
+def _alternate(terms: list[Value]) -> list[Value]:
     return [-term if n % 2 else term for n, term in enumerate(terms)]
 
 
 def _sum(
-    family: tuple[list[int], list[int]], curvature: int, unit: Real, weights: list[Real]
+    family: tuple[list[int], list[int]], curvature: int, unit: Value, weights: list[Value]
 ) -> Polynomial:
     """Return a weighted sum of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
     total: Polynomial = [0 * unit] * len(weights)
@@ -215,8 +215,8 @@ def _next(previous: list[int], current: list[int]) -> list[int]:
 
 
 def evaluate(
-    ar: Arithmetic, series: Series, frame: Frame, phase: Real, rises: int
-) -> tuple[Real, Real, Real, Real]:
+    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Value, rises: int
+) -> tuple[Value, Value, Value, Value]:
     """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
     On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
@@ -225,7 +225,7 @@ def evaluate(
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
 
-    def polar(c: Component, side: int) -> tuple[Real, Real]:
+    def polar(c: Component, side: int) -> tuple[Value, Value]:
         P, Q = (sum(p * _power(S * S, i) for i, p in enumerate(poly)) for poly in (c.real, c.imag))
         real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
         return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)

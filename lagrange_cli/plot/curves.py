@@ -12,8 +12,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.generic import Number
+from ..arithmetic.protocol import Number
 from ..arithmetic.types import Array
 from ..elliptic import carlson_rf, complete_k
 from ..errors import LagtopError
@@ -105,7 +106,7 @@ def _half_period(k_prime: float) -> Array:
     """
     amplitude = np.linspace(0.0, math.pi / 2, PHASES + 1)
     sin, cos2 = np.sin(amplitude), np.cos(amplitude) ** 2
-    F = sin * carlson_rf(np, cos2, cos2 + (k_prime * sin) ** 2, np.ones_like(sin))
+    F = sin * carlson_rf(ARRAYS, cos2, cos2 + (k_prime * sin) ** 2, np.ones_like(sin))
     fraction: Array = F / (2 * complete_k(DOUBLES, k_prime))
     fraction[-1] = 0.5
     return 0.5 - fraction[::-1]

@@ -141,7 +141,7 @@ class TopArrays(NamedTuple):
             psi_rate=zero,
         )
 
-    def tilt(self) -> Tilt:
+    def tilt(self) -> Tilt[Array]:
         """Sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
         in_radians = ~np.isnan(self.theta0_rad)
         if in_radians.all():
@@ -153,11 +153,11 @@ class TopArrays(NamedTuple):
         return Tilt(*(np.where(in_radians, x, y) for x, y in zip(other, tilt, strict=True)))
 
 
-def _tilt_of_radians(tilt: Array) -> Tilt:
+def _tilt_of_radians(tilt: Array) -> Tilt[Array]:
     return Tilt(np.sin(tilt), np.cos(tilt), np.sin(tilt / 2), np.cos(tilt / 2))
 
 
-def _tilt_of_degrees(tilt: Array) -> Tilt:
+def _tilt_of_degrees(tilt: Array) -> Tilt[Array]:
     nearer = np.minimum(tilt, 180 - tilt)
     arc, rest = _in_radians(DoubleDouble(nearer))
     sin, sin_half, cos_half = np.sin(arc), np.sin(arc / 2), np.cos(arc / 2)

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.arithmetic.generic import many_digits
+from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import units
 from lagrange_cli.elliptic.eta import digit_rows, eta_constants, record, rows
@@ -87,7 +87,7 @@ def test_eta(name: str) -> None:
     with mpmath.workdps(60):
         integral = Integral(of)
         period = 2 * integral.tau(mpmath.pi)
-        assert abs(mpmath.mpf(eta_constants(many_digits(50), of).period) / period - 1) < 1e-45
+        assert abs(mpmath.mpf(eta_constants(ManyDigits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
         block = next(rows(of, ListedPoints(times), Fraction(0))[1])
         for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
@@ -117,7 +117,7 @@ def test_the_top_is_the_cubic_case() -> None:
     times = np.linspace(-3, 400, 1001)
     block = next(rows(of, ListedPoints([Fraction(t) for t in times]), exact["T_nutation"] / 2)[1])
     assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
-    assert float(eta_constants(many_digits(50), of).period) == solve(Top()).T_nutation
+    assert float(eta_constants(ManyDigits(50), of).period) == solve(Top()).T_nutation
 
 
 @given(
@@ -150,7 +150,7 @@ def test_far_times(lagtop: Lagtop) -> None:
     assert shown.splitlines()[1] == "1.0e+60,0.46542969581402027,-0.31188048026682578"
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
     of = ORBITS["generic"]
-    period = eta_constants(many_digits(60), of).period
+    period = eta_constants(ManyDigits(60), of).period
     shifted = next(rows(of, ListedPoints([Fraction(1)]), rational(10**15 * period))[1])
     assert shifted == pytest.approx(
         next(rows(of, ListedPoints([Fraction(1)]), Fraction(0))[1]), abs=1e-14

@@ -16,7 +16,7 @@ from scenes import EPS
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.generic import many_digits
+from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.bench.reference import units
 from lagrange_cli.elliptic import carlson_rf, complete_k
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rj
@@ -56,7 +56,7 @@ def arguments(rng: random.Random, K: float) -> float:
 
 def errors(name: str, value: float, u: float) -> list[float]:
     """Return the errors of am, sn, cn, dn in units."""
-    ours = jacobi(np, u, modulus(np, **{name: value}))
+    ours = jacobi(ARRAYS, u, modulus(ARRAYS, **{name: value}))
     with mpmath.workdps(700):
         x = mpmath.mpf(value)
         m = {"k": x**2, "k_prime": 1 - x**2, "m": x}[name]
@@ -79,7 +79,7 @@ def test_jacobi() -> None:
     """Worst seen in 20 000: 1.23 units."""
     rng = random.Random("sn")
     for _, (name, value) in zip(range(500), moduli(rng), strict=False):
-        K = float(complete_k(ARRAYS, modulus(np, **{name: value}).k_prime))
+        K = float(complete_k(ARRAYS, modulus(ARRAYS, **{name: value}).k_prime))
         assert max(errors(name, value, arguments(rng, K))) <= 1.25
 
 
@@ -100,7 +100,7 @@ def test_where_scipy_fails(name: str, value: float, u: float) -> None:
 
 def test_the_limits_of_the_modulus() -> None:
     u = np.array([-800.0, -400.0, -1.5, 0.0, 1e-9, 0.5, 356.0, 1e300])
-    one = jacobi(np, u, modulus(np, k=1.0))
+    one = jacobi(ARRAYS, u, modulus(ARRAYS, k=1.0))
     bounded = np.clip(u, -40, 40)
     np.testing.assert_allclose(one.sn, np.tanh(bounded), rtol=4 * EPS)
     np.testing.assert_allclose(
@@ -108,7 +108,7 @@ def test_the_limits_of_the_modulus() -> None:
     )
     assert abs(one.am).max() <= np.pi / 2
     u = u[2:6]
-    zero = jacobi(np, u, modulus(np, k=0.0))
+    zero = jacobi(ARRAYS, u, modulus(ARRAYS, k=0.0))
     for ours, exact in zip(zero, (u, np.sin(u), np.cos(u), 1 + 0 * u), strict=True):
         np.testing.assert_allclose(ours, exact, rtol=4 * EPS)
 
@@ -117,12 +117,12 @@ def test_arrays_of_moduli_give_what_single_ones_give() -> None:
     rng = np.random.default_rng(5)
     k, u = rng.random((40, 1)), rng.uniform(-9, 9, 30)
     k[0], k[1] = 0, 1
-    together = jacobi(np, u, modulus(np, k=k))
+    together = jacobi(ARRAYS, u, modulus(ARRAYS, k=k))
     for i in range(40):
-        alone = jacobi(np, u, modulus(np, k=k[i, 0]))
+        alone = jacobi(ARRAYS, u, modulus(ARRAYS, k=k[i, 0]))
         for one, other in zip(alone, together, strict=True):
             np.testing.assert_allclose(other[i], one, rtol=1e-14, atol=4 * EPS)
-    assert jacobi(np, np.empty((0, 3)), modulus(np, k=0.5)).sn.shape == (0, 3)
+    assert jacobi(ARRAYS, np.empty((0, 3)), modulus(ARRAYS, k=0.5)).sn.shape == (0, 3)
 
 
 def test_theta_and_zeta_on_arrays() -> None:
@@ -131,44 +131,44 @@ def test_theta_and_zeta_on_arrays() -> None:
     with mpmath.workdps(40):
         for _ in range(60):
             k = rng.choice([rng.random(), 1 - 10 ** rng.uniform(-6, 0), 10 ** rng.uniform(-6, 0)])
-            given, m = modulus(np, k=k), mpmath.mpf(k) ** 2
+            given, m = modulus(ARRAYS, k=k), mpmath.mpf(k) ** 2
             K = mpmath.ellipk(m)
             q = mpmath.exp(-mpmath.pi * mpmath.ellipk(1 - m) / K)
             x = rng.uniform(-2, 2)
             v = float(2 * K * x)
             for ij, n in {"01": 4, "00": 3, "11": 1, "10": 2}.items():
                 exact = mpmath.jtheta(n, mpmath.pi * x, q)
-                assert units(float(theta(np, ij, x, given)), exact, 0, 0) <= 3
+                assert units(float(theta(ARRAYS, ij, x, given)), exact, 0, 0) <= 3
                 angle = mpmath.pi * v / (2 * K)
                 value, slope, bend = (mpmath.jtheta(n, angle, q, i) for i in range(3))
                 scale = mpmath.pi / (2 * K)
                 ratio = slope / value
                 rate = scale**2 * (bend / value - ratio**2)
-                assert units(float(zeta(np, ij, v, given)), scale * ratio, rate, v) <= 3
+                assert units(float(zeta(ARRAYS, ij, v, given)), scale * ratio, rate, v) <= 3
 
 
 def test_odd_and_imaginary_parameters_and_mixed_moduli() -> None:
     """Omega_11 and Omega_10 below zero, over periods, at k = 0; values of mixed moduli."""
-    ar = many_digits(40)
+    ar = ManyDigits(40)
     eta = np.linspace(-7, 7, 29)
     for k, alpha in ((0.3, -0.4), (0.95, -0.4), (0.0, 2.5)):
         for ij in ("11", "10"):
             exact = [
                 complex(omega(ar, ij, ar.mpf(x), ar.mpc(0, alpha), modulus(ar, k=k))) for x in eta
             ]
-            ours = omega(np, ij, eta, 1j * alpha, modulus(np, k=k))
+            ours = omega(ARRAYS, ij, eta, 1j * alpha, modulus(ARRAYS, k=k))
             np.testing.assert_allclose(ours, exact, atol=2e-14)
-    mixed = modulus(np, k=np.array([[0.3], [0.95]]))
+    mixed = modulus(ARRAYS, k=np.array([[0.3], [0.95]]))
     for i, k in enumerate((0.3, 0.95)):
         for function in (theta, zeta):
-            alone = function(np, "11", eta + 0.1, modulus(np, k=k))
-            together = function(np, "11", eta + 0.1, mixed)[i]
+            alone = function(ARRAYS, "11", eta + 0.1, modulus(ARRAYS, k=k))
+            together = function(ARRAYS, "11", eta + 0.1, mixed)[i]
             np.testing.assert_allclose(together, alone, rtol=1e-13)
 
 
 def test_complex_arguments() -> None:
     """Far from the real axis, where the largest term is not the first."""
-    ar = many_digits(40)
+    ar = ManyDigits(40)
     for k in (0.1, 0.9):
         m = ar.mpf(k) ** 2
         q = ar.exp(-ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
@@ -176,24 +176,24 @@ def test_complex_arguments() -> None:
             exact = ar.jtheta(n, ar.pi * ar.mpc(0.3, 2.6), q)
             there = theta(ar, ij, ar.mpc(0.3, 2.6), modulus(ar, k=k))
             assert abs(there / exact - 1) < 1e-37
-            ours = theta(np, ij, 0.3 + 2.6j, modulus(np, k=k))
+            ours = theta(ARRAYS, ij, 0.3 + 2.6j, modulus(ARRAYS, k=k))
             assert abs(complex(ours) / complex(exact) - 1) < 1e-13
 
 
 def test_omega_on_arrays() -> None:
     """Real and imaginary parameters, both families of moduli in one array, against many digits."""
-    ar = many_digits(40)
+    ar = ManyDigits(40)
     eta = np.linspace(-7, 7, 29)
     for parameter in (0.3, 0.3j):
         for ij in ("01", "00", "11"):
             for k in (0.3, 0.95):
-                ours = omega(np, ij, eta, parameter, modulus(np, k=k))
+                ours = omega(ARRAYS, ij, eta, parameter, modulus(ARRAYS, k=k))
                 given = modulus(ar, k=k)
                 exact = [
                     complex(omega(ar, ij, ar.mpf(x), ar.mpmathify(parameter), given)) for x in eta
                 ]
                 np.testing.assert_allclose(ours, exact, atol=2e-14)
-    both = omega(np, "11", eta, 0.3j, modulus(np, k=np.array([[0.3], [0.95]])))
+    both = omega(ARRAYS, "11", eta, 0.3j, modulus(ARRAYS, k=np.array([[0.3], [0.95]])))
     assert both.shape == (2, 29)
 
 
@@ -210,22 +210,22 @@ def test_carlson() -> None:
         x = np.float64(0) if i % 5 == 0 else x
         with mpmath.workdps(120):
             many = [mpmath.mpf(float(value)) for value in (x, y, z, p)]
-            assert relative(carlson_rf(np, x, y, z), mpmath.elliprf(*many[:3])) <= 2.2
-            assert relative(carlson_rc(np, x, y), mpmath.elliprc(*many[:2])) <= 1.6
-            assert relative(carlson_rd(np, x, y, z), mpmath.elliprd(*many[:3])) <= 2.6
-            assert relative(carlson_rj(np, x, y, z, p), mpmath.elliprj(*many)) <= 3.5
+            assert relative(carlson_rf(ARRAYS, x, y, z), mpmath.elliprf(*many[:3])) <= 2.2
+            assert relative(carlson_rc(ARRAYS, x, y), mpmath.elliprc(*many[:2])) <= 1.6
+            assert relative(carlson_rd(ARRAYS, x, y, z), mpmath.elliprd(*many[:3])) <= 2.6
+            assert relative(carlson_rj(ARRAYS, x, y, z, p), mpmath.elliprj(*many)) <= 3.5
 
 
 def test_carlson_at_equal_arguments_and_over_the_range() -> None:
     x = np.array([0.5, 2.0, 1e60, 1e-60])
-    np.testing.assert_allclose(carlson_rc(np, x, x), 1 / np.sqrt(x), rtol=2 * EPS)
-    np.testing.assert_allclose(carlson_rj(np, x, x, x, x), x**-1.5, rtol=4 * EPS)
+    np.testing.assert_allclose(carlson_rc(ARRAYS, x, x), 1 / np.sqrt(x), rtol=2 * EPS)
+    np.testing.assert_allclose(carlson_rj(ARRAYS, x, x, x, x), x**-1.5, rtol=4 * EPS)
     wide = np.array([1e100]), np.array([1e-100])
-    assert relative(carlson_rc(np, *wide)[0], mpmath.elliprc(1e100, 1e-100)) <= 2
+    assert relative(carlson_rc(ARRAYS, *wide)[0], mpmath.elliprc(1e100, 1e-100)) <= 2
 
 
 def test_many_digits_of_carlson() -> None:
-    ar = many_digits(60)
+    ar = ManyDigits(60)
     x, y, z, p = (ar.mpf(text) for text in ("0.3", "0.2", "5", "0.01"))
     assert abs(carlson_rj(ar, x, y, z, p) / ar.elliprj(x, y, z, p) - 1) < 1e-57
     assert abs(carlson_rd(ar, x, y, z) / ar.elliprd(x, y, z) - 1) < 1e-57
@@ -236,8 +236,8 @@ def test_no_number_ends() -> None:
     nan = np.array([1.0, math.nan])
     with np.errstate(all="ignore"):
         for values in (
-            carlson_rf(np, nan, 1.0, 2.0),
-            carlson_rj(np, nan, 1.0, 2.0, 3.0),
+            carlson_rf(ARRAYS, nan, 1.0, 2.0),
+            carlson_rj(ARRAYS, nan, 1.0, 2.0, 3.0),
             complete_k(ARRAYS, nan),
         ):
             assert np.isnan(values).tolist() == [False, True]
@@ -246,10 +246,11 @@ def test_no_number_ends() -> None:
 def test_carlson_in_blocks() -> None:
     """Arrays longer than a block, of elements that need different numbers of steps."""
     x, y, z, p = np.exp(np.random.default_rng(3).normal(0, 4, (4, 40_000)))
-    together = carlson_rj(np, x, y, z, p)
+    together = carlson_rj(ARRAYS, x, y, z, p)
     some = slice(None, None, 4001)
     alone = [
-        carlson_rj(np, *values) for values in zip(x[some], y[some], z[some], p[some], strict=True)
+        carlson_rj(ARRAYS, *values)
+        for values in zip(x[some], y[some], z[some], p[some], strict=True)
     ]
     np.testing.assert_allclose(together[some], alone, rtol=8 * EPS)
 
@@ -262,45 +263,45 @@ def test_incomplete_integrals() -> None:
         near = math.pi / 2 - 10 ** rng.uniform(-16, 0)
         phi = rng.choice([rng.uniform(0, 1.5707), 10 ** rng.uniform(-10, 0), near])
         k_prime = rng.choice([rng.random(), 10 ** rng.uniform(-100, 0)])
-        given = modulus(np, k_prime=k_prime)
+        given = modulus(ARRAYS, k_prime=k_prime)
         with mpmath.workdps(250):
             m, exact = 1 - mpmath.mpf(k_prime) ** 2, mpmath.mpf(phi)
-            assert relative(incomplete_f(np, phi, given), mpmath.ellipf(exact, m)) <= 3
-            assert relative(incomplete_e(np, phi, given), mpmath.ellipe(exact, m)) <= 3
+            assert relative(incomplete_f(ARRAYS, phi, given), mpmath.ellipf(exact, m)) <= 3
+            assert relative(incomplete_e(ARRAYS, phi, given), mpmath.ellipe(exact, m)) <= 3
 
 
 def test_incomplete_integrals_next_to_an_odd_quarter_turn() -> None:
     """Where phi less half turns must keep the digits that it loses."""
     for phi in (1.570796326808052, 4.71238898038469, -7.853981633974):
-        given = modulus(np, k_prime=1.3e-10)
+        given = modulus(ARRAYS, k_prime=1.3e-10)
         with mpmath.workdps(60):
             exact = mpmath.ellipf(mpmath.mpf(phi), 1 - mpmath.mpf(1.3e-10) ** 2)
-            assert relative(incomplete_f(np, np.float64(phi), given), exact) <= 8
+            assert relative(incomplete_f(ARRAYS, np.float64(phi), given), exact) <= 8
 
 
 def test_incomplete_integrals_beyond_a_quarter_turn() -> None:
     phi = np.linspace(-20, 20, 81)
-    given = modulus(np, k=0.8)
+    given = modulus(ARRAYS, k=0.8)
     for ours, theirs in ((incomplete_f, mpmath.ellipf), (incomplete_e, mpmath.ellipe)):
         exact = [float(theirs(x, mpmath.mpf(0.8) ** 2)) for x in phi]
-        np.testing.assert_allclose(ours(np, phi, given), exact, rtol=8 * EPS)
+        np.testing.assert_allclose(ours(ARRAYS, phi, given), exact, rtol=8 * EPS)
 
 
 @pytest.mark.parametrize("q", [0.0, 1e-200, 0.01, 0.0432139, 0.0432140, 0.5, 0.99])
 def test_inverse_of_the_nome(q: float) -> None:
     with mpmath.workdps(60):
-        k, k_prime, _ = modulus(np, q=q)
+        k, k_prime, _ = modulus(ARRAYS, q=q)
         assert float(k) == pytest.approx(float(mpmath.kfrom(q=mpmath.mpf(q))), rel=4 * EPS)
         there = mpmath.sqrt(1 - mpmath.kfrom(q=mpmath.mpf(q)) ** 2) if q < 0.6 else None
         if there is not None:
             assert float(k_prime) == pytest.approx(float(there), rel=8 * EPS)
     if 0 < q < 1:
-        assert float(constants(np, Modulus(k, k_prime)).q) == pytest.approx(q, rel=1e-13)
+        assert float(constants(ARRAYS, Modulus(k, k_prime)).q) == pytest.approx(q, rel=1e-13)
 
 
 @pytest.mark.parametrize("given", [{}, {"k": 0.1, "q": 0.1}, {"k": 1.1}, {"m": -0.1}, {"q": 1.0}])
 def test_one_modulus_in_range(given: dict[str, float]) -> None:
-    for ar in (np, many_digits(30)):
+    for ar in (ARRAYS, ManyDigits(30)):
         with pytest.raises(LagtopError, match="must be"):
             modulus(ar, **given)
 

@@ -16,6 +16,7 @@ from flint import acb, ctx
 from function_judge import EPS, Judge, ball, units
 
 from lagrange_cli import LagtopError
+from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.function_table import Request, digit_rows, rows
@@ -285,8 +286,8 @@ def test_carlson_with_arguments_many_decades_apart() -> None:
         (carlson_rj, acb.elliptic_rj, slice(None)),
         (carlson_rd, lambda x, y, z: acb.elliptic_rj(x, y, z, z), slice(3)),
     ):
-        ours = function(np, *arguments[last])
-        alone = function(np, *arguments[last, 0])
+        ours = function(ARRAYS, *arguments[last])
+        alone = function(ARRAYS, *arguments[last, 0])
         assert alone == pytest.approx(ours[0], rel=4 * EPS)
         for value, numbers in zip(ours, arguments[last].T, strict=True):
             exact = many(*(acb(ball(float(x))) for x in numbers)).real
@@ -298,4 +299,4 @@ def test_bad_indices_of_the_functions() -> None:
     from lagrange_cli.elliptic.theta import theta
 
     with pytest.raises(LagtopError, match="ij must be 01, 00, 11 or 10"):
-        theta(np, "12", 0.5, modulus(np, k=0.5))
+        theta(ARRAYS, "12", 0.5, modulus(ARRAYS, k=0.5))

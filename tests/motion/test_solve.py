@@ -16,7 +16,7 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.arithmetic.doubles import DOUBLES
-from lagrange_cli.arithmetic.generic import many_digits
+from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.motion.gaps import State, gaps_from_rest, gaps_of, state
 from lagrange_cli.motion.kinds import kind_of
 from lagrange_cli.motion.record import NUMBER_KEYS
@@ -71,7 +71,7 @@ def test_the_formulas_hold_in_every_arithmetic(scene: dict[str, float]) -> None:
     """Floats and mpmath give what decimals give: the formulas do not depend on the digits."""
     top = Top(**scene)
     nearest = cast(dict[str, Any], solve(top).numbers())
-    many, floats = numbers_in(many_digits(80), top), numbers_in(DOUBLES, top)
+    many, floats = numbers_in(ManyDigits(80), top), numbers_in(DOUBLES, top)
     for key, value in nearest.items():
         assert float(many[key]) == value, key
         unit: float = 1 if key in ("u1", "u2", "u_quarter") else abs(value)
