@@ -30,7 +30,6 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
 
 STILL_TO_REWRITE = {
-    "elliptic": 5,
     "sweeps": 25,
     "arithmetic": 31,
     "tests": 16,
