@@ -1,0 +1,101 @@
+"""A sweep computes in arrays only what they can be trusted with: the judge is ball arithmetic."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import random
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from ball_judge import EPS, Judge
+from conftest import Lagtop
+from fuzz_scenes import KINDS
+from scenes import UNIT
+
+from lagrange_cli import Top
+from lagrange_cli.motion.record import NUMBER_KEYS
+from lagrange_cli.sweeps.records import sweep
+
+COSINES = {"u1", "u2", "u_quarter"}
+UNITS = "--m 1 --A 1 --C 1 --s 1 --g 1"
+
+
+def rows(lagtop: Lagtop, line: str) -> list[list[float]]:
+    """Return the numbers that `lagtop sweep` prints."""
+    result = lagtop("sweep", *line.split(), "--format", "csv")
+    assert result.exit_code == 0, result.stderr
+    _, *lines = csv.reader(io.StringIO(result.stdout))
+    return [[float(text) for text in row] for row in lines]
+
+
+@pytest.mark.parametrize("tilt", ["1e-9", "1e-10", "1e-12", "1e-15", "1e-30", "1e-100"])
+def test_a_top_without_spin_that_starts_next_to_the_vertical(tilt: str, lagtop: Lagtop) -> None:
+    """It falls over the lower pole: 180 degrees, and nearly the period of the upright pendulum."""
+    line = f"--r0 0 --theta0 {tilt} --psidot0 1 --keys T_nutation,theta_max_deg"
+    ((period, lowest),) = rows(lagtop, line)
+    judge = Judge(Top(r0=0, theta0_deg=float(tilt), psidot0=1)._asdict())
+    assert judge.relative("T_nutation", period) <= 10
+    assert lowest == pytest.approx(180, abs=1e-6)
+    assert judge.relative("theta_max_deg", lowest) <= 10
+
+
+def test_periods_of_a_top_without_spin(lagtop: Lagtop) -> None:
+    line = "--r0 0 --theta0 1e-12 --psidot0 1 --keys T_nutation,theta_max_deg"
+    assert rows(lagtop, line) == [[pytest.approx(5.344816796840276, rel=1e-15), 180.0]]
+
+
+def test_mean_rates_whose_parts_cancel(lagtop: Lagtop) -> None:
+    """The mean precession goes as 1/thetadot0^2 where the parts are of the size 1."""
+    line = f"{UNITS} --r0 1 --theta0 60 --thetadot0 1e3,1e4,1e5,1e8,1e20"
+    for rate, mean in rows(lagtop, f"{line} --keys thetadot0,mean_precession_rate"):
+        judge = Judge(Top(**UNIT, r0=1, theta0_deg=60, thetadot0=rate)._asdict())
+        assert judge.relative("mean_precession_rate", mean) <= 10, rate
+    assert rows(lagtop, f"{line} --keys mean_precession_rate")[1:3] == [
+        [pytest.approx(9.999999725000012e-9, rel=2e-15)],
+        [pytest.approx(9.99999999725e-11, rel=2e-15)],
+    ]
+    ((mean,),) = rows(lagtop, "--thetadot0 1e4 --r0 1 --keys mean_precession_rate")
+    assert mean == pytest.approx(7.136030594139653e-7, rel=2e-15)
+
+
+def test_cosines_are_good_to_ten_eps_of_one(lagtop: Lagtop) -> None:
+    ((u2,),) = rows(lagtop, "--theta0 90 --r0 1e10 --keys u2")
+    assert abs(u2 + 1.595025930855889e-17) <= 10 * EPS
+
+
+def allowed(key: str, judge: Judge, scene: dict[str, float]) -> float | None:
+    """Return the size to which the error of a key is compared, where it is not its own."""
+    if key in COSINES:
+        return 1.0
+    if not key.endswith("rate_half"):
+        return None
+    parts = judge.half_parts
+    sizes = [] if parts is None else [float(abs(part)) for part in parts]
+    return max([abs(scene["r0"]), *sizes])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_key_is_within_ten_eps(kind: str) -> None:
+    """Forty scenes of each of the worst kinds."""
+    rng = random.Random(f"trusted {kind}")
+    scenes = [{"thetadot0": 0.0, "psidot0": 0.0, **KINDS[kind](rng)} for _ in range(40)]
+    names = sorted({name for scene in scenes for name in scene})
+    columns: dict[str, Any] = {
+        name: [scene.get(name, math.nan) for scene in scenes] for name in names
+    }
+    records = sweep(**columns, keys=[*NUMBER_KEYS, "error"])
+    fine = [i for i, error in enumerate(records["error"]) if not error]
+    assert len(fine) > 20
+    for i in fine:
+        scene = scenes[i]
+        judge = Judge({name: Fraction(value) for name, value in scene.items()})
+        for key in NUMBER_KEYS:
+            value, exact = float(records[key][i]), judge.record.get(key)
+            if exact is None:
+                assert math.isnan(value), (key, scene)
+            else:
+                error = judge.relative(key, value, allowed(key, judge, scene))
+                assert error <= 10 or judge.ulps(key, value) <= 1, (key, error, scene)
