@@ -40,7 +40,7 @@ STARTS: dict[str, dict[str, float]] = {
 
 
 def nanoseconds(work: Callable[[], object], count: int = COUNT) -> float:
-    """Least of seven runs after a warm-up, per sample."""
+    """Return the least time of seven runs after a warm-up, per sample."""
     work()
     best = float("inf")
     for _ in range(7):
@@ -59,7 +59,7 @@ def floor(t: Array) -> None:
 
 
 def integrals(record: dict[str, Column]) -> None:
-    """The least that the record of a top needs of scipy.special, block by block."""
+    """Compute what the record of a top needs at least of scipy.special, block by block."""
     k, k_prime, u3 = (np.asarray(record[key], dtype=float) for key in ("k", "k_prime", "u3"))
     mc, amplitude = k_prime * k_prime, np.radians(record["amplitude_deg"])
     gap = u3 - np.asarray(record["u2"], dtype=float)
@@ -73,7 +73,7 @@ def integrals(record: dict[str, Column]) -> None:
 
 
 def sweeps(rng: np.random.Generator) -> None:
-    """Records of many tops; contract: at most 1.5 of the integrals."""
+    """Time the records of many tops; contract: at most 1.5 of the integrals."""
     count = COUNT // 4
     inputs = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
     record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"])
@@ -97,7 +97,7 @@ def sweeps(rng: np.random.Generator) -> None:
 
 
 def functions(rng: np.random.Generator) -> None:
-    """Arrays of elliptic functions; contract: at most what scipy.special takes."""
+    """Time arrays of elliptic functions; contract: at most what scipy.special takes."""
     u, m = rng.uniform(-10, 10, COUNT), rng.random(COUNT)
     sn, cn, dn, _ = special.ellipj(u, m)
     legendre = cn * cn, dn * dn, np.ones(COUNT), 1 - rng.uniform(-3, 0.9, COUNT) * sn * sn
@@ -135,7 +135,7 @@ def functions(rng: np.random.Generator) -> None:
 
 
 def writing(t: Array) -> None:
-    """`table` to a file as a whole process; contract: at most 2 of sampling and dumping."""
+    """Time `table` to a file as a whole process; contract: at most 2 of sampling and dumping."""
     sampler = solve(Top()).sampler()
 
     def least() -> None:

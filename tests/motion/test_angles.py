@@ -15,7 +15,7 @@ from lagrange_cli.arithmetic.blocks import BLOCK
 
 
 def worst(scene: dict[str, float], motion: Motion, times: list[float]) -> float:
-    """Largest error of the three angles in units of the README."""
+    """Return the largest error of the three angles in units of the README."""
     angles = motion.angles(times)
     return max(
         max(oracle.units(tuple(map(float, row)), oracle.Scene(**scene), t))
@@ -148,7 +148,7 @@ def test_times_out_of_reach(t: float) -> None:
 
 
 def test_no_spin_leaps_at_the_bottom() -> None:
-    """As r0 -> +0, precession and spin turn by half a turn at the lowest point, and only there."""
+    """Where r0 -> +0, spin and precession turn by half a turn at the lowest point alone."""
     for tilt in (30, 150):  # either nome
         motion = solve(Top(r0=0, theta0_deg=tilt))
         t = period(motion) * np.array([0.0, 0.2, 0.499, 0.501, 0.9, 1.2, 1.501])

@@ -40,7 +40,7 @@ def assert_nearest(scene: dict[str, float]) -> None:
     ("C", "r0"), [(1e-40, 1e40), (1e-45, 1e45), (1e-60, 1e60), (1e-80, 1e80), (1e-60, -1e60)]
 )
 def test_precession_of_a_tiny_body_that_spins_fast(C: float, r0: float) -> None:
-    """The same motion of the axis as with C = r0 = 1, since only b = C r0/A moves it."""
+    """Only b = C r0/A moves the axis: psi is that of C = r0 = 1."""
     psi = math.degrees(
         float(solve(Top(**UNIT | {"C": C, "r0": r0, "theta0_deg": 60})).angles(10)[2])
     )

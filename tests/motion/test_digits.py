@@ -30,7 +30,7 @@ def rows_of(top: Top, times: Sequence[Any], digits: int, **options: bool) -> lis
 
 
 def same(text: Any, true: Any, digits: int) -> bool:
-    """All digits right: within half a unit of the last one."""
+    """Return whether all digits are right, within half a unit of the last one."""
     with mpmath.workdps(2 * digits + 50):
         if not true:
             return float(text) == 0

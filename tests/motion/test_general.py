@@ -22,7 +22,7 @@ from lagrange_cli.motion.table import rows
 
 
 def columns(motion: Motion, names: str, t: Array) -> list[Array]:
-    """Columns of `lagtop table` on an even grid of times."""
+    """Return columns of `lagtop table` on an even grid of times."""
     from fractions import Fraction
 
     step = float(t[1] - t[0])
@@ -106,7 +106,7 @@ def test_separatrix_with_spin_against_its_neighbours() -> None:
 
 
 def neighbours(**change: float) -> list[Motion]:
-    """The same scene one ulp below, at and one ulp above a value."""
+    """Return a scene one ulp below, at and one ulp above a value."""
     ((key, value), *fixed) = change.items()
     steps = (math.nextafter(value, -math.inf), value, math.nextafter(value, math.inf))
     return [solve(Top(**(UNIT | dict(fixed) | {key: x}))) for x in steps]
@@ -352,7 +352,7 @@ def test_every_column_in_every_regime_is_a_number(start: dict[str, float]) -> No
 
 
 def rotation_state(scene: Scene) -> list[float]:
-    """The vertical in the body frame and p, q at the start (phi = 0)."""
+    """Return the vertical in the body frame and p, q at the start (phi = 0)."""
     tilt = math.radians(scene["theta0_deg"])
     p = scene["thetadot0"]
     q = scene["psidot0"] * math.sin(tilt)
@@ -360,7 +360,7 @@ def rotation_state(scene: Scene) -> list[float]:
 
 
 def by_heyoka(scene: Scene, times: Array) -> Array:
-    """Taylor's method at 1e-16 on the vertical in the body frame and the body rates p, q."""
+    """Integrate the vertical in the body frame and p, q by Taylor's method at 1e-16."""
     hy = pytest.importorskip("heyoka")
     state = hy.make_vars("gx", "gy", "gz", "p", "q")
     system = list(zip(state, euler_equations(scene, state), strict=True))
@@ -369,7 +369,7 @@ def by_heyoka(scene: Scene, times: Array) -> Array:
 
 
 def by_dop853(scene: Scene, times: Array) -> Array:
-    """The same with scipy's method, at its tightest."""
+    """Integrate the vertical in the body frame and p, q by scipy's method, at its tightest."""
     from scipy.integrate import solve_ivp
 
     found = solve_ivp(
@@ -385,7 +385,7 @@ def by_dop853(scene: Scene, times: Array) -> Array:
 
 
 def euler_equations(scene: Scene, state: Any) -> list[Any]:
-    """d/dt of the vertical in the body frame and of p, q (section 4 of the paper)."""
+    """Return the rates of the vertical in the body frame and of p, q (section 4)."""
     gx, gy, gz, p, q = state
     r0 = scene["r0"]
     ratio = (scene["A"] - scene["C"]) / scene["A"] * r0

@@ -34,7 +34,7 @@ def numbers_in(ar: Any, top: Top) -> dict[str, Any]:
 
 
 def errors(scene: dict[str, float]) -> dict[str, float]:
-    """Relative error of each number in eps."""
+    """Return the relative error of each number in eps."""
     motion, exact = solve(Top(**scene)), oracle.constants(oracle.Scene(**scene))
     with mpmath.workdps(60):
         return {

@@ -33,7 +33,7 @@ def rows(lagtop: Lagtop, line: str) -> list[list[float]]:
 
 @pytest.mark.parametrize("tilt", ["1e-9", "1e-10", "1e-12", "1e-15", "1e-30", "1e-100"])
 def test_a_top_without_spin_that_starts_next_to_the_vertical(tilt: str, lagtop: Lagtop) -> None:
-    """It falls over the lower pole: 180 degrees, and nearly the period of the upright pendulum."""
+    """The axis falls over the lower pole, so that its greatest tilt is 180 degrees."""
     line = f"--r0 0 --theta0 {tilt} --psidot0 1 --keys T_nutation,theta_max_deg"
     ((period, lowest),) = rows(lagtop, line)
     judge = Judge(Top(r0=0, theta0_deg=float(tilt), psidot0=1)._asdict())
