@@ -100,38 +100,33 @@ def exact(top: Top) -> Exact:
     )
     cosine = Cosine(degrees, radians)
     facts = _facts(top.pole, a, b, (theta_rate, psi_rate), cosine)
-    return Exact(
-        top,
-        a,
-        b,
-        r0,
-        theta_rate,
-        psi_rate,
-        cosine,
-        facts,
-    )
+    return Exact(top, a, b, r0, theta_rate, psi_rate, cosine, facts)
 
 
 def _facts(
     pole: int, a: Fraction, b: Fraction, rates: tuple[Fraction, Fraction], cosine: Cosine
 ) -> Facts:
+    """Return the facts, each from the sign of a polynomial in u = cos(theta0)."""
     theta_rate, psi_rate = rates
+    at_rest, vertical = not theta_rate and not psi_rate, bool(pole) and not theta_rate
+    # beta - b = (1 - u) (psi' (1 + u) - b) and beta + b = (1 + u) (psi' (1 - u) + b) (4,5)
     minus = 0 if pole == 1 else cosine.sign(Polynomial(psi_rate - b, psi_rate))
     plus = 0 if pole == -1 else cosine.sign(Polynomial(psi_rate + b, -psi_rate))
-    energy_above_top = 0
-    if not minus:  # alpha - a, where beta = b
-        slope = a - psi_rate * b
-        energy_above_top = cosine.sign(Polynomial(theta_rate * theta_rate - slope, slope))
-    vertical = bool(pole) and not theta_rate
-    steady = not theta_rate and (
-        vertical or cosine.vanishes(Polynomial(2 * b * psi_rate - a, -2 * psi_rate * psi_rate))
-    )
-    separatrix = not minus and not energy_above_top and bool(a) and not vertical
-    stands = (b * psi_rate - a) * psi_rate
-    still = Polynomial(stands + b * theta_rate * theta_rate, 0, -stands)
+    # where beta = b, 1 is a root, and alpha - a = theta'^2 - (1 - u) (a - psi' b) says which
+    slope = a - psi_rate * b
+    over = 0 if minus else cosine.sign(Polynomial(theta_rate * theta_rate - slope, slope))
+    # u'' = 0 at rest: 2 b psi' - a - 2 u psi'^2
+    level = Polynomial(2 * b * psi_rate - a, -2 * psi_rate * psi_rate)
+    steady = not theta_rate and (vertical or cosine.vanishes(level))
+    separatrix = not minus and not over and bool(a) and not vertical
     upper_root = 0
     if not minus and not vertical and not separatrix:
-        upper_root = 3 if energy_above_top < 0 else int(not steady)
+        upper_root = 3 if over < 0 else int(not steady)
+    # beta/b is a root: b theta'^2 + psi' (b psi' - a) (1 - u^2); it is u1 if it is less than 1
+    stands = psi_rate * (b * psi_rate - a)
+    cusp = minus * b < 0 and cosine.vanishes(
+        Polynomial(stands + b * theta_rate * theta_rate, 0, -stands)
+    )
     named = regimes(
         upright=vertical and pole > 0,
         hanging=vertical and pole < 0,
@@ -142,14 +137,14 @@ def _facts(
     )
     return Facts(
         regime=next(regime for regime, holds in named if holds),
-        at_rest=not theta_rate and not psi_rate,
+        at_rest=at_rest,
         steady=steady,
         free=not a,
         spins=bool(b),
         pole=pole,
         upper_root=upper_root,
         over_bottom=not plus and not steady,
-        cusp=bool(b) and minus * (1 if b > 0 else -1) < 0 and cosine.vanishes(still),
+        cusp=cusp,
         sign_plus=plus or 1,
         sign_minus=minus or 1,
         stable=b * b >= 2 * a,
