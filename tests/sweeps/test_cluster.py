@@ -34,6 +34,7 @@ def joined(folder: Path) -> bytes:
     return b"".join(part.read_bytes() for part in sorted(folder.glob("part-*")))
 
 
+@pytest.mark.slow
 def test_the_bytes_of_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None:
     options = ["sweep", "--r0", "0:90:301", "--theta0", "0:180:31"]
     options += ["--keys", "r0,regime,T_nutation,error"]
@@ -55,6 +56,7 @@ def test_rows_and_errors_as_in_a_local_run(cluster: LocalCluster, tmp_path: Path
     assert (there.stdout, there.stderr) == (here.stdout, here.stderr)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_loses_nothing(cluster: LocalCluster, tmp_path: Path) -> None:
     options = ["sweep", "--r0", "1:100:150000"]
     here = process(*options).stdout
@@ -71,6 +73,7 @@ def test_a_killed_worker_loses_nothing(cluster: LocalCluster, tmp_path: Path) ->
     assert joined(tmp_path) == here
 
 
+@pytest.mark.slow
 def test_a_cluster_of_its_own_goes_with_it(tmp_path: Path) -> None:
     command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--dask", "local", "-o"]
     running = subprocess.Popen(

@@ -152,6 +152,7 @@ def test_a_run_that_agrees_keeps_whole_parts_and_their_errors(
     assert kept.read_bytes().endswith(b"kept")
 
 
+@pytest.mark.slow
 def test_a_killed_run_is_resumed(tmp_path: Path, lagtop: Lagtop) -> None:
     """Five runs are killed in the middle; what they leave is finished by the sixth."""
     options = ["sweep", "--r0", "1:100:200000", "--keys", "r0,T_nutation"]
@@ -182,6 +183,7 @@ def test_files_of_running_processes_are_left_alone(tmp_path: Path, lagtop: Lagto
     assert len(list(tmp_path.glob(".lagtop-*"))) == 3
 
 
+@pytest.mark.slow
 def test_two_runs_at_once(tmp_path: Path, lagtop: Lagtop) -> None:
     """Two shards and two runs of the whole, all at once, and then nothing is left to do."""
     options = ["sweep", "--r0", "1:100:60000", "--keys", "r0,nome"]

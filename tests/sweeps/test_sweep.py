@@ -94,6 +94,7 @@ def tops_of(inputs: dict[str, Any]) -> TopArrays:
     )
 
 
+@pytest.mark.slow
 def test_what_the_formulas_start_from_is_rounded_once() -> None:
     """The invariants to the bit; sines and cosines: worst seen 0.9 eps."""
     rng = random.Random(21)
