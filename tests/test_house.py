@@ -29,12 +29,6 @@ NEVER = {("motion", "output")}
 FILES = sorted(PACKAGE.rglob("*.py"))
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
 
-STILL_TO_REWRITE = {
-    "sweeps": 25,
-    "arithmetic": 31,
-}
-"""Rooms with docstrings that break the rule, and how many.  Numbers only fall; rooms only leave."""
-
 NOQA = 4
 """Lint warnings switched off in the package.  The number only falls."""
 
@@ -95,10 +89,8 @@ def room_of(path: Path) -> str:
 def test_docstrings_can_be_read_alone(room: str) -> None:
     files = [path for path in [*FILES, *TESTS] if room_of(path) == room]
     bad = [fault for path in files for fault in faults(path, str(path.relative_to(ROOT)))]
-    allowed = STILL_TO_REWRITE.get(room)
     shown = "\n".join(f"{x.place}: {x.beginning!r}: {x.reason}" for x in bad)
-    assert len(bad) <= (allowed or 0), shown
-    assert bad or allowed is None, f"{room} is clean: strike it from STILL_TO_REWRITE"
+    assert not bad, shown
 
 
 @pytest.mark.parametrize(

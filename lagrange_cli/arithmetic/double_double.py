@@ -24,7 +24,7 @@ class Pair(NamedTuple):
 
 
 def pair(value: Any) -> Pair:
-    """A many-digit number, or a fraction, as two doubles."""
+    """Return a many-digit number, or a fraction, as two doubles."""
     high = float(value)
     return Pair(high, float(value - type(value)(high)))
 
@@ -45,7 +45,7 @@ def triple(value: Any) -> Triple:
 
 
 def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
-    """x * factor and its rounding error, exactly (Dekker)."""
+    """Return x * factor and its rounding error, exactly (Dekker)."""
     scaled = factor * _SPLITTER
     factor_high = scaled - (scaled - factor)
     factor_low = factor - factor_high
@@ -64,7 +64,7 @@ def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
 
 
 def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
-    """The integer nearest to t * rate + offset, and t * rate less it, free of cancellation."""
+    """Return the integer nearest to t * rate + offset, and t * rate less it, with all digits."""
     since, rest = two_product(t, rate.high)
     rest += t * rate.low
     step = np.rint(since + offset) if offset else np.rint(since)
@@ -84,14 +84,14 @@ def fraction_of_product(t: Array, rate: Triple) -> Array:
 
 
 def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:
-    """x + y and its rounding error, exactly (Knuth)."""
+    """Return x + y and its rounding error, exactly (Knuth)."""
     total: Array = np.add(x, y)
     part = total - x
     return total, (x - (total - part)) + (y - part)
 
 
 def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
-    """The square root of high + low >= 0."""
+    """Return the square root of high + low >= 0."""
     root = np.sqrt(high)
     square, error = two_product(root, root)
     return root, ((high - square) - error + low) / np.where(root > 0, 2 * root, 1.0)
@@ -109,7 +109,7 @@ class DoubleDouble:
         self.low = np.zeros_like(high) if low is None else low
 
     def scaled(self, power: float) -> DoubleDouble:
-        """Times a power of two, exactly."""
+        """Return the numbers times a power of two, exactly."""
         return DoubleDouble(self.high * power, self.low * power)
 
     def _like(self, other: DoubleDouble | float) -> DoubleDouble:

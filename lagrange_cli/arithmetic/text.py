@@ -19,23 +19,26 @@ class NumberText(str):
 
 
 def value_text(value: Any) -> str:
-    """A number or a word; empty for None and NaN.  A subclass of str is a number written out."""
+    """Return the text of a number or a word, empty for None and NaN.
+
+    A subclass of str is a number that is written out already.
+    """
     if value is None or value != value:  # noqa: PLR0124 - NaN
         return ""
     return double_text(value) if isinstance(value, float) else str(value)
 
 
 def json_text(value: Any) -> str:
-    """Any JSON value."""
+    """Return the text of any JSON value."""
     import orjson
 
     return orjson.dumps(value).decode()
 
 
 def double_text(value: float) -> str:
-    """The shortest text that reads back as the same double.
+    """Return the shortest text that reads back as the same double.
 
-    As repr, but 1e-7 for 1e-07, and 0.00001 for 1e-05.
+    That is repr, but 1e-7 for 1e-07, and 0.00001 for 1e-05.
     """
     text = repr(value)
     mantissa, small, exponent = text.partition("e-0")
@@ -48,7 +51,7 @@ def double_text(value: float) -> str:
 
 
 def parse_number(text: str) -> Fraction:
-    """The exact value of a decimal such as `30`, `-1.5` or `2e-3`.
+    """Return the exact value of a decimal such as `30`, `-1.5` or `2e-3`.
 
     Raises LagtopError, with the remedy, for anything else and for what no double can hold.
     """

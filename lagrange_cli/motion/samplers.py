@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks, polynomial
 from ..arithmetic.double_double import Pair, reduce_phase
 from ..arithmetic.points import MAX_TIME
@@ -106,10 +107,11 @@ class Sampler:
         self.check(times)
         flat = np.ascontiguousarray(times).reshape(-1)
         angles = Angles(*(np.empty_like(flat) for _ in range(3)))
-        for part, attitude in self.attitudes(flat):
-            angles.theta[part] = attitude.theta()
-            angles.phi[part] = attitude.phi(wrap=wrap)
-            angles.psi[part] = attitude.psi(wrap=wrap)
+        with ARRAYS.working():
+            for part, attitude in self.attitudes(flat):
+                angles.theta[part] = attitude.theta()
+                angles.phi[part] = attitude.phi(wrap=wrap)
+                angles.psi[part] = attitude.psi(wrap=wrap)
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
     def attitudes(self, t: Array, *, rate: bool = False) -> Iterator[tuple[slice, Attitude]]:

@@ -101,6 +101,7 @@ def table(
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
     import numpy as np
 
+    from ..arithmetic.arrays import ARRAYS
     from .columns import chosen_columns
     from .sample import samples
     from .samplers import times_of
@@ -109,9 +110,10 @@ def table(
     motion.sampler().check(times)
     flat = np.ascontiguousarray(times).reshape(-1)
     found = {column.name: np.empty_like(flat) for column in chosen}
-    for part, sample in samples(motion, flat, chosen, wrap=wrap):
-        for column in chosen:
-            found[column.name][part] = sample.column(column)
+    with ARRAYS.working():
+        for part, sample in samples(motion, flat, chosen, wrap=wrap):
+            for column in chosen:
+                found[column.name][part] = sample.column(column)
     return {name: values.reshape(times.shape) for name, values in found.items()}
 
 

@@ -35,14 +35,14 @@ _TEXT_KEYS = ("regime", "path", "remark")
 
 
 def record_keys(*, radians: bool = False) -> list[str]:
-    """The keys of a record, and `error`."""
+    """Return the keys of a record, and `error`."""
     return [*motion_record.record_keys(radians=radians), "error"]
 
 
 def sweep(
     *, keys: Sequence[str] | None = None, radians: bool = False, **inputs: ArrayLike
 ) -> dict[str, Column]:
-    """Records of many tops: arrays by key, in the shape that the inputs have together.
+    """Return the records of many tops: arrays by key, in the shape of the inputs together.
 
     Inputs are those of `Top`, numbers or arrays.  A number that a regime does not have is NaN, a
     text None; `error` says what is wrong with a top, which has neither.  Only `keys` are computed.
@@ -83,7 +83,7 @@ def _doubles(name: str, values: ArrayLike) -> Array:
 
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
-    """The keys.  Raises LagtopError for one that no record has, or that comes twice."""
+    """Return the keys.  Raises LagtopError for one that no record has, or that comes twice."""
     return check_names("keys", keys, record_keys(radians=radians))
 
 
@@ -94,19 +94,23 @@ def records(
     radians: bool = False,
     errors: Mapping[int, str] | None = None,
 ) -> dict[str, Column]:
-    """The columns of a block of tops; rows that have an error already are left empty."""
-    block = _Block(tops, keys, radians)
-    left = np.ones(tops.m.shape, dtype=np.bool_)
-    for row, error in (errors or {}).items():
-        left[row], block.columns["error"][row] = False, error
-    for regime, found in tops.regimes().items():
-        if (rows := found & left).any():
-            block.fill(rows, regime)
-            left &= ~rows
-    left = block.fill_moving(left)
-    for row in np.flatnonzero(left).tolist():
-        block.solve(row)
-    return {key: block.columns[key] for key in keys}
+    """Return the columns of a block of tops; rows that have an error already stay empty.
+
+    Nothing depends on the `numpy.errstate` of the caller.
+    """
+    with ARRAYS.working():
+        block = _Block(tops, keys, radians)
+        left = np.ones(tops.m.shape, dtype=np.bool_)
+        for row, error in (errors or {}).items():
+            left[row], block.columns["error"][row] = False, error
+        for regime, found in tops.regimes().items():
+            if (rows := found & left).any():
+                block.fill(rows, regime)
+                left &= ~rows
+        left = block.fill_moving(left)
+        for row in np.flatnonzero(left).tolist():
+            block.solve(row)
+        return {key: block.columns[key] for key in keys}
 
 
 class _Block:
@@ -130,17 +134,16 @@ class _Block:
         chosen = slice(None) if rows.all() else rows
         tops = self.tops.part(chosen)
         facts, state = _facts(regime, tops.r0), tops.state()
-        with ARRAYS.working():
-            gaps = gaps_of(ARRAYS, facts, state)
-            motion = kind_of(facts)(ARRAYS, facts, state, gaps)
-            for key in self.numbers:
-                if key.startswith("theta_min"):  # the start
-                    self.columns[key][chosen] = tops.tilt_in(self.radians)
-                    continue
-                name = key.replace("_rad", "_deg")
-                value = None if name in motion.lacks else getattr(motion, name)
-                if value is not None:
-                    self.columns[key][chosen] = np.radians(value) if key != name else value
+        gaps = gaps_of(ARRAYS, facts, state)
+        motion = kind_of(facts)(ARRAYS, facts, state, gaps)
+        for key in self.numbers:
+            if key.startswith("theta_min"):  # the start
+                self.columns[key][chosen] = tops.tilt_in(self.radians)
+                continue
+            name = key.replace("_rad", "_deg")
+            value = None if name in motion.lacks else getattr(motion, name)
+            if value is not None:
+                self.columns[key][chosen] = np.radians(value) if key != name else value
         remarks: list[str] | None = None
         if regime in {Regime.SLEEPING, Regime.HANGING}:
             remarks = [vertical_remark(regime, stable) for stable in state.sleep >= 0]
@@ -171,7 +174,7 @@ class _Block:
         return rest
 
     def solve(self, row: int) -> None:
-        """One row, by itself."""
+        """Fill one row by `solve`."""
         try:
             record = solve(Top(**self.tops.one(row))).record(radians=self.radians)
         except LagtopError as error:

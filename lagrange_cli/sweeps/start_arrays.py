@@ -39,11 +39,11 @@ class StartArrays:
     def __init__(self, tops: TopArrays) -> None:
         with PAIRS.working():  # what overflows or divides by zero is not trusted
             state = _state(tops)
-            self.roots = _Roots(state)
-            gaps = gaps_from_start(PAIRS, state, _FACTS, self.roots.largest)
+            root = _LargestRoot(state)
+            gaps = gaps_from_start(PAIRS, state, _FACTS, root.largest)
             self.fine = Nutating(PAIRS, _FACTS, state, gaps)
             self.rough = Nutating(ARRAYS, _FACTS, _rounded(state), _rounded(gaps))
-            self.errors = _Errors(state, gaps, self.roots)
+            self.errors = _ErrorBounds(state, gaps, root.error)
             self.trusted: Mask = self.errors.small & self._rates_are_sure()
 
     def number(self, key: str) -> Array | None:
@@ -95,8 +95,11 @@ def _is_sure(error: Array, value: DoubleDouble | None) -> Mask:
     return sure
 
 
-class _Roots:
-    """The largest root of the cubic by Newton's method, and a bound of its relative error."""
+class _LargestRoot:
+    """Largest root of the cubic by Newton's method, and a bound of its relative error.
+
+    `largest` is the solver that `gaps_from_start` asks for; it sets `error`.
+    """
 
     def __init__(self, state: State[DoubleDouble]) -> None:
         self.error: Array = np.full_like(state.a.high, np.inf)
@@ -122,11 +125,15 @@ class _Roots:
         return root
 
 
-class _Errors:
-    """Bounds of the relative errors of the gaps, and the sizes of what gave beta - b u."""
+class _ErrorBounds:
+    """Bounds of the relative errors of the gaps.
 
-    def __init__(self, state: State[DoubleDouble], gaps: Gaps[DoubleDouble], roots: _Roots) -> None:
-        start, doubles, error = _rounded(state), _rounded(gaps), roots.error
+    `worst` is the greatest of them per top, `small` says whether all gaps and the signs of
+    beta - b u at u1 and u2 are sure, and `momenta` are the sizes of the terms of beta - b u there.
+    """
+
+    def __init__(self, state: State[DoubleDouble], gaps: Gaps[DoubleDouble], error: Array) -> None:
+        start, doubles = _rounded(state), _rounded(gaps)
         a, b, above, below = start.a, start.b, start.above, start.below
         D, x1, x2 = doubles.a_u3_u, doubles.u1_u, doubles.u_u2
         around = start.psi_rate * start.sin

@@ -1,7 +1,7 @@
 """Many tops at once: arrays in place of the numbers of a `Top`.
 
-What `roots` and `top` form from exact fractions is formed here from pairs of doubles and rounded
-once, so that the formulas start from the same numbers.
+What `motion.gaps` and `Top.tilt` form from exact fractions is formed here from pairs of doubles and
+rounded once, so that the formulas start from the same numbers.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _LARGE, _SMALL = 1e30, 1e-30
 """Between these sizes no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _LEAST_DISTANCE = 2.0**-45
-"""Of lambda from 1: from here on a pair of doubles gives lambda - 1 to its last bit."""
+"""Distance of lambda from 1 from which on a pair of doubles gives lambda - 1 to its last bit."""
 
 
 class TopArrays(NamedTuple):
@@ -38,11 +38,11 @@ class TopArrays(NamedTuple):
     theta0_rad: Array
 
     def part(self, rows: Any) -> TopArrays:
-        """Some of them."""
+        """Return some of the tops, by a slice, a mask or their row numbers."""
         return TopArrays(*(x[rows] for x in self))
 
     def one(self, row: int) -> dict[str, float]:
-        """The inputs of one of them."""
+        """Return the inputs of one top, with the tilt in the unit that it is given in."""
         inputs = {name: float(x[row]) for name, x in zip(self._fields, self, strict=True)}
         unused = "theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"
         if np.isnan(inputs[unused]):
@@ -50,7 +50,7 @@ class TopArrays(NamedTuple):
         return inputs
 
     def tilt_in(self, radians: bool) -> Array:
-        """theta0, in degrees or in radians."""
+        """Return theta0 in degrees or in radians."""
         if radians:
             return np.where(np.isnan(self.theta0_rad), np.radians(self.theta0_deg), self.theta0_rad)
         return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
@@ -86,7 +86,7 @@ class TopArrays(NamedTuple):
             return usual
 
     def arc_from_pole(self) -> tuple[DoubleDouble, Mask]:
-        """Angle between the axis and the nearer pole, in radians, and whether that is the lower."""
+        """Return the angle from the nearer pole in radians, and whether that is the lower one."""
         in_radians = ~np.isnan(self.theta0_rad)
         down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
         degrees = np.where(down, 180 - self.theta0_deg, self.theta0_deg)
@@ -142,7 +142,7 @@ class TopArrays(NamedTuple):
         )
 
     def tilt(self) -> Tilt[Array]:
-        """Sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
+        """Return sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
         in_radians = ~np.isnan(self.theta0_rad)
         if in_radians.all():
             return _tilt_of_radians(self.theta0_rad)

@@ -1,0 +1,89 @@
+"""Results do not depend on the NumPy errstate or the decimal context of the host program."""
+
+from __future__ import annotations
+
+import decimal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lagrange_cli import Top, solve, sweep
+from lagrange_cli.arithmetic.arrays import ARRAYS
+from lagrange_cli.elliptic import nome
+from lagrange_cli.elliptic.carlson import carlson_rf, carlson_rj
+from lagrange_cli.elliptic.incomplete import incomplete_f
+from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.elliptic.theta import theta
+from lagrange_cli.elliptic.third_kind import omega
+
+EXTREME: dict[str, Any] = {
+    "theta0_deg": [0, 1e-150, 1e-9, 180, 179.9999999, 30],
+    "r0": [[1e-30], [0], [1e30], [50]],
+}
+MOVING = EXTREME | {"psidot0": 1.5, "thetadot0": [[[0.0]], [[1e-40]], [[3.0]]]}
+TIMES = np.array([0.0, 1e-300, 0.7, 1e6])
+TOPS = [
+    Top(),
+    Top(r0=0.0),
+    Top(r0=1e30),
+    Top(theta0_deg=1e-150, r0=1e-30),
+    Top(theta0_deg=0.0),
+    Top(theta0_deg=179.9999999, psidot0=1.5),
+    Top(thetadot0=1e-40, psidot0=2.0),
+    Top(g=0.0, psidot0=1.0),
+]
+SMALL = np.array([1e-300, 1e-160, 0.5, 1.0])
+
+
+@contextmanager
+def hostile() -> Iterator[None]:
+    """Make every rounding of decimals and every exception of NumPy an error."""
+    context = decimal.Context(prec=1, Emin=-1, Emax=1, traps=[decimal.Inexact, decimal.Rounded])
+    with np.errstate(all="raise"), decimal.localcontext(context):
+        yield
+
+
+def same(compute: Callable[[], Any]) -> None:
+    """Assert that a result is the same to the last bit with hostile settings."""
+    usual = compute()
+    with hostile():
+        result = compute()
+    for one, other in zip(usual, result, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("inputs", [EXTREME, MOVING], ids=["from rest", "moving"])
+@pytest.mark.parametrize("radians", [False, True])
+def test_sweep(inputs: dict[str, Any], radians: bool) -> None:
+    same(lambda: sweep(radians=radians, **inputs).values())
+
+
+@pytest.mark.parametrize("top", TOPS, ids=str)
+def test_one_top(top: Top) -> None:
+    """A record, its digits, the angles and a table are those of a program without settings."""
+    same(lambda: solve(top).record().values())
+    same(lambda: solve(top).digits(20).values())
+    same(lambda: solve(top).angles(TIMES))
+    same(lambda: solve(top).table(TIMES, ["axis", "quaternion", "energy"]).values())
+
+
+def test_functions() -> None:
+    def values() -> list[Any]:
+        k = modulus(ARRAYS, k_prime=SMALL)
+        return [
+            *k,
+            *jacobi(ARRAYS, [0.0, 1e-300, 3.0, 1e9], k),
+            *jacobi(ARRAYS, [0.0, 1e-300, 3.0, 1e9], modulus(ARRAYS, k=1.0)),
+            theta(ARRAYS, "11", 1e-300, modulus(ARRAYS, k=0.99)),
+            omega(ARRAYS, "11", [0.0, 0.3], 0.2j, modulus(ARRAYS, k=0.8)),
+            incomplete_f(ARRAYS, SMALL, modulus(ARRAYS, k=0.8)),
+            carlson_rf(ARRAYS, SMALL, 1.0, 2.0),
+            carlson_rj(ARRAYS, SMALL, 1.0, 2.0, SMALL),
+            nome(ARRAYS, m=SMALL[:3], k_prime=np.sqrt(1 - SMALL[:3])),
+        ]
+
+    same(values)
