@@ -65,10 +65,11 @@ def test_sweep(inputs: dict[str, Any], radians: bool) -> None:
 @pytest.mark.parametrize("top", TOPS, ids=str)
 def test_one_top(top: Top) -> None:
     """A record, its digits, the angles and a table are those of a program without settings."""
+    times = TIMES * (solve(top).T_nutation or 1.0)
     same(lambda: solve(top).record().values())
     same(lambda: solve(top).digits(20).values())
-    same(lambda: solve(top).angles(TIMES))
-    same(lambda: solve(top).table(TIMES, ["axis", "quaternion", "energy"]).values())
+    same(lambda: solve(top).angles(times))
+    same(lambda: solve(top).table(times, ["axis", "quaternion", "energy"]).values())
 
 
 def test_functions() -> None:
