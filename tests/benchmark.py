@@ -23,8 +23,7 @@ from lagrange_cli.arithmetic.blocks import BLOCK
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.integrators import integrators
-from lagrange_cli.elliptic import carlson_rf
-from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
+from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records, sweep

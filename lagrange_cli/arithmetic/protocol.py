@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from fractions import Fraction
-from functools import lru_cache
-from typing import Any, Protocol, Self, TypeVar
+from typing import Any, Protocol, Self
+
+from .numbers import R
 
 
 class Real(Protocol):
@@ -29,24 +30,6 @@ class Real(Protocol):
     def __le__(self, other: Self | int, /) -> Any: ...
     def __gt__(self, other: Self | int, /) -> Any: ...
     def __ge__(self, other: Self | int, /) -> Any: ...
-
-
-Number = float | Fraction
-"""An input: a double, or the exact value of a decimal."""
-
-R = TypeVar("R", bound=Real)
-"""The numbers of the arithmetic in use."""
-
-
-def absolute(x: R) -> R:
-    """Return |x|, with the type of x."""
-    return x.__abs__()
-
-
-@lru_cache(maxsize=256)
-def root_of_epsilon(eps: Any, over: int, degree: int) -> Any:
-    """Return (eps/over)^(1/degree): where a series with so many orders is exact."""
-    return (eps / over) ** (eps / eps / degree)
 
 
 class Arithmetic(Protocol[R]):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from .. import __version__
-from ..arithmetic.protocol import Number
+from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names

@@ -14,8 +14,3 @@ alone: `carlson_rj`, `carlson_rd`, `carlson_rc` of `carlson`, `incomplete_f` and
 `incomplete`, and the functions of `theta` and `third_kind` over arrays of moduli or of complex
 arguments.  Domains, units and errors of all of them: README.md in this folder.
 """
-
-from .carlson import carlson_rf
-from .complete import agm, complete_e, complete_k, nome, period_mean
-
-__all__ = ["agm", "carlson_rf", "complete_e", "complete_k", "nome", "period_mean"]

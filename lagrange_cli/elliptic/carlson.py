@@ -14,16 +14,10 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.blocks import blockwise, in_arithmetic
-from ..arithmetic.protocol import (
-    Arithmetic,
-    FunctionArithmetic,
-    R,
-    Value,
-    absolute,
-    root_of_epsilon,
-)
+from ..arithmetic.numbers import R, absolute, root_of_epsilon
 
 if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Value
     from ..arithmetic.types import Array
 
 Roots = tuple[Value, Value, Value, Value]

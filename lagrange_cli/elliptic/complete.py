@@ -5,10 +5,13 @@ Every loop adds and multiplies positive numbers only, so each result is good to 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.blocks import in_arithmetic
-from ..arithmetic.protocol import Arithmetic, R, root_of_epsilon
+from ..arithmetic.numbers import R, root_of_epsilon
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
 
 
 @in_arithmetic

@@ -22,7 +22,7 @@ from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from . import agm
+from .complete import agm
 from .jacobi import jacobi
 from .modulus import Modulus
 from .proved_digits import require_digits, settled_or_rounded, settled_texts
@@ -225,7 +225,7 @@ def rows(quadrature: Quadrature, times: Points, c3: Fraction) -> tuple[list[str]
     import numpy as np
 
     from ..arithmetic.double_double import pair, reduce_phase
-    from . import complete_k
+    from .complete import complete_k
 
     quadrature.check_doubles()
     exact = ManyDigits()

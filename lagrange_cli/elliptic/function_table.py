@@ -17,7 +17,7 @@ from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
-from . import complete_k
+from .complete import complete_k
 from .jacobi import jacobi
 from .modulus import Modulus
 from .modulus_input import ModulusInput

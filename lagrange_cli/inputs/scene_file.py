@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ..arithmetic.protocol import Number
+from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError, SceneError
 from .names import suggestion

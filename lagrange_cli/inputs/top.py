@@ -6,12 +6,15 @@ import math
 from collections.abc import Iterable, Mapping
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from typing import Any, Generic, NamedTuple, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
 from ..arithmetic.decimals import pi_to
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.protocol import Arithmetic, Number, R
+from ..arithmetic.numbers import Number, R
 from ..errors import LagtopError
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
 
 N = TypeVar("N")
 

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.double_double import Pair, Triple, fraction_of_product, pair, triple
-from ..arithmetic.protocol import Arithmetic, R
+from ..arithmetic.numbers import R
+from ..arithmetic.protocol import Arithmetic
 from ..arithmetic.types import Array
 
 

@@ -9,7 +9,7 @@ from typing import cast
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, text_of
 from ..arithmetic.decimals import Decimals
-from ..arithmetic.protocol import Number
+from ..arithmetic.numbers import Number
 from ..arithmetic.text import NumberText
 from .solve import Motion
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..arithmetic.protocol import R
+from ..arithmetic.numbers import R
 from .moduli import Moduli
 from .quantity import quantity
 from .regime import Facts, Regime

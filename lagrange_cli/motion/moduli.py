@@ -5,13 +5,16 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from typing import Generic
+from typing import TYPE_CHECKING, Generic
 
-from ..arithmetic.protocol import Arithmetic, R
-from ..elliptic import complete_e, complete_k, nome, period_mean
+from ..arithmetic.numbers import R
+from ..elliptic.complete import complete_e, complete_k, nome, period_mean
 from .gaps import Gaps, State
 from .quantity import key, quantity
 from .regime import Facts
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
 
 
 class Moduli(Generic[R]):

@@ -5,8 +5,7 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from ..arithmetic.protocol import R
-from ..elliptic import carlson_rf
+from ..arithmetic.numbers import R
 from .moduli import Moduli
 from .quantity import key, quantity
 
@@ -62,6 +61,8 @@ class Nutation(Moduli[R]):
 
         sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
         """
+        from ..elliptic.carlson import carlson_rf  # for few keys
+
         gaps, size = self.gaps, self.ar.sqrt(self.gaps.above_u1 * self.gaps.a_u3_u2)
         integral: R = carlson_rf(
             self.ar,
@@ -74,6 +75,8 @@ class Nutation(Moduli[R]):
     @quantity
     def eta_plus(self) -> R:
         """The distance of X from its zero at the bottom: F of sn^2 = (1 + u2)/(1 + u1)."""
+        from ..elliptic.carlson import carlson_rf
+
         gaps = self.gaps
         middle = gaps.u1_u2 * (gaps.a_below_u3 / gaps.a_u3_u2)
         integral: R = carlson_rf(self.ar, gaps.u1_u2, middle, gaps.below_u1)

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
+from ..arithmetic.numbers import R
 from ..arithmetic.points import MAX_PERIODS
-from ..arithmetic.protocol import R
-from ..elliptic import carlson_rf
+from ..elliptic.carlson import carlson_rf
 from .theta_series import (
     Component,
     Frame,

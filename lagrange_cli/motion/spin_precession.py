@@ -10,10 +10,15 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from ..arithmetic.protocol import Arithmetic, R, absolute
-from ..elliptic import period_mean
+from typing import TYPE_CHECKING
+
+from ..arithmetic.numbers import R, absolute
+from ..elliptic.complete import period_mean
 from .nutation import Nutation
 from .quantity import key, quantity
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
 
 
 class SpinPrecession(Nutation[R]):

@@ -14,9 +14,10 @@ import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.protocol import Number
+from ..arithmetic.numbers import Number
 from ..arithmetic.types import Array
-from ..elliptic import carlson_rf, complete_k
+from ..elliptic.carlson import carlson_rf
+from ..elliptic.complete import complete_k
 from ..errors import LagtopError
 from ..motion.regime import Regime
 from ..motion.solve import Motion

@@ -12,8 +12,8 @@ from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
 from .. import __version__
+from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
-from ..arithmetic.protocol import Number
 from ..errors import LagtopError
 from ..inputs.ranges import Product
 from ..inputs.top import build_top, overridden

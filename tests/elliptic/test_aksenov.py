@@ -11,7 +11,7 @@ import pytest
 from equations import EquationTests, Register, Sides, ar, slightly_wrong
 from errata import misprints
 
-from lagrange_cli.elliptic import complete_k, nome
+from lagrange_cli.elliptic.complete import complete_k, nome
 from lagrange_cli.elliptic.eta import (
     band_of,
     eta_and_rate,

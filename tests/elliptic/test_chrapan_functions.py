@@ -10,7 +10,7 @@ import pytest
 from equations import EquationTests, Register, Sides, ar, slightly_wrong
 from errata import misprints
 
-from lagrange_cli.elliptic import nome
+from lagrange_cli.elliptic.complete import nome
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import constants, modulus

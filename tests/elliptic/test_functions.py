@@ -18,8 +18,8 @@ from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.bench.reference import units
-from lagrange_cli.elliptic import carlson_rf, complete_k
-from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rj
+from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj
+from lagrange_cli.elliptic.complete import complete_k
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
