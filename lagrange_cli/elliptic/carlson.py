@@ -18,10 +18,11 @@ from ..arithmetic.numbers import R, absolute, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Value
+
+    Roots = tuple[Value, Value, Value, Value]
+    Gain = Callable[[Roots, Value, Value], Value]
     from ..arithmetic.types import Array
 
-Roots = tuple[Value, Value, Value, Value]
-Gain = Callable[[Roots, Value, Value], Value]
 
 _FAR_APART = 1e6
 """Ratio of arguments beyond which the rounding errors of ten steps or more add up."""
