@@ -118,14 +118,28 @@ def _rc_from_one(ar: FunctionArithmetic, y: Value) -> Value:
 def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
     """Return R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`.
 
+    The rounding errors of the arguments add up over the steps; those elements of arrays whose
+    arguments are many decades apart, and need many, carry them along.
+    """
+    far = _far_apart(ar, arguments) if ar.is_array else False
+    if not ar.anywhere(far) or ar.everywhere(far):
+        return _stepped(ar, arguments, gain, carried=ar.anywhere(far))
+    total = 0 * arguments[0]
+    for rows, carried in ((far, True), (~far, False)):
+        x, y, z, p = (argument[rows] for argument in arguments)
+        total[rows] = _stepped(ar, (x, y, z, p), gain, carried=carried)
+    return total
+
+
+def _stepped(ar: FunctionArithmetic, arguments: Roots, gain: Gain, *, carried: bool) -> Value:
+    """Return R_J by duplication.
+
     What remains after n steps is R_J of the new arguments over 4^n: where fewer than half of an
-    array need more, they are continued alone.  The rounding errors of the arguments add up over the
-    steps; arrays of arguments many decades apart, which need many, carry them along.
+    array need more, they are continued alone.
     """
     x, y, z, p = arguments
     mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, ar.sqrt(1)
     spread = _spread(ar, mean, x, y, z, p)
-    carried = ar.is_array and _far_apart(ar, arguments)
     lows, lost = [0 * p] * 4, 0 * p
     while _mostly(ar, unequal := spread > abs(mean)):
         root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
@@ -148,10 +162,11 @@ def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
     return total + (rest * weight + lost)
 
 
-def _far_apart(ar: FunctionArithmetic, arguments: Roots) -> bool:
-    """Return whether some of the arguments are many decades apart."""
-    least = reduce(lambda a, b: ar.where(a < b, a, b), arguments)
-    return ar.anywhere(least * _FAR_APART < sum(arguments))
+def _far_apart(ar: FunctionArithmetic, arguments: Roots) -> Any:
+    """Return where some arguments, other than zeros, are many decades apart."""
+    some = (ar.where(x == 0, math.inf, x) for x in arguments)
+    least = reduce(lambda a, b: ar.where(a < b, a, b), some)
+    return least * _FAR_APART < sum(arguments)
 
 
 def _shifted(highs: Roots, lows: list[Array]) -> tuple[Roots, list[Array]]:

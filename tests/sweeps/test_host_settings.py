@@ -12,8 +12,8 @@ import pytest
 
 from lagrange_cli import Top, solve, sweep
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.elliptic import nome
 from lagrange_cli.elliptic.carlson import carlson_rf, carlson_rj
+from lagrange_cli.elliptic.complete import nome
 from lagrange_cli.elliptic.incomplete import incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
