@@ -68,7 +68,14 @@ class Judge:
     @cached_property
     def half_parts(self) -> tuple[arb, arb] | None:
         """The two parts of the precession rate at T/2."""
-        return self._raised(Motion.half_parts, lambda _: True, 2 * FIRST_BITS)
+
+        def good(parts: tuple[arb, arb] | None) -> bool:
+            if parts is None:
+                return True
+            size = abs(parts[0]) + abs(parts[1])
+            return all(part.is_finite() and part.rad() * 1000 <= size for part in parts)
+
+        return self._raised(Motion.half_parts, good, 2 * FIRST_BITS)
 
     def at(self, t: float | Fraction) -> State:
         """Return the motion at a time, each angle within 2^-12 of its unit."""

@@ -1,9 +1,10 @@
 """The functions of both sources: elliptic integrals, Jacobi's functions, theta functions and nomes.
 
-Every function takes the arithmetic as its first argument: an mpmath context (any number of digits;
-complex arguments) or `numpy` (arrays); what is here also our module `decimals` (40 digits) and the
-module `math` (floats).  Conventions: modulus k, complement k', parameter m = k^2, nome
-q = exp(-pi K'/K), always named in the call (`modulus(np, k_prime=1e-9)`), so that they cannot be
+Every function takes the arithmetic as its first argument: `arithmetic.arrays.ARRAYS` for NumPy
+arrays, or `arithmetic.many_digits.ManyDigits(n)`, an mpmath context (any number of digits; complex
+arguments); what is here also `arithmetic.decimals` and `arithmetic.doubles.DOUBLES` (floats).
+Conventions: modulus k, complement k', parameter m = k^2, nome
+q = exp(-pi K'/K), always named in the call (`modulus(ARRAYS, k_prime=1e-9)`), so that they cannot be
 confused.  The complement is passed in beside the modulus; 1 - k^2 is never formed, so nothing is
 lost as k -> 1.
 
