@@ -2,15 +2,14 @@
 
 Every function takes the arithmetic as its first argument: `arithmetic.arrays.ARRAYS` for NumPy
 arrays, or `arithmetic.many_digits.ManyDigits(n)`, an mpmath context (any number of digits; complex
-arguments); what is here also `arithmetic.decimals` and `arithmetic.doubles.DOUBLES` (floats).
-Conventions: modulus k, complement k', parameter m = k^2, nome
-q = exp(-pi K'/K), always named in the call (`modulus(ARRAYS, k_prime=1e-9)`), so that they cannot be
-confused.  The complement is passed in beside the modulus; 1 - k^2 is never formed, so nothing is
-lost as k -> 1.
+arguments); those of `complete` and R_F also `arithmetic.decimals` and `arithmetic.doubles.DOUBLES`.
+Conventions: modulus k, complement k', parameter m = k^2, nome q = exp(-pi K'/K), always named in
+the call (`modulus(ARRAYS, k_prime=1e-9)`), so that they cannot be confused.  The complement is
+passed in beside the modulus; 1 - k^2 is never formed, so nothing is lost as k -> 1.
 
-What start-up needs is here.  The rest are modules: `modulus`, `jacobi` (am, sn, cn, dn), `theta`
-(theta and Zeta functions), `third_kind` (Omega and Pi), `nome_series`, and the tables of the
-commands, `function_table`, `series_table`, `eta`.  No command calls these; they are for the library
+The modules are `complete` (K, E, the nome, the agm), `carlson` (R_F and others), `modulus`,
+`jacobi` (am, sn, cn, dn), `theta` (theta and Zeta functions), `third_kind` (Omega and Pi), `nome_series`, and
+the tables of the commands, `function_table`, `series_table`, `eta`.  No command calls these; they are for the library
 alone: `carlson_rj`, `carlson_rd`, `carlson_rc` of `carlson`, `incomplete_f` and `incomplete_e` of
 `incomplete`, and the functions of `theta` and `third_kind` over arrays of moduli or of complex
 arguments.  Domains, units and errors of all of them: README.md in this folder.
