@@ -8,9 +8,10 @@ the call (`modulus(ARRAYS, k_prime=1e-9)`), so that they cannot be confused.  Th
 passed in beside the modulus; 1 - k^2 is never formed, so nothing is lost as k -> 1.
 
 The modules are `complete` (K, E, the nome, the agm), `carlson` (R_F and others), `modulus`,
-`jacobi` (am, sn, cn, dn), `theta` (theta and Zeta functions), `third_kind` (Omega and Pi), `nome_series`, and
-the tables of the commands, `function_table`, `series_table`, `eta`.  No command calls these; they are for the library
-alone: `carlson_rj`, `carlson_rd`, `carlson_rc` of `carlson`, `incomplete_f` and `incomplete_e` of
-`incomplete`, and the functions of `theta` and `third_kind` over arrays of moduli or of complex
-arguments.  Domains, units and errors of all of them: README.md in this folder.
+`jacobi` (am, sn, cn, dn), `theta` (theta and Zeta functions), `third_kind` (Omega and Pi),
+`nome_series`, and the tables of the commands, `function_table`, `series_table`, `eta`. No command
+calls these; they are for the library alone: `carlson_rj`, `carlson_rd`, `carlson_rc` of `carlson`,
+`incomplete_f` and `incomplete_e` of `incomplete`, and the functions of `theta` and `third_kind`
+over arrays of moduli or of complex arguments. Domains, units and errors of all of them: README.md
+in this folder.
 """
