@@ -159,19 +159,27 @@ class DoubleDouble:
         return _renormalised(high, rest / other.high)
 
     def __gt__(self, other: DoubleDouble | float) -> Mask:
-        return self.high > self._like(other).high
+        other = self._like(other)
+        same = self.high == other.high
+        return (self.high > other.high) | same & (self.low > other.low)
 
     def __le__(self, other: DoubleDouble | float) -> Mask:
-        return self.high <= self._like(other).high
+        other = self._like(other)
+        same = self.high == other.high
+        return (self.high < other.high) | same & (self.low <= other.low)
 
     def __rtruediv__(self, other: float) -> DoubleDouble:
         return self._like(other) / self
 
     def __lt__(self, other: DoubleDouble | float) -> Mask:
-        return self.high < self._like(other).high
+        other = self._like(other)
+        same = self.high == other.high
+        return (self.high < other.high) | same & (self.low < other.low)
 
     def __ge__(self, other: DoubleDouble | float) -> Mask:
-        return self.high >= self._like(other).high
+        other = self._like(other)
+        same = self.high == other.high
+        return (self.high > other.high) | same & (self.low >= other.low)
 
     def sqrt(self) -> DoubleDouble:
         """Return the square root of numbers >= 0."""
