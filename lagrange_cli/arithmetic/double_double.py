@@ -160,26 +160,26 @@ class DoubleDouble:
 
     def __gt__(self, other: DoubleDouble | float) -> Mask:
         other = self._like(other)
-        same = self.high == other.high
-        return (self.high > other.high) | same & (self.low > other.low)
+        holds: Mask = (self.high > other.high) | (self.high == other.high) & (self.low > other.low)
+        return holds
 
     def __le__(self, other: DoubleDouble | float) -> Mask:
         other = self._like(other)
-        same = self.high == other.high
-        return (self.high < other.high) | same & (self.low <= other.low)
+        holds: Mask = (self.high < other.high) | (self.high == other.high) & (self.low <= other.low)
+        return holds
 
     def __rtruediv__(self, other: float) -> DoubleDouble:
         return self._like(other) / self
 
     def __lt__(self, other: DoubleDouble | float) -> Mask:
         other = self._like(other)
-        same = self.high == other.high
-        return (self.high < other.high) | same & (self.low < other.low)
+        holds: Mask = (self.high < other.high) | (self.high == other.high) & (self.low < other.low)
+        return holds
 
     def __ge__(self, other: DoubleDouble | float) -> Mask:
         other = self._like(other)
-        same = self.high == other.high
-        return (self.high > other.high) | same & (self.low >= other.low)
+        holds: Mask = (self.high > other.high) | (self.high == other.high) & (self.low >= other.low)
+        return holds
 
     def sqrt(self) -> DoubleDouble:
         """Return the square root of numbers >= 0."""
