@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from decimal import (
-    MAX_EMAX,
-    MIN_EMIN,
-    ROUND_HALF_EVEN,
-    Context,
-    Decimal,
-    DivisionByZero,
-    InvalidOperation,
-)
+from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
 from typing import TypeVar
 
 from ..errors import LagtopError
+from .decimals import own_context
 from .text import NumberText
 
 T = TypeVar("T")
@@ -26,21 +19,7 @@ _TIE = Decimal("1e-300")
 _MOST_DIGITS = 2_000
 
 
-def _context(digits: int) -> Context:
-    """Return a context that owes nothing to the one of the host program."""
-    return Context(
-        prec=digits,
-        rounding=ROUND_HALF_EVEN,
-        Emin=MIN_EMIN,
-        Emax=MAX_EMAX,
-        capitals=1,
-        clamp=0,
-        flags=[],
-        traps=[],
-    )
-
-
-_WIDE = _context(2 * _MOST_DIGITS)
+_WIDE = own_context(2 * _MOST_DIGITS, [])
 _PATIENCE = 2
 """Precisions to try before asking whether a number is known exactly."""
 
@@ -107,13 +86,13 @@ def _rounded(value: Decimal, previous: Decimal, rounding: Callable[[Decimal], T]
     if low == high:
         return low
     if wide.compare(error, wide.multiply(size, _TIE)) < 0:
-        return rounding(_context(250).plus(value))
+        return rounding(own_context(250, []).plus(value))
     return None
 
 
 def text_of(value: Decimal | Fraction, digits: int) -> NumberText:
     """Return a number with so many significant digits, in full where its size is usual."""
-    context = _context(digits)
+    context = own_context(digits, [])
     if isinstance(value, Fraction):
         rounded = context.divide(Decimal(value.numerator), Decimal(value.denominator))
     else:

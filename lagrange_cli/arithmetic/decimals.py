@@ -13,8 +13,26 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
-_TRAPS = [decimal.InvalidOperation, decimal.DivisionByZero, decimal.Overflow]
+_TRAPS: list[type[decimal.DecimalException]] = [
+    decimal.InvalidOperation,
+    decimal.DivisionByZero,
+    decimal.Overflow,
+]
 _GUARD = 5
+
+
+def own_context(digits: int, traps: list[type[decimal.DecimalException]]) -> decimal.Context:
+    """Return a decimal context that owes nothing to the one of the host program."""
+    return decimal.Context(
+        prec=digits,
+        rounding=decimal.ROUND_HALF_EVEN,
+        Emin=decimal.MIN_EMIN,
+        Emax=decimal.MAX_EMAX,
+        capitals=0,
+        clamp=0,
+        flags=[],
+        traps=traps,
+    )
 
 
 class Decimals:
@@ -25,16 +43,7 @@ class Decimals:
 
     def __init__(self, digits: int = 40) -> None:
         self.digits = digits
-        self._context = decimal.Context(
-            prec=digits,
-            rounding=decimal.ROUND_HALF_EVEN,
-            Emin=decimal.MIN_EMIN,
-            Emax=decimal.MAX_EMAX,
-            capitals=1,
-            clamp=0,
-            flags=[],
-            traps=_TRAPS,
-        )
+        self._context = own_context(digits, _TRAPS)
 
     def working(self) -> AbstractContextManager[object]:
         """Return a context manager that sets the precision of this thread."""

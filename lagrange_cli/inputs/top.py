@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
+from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
-from ..arithmetic.decimals import pi_to
+from ..arithmetic.decimals import own_context, pi_to
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.numbers import Number, R
 from ..errors import LagtopError
@@ -24,16 +24,7 @@ _UNITS = "choose other units"
 _PI = Fraction(pi_to(60))
 _NOT_REAL = (bool, str, bytes, bytearray, complex)
 _SHOWN = 60
-_DIGITS_SHOWN = Context(
-    prec=50,
-    rounding=ROUND_HALF_EVEN,
-    Emin=MIN_EMIN,
-    Emax=MAX_EMAX,
-    capitals=0,
-    clamp=0,
-    flags=[],
-    traps=[],
-)
+_DIGITS_SHOWN = own_context(50, [])
 """A context of our own, so that no message depends on the one of the caller."""
 
 
