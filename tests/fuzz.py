@@ -8,7 +8,7 @@ Each scene is judged at twenty times: fifteen next to a whole, half or quarter n
 start.  The report is the worst error of every kind, in units of `Judge.errors`; every key of
 `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
 10 eps.  What exceeds the bounds is listed with a command that shows it, and the exit code is 1.
-About 30 scenes a second and core.
+About 20 to 40 scenes a second and core.
 """
 
 from __future__ import annotations
