@@ -79,14 +79,14 @@ TURNING = {
 
 @pytest.mark.parametrize("scene", TURNING.values(), ids=TURNING)
 def test_nothing_leaps_next_to_quarters_of_periods(scene: dict[str, float]) -> None:
-    """The worst seen is 2.2 units."""
+    """Angles and quaternion are within 3 units in the named scenes."""
     assert errors_at_turns(scene, 1) <= 3
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_leaps_in_scenes_of_the_worst_kinds(kind: str) -> None:
-    """The worst seen is below 4 units, those of the fuzz; two scenes of each kind that nutates."""
+    """Angles and quaternion are within 4 units, the contract, in two scenes of each kind."""
     rng = random.Random(f"turns of {kind}")
     nutating = [scene for scene in (KINDS[kind](rng) for _ in range(20)) if nutates(scene)]
     assert nutating or kind == "separatrix"
