@@ -120,11 +120,17 @@ def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
             plus, minus = arg_x - x_start, arg_y - y_start
             phi = t * rates[0] + within * series.spin_slope + (plus - minus)
             psi = t * rates[1] + within * series.precession_slope + (plus + minus)
-            if motion.facts.plane:  # in half turns
-                phi, psi = (ar.pi * ar.nint(angle / ar.pi) for angle in (phi, psi))
+            if motion.facts.plane:
+                phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
             return Attitude(x, y, phi, psi, size)
 
     return spinor
+
+
+def _half_turns(ar: Any, angle: Decimal) -> Decimal:
+    """Return the nearest number of half turns: in a plane an angle only leaps, at the poles."""
+    turned: Decimal = ar.pi * ar.nint(angle / ar.pi)
+    return turned
 
 
 def constant_spinor(motion: Constant[Decimal]) -> Spinor[Decimal]:
@@ -153,8 +159,8 @@ def separatrix_spinor(motion: Separatrix[Decimal]) -> Spinor[Decimal]:
             turned = ar.atan2(imag, real) - swing.start if t else 0 * t
             half_spin, half_b = motion.r0 * t / 2, motion.b * t / 2
             phi, psi = motion.r0 * t - half_b + turned, half_b + turned
-            if motion.facts.plane:  # in half turns
-                phi, psi = (ar.pi * ar.nint(angle / ar.pi) for angle in (phi, psi))
+            if motion.facts.plane:
+                phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
             x = ar.sqrt(real * real + imag * imag)
             return Attitude(x, swing.y, phi, psi, 8 + abs(h) + abs(half_spin) + abs(half_b))
 
