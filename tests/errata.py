@@ -107,7 +107,10 @@ ERRATA = [
     Erratum("Chrapan", 7, "(7,3)", ONLY + "the last term changes sign", RESTRICTION),
     Erratum("Chrapan", 7, "(7,4)", "false after odd half periods, however read", MATHEMATICS),
     Erratum("Chrapan", 8, "labels of u", "u(T/4) = u(3T/4) for u(T) = u(3T)/4", OCR, tested=False),
-    Erratum("Aksenov", 3, "property 4", "dn² + k² sn² = 1: the sign reads as a minus", OCR),
+    Erratum(
+        *("Aksenov", 3, "section 3.1: property 4"),
+        *("dn² + k² sn² = 1: the sign reads as a minus", OCR),
+    ),
     Erratum("Aksenov", 3, "(3.1.6)", "the exponent of q is negative: the minus is lost", OCR),
 ]
 """All slips, in the order of the sources."""

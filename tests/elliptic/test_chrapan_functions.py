@@ -17,10 +17,7 @@ from lagrange_cli.elliptic.modulus import constants, modulus
 from lagrange_cli.elliptic.theta import zeta
 from lagrange_cli.elliptic.third_kind import omega, pi_function
 
-LAST = {1: 8, 2: 11, 3: 8}
-"""Number of the last equation of each section."""
-
-chrapan = Register(f"({part},{i})" for part, end in LAST.items() for i in range(1, end + 1))
+chrapan = Register()
 equation, as_printed = chrapan.equation, chrapan.as_printed
 
 k = ar.mpf("0.76239")
@@ -81,7 +78,7 @@ def _() -> Sides:
     yield zeta_there("11", V, **IMAGINARY), zeta(ar, "11", V * STRETCH, M)
 
 
-@equation("real forms of Z(i alpha)")
+@equation("section 1 c: real forms of Z(i alpha)")
 def _() -> Sides:
     line = ar.pi * ALPHA / (2 * K * K_PRIME)
     q, quarter = ar.exp(-ar.pi * K / K_PRIME), K_PRIME
@@ -94,7 +91,7 @@ def _() -> Sides:
     yield zeta(ar, "10", J * ALPHA, M), -J * (line + z)
 
 
-@equation("sum of Z00 and Z11")
+@equation("section 1 d: sum of Z00 and Z11")
 def _() -> Sides:
     z = zeta_there("01", ALPHA, ar.exp(-ar.pi * K / K_PRIME), K_PRIME)
     rest = ar.pi * ALPHA / (K * K_PRIME) + 2 * z
@@ -123,13 +120,13 @@ def _() -> Sides:
     yield zeta(ar, "11", J * ALPHA, M) - zeta(ar, "10", J * ALPHA, M), -J * C * D / S
 
 
-@equation("Z(alpha) = E(alpha, k') - E' alpha/K'")
+@equation("section 1 e: Z(alpha) = E(alpha, k') - E' alpha/K'")
 def _() -> Sides:
     squared = ar.quad(lambda x: ar.ellipfun("dn", x, m=1 - k**2) ** 2, [0, ALPHA])
     yield zeta(ar, "01", ALPHA, COMPLEMENT), squared - ar.ellipe(1 - k**2) / K_PRIME * ALPHA
 
 
-@equation("Legendre's relation")
+@equation("section 1 e: Legendre's relation")
 def _() -> Sides:
     for k_and_complement in MODULI:
         c = constants(ar, k_and_complement)
@@ -275,7 +272,7 @@ def _sum(function: Any, sign: int, w: Any) -> Any:
     return function(ar, "00", w, J * ALPHA, M) + sign * function(ar, "11", w, J * ALPHA, M)
 
 
-@equation("Pi01 of Jacobi")
+@equation("section 3 a: Pi01 of Jacobi")
 def _() -> Sides:
     left = pi_function(ar, "01", W, V, M)
     yield ratio(left), ar.exp(2 * W * zeta_there("01", V)) * ratio_there("01", W, V)
@@ -291,7 +288,7 @@ for _index, _kind in enumerate(("00", "11"), 1):
             yield ratio(left), right
 
 
-@equation("slopes of Pi")
+@equation("section 3 d: slopes of Pi")
 def _() -> Sides:
     for ij in ("01", "00", "11"):
         waves = zeta_there(ij, W - J * ALPHA) - zeta_there(ij, W + J * ALPHA)

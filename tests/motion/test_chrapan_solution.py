@@ -33,7 +33,7 @@ from errata import misprints
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.elliptic.third_kind import pi_function
 
-chrapan = Register(f"(4,{i})" for i in range(1, 35))
+chrapan = Register()
 equation, as_printed = chrapan.equation, chrapan.as_printed
 
 
@@ -83,7 +83,7 @@ def _() -> Sides:
         yield nutation, p * ar.cos(phi) - q * ar.sin(phi)
 
 
-@equation("Euler's equations")
+@equation("section 4 c: Euler's equations")
 def _() -> Sides:
     for motion, t in moments(*PARTS[:2]):
         theta, phi, _ = motion.angles(t)
@@ -241,7 +241,7 @@ def _() -> Sides:
 
 ROOTS: dict[str, Callable[..., Any]] = {
     "(4,11)": lambda u1, u2, u3, b: (u3 + u2, b),
-    "sum of products": lambda u1, u2, u3, b: (u1 * u2 + u1 * u3 - u2 * u3, 1),
+    "section 4 f: sum of products": lambda u1, u2, u3, b: (u1 * u2 + u1 * u3 - u2 * u3, 1),
     "(4,12)": lambda u1, u2, u3, b: (u2 * u3, b * u1 - 1),
     "(4,13)": lambda u1, u2, u3, b: (1 - u1**2, (u1 - u2) * (u3 - u1)),
     "(4,14)": lambda u1, u2, u3, b: (1 - u2**2, (u1 - u2) * (u3 + u2)),
