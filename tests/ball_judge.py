@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from balls.angles import State
-from balls.record import Motion
+from balls.record import Motion, Remainders
 from balls.scene import Number, Scene, Undecided, ball, facts_of, scene_from
 from flint import arb, ctx
 
@@ -91,12 +91,30 @@ class Judge:
     def angle_errors(self, t: float, computed: tuple[float, float, float]) -> list[float]:
         """Return the errors of theta, phi, psi (radians) in units."""
         state = self.at(t)
-        return _errors(state, computed, _with_units(state)[:3])
+        return _errors(computed, _with_units(state)[:3])
 
     def errors(self, t: float, computed: tuple[float, ...]) -> list[float]:
         """Return the errors of theta, phi, psi and the four parts of the quaternion in units."""
         state = self.at(t)
-        return _errors(state, computed, _with_units(state))
+        return _errors(computed, _with_units(state))
+
+    def remainder_errors(self, t: float, computed: tuple[float, float]) -> list[float]:
+        """Return the errors of dphi and dpsi (radians) in units."""
+
+        def pairs(found: Remainders) -> list[tuple[arb, arb]]:
+            return [
+                (value, EPS * (arb.max(arb(1), abs(value)) + abs(found.tau * rate)))
+                for value, rate in zip(found[:2], found[2:4], strict=True)
+            ]
+
+        time = Fraction(t)
+        far = max(0, math.ceil(math.log2(abs(time) * Fraction(_size(self.scene)) + 1)))
+        exact = self._raised(
+            lambda motion: motion.remainders(time),
+            lambda found: all(_narrow(*pair) for pair in pairs(found)),
+            FIRST_BITS + 64 * (far // 64),
+        )
+        return _errors(computed, pairs(exact))
 
     def ulps(self, key: str, computed: float) -> float:
         """Return the distance of a key from its exact value, in gaps between doubles there.
@@ -136,7 +154,7 @@ def _with_units(state: State) -> list[tuple[arb, arb]]:
     return pairs + [(part, spread) for part in state.quaternion]
 
 
-def _errors(state: State, computed: tuple[float, ...], pairs: list[tuple[arb, arb]]) -> list[float]:
+def _errors(computed: tuple[float, ...], pairs: list[tuple[arb, arb]]) -> list[float]:
     """Return |computed - exact| over the unit; a NaN is infinitely wrong."""
     with _precision(4 * FIRST_BITS):
         return [

@@ -37,7 +37,7 @@ from lagrange_cli.motion.table import rows
 
 UNITS, HALF_ULP, SWEEP_EPS = 4.0, 0.5 + 1e-9, 10.0
 """The bounds: of an angle or a part of the quaternion, of a key of `solve`, of one of `sweep`."""
-NAMES = ("theta", "phi", "psi", "quaternion")
+NAMES = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi")
 COSINES = ("u1", "u2", "u_quarter")
 NEIGHBOURS, ELSEWHERE = 5, 5
 CHUNK, MOST_SHOWN = 50, 40
@@ -96,18 +96,20 @@ def period_of(judge: Judge) -> Fraction:
 def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[float]) -> None:
     """Judge the angles and the quaternion of one motion."""
     points = ListedPoints([Fraction(t) for t in times])
-    _, blocks = rows(motion, points, ("theta", "phi", "psi", "quaternion"), radians=True)
+    columns = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi")
+    _, blocks = rows(motion, points, columns, radians=True)
     computed = np.concatenate(list(blocks)).tolist()
     for t, values in zip(times, computed, strict=True):
         tally.times += 1
         try:
-            errors = judge.errors(t, tuple(values))
+            errors = judge.errors(t, tuple(values[:7]))
+            remainders = judge.remainder_errors(t, tuple(values[7:]))
         except Undecided:
             tally.counts["undecided times"] += 1
             continue
         show = f"lagtop table {motion.top.options()} --columns {{}} --t-min {t!r} --n 1"
-        quaternion = max(errors[3:])
-        for name, error in zip(NAMES, (*errors[:3], quaternion), strict=True):
+        shown = (*errors[:3], max(errors[3:]), *remainders)
+        for name, error in zip(NAMES, shown, strict=True):
             tally.note(name, error, UNITS, show.format(f"t,{name}"))
 
 
@@ -198,7 +200,8 @@ def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, with_sweep: 
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    yield f"{'kind':24} scenes  times  theta    phi    psi   quat    key  sweep  beyond"
+    names = "theta    phi    psi   quat   dphi   dpsi    key  sweep"
+    yield f"{'kind':24} scenes  times  {names}  beyond"
     for kind, tally in tallies.items():
         worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "sweep")]
         shown = " ".join(f"{error:6.3g}" for error in worst)

@@ -6,7 +6,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import Pair, Triple, fraction_of_product, pair, triple
+from ..arithmetic.double_double import (
+    Pair,
+    Triple,
+    fraction_of_product,
+    pair,
+    triple,
+    two_product,
+    two_sum,
+)
 from ..arithmetic.numbers import R
 from ..arithmetic.protocol import Arithmetic
 from ..arithmetic.types import Array
@@ -19,31 +27,51 @@ class Growth(NamedTuple):
     """Mean rate of the angle."""
     turns: Triple
     """Mean rate in turns, good enough for the fraction of a turn after any time."""
-    slope: float
+    slope: Pair
     """What has to be added per step of the phase, since the series winds by itself."""
-    start: float
+    start: Pair
     """The value of the series at t = 0."""
 
     def unwrapped(self, t: Array, since: Array, series: Array) -> Array:
         """Return the angle, counted on from 0 at t = 0; `series` is overwritten."""
-        self._within(since, series)
+        series = self._within(t, since, series)
         series += t * self.rate.low
         series += t * self.rate.high
         return series
 
     def wrapped(self, t: Array, since: Array, series: Array) -> Array:
         """Return the angle in (-pi, pi], as exact far away as near; `series` is overwritten."""
-        self._within(since, series)
+        series = self._within(t, since, series)
         series += fraction_of_product(t, self.turns) * (2.0 * np.pi)
         series -= np.ceil(series / (2.0 * np.pi) - 0.5) * (2.0 * np.pi)
         series[series <= -np.pi] = np.pi
         return np.minimum(series, np.pi, out=series)
 
-    def _within(self, since: Array, series: Array) -> None:
-        if self.start:
-            series -= self.start
-        if self.slope:
-            series += since * self.slope
+    def remainder(self, t: Array, since: Array, series: Array) -> Array:
+        """Return the angle less its mean growth (6,4), (7,4), which is 0 at t = 0.
+
+        Neither the angle nor the growth is formed, so that nothing is lost far away; the slope and
+        the winding of the series may cancel, so that their sum keeps what rounding takes from it.
+        """
+        ramp, lost = two_product(since, self.slope.high)
+        total, lost_there = two_sum(series, ramp)
+        total, lost_at_start = two_sum(total, -self.start.high)
+        lost += lost_there
+        lost += lost_at_start
+        lost += since * self.slope.low - self.start.low
+        total += lost
+        if self.start.high:
+            total[t == 0] = 0.0
+        return total
+
+    def _within(self, t: Array, since: Array, series: Array) -> Array:
+        if self.start.high:
+            series -= self.start.high
+        if self.slope.high:
+            series += since * self.slope.high
+        if self.start.high:
+            series[t == 0] = 0.0
+        return series
 
 
 class Growths(NamedTuple):
@@ -69,7 +97,8 @@ def growths(
     (phi, psi), (phi_slope, psi_slope), (x, y) = rates, slopes, starts
 
     def growth(rate: Any, slope: Any, start: Any) -> Growth:
-        return Growth(pair(rate), triple(rate / (2 * ar.pi)), float(slope), float(start))
+        turns = triple(rate / (2 * ar.pi))
+        return Growth(pair(rate), turns, pair(slope), pair(start))
 
     return Growths(
         phi=growth(phi, phi_slope, x - y),

@@ -24,6 +24,8 @@ COLUMNS: dict[str, Column] = {
     "theta": Column(["theta_*"], "theta", "tilt"),
     "phi": Column(["phi_*"], "phi", "spin"),
     "psi": Column(["psi_*"], "psi", "precession"),
+    "dphi": Column(["dphi_*"], "phi_remainder", "spin less its mean growth (6,4), a wave"),
+    "dpsi": Column(["dpsi_*"], "psi_remainder", "precession less its mean growth (7,4), a wave"),
     "u": Column(["u"], "cosine", "cos(theta)"),
     "thetadot": Column(["thetadot"], "nutation_rate", "nutation rate", True),
     "phidot": Column(["phidot"], "phi_rate", "spin rate"),

@@ -92,6 +92,14 @@ class Sample:
         """Return the precession."""
         return [self.attitude.psi(wrap=self.wrap)]
 
+    def phi_remainder(self) -> list[Array]:
+        """Return the spin less its mean growth (6,4)."""
+        return [self.attitude.phi_remainder()]
+
+    def psi_remainder(self) -> list[Array]:
+        """Return the precession less its mean growth (7,4)."""
+        return [self.attitude.psi_remainder()]
+
     def cosine(self) -> list[Array]:
         """Return cos(theta) (4,6)."""
         return [self.u]

@@ -16,7 +16,7 @@ of the caller.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -29,8 +29,11 @@ from ..arithmetic.double_double import Pair, reduce_phase
 from ..arithmetic.points import MAX_TIME
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .attitude import Growth, Growths
+from .attitude import Growths
 from .theta_series import Component, Frame, Polynomial
+
+Grow = Callable[[Array, Array, Array], Array]
+"""A method of `Growth`: an angle from the times, the parts of their steps, and the series."""
 
 
 class Angles(NamedTuple):
@@ -75,25 +78,33 @@ class Attitude:
 
     def phi(self, *, wrap: bool = False) -> Array:
         """Return the spin, arg X - arg Y."""
-        return self._angle(self.growths.phi, self.spinor.arg_x - self.spinor.arg_y, wrap)
+        growth = self.growths.phi
+        return self._angle(growth.wrapped if wrap else growth.unwrapped, -1)
 
     def psi(self, *, wrap: bool = False) -> Array:
         """Return the precession, arg X + arg Y."""
-        return self._angle(self.growths.psi, self.spinor.arg_x + self.spinor.arg_y, wrap)
+        growth = self.growths.psi
+        return self._angle(growth.wrapped if wrap else growth.unwrapped, 1)
+
+    def phi_remainder(self) -> Array:
+        """Return the spin less its mean growth (6,4)."""
+        return self._angle(self.growths.phi.remainder, -1)
+
+    def psi_remainder(self) -> Array:
+        """Return the precession less its mean growth (7,4)."""
+        return self._angle(self.growths.psi.remainder, 1)
 
     def args(self) -> tuple[Array, Array]:
         """Return (psi + phi)/2 and (psi - phi)/2, each in (-pi, pi]."""
         return (
-            self._angle(self.growths.arg_x, self.spinor.arg_x.copy(), True),
-            self._angle(self.growths.arg_y, self.spinor.arg_y.copy(), True),
+            self.growths.arg_x.wrapped(self.t, self.since, self.spinor.arg_x.copy()),
+            self.growths.arg_y.wrapped(self.t, self.since, self.spinor.arg_y.copy()),
         )
 
-    def _angle(self, growth: Growth, series: Array, wrap: bool) -> Array:
-        grow = growth.wrapped if wrap else growth.unwrapped
-        angle: Array = grow(self.t, self.since, series)
-        if growth.start:
-            angle[self.t == 0] = 0.0
-        return angle
+    def _angle(self, grow: Grow, sign: int) -> Array:
+        """Return what a method of a `Growth` makes of the sum or the difference of the series."""
+        x, y = self.spinor.arg_x, self.spinor.arg_y
+        return grow(self.t, self.since, x + y if sign > 0 else x - y)
 
 
 class Sampler:

@@ -30,14 +30,13 @@ def remainder_curves(motion: Motion, t_max: float) -> Remainders:
 
     Raises NothingToDrawError where the tilt has no period, so that both are 0 or undefined.
     """
-    spin_rate, precession_rate = motion.mean_spin_rate, motion.mean_precession_rate
-    if nutation_period(motion) is None or spin_rate is None or precession_rate is None:
+    if nutation_period(motion) is None or motion.mean_precession_rate is None:
         regime = motion.regime.value
         raise NothingToDrawError(f"no remainders: the tilt has no period ({regime})")
 
     def remainders(t: Array) -> Array:
-        _, phi, psi = motion.angles(t)
-        return np.stack([phi - spin_rate * t, psi - precession_rate * t], axis=1)
+        waves = motion.table(t, ["dphi", "dpsi"])
+        return np.stack([waves["dphi"], waves["dpsi"]], axis=1)
 
     t = refined(phase_times(motion, t_max), remainders)
     return Remainders(t, *remainders(t).T)

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from typing import NamedTuple
+
 from flint import acb, arb
 
 from balls.angles import Moving
-from balls.scene import Undecided
+from balls.scene import Undecided, ball
+
+
+class Remainders(NamedTuple):
+    """Periodic parts of spin and precession, their rates, and the time since a whole period."""
+
+    dphi: arb
+    dpsi: arb
+    dphi_rate: arb
+    dpsi_rate: arb
+    tau: arb
 
 
 class Motion(Moving):
@@ -27,9 +40,7 @@ class Motion(Moving):
         numbers |= self._elliptic()
         if self.facts.steady:
             return numbers | self._constant_rates(spin, turn)
-        south, north = self._growth(1), self._growth(-1)
-        mean_spin = self.r0 - self.b + (south - north) / self.T
-        mean_turn = (south + north) / self.T
+        mean_spin, mean_turn = self.mean_rates()
         numbers |= self._tilts() | {
             "mean_spin_rate": mean_spin,
             "mean_precession_rate": mean_turn,
@@ -82,6 +93,27 @@ class Motion(Moving):
             "theta_min_deg": in_degrees(self.tilt if at > 0 else 2 * least),
             "theta_max_deg": in_degrees(self.tilt if at < 0 else 2 * most),
         }
+
+    def mean_rates(self) -> tuple[arb, arb]:
+        """Return the mean rates of spin and precession; on the separatrix, their limits."""
+        if self.facts.separatrix:
+            return self.r0 - self.b / 2, self.b / 2
+        if self.facts.steady:
+            turn = arb(0) if self.facts.pole else self.turn
+            return self.r0 - turn * self.u0, turn
+        south, north = self._growth(1), self._growth(-1)
+        return self.r0 - self.b + (south - north) / self.T, (south + north) / self.T
+
+    def remainders(self, t: Fraction) -> Remainders:
+        """Return spin and precession at a time less their mean growth."""
+        state, (spin, turn) = self.at(t), self.mean_rates()
+        return Remainders(
+            dphi=state.phi - spin * ball(t),
+            dpsi=state.psi - turn * ball(t),
+            dphi_rate=state.phi_rate - spin,
+            dpsi_rate=state.psi_rate - turn,
+            tau=state.tau,
+        )
 
     def _growth(self, sign: int) -> arb:
         """Return what a pole adds to (psi +- phi)/2 over a period."""

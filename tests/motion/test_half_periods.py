@@ -58,14 +58,19 @@ def turning_times(period: float, rng: random.Random) -> Iterator[float]:
 
 
 def errors_at_turns(scene: dict[str, float], seed: int) -> float:
-    """Return the largest error, in units, of the angles and the quaternion at turning times."""
+    """Return the largest error, in units, of angles, remainders and quaternion at turning times."""
     motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
     reach = motion.sampler().max_time
     turns = turning_times(float(motion.T_nutation), random.Random(seed))
     times = [t for t in turns if abs(t) <= reach]
     table = motion.table(times, ("theta", "phi", "psi", "quaternion"))
     rows = zip(*(column.tolist() for column in table.values()), strict=True)
-    return max(max(judge.errors(t, row)) for t, row in zip(times, rows, strict=True))
+    waves = motion.table(times, ("dphi", "dpsi"))
+    remainders = zip(waves["dphi"].tolist(), waves["dpsi"].tolist(), strict=True)
+    return max(
+        max(*judge.errors(t, row), *judge.remainder_errors(t, remainder))
+        for t, row, remainder in zip(times, rows, remainders, strict=True)
+    )
 
 
 TURNING = {
