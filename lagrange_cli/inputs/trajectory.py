@@ -1,0 +1,179 @@
+"""Trajectories from files or from standard input, a block of rows at a time.
+
+What a file is its first bytes tell, and not its name: Parquet, npy, npz, JSON lines, or else text
+with a row per line.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from io import BufferedReader
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, cast
+
+from ..errors import DataError, LagtopError
+from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+ROWS_AT_ONCE = 1 << 15
+
+_MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
+
+
+class Block(NamedTuple):
+    """Rows that follow one another, and where they stand."""
+
+    values: Array
+    """A row for each row, a column for each one that was asked for; NaN for an empty cell."""
+    places: Sequence[int]
+    """The number of the line, or of the row where there are no lines, from 1."""
+
+
+class Table(Protocol):
+    """Rows of numbers, in whatever form they are stored."""
+
+    @property
+    def place(self) -> str:
+        """What is counted by the places of a block: `line` or `row`."""
+
+    @property
+    def width(self) -> int:
+        """The number of columns."""
+
+    @property
+    def names(self) -> Sequence[str] | None:
+        """The names of the columns, if they have any."""
+
+    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
+        """Yield some columns, once, at most ROWS_AT_ONCE rows at a time; names are for errors."""
+
+
+class Trajectory:
+    """A trajectory that has been opened: its quantities, and its rows."""
+
+    def __init__(self, path: str, table: Table, columns: Sequence[str] | None) -> None:
+        """Find the quantities.  Raises DataError where there is no time, or nothing else."""
+        self.name, self._table = shown_path(path), table
+        self.names = self._column_names(columns)
+        self.quantities: dict[str, Found] = quantities_in(self.names)
+        if "t" not in self.quantities or len(self.quantities) < 2:
+            wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
+            shown = ", ".join(map(repr, self.names))[:120]
+            raise DataError(
+                f"{self.name} must have columns among {wanted}, got {shown}: name them by --columns"
+            )
+
+    def _column_names(self, columns: Sequence[str] | None) -> list[str]:
+        if columns is not None:
+            names = expanded(columns)
+            if len(names) != self._table.width:
+                raise LagtopError(
+                    f"columns must name all {self._table.width} columns of {self.name} "
+                    f"(_ leaves one out), got {len(names)} names",
+                    "columns",
+                )
+            return names
+        if self._table.names is None:
+            raise DataError(
+                f"{self.name} has no header: name its {self._table.width} columns by --columns, "
+                "such as t,quaternion"
+            )
+        return list(self._table.names)
+
+    def blocks(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
+        """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
+
+        Raises DataError for what is no number, and for a time that is missing or turns back.
+        """
+        wanted = sorted(i for found in self.quantities.values() for i in found.columns)
+        at = {
+            key: [wanted.index(i) for i in found.columns] for key, found in self.quantities.items()
+        }
+        check = _Clock(self)
+        for values, places in self._table.blocks(wanted, [self.names[i] for i in wanted]):
+            found = {key: values[:, columns] for key, columns in at.items()}
+            check.advance(found["t"][:, 0], places)
+            yield found, places
+
+    def where(self, place: int) -> str:
+        """Return the name of the file and the place of a row."""
+        return f"{self.name}, {self._table.place} {place}"
+
+
+class _Clock:
+    """The times of a trajectory, which go on in one direction."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self.trajectory, self.direction = trajectory, 0.0
+        self.last: float | None = None
+
+    def advance(self, t: Array, places: Sequence[int]) -> None:
+        """Raise DataError for a time that is not finite or turns back."""
+        import numpy as np
+
+        if bad := np.flatnonzero(~np.isfinite(t)).tolist():
+            raise self._error(places[bad[0]], f"t must be a finite number, got {t[bad[0]]}")
+        before = t[0] if self.last is None else self.last
+        steps = np.diff(t, prepend=before)
+        moving = steps[steps != 0]
+        if not self.direction and moving.size:
+            self.direction = float(np.sign(moving[0]))
+        if bad := np.flatnonzero(steps * self.direction < 0).tolist():
+            i = bad[0]
+            previous = float(t[i] - steps[i]) if i == 0 else float(t[i - 1])
+            wrong = f"t must not turn back, got {float(t[i])} after {previous}"
+            raise self._error(places[i], wrong)
+        self.last = float(t[-1])
+
+    def _error(self, place: int, wrong: str) -> DataError:
+        return DataError(f"{self.trajectory.where(place)}: {wrong}")
+
+
+@contextmanager
+def open_trajectory(path: str, columns: Sequence[str] | None = None) -> Iterator[Trajectory]:
+    """Open the trajectory of a file, or of standard input for `-`.
+
+    `columns` name all columns from the left, whatever the file says.  Raises LagtopError for a file
+    that cannot be read, DataError for one that holds no trajectory.
+    """
+    try:
+        with _stream(path) as stream:
+            peeked = BufferedReader(cast(Any, stream))
+            try:
+                kind = _MAGIC.get(peeked.peek(4)[:4])
+                yield Trajectory(path, _reader(kind)(peeked, shown_path(path)), columns)
+            finally:
+                peeked.detach()
+    except OSError as error:
+        raise LagtopError(f"{shown_path(path)}: {error.strerror or error}") from None
+
+
+def _stream(path: str) -> Any:
+    if path == "-":
+        from io import BytesIO
+
+        return nullcontext(sys.stdin.buffer if sys.stdin else BytesIO())
+    return open(path, "rb")
+
+
+def _reader(kind: str | None) -> Callable[[BinaryIO, str], Table]:
+    if kind is None:
+        from .trajectory_text import read_text
+
+        return read_text
+    from . import trajectory_arrays as arrays
+
+    readers: dict[str, Callable[[BinaryIO, str], Table]] = {
+        "parquet": arrays.ParquetTable,
+        "npy": arrays.read_npy,
+        "npz": arrays.read_npz,
+    }
+    return readers[kind]
+
+
+def shown_path(path: str) -> str:
+    """Return what a file is called in messages."""
+    return "standard input" if path == "-" else path

@@ -1,0 +1,223 @@
+"""The columns of a trajectory by their names: which quantities they are, and what names say.
+
+Another name, or another quantity, is an entry of QUANTITIES; the help of `lagtop compare` and the
+table in the README of the room `judge` are made from it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from ..errors import LagtopError
+from .names import suggestion
+
+SKIPPED = "_"
+"""The name of a column that is left out."""
+
+
+class Spelling(NamedTuple):
+    """Plain names that the parts of a quantity may have."""
+
+    names: Sequence[str]
+    says: str = ""
+    """A convention that goes with the names, such as the order of a quaternion."""
+
+
+class Quantity(NamedTuple):
+    """What columns of a trajectory may hold."""
+
+    meaning: str
+    shown: str
+    """Names as examples, for people."""
+    spellings: Sequence[Spelling]
+    is_angle: bool = False
+
+    @property
+    def size(self) -> int:
+        """The number of columns."""
+        return len(self.spellings[0].names)
+
+
+class Found(NamedTuple):
+    """A quantity that was found in a trajectory."""
+
+    columns: Sequence[int]
+    """Where its parts are."""
+    says: str
+    unit: str | None
+    """Unit of angles that the names end in, `deg` or `rad`."""
+
+
+def _spelt(prefixes: str, parts: str, says: str = "") -> list[Spelling]:
+    """Return a spelling for each prefix before every part; `-` stands for nothing."""
+    return [
+        Spelling([f"{prefix}{part}".replace("-", "") for part in parts.split()], says)
+        for prefix in prefixes.split()
+    ]
+
+
+_XYZ, _DIGITS = "x y z", ("0 1 2", "0 1 2 3", "0 1 2 3 4 5 6 7 8")
+_MATRIX = "matrix rotationmatrix rotation xmat rot r m"
+
+QUANTITIES: dict[str, Quantity] = {
+    "t": Quantity("time", "t, time, timestamp", _spelt("t time timestamp times simtime", "-")),
+    "quaternion": Quantity(
+        "quaternion from body to space",
+        "quaternion_w …, qw qx qy qz; by number: quaternion_0 …, q0 …",
+        [
+            *_spelt("quaternion quat q orientation attitude xquat -", "w x y z", "wxyz"),
+            *_spelt("quaternion quat q orientation attitude", _DIGITS[1]),
+            *_spelt("qpos xquat ep eulerparameters", _DIGITS[1], "wxyz"),
+            *_spelt("qpos u", "3 4 5 6", "wxyz"),
+            *_spelt("bodyq", "3 4 5 6", "xyzw"),
+        ],
+    ),
+    "matrix": Quantity(
+        "rotation matrix from body to space, row by row",
+        "matrix_0 …, r11 r12 … r33, R00 … R22",
+        [
+            *_spelt(_MATRIX, _DIGITS[2]),
+            *_spelt(_MATRIX, "11 12 13 21 22 23 31 32 33"),
+            *_spelt(_MATRIX, "00 01 02 10 11 12 20 21 22"),
+            *_spelt(_MATRIX, "xx xy xz yx yy yz zx zy zz"),
+        ],
+    ),
+    "theta": Quantity("tilt", "theta, theta_deg, theta_rad", _spelt("theta tilt", "-"), True),
+    "phi": Quantity("spin", "phi, phi_deg, phi_rad", _spelt("phi spin", "-"), True),
+    "psi": Quantity("precession", "psi, psi_deg, psi_rad", _spelt("psi precession", "-"), True),
+    "euler": Quantity(
+        "three angles of turns about coordinate axes",
+        "euler_0 …, roll pitch yaw",
+        [
+            *_spelt("euler rpy", _DIGITS[0]),
+            Spelling(["roll", "pitch", "yaw"], "xyz"),
+            *_spelt("rotxyz", _DIGITS[0], "XYZ"),
+        ],
+        True,
+    ),
+    "rotvec": Quantity(
+        "rotation vector from body to space, in radians",
+        "rotvec_x …, rv0 rv1 rv2",
+        [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("rotvec rotationvector rv", parts)],
+    ),
+    "axis": Quantity(
+        "figure axis in space",
+        "axis_x axis_y axis_z",
+        [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("axis figureaxis director", parts)],
+    ),
+    "position": Quantity(
+        "mass centre in space, from the pivot; read where nothing above is given",
+        "x y z, com_x …, tx ty tz",
+        [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("position com pos p t", parts)]
+        + _spelt("-", _XYZ),
+    ),
+    "rates": Quantity(
+        "angular velocity in radians per unit of time",
+        "p q r (body), omega_x …, omega_body_x …, omega_space_x …, wx wy wz",
+        [
+            *_spelt("-", "p q r", "body"),
+            *(
+                spelling
+                for parts in (_XYZ, _DIGITS[0])
+                for spelling in (
+                    *_spelt("omega w angularvelocity gyro rates", parts),
+                    *_spelt("omegabody omegalocal angularvelocitylocal wbody qvel", parts, "body"),
+                    *_spelt("omegaspace omegaworld omegaglobal wspace", parts, "space"),
+                )
+            ),
+        ],
+    ),
+    "angle_rates": Quantity(
+        "rates of tilt, spin and precession in radians per unit of time",
+        "thetadot phidot psidot",
+        [
+            Spelling(["thetadot", "phidot", "psidot"]),
+            Spelling(["dtheta", "dphi", "dpsi"]),
+            *_spelt("anglerates", _DIGITS[0]),
+        ],
+    ),
+}
+"""The quantities by name, in the order in which an attitude is taken from them."""
+
+_BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}
+
+_EXUDYN = {
+    "RotationMatrix": ["t", "matrix"],
+    "Rotation": ["t", "rotxyz0_rad", "rotxyz1_rad", "rotxyz2_rad"],
+    "AngularVelocity": ["t", "omega_space_x", "omega_space_y", "omega_space_z"],
+    "AngularVelocityLocal": ["t", "omega_body_x", "omega_body_y", "omega_body_z"],
+    "Position": ["t", "position"],
+    "Displacement": ["t", "position"],
+}
+"""The columns of a sensor file of EXUDYN by the kind of output that its comments name."""
+
+
+def quantities_in(names: Sequence[str]) -> dict[str, Found]:
+    """Return the quantities of some columns; a column belongs to the first one that claims it."""
+    words: dict[str, int] = {}
+    for i, name in enumerate(names):
+        words.setdefault(plain_name(name)[0], i)
+    found: dict[str, Found] = {}
+    for key, quantity in QUANTITIES.items():
+        for spelling in quantity.spellings:
+            if all(name in words for name in spelling.names):
+                columns = [words.pop(name) for name in spelling.names]
+                unit = plain_name(names[columns[0]])[1]
+                found[key] = Found(columns, spelling.says, unit)
+                break
+    return found
+
+
+def plain_name(name: str) -> tuple[str, str | None]:
+    """Return a name in small letters and digits only, without a unit, and the unit of angles."""
+    text = name.strip().lower()
+    match = re.fullmatch(r"(.+?)[\s_.]*[\[(]?(deg|rad|degrees|radians)[\])]?", text)
+    unit = None
+    if match and not match[2].startswith(match[1]):
+        text, unit = match[1], match[2][:3]
+    text = re.sub(r"[\[(](s|sec|m|-|rad/s|1/s)[\])]$", "", text)
+    return re.sub(r"[^a-z0-9]", "", text), unit
+
+
+def expanded(names: Sequence[str]) -> list[str]:
+    """Return the names of columns one by one: `quaternion` stands for quaternion_0 and so on.
+
+    Raises LagtopError for a name that is not known.
+    """
+    single: list[str] = []
+    for name in names:
+        word, unit = plain_name(name)
+        quantity = _BY_PLAIN_NAME.get(word)
+        if quantity is None or quantity.size == 1:
+            single.append(name)
+        else:
+            ending = f"_{unit}" if unit else ""
+            single += [f"{word}{i}{ending}" for i in range(quantity.size)]
+    used = {i for found in quantities_in(single).values() for i in found.columns}
+    for i, name in enumerate(single):
+        if i not in used and name != SKIPPED:
+            raise LagtopError(
+                f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as "
+                f"qw,qx,qy,qz) or {SKIPPED}, got {name[:60]!r}{suggestion(name, QUANTITIES)}",
+                "columns",
+            )
+    return single
+
+
+def names_in_comments(comments: Sequence[str], cells: int) -> list[str] | None:
+    """Return the names of so many columns from the comments above them, if these give any."""
+    for comment in reversed(comments):
+        if kind := re.fullmatch(r"OutputVariableType\s*=\s*(\w+)", comment):
+            names = _EXUDYN.get(kind[1])
+            return None if names is None else expanded(names)
+        words = re.split(r"[\s,;]+", comment.strip())
+        if len(words) == cells and "t" in quantities_in(words):
+            return words
+    return None
+
+
+def shown_quantities() -> Mapping[str, str]:
+    """Return the meaning and the names of each quantity, for the help."""
+    return {key: f"{x.meaning}: {x.shown}" for key, x in QUANTITIES.items()}

@@ -1,0 +1,193 @@
+"""Trajectories as text: a row per line, with commas, semicolons, tabs or white space; JSON lines.
+
+A block of lines goes through NumPy's parser.  Where this refuses it, the lines are read one by one:
+empty cells are NaN, and what is no number is named by its line and column.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import chain, islice
+from typing import Any, BinaryIO
+
+from ..errors import DataError
+from .trajectory import ROWS_AT_ONCE, Block, Table
+from .trajectory_columns import names_in_comments
+
+_COMMENT = b"#"
+_LONGEST = 1 << 20
+"""Bytes of a line; a file without line ends is no table."""
+
+Numbered = tuple[int, bytes]
+
+
+def read_text(stream: BinaryIO, name: str) -> Table:
+    """Return the rows of a text.  Raises DataError where there are none."""
+    lines = _lines(stream, name)
+    comments: list[str] = []
+    for number, line in lines:
+        if line.startswith(_COMMENT):
+            comments.append(_decoded(line, name, number).lstrip("# \t"))
+        elif line[:1] in {b"{", b"["}:
+            return JsonTable(name, chain([(number, line)], lines))
+        else:
+            return TextTable(name, (number, line), lines, comments)
+    raise DataError(f"{name} must hold a trajectory, got no row")
+
+
+def _lines(stream: BinaryIO, name: str) -> Iterator[Numbered]:
+    """Yield the lines that are not blank, stripped, by their numbers."""
+    number = 0
+    while line := stream.readline(_LONGEST):
+        number += 1
+        if len(line) == _LONGEST:
+            raise DataError(f"{name}, line {number}: a line must have less than {_LONGEST} bytes")
+        if number == 1:
+            line = line.removeprefix(b"\xef\xbb\xbf")
+        if line := line.strip(b" \r\n"):
+            yield number, line
+
+
+def _decoded(line: bytes, name: str, number: int) -> str:
+    try:
+        return line.decode()
+    except UnicodeDecodeError:
+        raise DataError(f"{name}, line {number}: a row must be UTF-8 text") from None
+
+
+class TextTable:
+    """Rows of a text, with or without a header; comments may give the names too."""
+
+    place = "line"
+
+    def __init__(
+        self, name: str, first: Numbered, lines: Iterator[Numbered], comments: Sequence[str]
+    ) -> None:
+        self.name = name
+        text = _decoded(first[1], name, first[0])
+        self.delimiter = next((x for x in ",;\t" if x in text), None)
+        cells = self._cells(text)
+        self.width = len(cells)
+        self.names: Sequence[str] | None
+        if any(_is_number(cell) for cell in cells):
+            self.names = names_in_comments(comments, self.width)
+            lines = chain([first], lines)
+        else:
+            self.names = cells
+        self._data = ((i, line) for i, line in lines if not line.startswith(_COMMENT))
+
+    def _cells(self, line: str) -> list[str]:
+        return [cell.strip().strip('"') for cell in line.split(self.delimiter)]
+
+    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
+        """Yield some columns of the rows.  Raises DataError for what is no number."""
+        import numpy as np
+
+        while block := list(islice(self._data, ROWS_AT_ONCE)):
+            places, lines = [i for i, _ in block], [line for _, line in block]
+            try:
+                values = np.loadtxt(lines, delimiter=self.delimiter, ndmin=2, comments=None)
+                if values.shape != (len(lines), self.width):
+                    raise ValueError(values.shape)
+                yield Block(values[:, columns], places)
+            except ValueError:
+                yield Block(np.array([self._row(*x, columns, names) for x in block]), places)
+
+    def _row(
+        self, number: int, line: bytes, columns: Sequence[int], names: Sequence[str]
+    ) -> list[float]:
+        cells = self._cells(_decoded(line, self.name, number))
+        if len(cells) != self.width:
+            raise DataError(
+                f"{self.name}, line {number}: a row must have {self.width} cells, got {len(cells)}"
+            )
+        row = []
+        for i, name in zip(columns, names, strict=True):
+            if cells[i] and not _is_number(cells[i]):
+                raise DataError(
+                    f"{self.name}, line {number}, column {i + 1}: {name} must be a number, "
+                    f"got {cells[i][:60]!r}"
+                )
+            row.append(float(cells[i] or "nan"))
+        return row
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return cell.isascii() and "_" not in cell
+
+
+class JsonTable:
+    """JSON lines, an object per row; an array with an object per line is read as well."""
+
+    place = "line"
+
+    def __init__(self, name: str, lines: Iterator[Numbered]) -> None:
+        self.name = name
+        bare = ((i, line.strip(b"[], \t")) for i, line in lines)
+        objects = ((i, line) for i, line in bare if line)
+        first = next(objects, None)
+        if first is None:
+            raise DataError(f"{name} must hold a trajectory, got no row")
+        self._lines = chain([first], objects)
+        self.sizes = {
+            key: len(value) if isinstance(value, list) else 0
+            for key, value in self._object(*first).items()
+            if isinstance(value, int | float | list | None)
+        }
+        self.names: Sequence[str] = [
+            name for key, n in self.sizes.items() for name in parts(key, n)
+        ]
+        self.width = len(self.names)
+
+    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
+        """Yield some columns of the rows.  Raises DataError for what is no number."""
+        import numpy as np
+
+        while block := list(islice(self._lines, ROWS_AT_ONCE)):
+            values = np.array([self._row(*x) for x in block], dtype=np.float64)
+            yield Block(values[:, columns], [i for i, _ in block])
+
+    def _object(self, number: int, line: bytes) -> dict[str, Any]:
+        import orjson
+
+        try:
+            value = orjson.loads(line)
+        except ValueError as error:
+            raise DataError(
+                f"{self.name}, line {number}: a row must be a JSON object: {error}"
+            ) from None
+        if not isinstance(value, dict):
+            raise DataError(f"{self.name}, line {number}: a row must be a JSON object")
+        return value
+
+    def _row(self, number: int, line: bytes) -> list[float]:
+        row: list[float] = []
+        values = self._object(number, line)
+        for key, size in self.sizes.items():
+            value, count = values.get(key), size or 1
+            numbers = [value] if not size else [None] * size if value is None else value
+            if not isinstance(numbers, list) or len(numbers) != count or not _are_real(numbers):
+                wanted = f"{size} numbers" if size else "a number"
+                raise DataError(
+                    f"{self.name}, line {number}, column {key}: must be {wanted}, "
+                    f"got {str(value)[:60]!r}"
+                )
+            row += [math.nan if x is None else float(x) for x in numbers]
+        return row
+
+
+def _are_real(values: Sequence[Any]) -> bool:
+    """Return whether each value is a real number or missing."""
+    return all(
+        x is None or (isinstance(x, int | float) and not isinstance(x, bool)) for x in values
+    )
+
+
+def parts(name: str, size: int) -> list[str]:
+    """Return the names of the columns of an entry of so many numbers; a size of 0 is one number."""
+    return [f"{name}_{i}" for i in range(size)] if size else [name]
