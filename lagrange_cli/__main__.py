@@ -1,6 +1,11 @@
 """The start of the command: `python -m lagrange_cli` and the script `lagtop`."""
 
-import signal
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import signal
+else:
+    import _signal as signal  # without the enumerations of `signal`, 2 % of `lagtop solve`
 
 
 def main() -> None:

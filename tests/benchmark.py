@@ -30,7 +30,7 @@ from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
 COUNT = 1_000_000
-TOP = {name: np.nan if x is None else float(x) for name, x in Top()._asdict().items()}
+TOP = {name: np.nan if x is None else float(x) for name, x in Top().as_dict().items()}
 STARTS: dict[str, dict[str, float]] = {
     "worked example": {},
     "fast (trigonometric series)": {"r0": 200},

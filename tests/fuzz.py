@@ -169,7 +169,7 @@ def run_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
         scene = KINDS[kind](rng)
         tally.scenes += 1
         try:
-            motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+            motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
             judge.record  # noqa: B018 - made here, so that what is undecided is counted once
             judge_record(tally, judge, motion)
             judge_angles(tally, judge, motion, times_of(rng, period_of(judge)))

@@ -15,9 +15,10 @@ from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache, reduce
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from .decimals import Decimals, decimals
+from .values import Values
 
 N = TypeVar("N", float, Fraction, Decimal)
 
@@ -79,7 +80,7 @@ def _polynomial(value: object) -> Polynomial:
     return Polynomial(value)
 
 
-class Cosine(NamedTuple):
+class Cosine(Values):
     """The cosine of an angle that is given exactly, in degrees or else in radians."""
 
     degrees: Fraction | None

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
+from .command import ExamplesFirst
 from .options import (
     COUNT,
+    FILE,
     NAMES,
     NUMBER,
-    ExamplesFirst,
     exclude,
     output_options,
     scene_options,
@@ -59,7 +60,7 @@ class _ListingMethods(ExamplesFirst):
     "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
 )
 @click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
-@click.option("--plot", type=click.Path(), metavar="FILE", help="Draw it too: FILE.svg or .png.")
+@click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
 def command(
     scene: str | None,

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .. import __version__
 from ..errors import LagtopError
 from ..output.layouts import ETA
 from ..output.write import write_record, write_table
+from .command import ExamplesFirst
 from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
     RANGE,
-    ExamplesFirst,
     digits_option,
     listed,
     output_options,
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
         lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
     """,
 )
-@click.version_option(__version__, prog_name="lagtop")
 @click.option("--delta", type=NUMBER, required=True, help="Upper end of the band.")
 @click.option("--delta-star", type=NUMBER, required=True, help="Lower end of the band.")
 @click.option("--p", type=NUMBER, help="Middle of the two outer roots p - q and p + q.")

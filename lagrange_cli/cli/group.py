@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from importlib import import_module
 from typing import Any
 
 import click
 
-from .. import __version__
 from ..errors import CannotWriteError, LagtopError
-from ..output.signals import Terminated, die_by, interrupts
-from .options import ExamplesFirst, complain
+from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interrupts
+from .command import ExamplesFirst
+from .options import complain
 
 COMMANDS = ["solve", "table", "sweep", "plot", "jacobi", "eta", "bench", "stability"]
 
@@ -58,7 +57,7 @@ class LagtopGroup(ExamplesFirst, click.Group):
             complain(f"Error: cannot write standard output: {error.strerror}")
             os._exit(CannotWriteError.exit_code)  # the interpreter would try to flush it once more
         except click.Abort:
-            die_by(signal.SIGINT)
+            die_by(INTERRUPT)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command.  What ends it from outside is caught here, before click turns it into
@@ -67,9 +66,9 @@ class LagtopGroup(ExamplesFirst, click.Group):
             with interrupts():
                 return super().invoke(ctx)
         except BrokenPipeError:
-            number = getattr(signal, "SIGPIPE", None)
+            number = CLOSED_PIPE
         except KeyboardInterrupt:
-            number = signal.SIGINT
+            number = INTERRUPT
         except Terminated as error:
             number = error.number
         return die_by(number)  # here, where the frames of the command are gone and have cleaned up
@@ -86,14 +85,12 @@ def _suggestion(word: str) -> str:
 @click.group(
     cls=LagtopGroup,
     invoke_without_command=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
     examples="""
         lagtop solve --theta0 30
         lagtop solve sample_inputs/chrapan-1952.toml --format json
         lagtop table --t-max 1 > out.csv
     """,
 )
-@click.version_option(__version__, prog_name="lagtop")
 @click.pass_context
 def main(ctx: click.Context) -> None:
     """The Lagrange top, a heavy symmetric top with a fixed point, in closed form.

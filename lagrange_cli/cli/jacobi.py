@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .. import __version__
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..output.layouts import JACOBI
 from ..output.write import write_record, write_table
+from .command import ExamplesFirst
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
     RANGE,
-    ExamplesFirst,
     digits_option,
     exclude,
     listed,
@@ -45,7 +44,6 @@ MOST_TERMS = 10_000
         lagtop jacobi --k 0.99 --u 1 --series 10
     """,
 )
-@click.version_option(__version__, prog_name="lagtop")
 @click.option("--k", type=NUMBER, help="Modulus, 0 to 1.")
 @click.option("--k-prime", type=NUMBER, help="Its complement, for k close to 1.")
 @click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")

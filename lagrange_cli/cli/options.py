@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from .. import __version__
 from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..inputs.names import split_names
 from ..inputs.top import Top, build_top
 from ..motion.solve import Motion, solve
 from ..output.terminal import one_line
 from ..output.write import write_findings
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from ..arithmetic.points import Points
     from ..output.findings import Findings
-    from ..output.layouts import Line
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -47,6 +45,20 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
             raise click.UsageError(f"{param.opts[0] if param else 'value'} {error}", ctx) from None
 
 
+class FileName(click.ParamType):  # type: ignore[type-arg]
+    """A name of a file, which a shell may complete; that of click would look for translations."""
+
+    name = "path"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Return the request that the shell offers its files."""
+        from click.shell_completion import CompletionItem
+
+        return [CompletionItem(incomplete, type="file")]
+
+
 def _parse_count(text: str) -> int:
     """Return a whole number, which may be written 1e6."""
     exact = parse_number(text)
@@ -61,89 +73,10 @@ def _parse_range(text: str) -> Points:
     return parse_range(text)
 
 
-class ExamplesFirst(click.Command):
-    """A command whose help starts with its examples and may end with keys or columns."""
+def _split_names(text: str) -> list[str]:
+    from ..inputs.names import split_names
 
-    def __init__(
-        self,
-        *args: Any,
-        examples: str = "",
-        shows: Callable[[click.HelpFormatter], None] | None = None,
-        **kwargs: Any,
-    ) -> None:
-        super().__init__(*args, **kwargs)
-        self.shows = shows
-        self.examples = [line.strip() for line in examples.strip().splitlines()]
-
-    def format_help(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the examples, what click writes, and what the command `shows` below."""
-        formatter.write("Examples:\n")
-        formatter.write("".join(f"  {line}\n" for line in self.examples) + "\n")
-        super().format_help(ctx, formatter)
-        if self.shows:
-            self.shows(formatter)
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; an error about an argument names its option."""
-        try:
-            return super().invoke(ctx)
-        except LagtopError as error:
-            error.args = (_naming_options(error, self.params),)
-            raise
-
-
-def top_layout() -> dict[str, list[Line]]:
-    """Return the keys of the record of a top as the lines of a table, by their groups."""
-    from ..motion.record import KEYS
-    from ..output.layouts import Line
-
-    layout: dict[str, list[Line]] = {}
-    for name, (group, symbol, meaning, unit, equation, _) in KEYS.items():
-        if meaning:
-            line = Line(name.removesuffix("_deg"), symbol, meaning, unit, equation)
-            layout.setdefault(group, []).append(line)
-    return layout
-
-
-def write_keys(formatter: click.HelpFormatter) -> None:
-    """Write the keys of the record of a top, by their groups, with symbol, name and equation."""
-    for group, lines in top_layout().items():
-        with formatter.section(f"Keys: {group}"):
-            formatter.write_dl(
-                [
-                    (f"{line.key}_deg" if line.unit == "angle" else line.key, _meaning(line))
-                    for line in lines
-                ]
-            )
-
-
-def _meaning(line: Line) -> str:
-    """Return the symbol of a key, where it is another word, its name and its equation."""
-    symbol = "" if line.symbol in {"", line.key} else f"{line.symbol}: "
-    return f"{symbol}{line.name} {line.equation}".rstrip()
-
-
-def write_columns(formatter: click.HelpFormatter) -> None:
-    """Write the columns of a table over time."""
-    from ..motion.columns import COLUMNS
-
-    with formatter.section("Columns"):
-        formatter.write_dl([(name, column.meaning) for name, column in COLUMNS.items()])
-
-
-def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
-    """Return the message with `--t-max` where the library says `t_max`.
-
-    That is its first word, if it is the key of the error, and any word with an underscore before
-    the value that is quoted.
-    """
-    names = [name for param in params for name in param.opts if name.startswith("--")]
-    options = {name[2:].replace("-", "_"): name for name in names}
-    said, got, value = str(error).partition(", got ")
-    if error.key in options and re.match(rf"{error.key}\b", said):
-        said = options[error.key] + said.removeprefix(error.key)
-    said = re.sub(r"(?<![-\w])[a-z]+_\w+", lambda word: options.get(word[0], word[0]), said)
-    return said + got + value
+    return split_names(text)
 
 
 def solved(
@@ -206,10 +139,11 @@ def complain(line: str) -> None:
         click.echo(one_line(line), err=True)
 
 
+FILE = FileName()
 NUMBER = Parsed("number", parse_number)
 COUNT = Parsed("integer", _parse_count)
 RANGE = Parsed("range", _parse_range)
-NAMES = Parsed("names", split_names)
+NAMES = Parsed("names", _split_names)
 
 _SCENE_OPTIONS = [
     ("--m", "Mass."),
@@ -237,7 +171,7 @@ def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[ty
             default = defaults.get(f"{name[2:]}_deg", defaults.get(name[2:]))
             shown = f"{text}  [default: {default:g}]"
             command = click.option(name, name[2:], type=kind, help=shown)(command)
-        return click.version_option(__version__, prog_name="lagtop")(command)
+        return command
 
     return decorate
 
@@ -245,9 +179,7 @@ def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[ty
 def scene_options(command: F) -> F:
     """Add the argument for a scene file and the options that override it."""
     command = input_options(NUMBER)(command)
-    return click.argument("scene", required=False, type=click.Path(), metavar="[SCENE.toml]")(
-        command
-    )
+    return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml]")(command)
 
 
 def digits_option(most: int) -> Callable[[F], F]:
@@ -269,7 +201,7 @@ def output_options(*formats: str) -> Callable[[F], F]:
         command = click.option(
             "-o",
             "--output",
-            type=click.Path(allow_dash=True),
+            type=FILE,
             default="-",
             metavar="FILE|-",
             help="Where to write; FILE is replaced when all is written.",

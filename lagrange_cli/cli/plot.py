@@ -15,7 +15,8 @@ from ..errors import LagtopError
 from ..output.write import write_bytes
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look, require_matplotlib
-from .options import NUMBER, ExamplesFirst, scene_options, solved
+from .command import ExamplesFirst
+from .options import FILE, NUMBER, scene_options, solved
 from .progress import with_progress
 
 FORMATS = ("png", "svg", "pdf")
@@ -66,7 +67,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
 @click.option(
     "-o",
     "--output",
-    type=click.Path(allow_dash=True),
+    type=FILE,
     metavar="FILE|-",
     help="FILE.png, .svg or .pdf, replaced when all is written.",
 )

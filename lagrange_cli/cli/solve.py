@@ -9,17 +9,15 @@ import click
 from ..errors import AbsentError, LagtopError
 from ..motion.record import record_keys
 from ..output.write import write_record, write_value
+from .command import ExamplesFirst, top_layout, write_keys
 from .options import (
     MOST_RECORD_DIGITS,
-    ExamplesFirst,
     digits_option,
     exclude,
     given,
     output_options,
     scene_options,
     solved,
-    top_layout,
-    write_keys,
 )
 
 

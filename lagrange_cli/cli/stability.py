@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .. import __version__
 from ..errors import LagtopError
+from .command import ExamplesFirst
 from .options import (
     COUNT,
+    FILE,
     NAMES,
-    ExamplesFirst,
     exclude,
     output_options,
     write_report,
@@ -52,8 +52,7 @@ class _ListingStrata(ExamplesFirst):
     "--seed", type=COUNT, default=str(SEED), show_default=True, help="Seed of the random scenes."
 )
 @click.option("--strata", type=NAMES, help="Only these, with commas between.")
-@click.option("--plot", type=click.Path(), metavar="FILE", help="Draw it too: FILE.svg or .png.")
-@click.version_option(__version__, prog_name="lagtop")
+@click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
 @click.pass_context
 def command(

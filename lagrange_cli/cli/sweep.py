@@ -9,15 +9,15 @@ import click
 
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
+from .command import ExamplesFirst, write_keys
 from .options import (
+    FILE,
     NAMES,
-    ExamplesFirst,
     Parsed,
     by_key,
     exclude,
     input_options,
     output_options,
-    write_keys,
 )
 from .progress import with_count, with_progress
 
@@ -53,7 +53,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
         lagtop sweep tops.csv --dask local -o solved.csv
     """,
 )
-@click.argument("files", nargs=-1, type=click.Path(), metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
+@click.argument("files", nargs=-1, type=FILE, metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
 @input_options(Parsed("range", _parse_values))
 @click.option("--keys", type=NAMES, help="Compute and print only these keys, with commas between.")
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
@@ -69,7 +69,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
 @click.option(
     "--parts",
     "folder",
-    type=click.Path(),
+    type=FILE,
     metavar="DIR",
     help="Write a file per part; resume a folder that is not complete.",
 )

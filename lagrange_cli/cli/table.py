@@ -11,19 +11,19 @@ import click
 
 from ..errors import LagtopError
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
+from .command import ExamplesFirst, write_columns
 from .options import (
     COUNT,
+    FILE,
     MOST_TABLE_DIGITS,
     NAMES,
     NUMBER,
-    ExamplesFirst,
     by_key,
     digits_option,
     exclude,
     output_options,
     scene_options,
     solved,
-    write_columns,
 )
 from .progress import with_count, with_progress
 
@@ -55,7 +55,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 @click.option("--dt", type=NUMBER, help="Step, instead of --n.")
 @click.option(
     "--times",
-    type=click.Path(allow_dash=True),
+    type=FILE,
     metavar="FILE|-",
     help="Times from a file, one per line, instead of a grid.",
 )
@@ -67,7 +67,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 )
 @click.option(
     "--tops",
-    type=click.Path(allow_dash=True),
+    type=FILE,
     metavar="FILE|-",
     help="A table of each top in a file, CSV or JSON lines as for `sweep`, one after the other.",
 )

@@ -16,7 +16,7 @@ from .top import Top, build_top, overridden
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
 """Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
-KEYS = Top._fields
+KEYS = Top.fields
 
 
 def read_scene(path: str, given: Mapping[str, Number] | None = None, *, exact: bool = False) -> Top:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from ..arithmetic.decimals import own_context, pi_to
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.numbers import Number, R
+from ..arithmetic.values import Over, Values
 from ..errors import LagtopError
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ _DIGITS_SHOWN = own_context(50, [])
 """A context of our own, so that no message depends on the one of the caller."""
 
 
-class Tilt(NamedTuple, Generic[R]):
+class Tilt(Values, Over[R]):
     """Sines and cosines of theta0 and of its half."""
 
     sin: R
@@ -41,20 +42,7 @@ class Tilt(NamedTuple, Generic[R]):
         return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
 
 
-class _Inputs(NamedTuple):
-    m: Number
-    A: Number
-    C: Number
-    s: Number
-    g: Number
-    r0: Number
-    theta0_deg: Number | None
-    thetadot0: Number
-    psidot0: Number
-    theta0_rad: Number | None
-
-
-class Top(_Inputs):
+class Top(Values):
     """A heavy symmetric top with a fixed point, and its state at t = 0 (phi = psi = 0 there).
 
     Any consistent units will do; the defaults are the worked example of Chrapan (1952), section 8,
@@ -71,11 +59,20 @@ class Top(_Inputs):
     Raises LagtopError for a body or a start that cannot be.
     """
 
-    # A named tuple and not a dataclass: that would take 3 % of the run of `lagtop solve`.
-    __slots__ = ()
+    m: Number
+    A: Number
+    C: Number
+    s: Number
+    g: Number
+    r0: Number
+    theta0_deg: Number | None
+    thetadot0: Number
+    psidot0: Number
+    theta0_rad: Number | None
+    __slots__ = tuple(__annotations__)
 
-    def __new__(
-        cls,
+    def __init__(
+        self,
         *,
         m: Number = 1587.0,
         A: Number = 39032.0,
@@ -87,41 +84,29 @@ class Top(_Inputs):
         thetadot0: Number = 0.0,
         psidot0: Number = 0.0,
         theta0_rad: Number | None = None,
-    ) -> Self:
-        """Check the inputs and keep them."""
+    ) -> None:
         if theta0_deg is None and theta0_rad is None:
             theta0_deg = 30.0
-        values = _Inputs(m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad)
-        numbers: Iterable[Any] = (
-            None if value is None and name.startswith("theta0_") else _finite(name, value)
-            for name, value in zip(values._fields, values, strict=True)
+        values = m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad
+        super().__init__(
+            *(
+                None if value is None and name.startswith("theta0_") else _finite(name, value)
+                for name, value in zip(self.fields, values, strict=True)
+            )
         )
-        top = super().__new__(cls, *numbers)
-        _check_ranges(top)
-        return top
+        _check_ranges(self)
 
-    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]:
+    def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Top], tuple[dict[str, Any]]]:
         """Return the inputs for copies and pickles, which go through the guards again."""
-        return (), self._asdict()
-
-    def __dir__(self) -> list[str]:
-        """Return the names of the attributes, without those of a tuple."""
-        return [name for name in super().__dir__() if name not in ("count", "index")]
-
-    @classmethod
-    def _make(cls, iterable: Iterable[Any]) -> Self:  # type: ignore[override] # theirs is generic
-        """Return a top of ten values in the order of the fields, checked like any other."""
-        return cls(**dict(zip(cls._fields, iterable, strict=True)))
+        return _top_of, (self.as_dict(),)
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
 
         A tilt in either unit takes the place of the one there is.  Raises LagtopError.
         """
-        present = {name: value for name, value in self._asdict().items() if value is not None}
+        present = {name: value for name, value in self.as_dict().items() if value is not None}
         return type(self)(**overridden(present, changes))
-
-    _replace = replace
 
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
@@ -186,6 +171,10 @@ class Top(_Inputs):
             if getattr(self, name):
                 words.append(f"--{name} {getattr(self, name)!r}")
         return " ".join(words)
+
+
+def _top_of(inputs: dict[str, Any]) -> Top:
+    return Top(**inputs)
 
 
 def _known(value: Number | None) -> Number:

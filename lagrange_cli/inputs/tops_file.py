@@ -21,7 +21,7 @@ from ..errors import DataError, LagtopError
 from .block import InputArrays
 from .top import Top, overridden
 
-INPUTS = Top._fields
+INPUTS = Top.fields
 
 
 class TopRow(NamedTuple):

@@ -6,20 +6,21 @@ stay finite without torque.  Equation numbers in parentheses are Chrapan's; what
 continues him to starts that are not at rest.
 """
 
-# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
+from __future__ import annotations
 
 from collections.abc import Callable
 from decimal import Decimal
-from typing import TYPE_CHECKING, Generic, NamedTuple
+from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import R, absolute
+from ..arithmetic.values import Over, Values
 from .regime import Exact, Facts
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 
-class State(NamedTuple, Generic[R]):
+class State(Values, Over[R]):
     """Constants of the motion and the state at t = 0, each rounded once from its exact value."""
 
     a: R
@@ -51,7 +52,7 @@ class State(NamedTuple, Generic[R]):
         return 2 * self.sin_half * self.sin_half
 
 
-class Gaps(NamedTuple, Generic[R]):
+class Gaps(Values, Over[R]):
     """Distances between roots, poles and start, and beta - b u (4,7) at the roots and the poles."""
 
     u1_u: R
@@ -81,7 +82,7 @@ class Gaps(NamedTuple, Generic[R]):
     beta_minus_b: R
 
 
-def state(ar: "Arithmetic[R]", exact: Exact) -> State[R]:
+def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
     """Return constants and start of one top in an arithmetic."""
     a, b, r0 = exact.a, exact.b, exact.r0
     tilt = exact.top.tilt(ar)
@@ -102,14 +103,14 @@ def state(ar: "Arithmetic[R]", exact: Exact) -> State[R]:
     )
 
 
-def gaps_of(ar: "Arithmetic[R]", facts: Facts, state: State[R]) -> Gaps[R]:
+def gaps_of(ar: Arithmetic[R], facts: Facts, state: State[R]) -> Gaps[R]:
     """Return the gaps of any top."""
     if facts.at_rest and not (facts.steady or facts.regime == "separatrix"):
         return gaps_from_rest(ar, state)
     return gaps_from_start(ar, state, facts)
 
 
-def gaps_from_rest(ar: "Arithmetic[R]", start: State[R]) -> Gaps[R]:
+def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
     """Return the gaps after release from rest, (4,11)-(4,18) times a; nothing cancels.
 
     With S, Q = sin^2, cos^2 of theta0/2 and b^2 = 2 a lambda:  a (u3 - u1) (u1 - u2) = 4 a S Q,
@@ -150,7 +151,7 @@ def gaps_from_rest(ar: "Arithmetic[R]", start: State[R]) -> Gaps[R]:
 
 
 def gaps_from_start(
-    ar: "Arithmetic[R]", start: State[R], facts: Facts, find_root: Callable[..., R] | None = None
+    ar: Arithmetic[R], start: State[R], facts: Facts, find_root: Callable[..., R] | None = None
 ) -> Gaps[R]:
     """Return the gaps of any start: the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0 in x = u - u0.
 
@@ -205,7 +206,7 @@ def gaps_from_start(
     )
 
 
-def two_roots(ar: "Arithmetic[R]", total: R, product: R) -> tuple[R, R]:
+def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
     """Return the roots x1 >= 0 >= x2 of x^2 - total x + product, for product <= 0."""
     spread = ar.sqrt(total * total - 4 * product)
     larger = (absolute(total) + spread) / 2
@@ -214,7 +215,7 @@ def two_roots(ar: "Arithmetic[R]", total: R, product: R) -> tuple[R, R]:
     return ar.where(upward, larger, smaller), -ar.where(upward, smaller, larger)
 
 
-def largest_root(ar: "Arithmetic[R]", c2: R, c1: R, c0: R, bound: R) -> R:
+def largest_root(ar: Arithmetic[R], c2: R, c1: R, c0: R, bound: R) -> R:
     """Return the largest root of x^3 + c2 x^2 + c1 x + c0 by Newton's method, from a bound.
 
     Above the root the method falls monotonically; it has settled where it falls no more.

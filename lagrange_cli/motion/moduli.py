@@ -5,9 +5,10 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic
+from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import R
+from ..arithmetic.values import Over
 from ..elliptic.complete import complete_e, complete_k, nome, period_mean
 from .gaps import Gaps, State
 from .quantity import key, quantity
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 
-class Moduli(Generic[R]):
+class Moduli(Over[R]):
     """The numbers of section 4 of a motion, under their keys; None where it has none."""
 
     def __init__(self, ar: Arithmetic[R], facts: Facts, state: State[R], gaps: Gaps[R]) -> None:

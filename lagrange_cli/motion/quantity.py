@@ -1,14 +1,16 @@
 """A quantity of a motion: a formula that is evaluated when it is asked for, and only once."""
 
-# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
+from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, TypeVar
+
+from ..arithmetic.values import Over, Values
 
 V = TypeVar("V")
 
 
-class Key(NamedTuple):
+class Key(Values):
     """How a key of the record is shown; the unit `angle` stands for degrees or radians."""
 
     group: str
@@ -20,7 +22,7 @@ class Key(NamedTuple):
     """A difference of numbers that may be as good as equal: only a proved zero is 0."""
 
 
-class quantity(Generic[V]):
+class quantity(Over[V]):
     """A lazy attribute whose formula runs within the precision of the arithmetic of its object."""
 
     def __init__(self, formula: Callable[[Any], V], key: Key | None = None) -> None:

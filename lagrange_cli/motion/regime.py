@@ -4,14 +4,15 @@ Every degenerate motion is a polynomial in u = cos(theta0), with rational coeffi
 vanishes.  Nothing later compares a computed gap with a threshold.  Equation numbers are Chrapan's.
 """
 
-# Annotations are evaluated here: as texts, the named tuples would compile each at start-up.
+from __future__ import annotations
 
 from collections.abc import Iterator
 from enum import StrEnum
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from ..arithmetic.exact_cosine import Cosine, Polynomial
+from ..arithmetic.values import Values
 from ..errors import LagtopError
 from ..inputs.top import Top
 
@@ -31,7 +32,7 @@ class Regime(StrEnum):
     NO_SPIN = "no spin"
 
 
-class Facts(NamedTuple):
+class Facts(Values):
     """What is decided before anything is computed; each a truth, or an array of truths."""
 
     regime: Regime
@@ -65,7 +66,7 @@ class Facts(NamedTuple):
         return self.over_bottom and not self.spins
 
 
-class Exact(NamedTuple):
+class Exact(Values):
     """A scene in exact arithmetic: constants of (4,4), (4,5), the start, and the facts."""
 
     top: Top

@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from typing import NamedTuple
+
+from ..arithmetic.values import Values
 
 MOST_CHARACTERS = 1000
 """The length of a line that is still read."""
@@ -25,7 +26,7 @@ def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
     return f"{line[:half]} [... {len(line) - 2 * half} characters ...] {line[-half:]}"
 
 
-class View(NamedTuple):
+class View(Values):
     """What a reader of the output can see."""
 
     width: int | None = None

@@ -96,7 +96,7 @@ def shared_inputs(
         from ..inputs.scene_file import read_scene
 
         top = read_scene(scene, fixed)
-    inputs = {name: float(x) for name, x in top._asdict().items() if x is not None}
+    inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return overridden(inputs, {name: float(x) for name, x in given.items()})
 
 

@@ -240,7 +240,7 @@ def test_what_is_wrong_exits_with_1(lagtop: Lagtop, monkeypatch: pytest.MonkeyPa
 def test_the_keys_of_the_reference_are_those_of_the_judge_in_balls() -> None:
     for scene in (RELEASED, MOVING):
         exact = Reference(Top(**scene.inputs), 50).record()
-        judge = Judge(Top(**scene.inputs)._asdict())
+        judge = Judge(Top(**scene.inputs).as_dict())
         assert set(exact) == set(NUMBER_KEYS)
         for key, value in exact.items():
             assert (value is None) == (judge.record.get(key) is None), key

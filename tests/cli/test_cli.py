@@ -15,7 +15,7 @@ from conftest import ROOT, Lagtop
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, errors, solve, sweep
-from lagrange_cli.cli.options import top_layout
+from lagrange_cli.cli.command import top_layout
 from lagrange_cli.motion.record import NUMBER_KEYS
 
 Solved = Callable[..., dict[str, Any]]

@@ -13,8 +13,8 @@ import click
 import pytest
 from conftest import ROOT
 
+from lagrange_cli.cli.command import ExamplesFirst
 from lagrange_cli.cli.group import main
-from lagrange_cli.cli.options import ExamplesFirst
 
 SHORTER = {
     "lagtop bench": "lagtop bench --methods lagtop,theta-series --n 3 --limit 0.5",

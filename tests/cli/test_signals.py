@@ -108,11 +108,12 @@ def test_new_content_does_not_inherit_the_right_of_another_user(tmp_path: Path) 
 
 
 WITHOUT_WHAT_WINDOWS_LACKS = """if True:
-    import os, signal, stat, sys
+    import _signal, os, signal, stat, sys
     for name in ("SIGHUP", "SIGPIPE", "SIGALRM", "SIGUSR1", "SIGUSR2", "SIGQUIT", "SIGKILL",
                  "SIGCHLD", "SIGSTOP", "SIGCONT", "SIGXFSZ", "alarm", "pthread_sigmask",
                  "pthread_kill", "siginterrupt", "sigwait", "setitimer"):
         delattr(signal, name)
+        delattr(_signal, name)
     for name in ("fchmod", "fchown", "chown", "mkfifo", "fork", "forkpty", "openpty", "getuid",
                  "geteuid", "getpgid", "setsid", "killpg", "sysconf", "statvfs",
                  "O_DIRECTORY", "O_NOFOLLOW", "O_NONBLOCK", "getloadavg", "sched_getaffinity"):

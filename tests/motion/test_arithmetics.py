@@ -140,7 +140,7 @@ def balls_of(top: Top, bits: int) -> dict[str, Any]:
 def test_balls_hold_the_values_of_the_judge(scene: dict[str, float]) -> None:
     """Loops stop at 2^-450, far within the 90 bits to which the judge knows its balls."""
     top, bits = Top(**scene), 600
-    judge, computed = Judge(top._asdict()), balls_of(top, bits)
+    judge, computed = Judge(top.as_dict()), balls_of(top, bits)
     for key, ball in computed.items():
         exact = judge.record.get(key)
         if ball is None:
@@ -183,12 +183,14 @@ def test_pairs_of_doubles_give_the_gaps(scene: dict[str, float]) -> None:
         begin = state(ar, exact)
         wanted = gaps_of(ar, exact.facts, begin)
         halves = [(float(x), float(x - Decimal(float(x)))) for x in begin]
-        start = State(*(DoubleDouble(np.array([x]), np.array([y])) for x, y in halves))
+        start: State[DoubleDouble] = State(
+            *(DoubleDouble(np.array([x]), np.array([y])) for x, y in halves)
+        )
         if exact.facts.at_rest:
             computed = gaps_of(PAIRS, exact.facts, start)
         else:
             computed = gaps_from_start(PAIRS, start, exact.facts, polished)
         scale = max(abs(x) for x in (*begin, *wanted))
-        for name, ours, theirs in zip(wanted._fields, computed, wanted, strict=True):
+        for name, ours, theirs in zip(wanted.fields, computed, wanted, strict=True):
             value = Decimal(float(ours.high[0])) + Decimal(float(ours.low[0]))
             assert abs(value - theirs) <= Decimal("1e-28") * (abs(theirs) + scale), name

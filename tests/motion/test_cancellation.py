@@ -24,7 +24,7 @@ HALF_AND_A_HAIR = Fraction(1, 2) + Fraction(1, 10**81)
 
 def assert_nearest(scene: dict[str, float]) -> None:
     """Check that every key of a record is the double nearest to its value, and 0 where that is."""
-    motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
     for key in NUMBER_KEYS:
         computed = getattr(motion, key)
         if computed is None:
@@ -123,7 +123,7 @@ def test_record_and_angles_agree_over_the_pole(thetadot0: float) -> None:
     The mean rates are what the angles grow by, turn for turn.
     """
     scene = UNIT | {"theta0_deg": 120, "psidot0": 1, "r0": 0.5, "thetadot0": thetadot0}
-    motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
     T = motion.T_nutation
     grown = motion.angles([1000 * T, -1000 * T])
     for angle, key in ((grown.phi, "mean_spin_rate"), (grown.psi, "mean_precession_rate")):

@@ -137,11 +137,7 @@ def cubic(top: Top) -> Callable[[Any], Any]:
 
 def integrals(top: Top) -> tuple[Any, Any, Any, Any]:
     """Return alpha, a, beta and b of (4,4) and (4,5) for any start."""
-    m, A, C, s, g, r0, tilt, nutation, precession = (
-        mpmath.mpf(x)
-        for x in (*top[:6], top.theta0_deg, top.thetadot0, top.psidot0)
-        if x is not None
-    )
+    m, A, C, s, g, r0, tilt, nutation, precession = (mpmath.mpf(x) for x in top.inputs().values())
     theta = mpmath.radians(tilt)
     u, sine = mpmath.cospi(tilt / 180), mpmath.sinpi(tilt / 180)
     a, b = 2 * m * g * s / A, C * r0 / A

@@ -42,7 +42,7 @@ def test_no_turn_is_lost_next_to_half_a_period(
 
 def test_no_turn_is_lost_in_a_table() -> None:
     top = Top(r0=60)
-    motion, judge = solve(top), Judge(top._asdict())
+    motion, judge = solve(top), Judge(top.as_dict())
     for t in np.linspace(0, 3.572309477432762, 21).tolist():
         theta, phi, psi = map(float, motion.angles(t))
         assert max(judge.angle_errors(t, (theta, phi, psi))) <= 2, t
@@ -59,7 +59,7 @@ def turning_times(period: float, rng: random.Random) -> Iterator[float]:
 
 def errors_at_turns(scene: dict[str, float], seed: int) -> float:
     """Return the largest error, in units, of angles, remainders and quaternion at turning times."""
-    motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
     reach = motion.sampler().max_time
     turns = turning_times(float(motion.T_nutation), random.Random(seed))
     times = [t for t in turns if abs(t) <= reach]
@@ -142,7 +142,7 @@ def test_angles_and_quaternion_are_continuous_at_every_half_period() -> None:
 )
 def test_the_leap_next_to_a_pole_is_on_its_side(scene: dict[str, float], t: float) -> None:
     """Nearly a plane pendulum: spin and precession leap by half a turn next to the lower pole."""
-    motion, judge = solve(Top(**scene)), Judge(Top(**scene)._asdict())
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
     half = float(motion.T_nutation) / 2
     times = [t, -t] if t else [n * half for n in (1, 3, -1, -5, 7, 101)]
     for time in times:

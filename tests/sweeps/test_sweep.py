@@ -88,7 +88,7 @@ def test_as_solve_over_all_ranges() -> None:
 
 def tops_of(inputs: dict[str, Any]) -> TopArrays:
     """Return the inputs as arrays, those of the worked example where there are no others."""
-    given = {name: np.nan if x is None else x for name, x in Top()._asdict().items()} | inputs
+    given = {name: np.nan if x is None else x for name, x in Top().as_dict().items()} | inputs
     return TopArrays(
         *np.broadcast_arrays(*(np.asarray(given[x], float) for x in TopArrays._fields))
     )
@@ -101,11 +101,11 @@ def test_what_the_formulas_start_from_is_rounded_once() -> None:
     scenes = [random_scene(rng) for _ in range(2000)]
     tops = tops_of(arrays(scenes))
     regular = tops.regimes()[Regime.REGULAR]
-    ar, found, tilts = decimals(40), tops.state(), tops.tilt()
+    ar, found, tilts = decimals(40), tuple(tops.state()), tops.tilt()
     for i in np.flatnonzero(regular).tolist():
         top = Top(**scenes[i])
         with ar.working():
-            state = state_of(ar, exact_of(top))
+            state = tuple(state_of(ar, exact_of(top)))
             exact = [float(x) for x in top.tilt(ar)]
         assert [x[i] for x in found[:6]] == [float(x) for x in state[:6]]
         assert [x[i] for x in tilts] == pytest.approx(exact, rel=1.0 * EPS, abs=0)

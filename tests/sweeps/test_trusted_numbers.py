@@ -36,7 +36,7 @@ def test_a_top_without_spin_that_starts_next_to_the_vertical(tilt: str, lagtop: 
     """The axis falls over the lower pole, so that its greatest tilt is 180 degrees."""
     line = f"--r0 0 --theta0 {tilt} --psidot0 1 --keys T_nutation,theta_max_deg"
     ((period, lowest),) = rows(lagtop, line)
-    judge = Judge(Top(r0=0, theta0_deg=float(tilt), psidot0=1)._asdict())
+    judge = Judge(Top(r0=0, theta0_deg=float(tilt), psidot0=1).as_dict())
     assert judge.relative("T_nutation", period) <= 10
     assert lowest == pytest.approx(180, abs=1e-6)
     assert judge.relative("theta_max_deg", lowest) <= 10
@@ -51,7 +51,7 @@ def test_mean_rates_whose_parts_cancel(lagtop: Lagtop) -> None:
     """The mean precession goes as 1/thetadot0^2 where the parts are of the size 1."""
     line = f"{UNITS} --r0 1 --theta0 60 --thetadot0 1e3,1e4,1e5,1e8,1e20"
     for rate, mean in rows(lagtop, f"{line} --keys thetadot0,mean_precession_rate"):
-        judge = Judge(Top(**UNIT, r0=1, theta0_deg=60, thetadot0=rate)._asdict())
+        judge = Judge(Top(**UNIT, r0=1, theta0_deg=60, thetadot0=rate).as_dict())
         assert judge.relative("mean_precession_rate", mean) <= 10, rate
     assert rows(lagtop, f"{line} --keys mean_precession_rate")[1:3] == [
         [pytest.approx(9.999999725000012e-9, rel=2e-15)],

@@ -1,0 +1,76 @@
+"""Values with named fields, and classes over a type of numbers, made cheaply.
+
+A named tuple or a dataclass compiles methods of its own for every class, and `typing.Generic` keeps
+books on its parameters: with both of them `lagtop solve` would take 7 % more time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, dataclass_transform
+
+__all__ = ["Over", "Values"]
+
+if TYPE_CHECKING:
+    from typing import Generic as Over
+else:
+
+    class Over:
+        """Stands for `typing.Generic` at run time, where nobody asks for the parameters."""
+
+        def __class_getitem__(cls, parameters: Any) -> type:
+            """Return the class itself."""
+            return cls
+
+
+@dataclass_transform(frozen_default=True)
+class Values:
+    """Values that cannot be changed, one per annotated field of a class, in the order of these.
+
+    A field with a default may be left out.
+    """
+
+    __slots__ = ()
+    fields: ClassVar[tuple[str, ...]] = ()
+
+    def __init_subclass__(cls) -> None:
+        """Take the fields from the annotations."""
+        cls.fields = (*cls.fields, *cls.__annotations__)
+
+    def __init__(self, *values: Any, **named: Any) -> None:
+        given = dict(zip(self.fields, values, strict=False)) | named
+        if len(given) < len(values) + len(named) or not given.keys() <= set(self.fields):
+            raise TypeError(f"the fields of {type(self).__name__} are {', '.join(self.fields)}")
+        for name in self.fields:
+            if name not in given:
+                given[name] = getattr(self, name)  # the default, or an AttributeError
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yield the values in the order of the fields."""
+        return (getattr(self, name) for name in self.fields)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the values by field."""
+        return {name: getattr(self, name) for name in self.fields}
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the values with some of them changed."""
+        return type(self)(**(self.as_dict() | changes))
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} cannot be changed: use replace()")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} cannot be changed")
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and tuple(other) == tuple(self)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def __repr__(self) -> str:
+        inside = ", ".join(f"{name}={value!r}" for name, value in self.as_dict().items())
+        return f"{type(self).__name__}({inside})"

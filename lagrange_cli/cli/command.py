@@ -1,0 +1,127 @@
+"""A command of ours: help with its examples first, and errors that name options."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .. import __version__
+from ..errors import LagtopError
+
+if TYPE_CHECKING:
+    from ..output.layouts import Line
+
+
+def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:
+    """Return an option that shows a text and ends the command."""
+
+    def show(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+        if wanted and not ctx.resilient_parsing:
+            click.echo(text(ctx))
+            ctx.exit()
+
+    return click.Option(
+        names, is_flag=True, expose_value=False, is_eager=True, callback=show, help=what
+    )
+
+
+class ExamplesFirst(click.Command):
+    """A command whose help starts with its examples and may end with keys or columns.
+
+    The options --version and --help are made here: those of click look for translations, which
+    would take 2 % of the run of `lagtop solve`.
+    """
+
+    def __init__(
+        self,
+        *args: Any,
+        examples: str = "",
+        shows: Callable[[click.HelpFormatter], None] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(*args, **(kwargs | {"add_help_option": False}))
+        self.params += [
+            _shown_at_once(
+                ["--version"],
+                "Show the version and exit.",
+                lambda _: f"lagtop, version {__version__}",
+            ),
+            _shown_at_once(
+                ["-h", "--help"], "Show this message and exit.", lambda ctx: ctx.get_help()
+            ),
+        ]
+        self.shows = shows
+        self.examples = [line.strip() for line in examples.strip().splitlines()]
+
+    def format_help(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the examples, what click writes, and what the command `shows` below."""
+        formatter.write("Examples:\n")
+        formatter.write("".join(f"  {line}\n" for line in self.examples) + "\n")
+        super().format_help(ctx, formatter)
+        if self.shows:
+            self.shows(formatter)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; an error about an argument names its option."""
+        try:
+            return super().invoke(ctx)
+        except LagtopError as error:
+            error.args = (_naming_options(error, self.params),)
+            raise
+
+
+def top_layout() -> dict[str, list[Line]]:
+    """Return the keys of the record of a top as the lines of a table, by their groups."""
+    from ..motion.record import KEYS
+    from ..output.layouts import Line
+
+    layout: dict[str, list[Line]] = {}
+    for name, (group, symbol, meaning, unit, equation, *_) in KEYS.items():
+        if meaning:
+            line = Line(name.removesuffix("_deg"), symbol, meaning, unit, equation)
+            layout.setdefault(group, []).append(line)
+    return layout
+
+
+def write_keys(formatter: click.HelpFormatter) -> None:
+    """Write the keys of the record of a top, by their groups, with symbol, name and equation."""
+    for group, lines in top_layout().items():
+        with formatter.section(f"Keys: {group}"):
+            formatter.write_dl(
+                [
+                    (f"{line.key}_deg" if line.unit == "angle" else line.key, _meaning(line))
+                    for line in lines
+                ]
+            )
+
+
+def _meaning(line: Line) -> str:
+    """Return the symbol of a key, where it is another word, its name and its equation."""
+    symbol = "" if line.symbol in {"", line.key} else f"{line.symbol}: "
+    return f"{symbol}{line.name} {line.equation}".rstrip()
+
+
+def write_columns(formatter: click.HelpFormatter) -> None:
+    """Write the columns of a table over time."""
+    from ..motion.columns import COLUMNS
+
+    with formatter.section("Columns"):
+        formatter.write_dl([(name, column.meaning) for name, column in COLUMNS.items()])
+
+
+def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
+    """Return the message with `--t-max` where the library says `t_max`.
+
+    That is its first word, if it is the key of the error, and any word with an underscore before
+    the value that is quoted.
+    """
+    names = [name for param in params for name in param.opts if name.startswith("--")]
+    options = {name[2:].replace("-", "_"): name for name in names}
+    said, got, value = str(error).partition(", got ")
+    if error.key in options and re.match(rf"{error.key}\b", said):
+        said = options[error.key] + said.removeprefix(error.key)
+    said = re.sub(r"(?<![-\w])[a-z]+_\w+", lambda word: options.get(word[0], word[0]), said)
+    return said + got + value
