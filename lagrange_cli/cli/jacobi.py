@@ -41,6 +41,7 @@ MOST_TERMS = 10_000
         lagtop jacobi --modular-angle 45 --u-range 0:10:101 --format csv -o sn.csv
         lagtop jacobi --k 0.8 --u 0.3 --theta --pi --param 0.7i
         lagtop jacobi --nome 0.1 --u 1 --digits 40
+        lagtop jacobi --modular-angle 45 --phi 30 --phi 60
         lagtop jacobi --k 0.99 --u 1 --series 10
     """,
 )
@@ -50,6 +51,8 @@ MOST_TERMS = 10_000
 @click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
 @click.option("--u", "single", type=NUMBER, multiple=True, help="Argument; may be repeated.")
 @click.option("--u-range", "grid", type=RANGE, help="Arguments, as [log:]start:stop:count.")
+@click.option("--phi", "amplitudes", type=NUMBER, multiple=True, help="F and E of it instead.")
+@click.option("--phi-range", "fan", type=RANGE, help="Amplitudes, as [log:]start:stop:count.")
 @click.option("--theta", is_flag=True, help="Theta functions of u too.")
 @click.option("--zeta", is_flag=True, help="Their logarithmic derivatives too.")
 @click.option("--omega", is_flag=True, help="Chrapan's Omega functions of u and --param too.")
@@ -68,6 +71,8 @@ def command(
     q: Fraction | None,
     single: tuple[Fraction, ...],
     grid: Points | None,
+    amplitudes: tuple[Fraction, ...],
+    fan: Points | None,
     theta: bool,
     zeta: bool,
     omega: bool,
@@ -82,7 +87,8 @@ def command(
     """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
 
     Without --u the constants of the modulus are written; with it am, sn, cn, dn of every u, and
-    what else is asked for.
+    what else is asked for.  With --phi it is Legendre's F(phi, k) and E(phi, k) of every phi, which
+    is in degrees and may be any number.
 
     Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param,
     u and a real v less whole periods.  u and a real v go up to 2^50 periods, an imaginary v up to
@@ -98,7 +104,13 @@ def command(
     modulus = ModulusInput(*chosen[0], radians=rad)
     flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
     families = tuple(name for name, wanted in flags.items() if wanted)
-    arguments = listed("u", single, grid)
+    arguments, angles = listed("u", single, grid), listed("phi", amplitudes, fan)
+    if angles:
+        others = {"--u": arguments, "--series": terms, f"--{(*families, '')[0]}": families or None}
+        for name, value in {**others, "--param": param}.items():
+            exclude({"--phi": angles, name: value})
+        _write_integrals(modulus, angles, digits, fmt, output)
+        return
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
         exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
@@ -141,6 +153,21 @@ def _write_rows(
         header, lines = digit_rows(arguments, request, digits)
         texts = with_progress(([line] for line in lines), arguments.count, 1000)
         write_table(header, texts, fmt, output)
+
+
+def _write_integrals(
+    modulus: ModulusInput, amplitudes: Points, digits: int | None, fmt: str, output: str
+) -> None:
+    from ..elliptic.amplitude_table import digit_rows, header, rows
+
+    if digits is None:
+        blocks = rows(amplitudes, modulus)
+        parts = with_progress(blocks, amplitudes.count, 3_000_000)
+        write_table(header(modulus), parts, fmt, output)
+    else:
+        lines = digit_rows(amplitudes, modulus, digits)
+        texts = with_progress(([line] for line in lines), amplitudes.count, 1000)
+        write_table(header(modulus), texts, fmt, output)
 
 
 def _write_series(

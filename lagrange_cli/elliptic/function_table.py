@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.correct_rounding import TooFewDigitsError
-from ..arithmetic.double_double import pair
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import jacobi
 from .modulus import Modulus
@@ -143,12 +141,8 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
     import numpy as np
 
     request = request.in_doubles()
-    exact = request.modulus.in_digits(ManyDigits())
-    in_doubles = Modulus(float(exact.k), *pair(exact.k_prime))
-    if exact.k_prime > 0 and not in_doubles.k_prime:
-        name = request.modulus.name
-        raise LagtopError(f"{name}: k' is too small for doubles (give --digits)", name)
-    has_periods = exact.k_prime > 0
+    in_doubles = request.modulus.in_doubles()
+    has_periods = in_doubles.k_prime > 0
     limit = MAX_PERIODS * 2 * complete_k(DOUBLES, in_doubles.k_prime) if has_periods else MAX_TIME
     check_reach("u", arguments, min(limit, MAX_TIME))
     parameter = float(request.parameter)

@@ -1,64 +1,132 @@
-"""Legendre's incomplete integrals of the first and second kind, over real amplitudes."""
+"""Legendre's incomplete integrals F and E of any real amplitude, for k in [0, 1]."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.arrays import PAIRS
 from ..arithmetic.blocks import in_arithmetic
-from ..arithmetic.double_double import two_product, two_sum
+from ..arithmetic.double_double import DoubleDouble, two_product, two_sum
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
 from .modulus import Modulus
 
-_PI = 3.141592653589793, 1.2246467991473532e-16
+_PI = 3.141592653589793, 1.2246467991473532e-16, -2.9947698097183397e-33
+
+
+class Amplitude(NamedTuple):
+    """An amplitude as whole half turns, and sine and cosine of the rest, up to a quarter turn."""
+
+    half_turns: Value
+    sine: Value
+    cosine: Value
+    """Never negative; exactly 0 at a quarter turn in degrees."""
+
+
+def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
+    """Return an amplitude given in radians; arrays keep their digits up to 2^50 half turns."""
+    if not ar.is_array:
+        half_turns = ar.nint(ar.re(phi) / ar.pi)
+        rest = phi - half_turns * ar.pi
+        return Amplitude(half_turns, ar.sin(rest), ar.cos(rest))
+    half_turns = ar.nint(phi / ar.pi)
+    product, error = two_product(half_turns, _PI[0])
+    second, second_error = two_product(half_turns, _PI[1])
+    rest, low = two_sum(phi - product, -second)
+    low -= error + (second_error + half_turns * _PI[2])
+    sine, cosine = ar.sin(rest), ar.cos(rest)
+    sine, cosine = sine + low * cosine, cosine - low * sine
+    beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)  # by its rounding
+    return Amplitude(half_turns + beyond, ar.where(cosine < 0, -sine, sine), abs(cosine))
+
+
+def in_degrees(ar: FunctionArithmetic, phi: Value) -> Amplitude:
+    """Return an amplitude given in degrees, of which whole half turns are taken exactly."""
+    if ar.is_array:
+        rest = np.fmod(phi, 180.0)
+        half_turns = ar.nint((phi - rest) / 180)
+        beyond = ar.where(abs(rest) > 90, ar.sign(rest), 0.0)
+        half_turns, rest = half_turns + beyond, rest - 180 * beyond
+    else:
+        half_turns = ar.nint(phi / 180)
+        rest = phi - 180 * half_turns
+    degree = ar.pi / 180
+    return Amplitude(half_turns, ar.sin(degree * rest), ar.sin(degree * (90 - abs(rest))))
 
 
 @in_arithmetic
 def incomplete_f(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
-    """Return F(phi, k), the integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 (3.1.2), for k' > 0.
+    """Return F(phi, k), the integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 to phi (3.1.2).
 
-    phi is any real amplitude in radians, of numpy or an mpmath context; |phi| <= pi/2 costs no
-    digit, however close k is to 1.
+    phi is any real amplitude in radians, of numpy or an mpmath context.  F(phi + n pi) is
+    F(phi) + 2 n K; for k = 1 it is infinite from a quarter turn on.
     """
-    half_turns, sine, cosine2, delta2 = _parts(ar, phi, modulus)
-    within = sine * carlson_rf(ar, cosine2, delta2, 1 + 0 * sine)
-    return half_turns * 2 * complete_k(ar, modulus.k_prime) + within
+    return f_of(ar, in_radians(ar, phi), modulus)
 
 
 @in_arithmetic
 def incomplete_e(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
-    """Return E(phi, k), the integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi, for k' > 0.
+    """Return E(phi, k), the integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi.
 
-    As a sum of positive terms (DLMF 19.25.10).
+    phi is any real amplitude in radians, as in `incomplete_f`; E(phi + n pi) is E(phi) + 2 n E.
     """
-    half_turns, sine, cosine2, delta2 = _parts(ar, phi, modulus)
-    one, complement = 1 + 0 * sine, modulus.k_prime * modulus.k_prime
+    return e_of(ar, in_radians(ar, phi), modulus)
+
+
+@in_arithmetic
+def f_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
+    """Return F of an amplitude, sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1) within a turn."""
+    cosine2, delta2 = _squares(ar, phi, modulus)
+    within = phi.sine * carlson_rf(ar, cosine2, delta2, 1 + 0 * delta2)
+    unbounded = (modulus.k_prime == 0) & ((phi.half_turns != 0) | (phi.cosine == 0))
+    value = _quasi_periodic(ar, phi, within, complete_k, modulus)
+    return ar.where(unbounded, ar.inf * ar.sign(phi.half_turns + phi.sine), value)
+
+
+@in_arithmetic
+def e_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
+    """Return E of an amplitude, as a sum of positive terms (DLMF 19.25.10)."""
+    cosine2, delta2 = _squares(ar, phi, modulus)
+    one, complement = 1 + 0 * delta2, modulus.k_prime * modulus.k_prime
     first = carlson_rf(ar, cosine2, delta2, one)
-    second = (modulus.k * sine) ** 2 * carlson_rd(ar, cosine2, one, delta2) / 3
+    second = (modulus.k * phi.sine) ** 2 * carlson_rd(ar, cosine2, one, delta2) / 3
     third = (1 - complement) * ar.sqrt(cosine2 / delta2)
-    within = sine * (complement * (first + second) + third)
-    return half_turns * 2 * complete_e(ar, modulus.k_prime) + within
+    within = phi.sine * (complement * (first + second) + third)
+    return _quasi_periodic(ar, phi, within, complete_e, modulus)
 
 
-def _parts(
-    ar: FunctionArithmetic, phi: Value, modulus: Modulus
-) -> tuple[Value, Value, Value, Value]:
-    """Return half turns in phi and, of the rest, sin, cos^2, 1 - k^2 sin^2 as a sum of squares."""
-    half_turns, rest, low = _reduced(ar, phi)
-    sine, cosine = ar.sin(rest), ar.cos(rest)
-    sine, cosine = sine + low * cosine, cosine - low * sine
-    if ar.is_array:  # the rest may lie beyond a quarter turn by its rounding
-        beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)
-        half_turns, sine = half_turns + beyond, ar.where(cosine < 0, -sine, sine)
-    cosine2 = cosine * cosine
-    return half_turns, sine, cosine2, cosine2 + modulus.k_prime * modulus.k_prime * (1 - cosine2)
+def _squares(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> tuple[Value, Value]:
+    """Return cos^2 phi and 1 - k^2 sin^2 phi as a sum of squares; both 1 at a quarter turn."""
+    cosine2 = phi.cosine * phi.cosine
+    delta2 = cosine2 + modulus.k_prime * modulus.k_prime * (1 - cosine2)
+    at_quarter = phi.cosine + 0 * delta2 == 0
+    return ar.where(at_quarter, 1 + 0 * delta2, cosine2), ar.where(at_quarter, 1, delta2)
 
 
-def _reduced(ar: FunctionArithmetic, phi: Value) -> tuple[Value, Value, Value]:
-    """Return half turns, the rest (phi up to a quarter turn) and what rounding took from it."""
+def _quasi_periodic(
+    ar: FunctionArithmetic,
+    phi: Amplitude,
+    within: Value,
+    complete: Callable[..., Any],
+    modulus: Modulus,
+) -> Value:
+    """Return an integral from its part `within` a quarter turn and the complete one.
+
+    The complete integral of arrays is a pair of doubles: a difference keeps its digits.
+    """
+    quarters = 2 * phi.half_turns + ar.where(phi.cosine == 0, ar.sign(phi.sine), 0)
+    within = ar.where(phi.cosine == 0, 0, within)
+    k_prime = ar.where(modulus.k_prime == 0, 1, modulus.k_prime)
+    limit = 1 if complete is complete_e else 0  # E for k = 1; F is infinite there
     if not ar.is_array:
-        half_turns = ar.nint(ar.re(phi) / ar.pi)
-        return half_turns, phi - half_turns * ar.pi, 0 * phi
-    half_turns = ar.nint(phi / ar.pi)
-    product, error = two_product(half_turns, _PI[0])
-    rest, low = two_sum(phi - product, -(error + half_turns * _PI[1]))
-    return half_turns, rest, low
+        quarter = complete(ar, k_prime) if modulus.k_prime else limit
+        return quarters * quarter + within
+    pair = complete(PAIRS, DoubleDouble(np.asarray(k_prime) + 0.0, np.asarray(modulus.rest) + 0.0))
+    high = ar.where(modulus.k_prime == 0, limit, pair.high)
+    low = ar.where(modulus.k_prime == 0, 0.0, pair.low)
+    product, error = two_product(quarters + 0 * high, high)
+    return product + (error + quarters * low + within)

@@ -6,6 +6,7 @@ import math
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from ..arithmetic.double_double import pair
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
 from ..errors import LagtopError
@@ -51,6 +52,19 @@ class ModulusInput(NamedTuple):
         if self.value == 90 and not self.radians:
             return modulus(ar, k_prime=0)
         return modulus(ar, angle=value if self.radians else ar.pi * value / 180)
+
+    def in_doubles(self) -> Modulus:
+        """Return the modulus rounded once, k' as two doubles.
+
+        Raises LagtopError where it is out of range, or k' is too small for a double.
+        """
+        exact = self.in_digits(ManyDigits())
+        rounded = Modulus(float(exact.k), *pair(exact.k_prime))
+        if exact.k_prime > 0 and not rounded.k_prime:
+            raise LagtopError(
+                f"{self.name}: k' is too small for doubles (give --digits)", self.name
+            )
+        return rounded
 
 
 def constants_in(ar: ManyDigits, modulus_input: ModulusInput) -> dict[str, Value]:

@@ -20,7 +20,6 @@ from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.bench.reference import units
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import complete_k
-from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
 from lagrange_cli.elliptic.theta import theta, zeta
@@ -253,38 +252,6 @@ def test_carlson_in_blocks() -> None:
         for values in zip(x[some], y[some], z[some], p[some], strict=True)
     ]
     np.testing.assert_allclose(together[some], alone, rtol=8 * EPS)
-
-
-@pytest.mark.slow
-def test_incomplete_integrals() -> None:
-    """Worst seen in 20 000 amplitudes up to a quarter turn: F 2.9, E 3.0 eps."""
-    rng = random.Random("F")
-    for _ in range(200):
-        near = math.pi / 2 - 10 ** rng.uniform(-16, 0)
-        phi = rng.choice([rng.uniform(0, 1.5707), 10 ** rng.uniform(-10, 0), near])
-        k_prime = rng.choice([rng.random(), 10 ** rng.uniform(-100, 0)])
-        given = modulus(ARRAYS, k_prime=k_prime)
-        with mpmath.workdps(250):
-            m, exact = 1 - mpmath.mpf(k_prime) ** 2, mpmath.mpf(phi)
-            assert relative(incomplete_f(ARRAYS, phi, given), mpmath.ellipf(exact, m)) <= 3
-            assert relative(incomplete_e(ARRAYS, phi, given), mpmath.ellipe(exact, m)) <= 3
-
-
-def test_incomplete_integrals_next_to_an_odd_quarter_turn() -> None:
-    """Where phi less half turns must keep the digits that it loses."""
-    for phi in (1.570796326808052, 4.71238898038469, -7.853981633974):
-        given = modulus(ARRAYS, k_prime=1.3e-10)
-        with mpmath.workdps(60):
-            exact = mpmath.ellipf(mpmath.mpf(phi), 1 - mpmath.mpf(1.3e-10) ** 2)
-            assert relative(incomplete_f(ARRAYS, np.float64(phi), given), exact) <= 8
-
-
-def test_incomplete_integrals_beyond_a_quarter_turn() -> None:
-    phi = np.linspace(-20, 20, 81)
-    given = modulus(ARRAYS, k=0.8)
-    for ours, theirs in ((incomplete_f, mpmath.ellipf), (incomplete_e, mpmath.ellipe)):
-        exact = [float(theirs(x, mpmath.mpf(0.8) ** 2)) for x in phi]
-        np.testing.assert_allclose(ours(ARRAYS, phi, given), exact, rtol=8 * EPS)
 
 
 @pytest.mark.parametrize("q", [0.0, 1e-200, 0.01, 0.0432139, 0.0432140, 0.5, 0.99])
