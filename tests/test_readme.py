@@ -68,6 +68,7 @@ SESSIONS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "shown"), SESSIONS)
 def test_session(command: str, shown: str) -> None:
     """Text to the letter, numbers to 1e-13 (the last bit of sin and atan is the platform's)."""

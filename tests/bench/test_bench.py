@@ -60,6 +60,7 @@ def test_integrators_agree_with_the_reference_the_better_the_tighter(name: str) 
     assert fine < 2e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [{"r0": -50}, {"thetadot0": -2, "psidot0": 3}, {"r0": 200}])
 @pytest.mark.parametrize("name", ["lagtop", "scipy.special", "DOP853-quaternion", "Taylor-euler"])
 def test_other_starts(name: str, start: dict[str, float]) -> None:
@@ -140,6 +141,7 @@ def test_an_empty_field_beats_nothing() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_what_fails_is_told() -> None:
     quick = integrators(1e-4)
     work = task(solve(Top()), 8.0, 100, judged=3)
@@ -255,6 +257,7 @@ def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
     assert target.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_long_view_stops_a_method_that_has_failed(
     lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
 ) -> None:

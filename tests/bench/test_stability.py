@@ -181,6 +181,7 @@ def test_every_key_is_there_to_be_bent() -> None:
     assert absent == {"precession_rate_start"}  # 0 at rest; judged in the moving scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", NUMBER_KEYS)
 def test_a_key_wrong_by_1e_15_is_seen(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = MOVING if key == "precession_rate_start" else RELEASED

@@ -185,6 +185,7 @@ def test_times_from_a_file_and_from_standard_input(lagtop: Lagtop, tmp_path: Pat
     assert [row[0] for row in rows(from_file)] == [0.3, -100, 0.1]
 
 
+@pytest.mark.slow
 def test_long_tables_come_in_blocks(lagtop: Lagtop) -> None:
     text = lagtop("table", "--t-max", "1000", "--n", "1.5e5").stdout
     assert text.count("\n") == 150_001

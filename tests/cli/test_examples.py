@@ -73,6 +73,7 @@ def script(path: Path, code: str) -> None:
     path.chmod(0o755)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_examples_of_the_help_run(example: str, folder: Path) -> None:
     line = example

@@ -55,6 +55,7 @@ def shell(line: str, **extra: str) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(["bash", "-c", line], capture_output=True, check=False, env=environment)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize(
     "command",
@@ -113,6 +114,7 @@ def test_a_file_that_may_not_grow(unbuffered: str, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [target]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_slow_reader_gets_all_of_it(unbuffered: str) -> None:
     command = [*LAGTOP, "table", "--n", "20000"]
@@ -138,6 +140,7 @@ def test_a_named_pipe_is_written_in_place(tmp_path: Path) -> None:
     assert pipe.is_fifo()
 
 
+@pytest.mark.slow
 def test_a_shell_loop_stops_with_ctrl_c(tmp_path: Path) -> None:
     line = f"for i in 1 2 3; do echo $i; $LAGTOP table --n 1e9 -o {tmp_path}/out.csv; done; echo 4"
     environment = os.environ | {"LAGTOP": " ".join(LAGTOP)}
@@ -172,6 +175,7 @@ def most_memory(*args: str) -> float:
     return int(status.partition("VmHWM:")[2].split()[0]) / 1024
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command", ["table --n {}", "sweep --r0 1:90:{} --keys r0,regime --format ndjson"]
 )
@@ -181,6 +185,7 @@ def test_memory_does_not_grow_with_the_rows(command: str) -> None:
     assert many < few + 10
 
 
+@pytest.mark.slow
 def test_output_to_a_file(tmp_path: Path) -> None:
     target = tmp_path / "out.csv"
     target.write_text("old")
@@ -217,6 +222,7 @@ def test_output_to_a_device() -> None:
     assert process("solve", "-o", "/dev/null").stdout == b""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["table --n 1e9", "sweep --r0 1:2:1e9"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_kill_and_clean_up(number: signal.Signals, command: str, tmp_path: Path) -> None:
@@ -234,12 +240,14 @@ def test_signals_kill_and_clean_up(number: signal.Signals, command: str, tmp_pat
     assert list(tmp_path.iterdir()) == [target]
 
 
+@pytest.mark.slow
 def test_narrow_terminal_without_colour_cuts_nothing() -> None:
     plain = process("solve").stdout
     environment = os.environ | {"COLUMNS": "40", "NO_COLOR": "1", "TERM": "dumb"}
     assert process("solve", env=environment).stdout == plain
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("locale", [{"LC_ALL": "C"}, {"PYTHONIOENCODING": "ascii"}])
 def test_any_locale_shows_all_digits(locale: dict[str, str], tmp_path: Path) -> None:
     file = tmp_path / "tops.csv"

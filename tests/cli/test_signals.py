@@ -30,6 +30,7 @@ STARTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", STARTS)
 @pytest.mark.parametrize(
     "module",
@@ -49,6 +50,7 @@ def test_ctrl_c_while_modules_are_imported(start: str, module: str) -> None:
     assert (done.returncode, done.stderr, done.stdout) == (-signal.SIGINT, b"", b"")
 
 
+@pytest.mark.slow
 def test_ctrl_c_in_the_imports_of_numbers() -> None:
     code = f"{INTERRUPT_AT_IMPORT}\n{STARTS['module']}"
     command = [sys.executable, "-c", code, "numpy", "lagtop", "table"]
@@ -56,6 +58,7 @@ def test_ctrl_c_in_the_imports_of_numbers() -> None:
     assert (done.returncode, done.stderr, done.stdout) == (-signal.SIGINT, b"", b"")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["HUP", "INT", "TERM"])
 def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name: str, tmp_path: Path) -> None:
     """The command `nohup` does that with SIGHUP, and a shell with SIGINT of a job with &."""
@@ -132,6 +135,7 @@ WITHOUT_WHAT_WINDOWS_LACKS = """if True:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
     [
@@ -173,6 +177,7 @@ def test_a_reader_that_went_away_where_there_is_no_sigpipe() -> None:
 HOSTILE = "a\x1b[31m\x9b\x7f\u202e\u2066\u200b\udcff.csv"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
     [

@@ -123,6 +123,7 @@ WIDE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [80, 60])
 @pytest.mark.parametrize("line", WIDE)
 def test_tables_fit_the_terminal_and_lose_no_digit(line: str, columns: int) -> None:
@@ -136,6 +137,7 @@ def test_tables_fit_the_terminal_and_lose_no_digit(line: str, columns: int) -> N
     assert [number for number in numbers if number not in together] == []
 
 
+@pytest.mark.slow
 def test_a_wide_terminal_changes_nothing_but_bold_letters() -> None:
     for line in ("solve", "table --n 3 --columns t,axis --format table"):
         command = [sys.executable, "-m", "lagrange_cli", *line.split()]

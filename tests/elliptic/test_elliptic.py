@@ -25,6 +25,7 @@ def error(value: float, true: mpmath.mpf) -> float:
     return float(abs(mpmath.mpf(value) / true - 1) / EPS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["K", "E", "third"])
 def test_complete_integrals(kind: str) -> None:
     """Worst seen in 20 000: K 2.5, E 4.7, third kind over K 3.7 eps."""

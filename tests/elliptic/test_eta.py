@@ -120,6 +120,7 @@ def test_the_top_is_the_cubic_case() -> None:
     assert float(eta_constants(ManyDigits(50), of).period) == solve(Top()).T_nutation
 
 
+@pytest.mark.slow
 @given(
     st.fractions(-2, 2),
     st.fractions(Fraction("1e-9"), 3),

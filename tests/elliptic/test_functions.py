@@ -124,6 +124,7 @@ def test_arrays_of_moduli_give_what_single_ones_give() -> None:
     assert jacobi(ARRAYS, np.empty((0, 3)), modulus(ARRAYS, k=0.5)).sn.shape == (0, 3)
 
 
+@pytest.mark.slow
 def test_theta_and_zeta_on_arrays() -> None:
     """Worst seen in 2000: theta 2.6, Z 2.1 eps of max(1, |f|) (+ |v f'|, at the poles)."""
     rng = random.Random("theta")

@@ -225,6 +225,7 @@ def test_printed_zeros_and_empty_cells_are_proved(
     assert dict(zip(header.split(","), row.split(","), strict=True))[column] == text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_digits(seed: int) -> None:
     """Every digit is right, of tiny values too, and where few are asked for."""
@@ -246,6 +247,7 @@ def test_digits(seed: int) -> None:
                 assert float(error.mid()) <= 5.01 * 10.0**-digits, (column, case)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "args",
     [
@@ -263,6 +265,7 @@ def test_digits_where_there_was_a_traceback_or_no_end(args: str, lagtop: Lagtop)
     assert ",," not in result.stdout
 
 
+@pytest.mark.slow
 def test_far_parameters_with_digits() -> None:
     """Pi of a parameter of 1e300, against one reduced by the judge."""
     judge = Judge("k", Fraction(1, 2), 2000)

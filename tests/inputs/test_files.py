@@ -92,6 +92,7 @@ def test_dots_in_comments_are_free(tmp_path: Path) -> None:
 # Times
 
 
+@pytest.mark.slow
 def test_times_are_read_as_they_are_needed(tmp_path: Path) -> None:
     path = tmp_path / "times.txt"
     count = 2 * POINTS_AT_ONCE + 5
@@ -104,6 +105,7 @@ def test_times_are_read_as_they_are_needed(tmp_path: Path) -> None:
     assert TimesFile(str(path)).bounds() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", [b"soon", b"1,5", b"\xff", b"1" * 3000, b"1 2"])
 def test_a_bad_line_late_in_the_file(line: bytes, tmp_path: Path, lagtop: Lagtop) -> None:
     """Rows before it may be out; a file that was there stays."""
@@ -146,6 +148,7 @@ PEAK = """if True:
 """
 
 
+@pytest.mark.slow
 def test_the_memory_for_times_does_not_grow(tmp_path: Path) -> None:
     """Six times the times may cost no more than 8 MB; a list of them took 50."""
     peaks = []

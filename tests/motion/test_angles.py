@@ -30,6 +30,7 @@ def test_the_ten_times_of_the_worked_example() -> None:
     assert worst({}, motion, [period(motion) * x for x in eighths]) <= 0.65
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", NAMED.values(), ids=NAMED)
 def test_named_scenes_at_any_time(scene: dict[str, float]) -> None:
     """Worst seen: 1.2 units."""

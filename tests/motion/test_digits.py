@@ -92,6 +92,7 @@ def test_a_neighbour_of_the_separatrix_is_not_taken_for_it() -> None:
     assert record_of(Top(**body, thetadot0=Fraction(1)), 5)["regime"] == "separatrix"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "start",
     [

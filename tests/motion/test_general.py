@@ -399,6 +399,7 @@ def euler_equations(scene: Scene, state: Any) -> list[Any]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("integrate", "scenes", "bound"), [(by_heyoka, 100, 2e-11), (by_dop853, 4, 2e-10)]
 )

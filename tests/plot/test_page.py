@@ -116,6 +116,7 @@ def test_each_page_is_drawable_or_refused(
     assert width * height * dpi**2 <= MOST_PIXELS * (1 + 1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kinds", "size", "dpi"),
     [

@@ -47,6 +47,7 @@ def test_the_bytes_of_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None
     assert joined(tmp_path) == here
 
 
+@pytest.mark.slow
 def test_rows_and_errors_as_in_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None:
     file = tmp_path / "tops.csv"
     file.write_text("id,r0\n" + "".join(f"{i},{'x' if i % 999 == 5 else i}\n" for i in range(9000)))
@@ -142,6 +143,7 @@ def assert_lost(result: subprocess.CompletedProcess[bytes], message: bytes) -> N
     assert result.stderr.count(b"\n") == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", BAD_WORKERS)
 def test_a_worker_that_would_compute_otherwise_is_refused(kind: str, tmp_path: Path) -> None:
     """The worker lives on: a shared cluster may have such workers."""
@@ -157,6 +159,7 @@ def test_a_worker_that_would_compute_otherwise_is_refused(kind: str, tmp_path: P
         wait_for_workers(cluster.scheduler_address, 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", BAD_WORKERS)
 def test_so_is_one_that_joins_later(kind: str, tmp_path: Path) -> None:
     init = BAD_WORKERS[kind][0]
@@ -180,6 +183,7 @@ def test_a_part_of_another_version_is_not_computed() -> None:
         compute("0.0.9", content)
 
 
+@pytest.mark.slow
 def test_a_cluster_without_workers() -> None:
     with LocalCluster(n_workers=0, dashboard_address=None) as cluster:
         result = process("sweep", "--dask", cluster.scheduler_address, check=False)
@@ -191,6 +195,7 @@ def test_a_scheduler_that_is_not_there() -> None:
     assert_lost(result, b"no scheduler answers at tcp://127.0.0.1:9")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("who", "number"),
     [("scheduler", signal.SIGSTOP), ("scheduler", signal.SIGKILL), ("worker", signal.SIGKILL)],

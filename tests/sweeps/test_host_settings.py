@@ -56,6 +56,7 @@ def same(compute: Callable[[], Any]) -> None:
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("inputs", [EXTREME, MOVING], ids=["from rest", "moving"])
 @pytest.mark.parametrize("radians", [False, True])
 def test_sweep(inputs: dict[str, Any], radians: bool) -> None:

@@ -68,6 +68,7 @@ def condition(scene: dict[str, float], key: str) -> float:
     return total
 
 
+@pytest.mark.slow
 def test_as_solve_over_all_ranges() -> None:
     """Worst seen in 2.2e5 scenes: nome 6.4 and mean precession 6.0 eps, 2.8 over the condition
     number; all others 4.0 eps."""
@@ -451,6 +452,7 @@ def test_fail_fast(tmp_path: Path, lagtop: Lagtop) -> None:
 RUBBISH = ["text", "nan", "inf", "1e999", "--", "1,5", '"', "", "1_0", "\u0663", "1e-400", " "]
 
 
+@pytest.mark.slow
 def test_a_large_file_with_rubbish_in_it(tmp_path: Path, lagtop: Lagtop) -> None:
     """1e5 rows, one in a hundred broken in a way of its own, CRLF, a BOM and blank lines."""
     rng = random.Random(3)

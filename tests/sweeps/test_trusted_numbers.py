@@ -77,6 +77,7 @@ def allowed(key: str, judge: Judge, scene: dict[str, float]) -> float | None:
     return max([abs(scene["r0"]), *sizes])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_key_is_within_ten_eps(kind: str) -> None:
     """Forty scenes of each of the worst kinds."""
