@@ -16,6 +16,7 @@ from typing import TypeVar
 
 from balls.angles import State
 from balls.record import Motion, Remainders
+from balls.requested import Requested
 from balls.scene import Number, Scene, Undecided, ball, facts_of, scene_from
 from flint import arb, ctx
 
@@ -34,10 +35,13 @@ class Judge:
         """Take the inputs under the names of the program, as exact numbers."""
         self.scene = scene_from(inputs)
         self.facts = facts_of(self.scene)
-        self._motions: dict[int, Motion] = {}
+        self._moments = Fraction(inputs["A"] or 0), Fraction(inputs["C"] or 0)
+        self._motions: dict[int, Requested] = {}
         self._first = FIRST_BITS
 
-    def _raised(self, compute: Callable[[Motion], T], good: Callable[[T], bool], first: int) -> T:
+    def _raised(
+        self, compute: Callable[[Requested], T], good: Callable[[T], bool], first: int
+    ) -> T:
         """Return the first result that is good, at more and more bits.
 
         Raises Undecided where even the most bits leave something open.
@@ -47,7 +51,7 @@ class Judge:
             with _precision(bits):
                 try:
                     if bits not in self._motions:
-                        self._motions[bits] = Motion(self.scene)
+                        self._motions[bits] = Requested(self.scene, *self._moments)
                     result = compute(self._motions[bits])
                     if good(result):
                         return result
@@ -64,6 +68,21 @@ class Judge:
             return all(value is None or _sharp(value) for value in record.values())
 
         return self._raised(Motion.record, good, FIRST_BITS)
+
+    @cached_property
+    def requested(self) -> dict[str, arb | None]:
+        """The numbers on request by key, each to 90 bits or proved to be below 2^-1100."""
+
+        def good(found: dict[str, arb | None]) -> bool:
+            return all(value is None or _sharp(value) for value in found.values())
+
+        return self._raised(Requested.requested, good, FIRST_BITS)
+
+    def exact(self, key: str) -> arb | None:
+        """Return a number of the record or, where that has none of the name, one on request."""
+        if key in self.record:
+            return self.record[key]
+        return self.requested.get(key)
 
     @cached_property
     def half_parts(self) -> tuple[arb, arb] | None:
@@ -121,7 +140,7 @@ class Judge:
 
         At most 1/2 (and a hair, where it is midway) says that no double is nearer.
         """
-        exact = self.record.get(key)
+        exact = self.exact(key)
         if exact is None or not math.isfinite(computed):
             return math.inf
         with _precision(8 * FIRST_BITS):

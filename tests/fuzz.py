@@ -32,7 +32,7 @@ from fuzz_scenes import KINDS, Scene
 
 from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.motion.record import NUMBER_KEYS
+from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 from lagrange_cli.motion.table import rows
 
 UNITS, HALF_ULP, SWEEP_EPS = 4.0, 0.5 + 1e-9, 10.0
@@ -114,9 +114,9 @@ def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[flo
 
 
 def judge_record(tally: Tally, judge: Judge, motion: Motion) -> None:
-    """Judge every number of a record: the nearest double, or none where there is none."""
-    for key in NUMBER_KEYS:
-        value, exact = getattr(motion, key), judge.record.get(key)
+    """Judge every number of a record and on request: the nearest double, or rightly none."""
+    for key in (*NUMBER_KEYS, *requested_keys()):
+        value, exact = getattr(motion, key), judge.exact(key)
         show = f"lagtop solve {motion.top.options()} --get {key}"
         if (value is None) != (exact is None):
             tally.counts[f"absent {key}"] += 1
@@ -170,7 +170,7 @@ def run_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
         tally.scenes += 1
         try:
             motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
-            judge.record  # noqa: B018 - made here, so that what is undecided is counted once
+            judge.record, judge.requested  # noqa: B018 - made here, so that what is undecided is counted once
             judge_record(tally, judge, motion)
             judge_angles(tally, judge, motion, times_of(rng, period_of(judge)))
         except LagtopError as error:

@@ -15,6 +15,7 @@ import pytest
 from errata import errata_table, figures_table
 
 from lagrange_cli.cli.group import main
+from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -91,9 +92,25 @@ def test_python_session(path: Path) -> None:
     assert result.failed == 0
 
 
-@pytest.mark.parametrize("table", [errata_table, figures_table])
-def test_table_of_the_errata(table: Callable[[], list[str]]) -> None:
-    page = (ROOT / "tests" / "README.md").read_text()
+def requested_table() -> list[str]:
+    """Return the keys on request as a table in Markdown."""
+    lines = ["| key | | what | equation |", "|---|---|---|---|"]
+    for name, key in requested_keys().items():
+        lines.append(f"| `{name}` | {key.symbol} | {key.meaning} | {key.equation} |")
+    return lines
+
+
+TABLES = [
+    (errata_table, "tests"),
+    (figures_table, "tests"),
+    (requested_table, "lagrange_cli/motion"),
+]
+"""Tables that are made, and the folders of the pages that show them."""
+
+
+@pytest.mark.parametrize(("table", "folder"), TABLES)
+def test_table_that_is_made(table: Callable[[], list[str]], folder: str) -> None:
+    page = (ROOT / folder / "README.md").read_text()
     assert len(table()) > 20
     assert "\n".join(["", *table(), ""]) in page
     assert with_table(page, table()) == page
@@ -108,10 +125,8 @@ def test_every_option_and_key_is_explained() -> None:
     assert {name for name in options if name.startswith("-")} - set(
         re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", text)
     ) == set()
-    from lagrange_cli.motion.record import NUMBER_KEYS
-
     words = set(re.findall(r"\w+", text))
-    assert {*NUMBER_KEYS, "regime", "path", "remark"} <= words
+    assert {*NUMBER_KEYS, *requested_keys(), "regime", "path", "remark"} <= words
 
 
 def test_ci_runs_the_test_command_of_the_readme() -> None:
@@ -136,12 +151,12 @@ def test_prose_of_the_other_readmes_is_short(path: Path) -> None:
 
 
 def rewrite() -> None:
-    """Put the real outputs, and the tables of errata, into every README."""
+    """Put the real outputs, and the tables that are made, into every README."""
     for path in READMES:
         text = path.read_text()
         for command, shown in sessions(text):
             text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
-        for table in (errata_table, figures_table):
+        for table, _ in TABLES:
             text = with_table(text, table())
         path.write_text(text)
 

@@ -99,6 +99,12 @@ class Cosine(Values):
         """Return whether a polynomial is exactly 0 here."""
         return self._clear_sign(polynomial) is None and self._vanishes(polynomial)
 
+    def fraction(self, polynomial: Polynomial) -> Fraction | None:
+        """Return a polynomial here where it is known as a fraction: 0, or of a rational cosine."""
+        if self.rational is not None:
+            return Fraction(_value([Fraction(x) for x in polynomial.coefficients], self.rational))
+        return Fraction(0) if self.vanishes(polynomial) else None
+
     def sign(self, polynomial: Polynomial) -> int:
         """Return the sign of a polynomial, -1, 0 or 1."""
         sign = self._clear_sign(polynomial)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,6 +12,7 @@ from .. import __version__
 from ..errors import LagtopError
 
 if TYPE_CHECKING:
+    from ..motion.quantity import Key
     from ..output.layouts import Line
 
 
@@ -76,20 +77,45 @@ class ExamplesFirst(click.Command):
 def top_layout() -> dict[str, list[Line]]:
     """Return the keys of the record of a top as the lines of a table, by their groups."""
     from ..motion.record import KEYS
-    from ..output.layouts import Line
 
+    return _grouped({name: key for name, key in KEYS.items() if key.meaning})
+
+
+def chain_layout() -> dict[str, list[Line]]:
+    """Return the keys of the steps of section 8 as the lines of a table, step by step."""
+    from ..motion.record import KEYS, requested_keys
+    from ..motion.worked_example import CHAIN
+
+    keys = KEYS | requested_keys()
+    return {step: [_line(name, keys[name]) for name in names] for step, names in CHAIN.items()}
+
+
+def _grouped(keys: Mapping[str, Key]) -> dict[str, list[Line]]:
     layout: dict[str, list[Line]] = {}
-    for name, (group, symbol, meaning, unit, equation, *_) in KEYS.items():
-        if meaning:
-            line = Line(name.removesuffix("_deg"), symbol, meaning, unit, equation)
-            layout.setdefault(group, []).append(line)
+    for name, key in keys.items():
+        layout.setdefault(key.group, []).append(_line(name, key))
     return layout
 
 
+def _line(name: str, key: Key) -> Line:
+    """Return how a table shows a key."""
+    from ..output.layouts import Line
+
+    return Line(name.removesuffix("_deg"), key.symbol, key.meaning, key.unit, key.equation)
+
+
 def write_keys(formatter: click.HelpFormatter) -> None:
-    """Write the keys of the record of a top, by their groups, with symbol, name and equation."""
-    for group, lines in top_layout().items():
-        with formatter.section(f"Keys: {group}"):
+    """Write the keys of the record of a top, by their groups, with symbol, name and equation.
+
+    Those on request follow.
+    """
+    from ..motion.record import requested_keys
+
+    of_record = [(f"Keys: {group}", lines) for group, lines in top_layout().items()]
+    groups = _grouped(requested_keys()).items()
+    on_request = [(f"Keys on request: {group}", lines) for group, lines in groups]
+    for heading, lines in of_record + on_request:
+        with formatter.section(heading):
             formatter.write_dl(
                 [
                     (f"{line.key}_deg" if line.unit == "angle" else line.key, _meaning(line))

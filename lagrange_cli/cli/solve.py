@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import AbsentError, LagtopError
-from ..motion.record import record_keys
+from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_value
-from .command import ExamplesFirst, top_layout, write_keys
+from .command import ExamplesFirst, chain_layout, top_layout, write_keys
 from .options import (
     MOST_RECORD_DIGITS,
     digits_option,
@@ -19,6 +19,9 @@ from .options import (
     scene_options,
     solved,
 )
+
+if TYPE_CHECKING:
+    from ..motion.solve import Motion
 
 
 @click.command(
@@ -31,11 +34,18 @@ from .options import (
         lagtop solve --r0 -20 --theta0 120 --format json | jq .T_nutation
         lagtop solve --theta0 60 --psidot0 -3 --digits 50
         period=$(lagtop solve --r0 80 --get T_nutation)
+        lagtop solve --theta0 60 --get psi_period_deg
+        lagtop solve --theta0 60 --derivation
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
     """,
 )
 @scene_options
 @digits_option(MOST_RECORD_DIGITS)
+@click.option(
+    "--derivation",
+    is_flag=True,
+    help="The steps of the paper's worked example, section 8, for a top released from rest.",
+)
 @click.option(
     "--get", "key", metavar="KEY", help="Print one value of the record, bare; the keys stand below."
 )
@@ -44,6 +54,7 @@ def command(
     scene: str | None,
     rad: bool,
     digits: int | None,
+    derivation: bool,
     key: str | None,
     fmt: str,
     output: str,
@@ -54,20 +65,40 @@ def command(
     Every number is the double nearest to its exact value, or has --digits right digits.  JSON and
     CSV hold the same keys; what a regime does not have is null or empty.
     """
+    exclude({"--get": key, "--derivation": derivation or None})
+    keys = None
     if key is not None:
         exclude({"--get": key, "--format": fmt if given("fmt") else None})
-        names = record_keys(radians=rad)
-        if key not in names:
-            raise LagtopError(f"--get must be among {' '.join(names)}, got {key!r}")
-    keys = None if key is None else [key]
+        if key not in record_keys(radians=rad) and key not in all_keys(radians=rad):
+            names = " ".join(all_keys(radians=rad))
+            raise LagtopError(f"--get must be among {names}, got {key!r}")
+        keys = [key]
     motion = solved(scene, rad, digits is not None, options)
+    if derivation:
+        keys = _steps(motion, rad)
     if digits:
         record = motion.digits(digits, radians=rad, keys=keys)
     else:
         record = motion.record(radians=rad, keys=keys)
+    if derivation and keys:
+        record = {name: record[name] for name in keys}
     if key is None:
-        write_record(record, fmt, output, top_layout)
+        write_record(record, fmt, output, chain_layout if derivation else top_layout)
         return
     if record[key] is None:
         raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
     write_value(record[key], output)
+
+
+def _steps(motion: Motion, radians: bool) -> list[str]:
+    """Return the keys of the steps of section 8.  Raises AbsentError where they do not hold."""
+    from ..motion.worked_example import chain
+
+    if motion.roots_sum is None:
+        top = motion.top
+        raise AbsentError(
+            "--derivation must be of a top that nutates after release from rest, got one of the "
+            f"regime {motion.regime.value!r}, thetadot0 = {float(top.thetadot0)}, "
+            f"psidot0 = {float(top.psidot0)}"
+        )
+    return chain(radians=radians)

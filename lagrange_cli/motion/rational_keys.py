@@ -10,7 +10,25 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ..arithmetic.exact_cosine import Polynomial, U
+from .record import NUMBER_KEYS
 from .regime import Exact
+
+
+def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
+    """Return a number of a motion, of its record or on request, where it is known as a fraction.
+
+    `radians` is for an angle, in radians instead of degrees.
+    """
+    keys = rational_keys(exact)
+    if name not in NUMBER_KEYS:
+        from .requested import requested_fractions
+
+        keys |= requested_fractions(exact, keys)
+    known = keys.get(name)
+    if not radians or known == 0:
+        return known
+    at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
+    return exact.cosine.radians if at is not None and at(exact) else None
 
 
 def rational_keys(exact: Exact) -> dict[str, Fraction]:

@@ -46,6 +46,24 @@ def unit_name(name: str, *, radians: bool) -> str:
     return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name
 
 
+def number_key(name: str) -> Key | None:
+    """Return how a number is declared, of the record or on request; None where it is no number."""
+    return _NUMBERS.get(name) or requested_keys().get(name)
+
+
+def requested_keys() -> dict[str, Key]:
+    """Return the numbers that a motion has on request only, and how they are shown."""
+    from .requested import REQUESTED  # not for a record
+
+    return REQUESTED
+
+
+def all_keys(*, radians: bool = False) -> list[str]:
+    """Return the keys of a record and those on request, in their order."""
+    names = record_keys(radians=radians)
+    return [*names, *(unit_name(name, radians=radians) for name in requested_keys())]
+
+
 def record_keys(*, radians: bool = False) -> list[str]:
     """Return all keys of a record in their order."""
     names = [*_INPUTS, "regime", *NUMBER_KEYS, "path", "remark"]

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, precisions, text_of
@@ -15,7 +14,7 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from .gaps import agree, are_told_apart, gaps_of, state
 from .kinds import Kind, kind_of
-from .record import CANCELLING, NUMBER_KEYS, record_keys, unit_name
+from .record import NUMBER_KEYS, all_keys, number_key, record_keys, requested_keys, unit_name
 from .regime import Exact, Regime, exact
 
 if TYPE_CHECKING:
@@ -48,12 +47,6 @@ class Motion:
         self._doubles: dict[str, float | None] = {}
         self._sampler: Sampler | None = None
 
-    @cached_property
-    def _rational(self) -> dict[str, Fraction]:
-        from .rational_keys import rational_keys  # for few tops only
-
-        return rational_keys(self.exact)
-
     @property
     def top(self) -> Top:
         """The top, and its start."""
@@ -77,8 +70,8 @@ class Motion:
         return remark
 
     def __getattr__(self, name: str) -> Any:
-        """Return a number of the record by its key, a float, or None where there is none."""
-        if name not in NUMBER_KEYS:
+        """Return a number by its key, a float, or None where the motion has none."""
+        if number_key(name) is None:
             raise AttributeError(f"a motion has no {name!r}")
         if name not in self._doubles:
             self._doubles[name] = self._number(name, _nearest_double(name), _double_of_fraction)
@@ -86,7 +79,7 @@ class Motion:
 
     def __dir__(self) -> Sequence[str]:
         """Return all names, the keys of the record among them."""
-        return [*super().__dir__(), *NUMBER_KEYS]
+        return [*super().__dir__(), *NUMBER_KEYS, *requested_keys()]
 
     def __eq__(self, other: object) -> bool:
         """Return whether the other is the motion of the same top."""
@@ -144,8 +137,11 @@ class Motion:
     ) -> dict[str, Any]:
         names = record_keys(radians=radians)
         wanted = set(names if keys is None else keys)
+        numbers = NUMBER_KEYS
+        if not wanted <= set(names):
+            names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
         values = dict(inputs) | {"regime": self.regime.value}
-        for name in NUMBER_KEYS:
+        for name in numbers:
             shown = unit_name(name, radians=radians)
             if shown in wanted:
                 values[shown] = number(name, radians)
@@ -170,14 +166,18 @@ class Motion:
         if name in self.kind_class.lacks:
             return None
         in_radians = radians and name.endswith("_deg")
+        declared = number_key(name)
+        cancels = declared is not None and declared.cancels
 
         def exactly() -> T | None:
-            known = self._radians_given(name) if in_radians else self._rational.get(name)
+            from .rational_keys import known_fraction  # for few tops only
+
+            known = known_fraction(self.exact, name, radians=in_radians)
             return None if known is None else of_fraction(known)
 
         def value_in(digits: int) -> Decimal | None:
             kind = self.kind(digits)
-            value: Decimal | None = getattr(kind, name)
+            value: Decimal | None = getattr(self._source(name, kind), name)
             if not in_radians or value is None:
                 return value
             with kind.ar.working():
@@ -188,16 +188,18 @@ class Motion:
             value_in,
             rounding,
             first=max(32, digits + 10),
-            zero_is_proved=name not in CANCELLING,
+            zero_is_proved=not cancels,
             exactly=exactly,
-            lost=8 if self.exact.facts.at_rest and name not in CANCELLING else None,
+            lost=8 if self.exact.facts.at_rest and not cancels else None,
         )
 
-    def _radians_given(self, name: str) -> Fraction | None:
-        from .rational_keys import starts_at_u1, starts_at_u2
+    def _source(self, name: str, kind: Kind[Decimal]) -> Any:
+        """Return the object that computes a key: the kind, or what is asked for on request."""
+        if name in NUMBER_KEYS:
+            return kind
+        from .worked_example import WorkedExample  # the last of the classes with such keys
 
-        at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
-        return self.exact.cosine.radians if at is not None and at(self.exact) else None
+        return WorkedExample(kind, self.exact)
 
     def kind(self, digits: int) -> Kind[Decimal]:
         """Return the motion computed with so many decimal digits.

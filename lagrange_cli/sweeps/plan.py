@@ -69,7 +69,7 @@ def plan(
     if ranges:
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = _digested(tables[0]) if described else (None, "")
-    computed = {*known, *record_keys(radians=not radians)}
+    computed = {*known, *record_keys(radians=not radians), *chosen}
     source, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
     varying = INPUTS if source.columns is None else source.columns
     shared = shared_inputs(scene, first, varying=varying)

@@ -2,7 +2,8 @@
 
 Tops released from rest go through the formulas of `motion` as arrays of doubles, others as arrays
 of pairs of doubles.  A top whose sizes are unusual (beyond 1e+-30), or whose digits a cancellation
-uses up, goes through `solve` by itself; an invalid one gets an `error` and no numbers.
+uses up, goes through `solve` by itself, and so does every top where a key on request is asked for;
+an invalid one gets an `error` and no numbers.
 """
 
 from __future__ import annotations
@@ -83,8 +84,11 @@ def _doubles(name: str, values: ArrayLike) -> Array:
 
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
-    """Return the keys.  Raises LagtopError for one that no record has, or that comes twice."""
-    return check_names("keys", keys, record_keys(radians=radians))
+    """Return the keys.  Raises LagtopError for one that no motion has, or that comes twice."""
+    known = record_keys(radians=radians)
+    if isinstance(keys, Sequence) and not set(keys) <= set(known):
+        known = [*motion_record.all_keys(radians=radians), "error"]
+    return check_names("keys", keys, known)
 
 
 def records(
@@ -109,7 +113,10 @@ def records(
                 left &= ~rows
         left = block.fill_moving(left)
         for row in np.flatnonzero(left).tolist():
-            block.solve(row)
+            block.solve(row, [*block.texts, *block.numbers])
+        if block.requested:
+            for row in range(tops.m.size):
+                block.solve(row, block.requested)
         return {key: block.columns[key] for key in keys}
 
 
@@ -122,12 +129,14 @@ class _Block:
         given = tops._asdict() | tilt
         self.columns: dict[str, Column] = {"error": np.full(tops.m.size, None)}
         self.texts = [key for key in keys if key in _TEXT_KEYS]
-        self.numbers = [
-            key for key in keys if key not in given and key not in (*_TEXT_KEYS, "error")
-        ]
+        known = motion_record.record_keys(radians=radians)
+        others = {*given, *_TEXT_KEYS, "error"}
+        self.numbers = [key for key in keys if key in known and key not in others]
+        self.requested = [key for key in keys if key not in known and key not in others]
         self.columns |= {key: x for key, x in given.items() if key in keys}
         self.columns |= {key: np.full(tops.m.size, None) for key in self.texts}
-        self.columns |= {key: np.full(tops.m.size, np.nan) for key in self.numbers}
+        numbers = (*self.numbers, *self.requested)
+        self.columns |= {key: np.full(tops.m.size, np.nan) for key in numbers}
 
     def fill(self, rows: Mask, regime: Regime) -> None:
         """Fill the rows of one regime, all released from rest, by the formulas over doubles."""
@@ -173,14 +182,16 @@ class _Block:
         rest[rows] = False
         return rest
 
-    def solve(self, row: int) -> None:
-        """Fill one row by `solve`."""
+    def solve(self, row: int, keys: Sequence[str]) -> None:
+        """Fill some keys of one row by `solve`, unless it has an error."""
+        if self.columns["error"][row] is not None:
+            return
         try:
-            record = solve(Top(**self.tops.one(row))).record(radians=self.radians)
+            record = solve(Top(**self.tops.one(row))).record(radians=self.radians, keys=keys)
         except LagtopError as error:
             self.columns["error"][row] = str(error)
             return
-        for key in (*self.texts, *self.numbers):
+        for key in keys:
             if record[key] is not None:
                 self.columns[key][row] = record[key]
 

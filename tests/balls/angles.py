@@ -128,17 +128,28 @@ class Moving(Constants):
         if t == 0:
             return self._at_start()
         time = ball(t)
-        w = self.w0 + self.speed * time
-        turns = nearest(w / (2 * self.K))
-        sn, cn, dn = self._jacobi(w - 2 * turns * self.K)
-        amplitude = arb.atan2(sn, cn)
-        south, north = self._south(w, amplitude, turns), self._north(w, amplitude, turns)
-        drift = (self.r0 - self.b) * time / 2
-        halves = drift + south - self._start[0], -drift + north - self._start[1]
+        _, rest = self._phase(time)
+        sn, cn, dn = self._jacobi(rest)
+        halves = self.halves_at(time)
         below, above = self.below_u2 + self.band * sn**2, self.above_u1 + self.band * cn**2
         swing = -2 * self.band * sn * cn * dn * self.speed
         periods = nearest(time / self.T)
         return self._state(halves, (below, above), swing, time - periods * self.T)
+
+    def _phase(self, time: arb) -> tuple[int, arb]:
+        """Return the half periods passed at a time, and what is left of w."""
+        w = self.w0 + self.speed * time
+        turns = nearest(w / (2 * self.K))
+        return turns, w - 2 * turns * self.K
+
+    def halves_at(self, time: arb) -> tuple[arb, arb]:
+        """Return (psi + phi)/2 and (psi - phi)/2 at a time."""
+        turns, rest = self._phase(time)
+        sn, cn, _ = self._jacobi(rest)
+        w, amplitude = rest + 2 * turns * self.K, arb.atan2(sn, cn)
+        south, north = self._south(w, amplitude, turns), self._north(w, amplitude, turns)
+        drift = (self.r0 - self.b) * time / 2
+        return drift + south - self._start[0], -drift + north - self._start[1]
 
     def _at_start(self) -> State:
         """Return the start."""

@@ -346,7 +346,8 @@ def test_help_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
     from lagrange_cli.motion.columns import COLUMNS
 
     for command in ("solve", "sweep"):
-        _, *sections = lagtop(command, "--help").stdout.split("\nKeys: ")
+        record, *_ = lagtop(command, "--help").stdout.partition("\nKeys on request: ")
+        _, *sections = record.split("\nKeys: ")
         keys = [line.split()[0] for text in sections for line in text.splitlines()[1:] if line]
         assert sorted(keys) == sorted(set(KEYS) - {"remark"})
     columns = lagtop("table", "--help").stdout.split("\nColumns:\n")[1]

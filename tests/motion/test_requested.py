@@ -1,0 +1,180 @@
+"""Keys on request: the sections of the text in 150 digits, the judge, and where they are accepted.
+
+The keys are judged as the nearest doubles in `test_cancellation` and by `fuzz.py`; here they are
+compared with the formulas of the text, and with the angles.
+"""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from chrapan_top import MOTIONS, Motion, ar
+from conftest import Lagtop
+from errata import FIGURES, round_alike, true_values
+from scenes import UNIT
+
+from lagrange_cli import LagtopError, Top, solve, sweep
+from lagrange_cli.motion.record import all_keys, record_keys, requested_keys
+from lagrange_cli.motion.worked_example import chain
+
+DIGITS = 40
+
+
+def requested(motion: Motion) -> dict[str, Any]:
+    """Return the keys on request of a motion of the text in 40 digits."""
+    texts = solve(motion.top).digits(DIGITS, keys=requested_keys())
+    return {key: ar.mpf(text) for key, text in texts.items()}
+
+
+def assert_alike(ours: dict[str, Any], right: dict[str, Any]) -> None:
+    """Check that numbers agree to the last but one of the 40 digits."""
+    for key, value in right.items():
+        assert abs(ours[key] - value) <= ar.mpf(10) ** -38 * max(1, abs(value)), key
+
+
+@pytest.mark.parametrize("motion", MOTIONS, ids=["example", "backwards", "disc"])
+def test_constants_of_section_4(motion: Motion) -> None:
+    a, b, u1 = motion.a, motion.b, motion.u1
+    ours = requested(motion)
+    right = {
+        "energy_without_spin": motion.mgs * u1,
+        "Lz": motion.C * motion.r0 * u1,
+        "energy_constant": a * u1,
+        "momentum_constant": b * u1,
+        "discriminant": b**4 - 4 * a * b**2 * u1 + 4 * a**2,
+        "f_upright": -(b**2) * (u1 - 1) ** 2,
+        "f_hanging": -(b**2) * (u1 + 1) ** 2,
+        "f_slope_u1": -a * ar.sin(motion.angles(ar.mpf(0))[0]) ** 2,
+        "u2_criterion": b**2 * u1 - a,
+    }
+    assert_alike(ours, right)
+    assert ours["discriminant"] >= (b**2 - 2 * a) ** 2
+    assert ar.sign(ours["u2_criterion"]) == ar.sign(motion.u(motion.T / 2))
+    assert max(ours["f_upright"], ours["f_hanging"], ours["f_slope_u1"]) < 0
+
+
+@pytest.mark.parametrize("motion", MOTIONS, ids=["example", "backwards", "disc"])
+def test_angles_and_quarters_are_those_of_the_motion(motion: Motion) -> None:
+    """The halves are alike, and so are the quarters next to u1, and those next to u2."""
+    places = [motion.angles(part * motion.T / 4) for part in range(5)]
+    quarters = [
+        [(late - early) / (motion.T / 4) for early, late in zip(first, second, strict=True)]
+        for first, second in pairwise(places)
+    ]
+    right = {
+        "phi_half_deg": ar.degrees(places[2][1]),
+        "phi_period_deg": ar.degrees(places[4][1]),
+        "psi_half_deg": ar.degrees(places[2][2]),
+        "psi_period_deg": ar.degrees(places[4][2]),
+    }
+    ours = requested(motion)
+    for upper, lower, sign in ((0, 1, 1), (3, 2, -1)):
+        for part, quarter in (("upper", quarters[upper]), ("lower", quarters[lower])):
+            right[f"nutation_rate_{part}"] = sign * quarter[0]
+            right[f"spin_rate_{part}"] = quarter[1]
+            right[f"precession_rate_{part}"] = quarter[2]
+        assert_alike(ours, right)
+    assert abs(2 * ours["phi_half_deg"] - ours["phi_period_deg"]) < 1e-35
+    assert abs(2 * ours["psi_half_deg"] - ours["psi_period_deg"]) < 1e-35
+
+
+def test_halves_from_anywhere_are_those_of_the_angles() -> None:
+    """Half a period after a start between the turning points, the waves are not at rest."""
+    motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.7, "psidot0": 0.4}))
+    angles = motion.angles(float(motion.T_nutation) / 2)
+    assert motion.phi_half_deg == pytest.approx(math.degrees(angles.phi), rel=1e-14)
+    assert motion.psi_half_deg == pytest.approx(math.degrees(angles.psi), rel=1e-14)
+    assert motion.psi_half_deg != pytest.approx(motion.psi_period_deg / 2, rel=1e-3)
+
+
+def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
+    """To the digits printed, where the print is right; the others are the true ones."""
+    header, cells = lagtop("solve", "--derivation", "--format", "csv").stdout.splitlines()
+    assert header.split(",") == chain()
+    steps, values = [ar.mpf(cell) for cell in cells.split(",")], true_values()
+    assert len(steps) == len(FIGURES) == 30
+    right = 0
+    for figure in FIGURES:
+        with ar.workdps(40):
+            true = round_alike(figure.true(values), figure.text)
+        assert true in {round_alike(step, figure.text) for step in steps}, figure.name
+        right += true == figure.text
+    assert right == 16
+
+
+def test_the_derivation_is_a_table_of_every_step(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--derivation", "--rad").stdout
+    assert max(map(len, shown.splitlines())) <= 80
+    assert set(map(str, solve(Top()).record(radians=True, keys=chain(radians=True)).values())) <= (
+        set(shown.split())
+    )
+    lines = shown.splitlines()
+    order = [next(i for i, line in enumerate(lines) if name in line) for name in ("2 u3", "(7,2)")]
+    assert order == sorted(order)
+
+
+@pytest.mark.parametrize("options", ["--g 0", "--theta0 0", "--thetadot0 1", "--psidot0 2"])
+def test_what_has_no_derivation_says_so(lagtop: Lagtop, options: str) -> None:
+    found = lagtop("solve", "--derivation", *options.split())
+    assert (found.exit_code, found.stdout) == (1, "")
+    assert found.stderr.startswith("Error: --derivation must be of a top that nutates after")
+    assert found.stderr.count("\n") == 1
+
+
+def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:
+    motion = solve(Top())
+    assert not set(motion.record()) & set(requested_keys())
+    assert motion.record(keys=["Lz", "a"]) == {"a": motion.a, "Lz": motion.Lz}
+    assert motion.record(keys=["psi_half_rad"], radians=True) == {
+        "psi_half_rad": pytest.approx(1.715080720900244, rel=1e-15)
+    }
+    assert lagtop("solve", "--get", "Lz").stdout == f"{motion.Lz}\n"
+    digits = lagtop("solve", "--get", "phi_half_rad", "--rad", "--digits", "25")
+    assert digits.exit_code == 0
+    assert set(requested_keys()) <= set(dir(motion))
+
+
+def test_none_where_there_is_none(lagtop: Lagtop) -> None:
+    sleeping, pendulum = solve(Top(theta0_deg=0)), solve(Top(r0=0))
+    assert sleeping.Lz == 872900.0
+    assert sleeping.u2_criterion is sleeping.phi_half_deg is sleeping.roots_sum is None
+    assert pendulum.phi_half_deg is pendulum.spin_rate_upper is None  # the lower pole
+    assert pendulum.phi_period_deg == 180.0
+    found = lagtop("solve", "--theta0", "0", "--get", "roots_sum")
+    assert (found.exit_code, found.stdout) == (1, "")
+
+
+def test_sweeps_take_them_from_solve(lagtop: Lagtop) -> None:
+    keys = ["r0", "Lz", "T_nutation", "psi_half_deg", "error"]
+    columns = sweep(r0=[20.0, 0.0, np.nan, -50.0], theta0_deg=30.0, keys=keys)
+    for i, r0 in ((0, 20.0), (1, 0.0), (3, -50.0)):
+        motion = solve(Top(r0=r0))
+        assert columns["Lz"][i] == motion.Lz
+        assert columns["psi_half_deg"][i] == motion.psi_half_deg or r0 == 0
+    assert np.isnan(columns["psi_half_deg"][1])
+    assert columns["error"][2].startswith("r0 must be")
+    assert np.isnan(columns["Lz"][2])
+    assert lagtop("sweep", "--r0", "20,30", "--keys", "Lz").stdout.count("\n") == 3
+    with pytest.raises(LagtopError, match=r"keys must be among .*Lz.*, got 'L_z'"):
+        sweep(r0=[1.0], keys=["L_z"])
+
+
+def test_the_help_lists_them(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--help").stdout
+    assert all(f" {key} " in shown for key in requested_keys())
+    assert [*record_keys(), *requested_keys()] == all_keys()
+
+
+def test_a_record_loads_none_of_their_modules() -> None:
+    code = (
+        "import sys; from lagrange_cli import Top, solve; solve(Top()).record();"
+        "print([x for x in sys.modules if x.endswith(('requested', 'quarters', 'example'))])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
+    assert done.stdout == "[]\n"
