@@ -33,6 +33,7 @@ COLUMNS: dict[str, Column] = {
     "p": Column(["p"], "p", "angular velocity about the body's x axis", True),
     "q": Column(["q"], "q", "angular velocity about the body's y axis", True),
     "r": Column(["r"], "r", "angular velocity about the figure axis"),
+    "moment": Column(["moment"], "moment", "moment of the weight about the line of nodes"),
     "axis": Column(
         ["axis_x", "axis_y", "axis_z"], "axis", "figure axis in space: axis_x, axis_y, axis_z"
     ),

@@ -179,6 +179,13 @@ class Sample:
         """Return the angular velocity about the body's y axis (4,1)."""
         return [self.body_rates[1]]
 
+    def moment(self) -> list[Array]:
+        """Return mgs sin(theta), the moment s k' x (-mg k) of section 4 a, which has no other part.
+
+        The line of nodes lies at psi in the horizontal plane.
+        """
+        return [self.constants.torque * self.sine]
+
     def axis(self) -> list[Array]:
         """Return the figure axis in space; the line of nodes lies along x at psi = 0."""
         psi = self.attitude.psi(wrap=True)

@@ -341,7 +341,9 @@ def test_axis_and_quaternion_are_one_attitude() -> None:
 )
 def test_every_column_in_every_regime_is_a_number(start: dict[str, float]) -> None:
     motion = solve(Top(**(UNIT | start)))
-    names = "t theta phi psi dphi dpsi u thetadot phidot psidot p q r axis quaternion energy Lz"
+    names = (
+        "t theta phi psi dphi dpsi u thetadot phidot psidot p q r moment axis quaternion energy Lz"
+    )
     values = columns(motion, names, np.linspace(-5, 5, 101))
     assert np.isfinite(values).all()
     assert np.ptp(values[-2]) < 2e-14
