@@ -17,6 +17,8 @@ from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
     RANGE,
+    Parsed,
+    complain,
     digits_option,
     exclude,
     listed,
@@ -28,8 +30,25 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.function_table import Request
     from ..elliptic.modulus_input import ModulusInput
+    from ..inputs.multiples import Multiple, Multiples
 
 MOST_TERMS = 10_000
+
+
+def _parse_multiple(text: str) -> Multiple:
+    from ..inputs.multiples import parse_multiple
+
+    return parse_multiple(text)
+
+
+def _parse_multiples(text: str) -> Multiples:
+    from ..inputs.multiples import parse_multiples
+
+    return parse_multiples(text)
+
+
+MULTIPLE = Parsed("number", _parse_multiple)
+MULTIPLES = Parsed("range", _parse_multiples)
 
 
 @click.command(
@@ -41,6 +60,7 @@ MOST_TERMS = 10_000
         lagtop jacobi --modular-angle 45 --u-range 0:10:101 --format csv -o sn.csv
         lagtop jacobi --k 0.8 --u 0.3 --theta --pi --param 0.7i
         lagtop jacobi --nome 0.1 --u 1 --digits 40
+        lagtop jacobi --k 0.8 --u-range 0:4K:5
         lagtop jacobi --modular-angle 45 --phi 30 --phi 60
         lagtop jacobi --k 0.99 --u 1 --series 10
     """,
@@ -49,8 +69,13 @@ MOST_TERMS = 10_000
 @click.option("--k-prime", type=NUMBER, help="Its complement, for k close to 1.")
 @click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")
 @click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
-@click.option("--u", "single", type=NUMBER, multiple=True, help="Argument; may be repeated.")
-@click.option("--u-range", "grid", type=RANGE, help="Arguments, as [log:]start:stop:count.")
+@click.option(
+    *("--u", "single"),
+    type=MULTIPLE,
+    multiple=True,
+    help="Argument, as 0.5 or, in units of K, K, -2.5K, K/2, 3K/4; may be repeated.",
+)
+@click.option("--u-range", "grid", type=MULTIPLES, help="Arguments, as [log:]start:stop:count.")
 @click.option("--phi", "amplitudes", type=NUMBER, multiple=True, help="F and E of it instead.")
 @click.option("--phi-range", "fan", type=RANGE, help="Amplitudes, as [log:]start:stop:count.")
 @click.option("--theta", is_flag=True, help="Theta functions of u too.")
@@ -69,8 +94,8 @@ def command(
     k_prime: Fraction | None,
     angle: Fraction | None,
     q: Fraction | None,
-    single: tuple[Fraction, ...],
-    grid: Points | None,
+    single: tuple[Multiple, ...],
+    grid: Multiples | None,
     amplitudes: tuple[Fraction, ...],
     fan: Points | None,
     theta: bool,
@@ -104,7 +129,8 @@ def command(
     modulus = ModulusInput(*chosen[0], radians=rad)
     flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
     families = tuple(name for name, wanted in flags.items() if wanted)
-    arguments, angles = listed("u", single, grid), listed("phi", amplitudes, fan)
+    arguments, in_quarters = _arguments(single, grid)
+    angles = listed("phi", amplitudes, fan)
     if angles:
         others = {"--u": arguments, "--series": terms, f"--{(*families, '')[0]}": families or None}
         for name, value in {**others, "--param": param}.items():
@@ -114,15 +140,26 @@ def command(
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
         exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
-        _write_series(modulus, arguments, terms, fmt, output)
+        _write_series(modulus, arguments, in_quarters, terms, (fmt, output))
         return
     if arguments is None:
         if families:
             raise LagtopError(f"--{families[0]} needs --u or --u-range")
         write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
         return
-    request = Request(modulus, families, *_parameter(param, families), radians=rad)
+    parameter, imaginary = _parameter(param, families)
+    request = Request(modulus, families, parameter, imaginary, rad, in_quarters)
     _write_rows(arguments, request, digits, fmt, output)
+
+
+def _arguments(single: tuple[Multiple, ...], grid: Multiples | None) -> tuple[Points | None, bool]:
+    """Return the arguments, if any, and whether they are factors of K."""
+    from ..inputs.multiples import listed_multiples
+
+    exclude({"--u": single or None, "--u-range": grid})
+    if not (single or grid):
+        return None, False
+    return grid or listed_multiples(single)
 
 
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:
@@ -171,14 +208,29 @@ def _write_integrals(
 
 
 def _write_series(
-    modulus: ModulusInput, arguments: Points | None, terms: int, fmt: str, output: str
+    modulus: ModulusInput,
+    arguments: Points | None,
+    in_quarters: bool,
+    terms: int,
+    destination: tuple[str, str],
 ) -> None:
-    from ..elliptic.series_table import series_rows
+    """Write the sums, and on standard error how many terms are enough."""
+    from ..elliptic.series_table import TOLERANCE, series_table
 
     if not 1 <= terms <= MOST_TERMS:
         raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")
     if arguments is not None and arguments.count != 1:
         raise LagtopError(f"--series takes one --u, got {arguments.count}")
     u = None if arguments is None else next(arguments.decimals())
-    header, table = series_rows(modulus, u, terms)
-    write_table(header, [table], fmt, output)
+    table = series_table(modulus, u, terms, in_quarters=in_quarters)
+    write_table(
+        table.header, with_progress(([row] for row in table.rows), terms, 1000), *destination
+    )
+    needed = ", ".join(f"{name} {_count_text(n)}" for name, n in table.needed.items())
+    complain(f"Terms whose error is proved to be below {TOLERANCE}: {needed}")
+
+
+def _count_text(count: int) -> str:
+    """Return a whole number; one that is very long is rounded."""
+    digits = str(count)
+    return digits if len(digits) < 10 else f"{digits[0]}.{digits[1:3]}e+{len(digits) - 1}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache, partial
@@ -11,15 +10,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.correct_rounding import TooFewDigitsError
+from ..arithmetic.double_double import pair, two_product
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..errors import LagtopError
 from .complete import complete_k
-from .jacobi import jacobi
+from .jacobi import jacobi, jacobi_at
+from .known_values import known_values, put_exact_values
 from .modulus import Modulus
 from .modulus_input import ModulusInput
-from .periods import Complex, Periods
+from .periods import Complex, Periods, of_quarters
 from .proved_digits import require_digits, settled_texts
 from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
 from .third_kind import ThirdKind, check_near, check_parameter, third_kind
@@ -32,13 +34,6 @@ if TYPE_CHECKING:
 THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
 """The functions of one argument, and those of an argument and a parameter."""
 
-VANISH = {
-    "u": "u am_deg am_rad sn theta11 zeta01 zeta00 zeta10 omega01 omega00 pi01 pi00",
-    "param": "omega01 omega00 omega11 pi01 pi00",
-    "k": "theta11 theta10 zeta01 zeta00 omega01 omega00 pi01 pi00",
-}
-"""The columns that are exactly 0 where u, the parameter or k is; no other is, at rational u."""
-
 
 class Request(NamedTuple):
     """What to evaluate: am, sn, cn, dn and these families, Omega and Pi with their parameter."""
@@ -48,6 +43,8 @@ class Request(NamedTuple):
     parameter: Fraction = Fraction(0)
     imaginary: bool = False
     radians: bool = False
+    in_quarters: bool = False
+    """Whether the arguments are factors of K."""
 
     def parameter_in(self, ar: FunctionArithmetic) -> Complex:
         """Return the parameter in an mpmath context, rounded once."""
@@ -71,11 +68,14 @@ class Functions(NamedTuple):
     series: ThetaSeries | None
     """None where no family but am, sn, cn, dn is asked for."""
     third: dict[str, ThirdKind]
+    K: Value
+    """The quarter period; a pair in doubles."""
 
     def rounded(self, modulus: Modulus) -> Functions:
         """Return them in doubles, beside the modulus in doubles."""
         series = self.series and rounded(self.series)
-        return Functions(modulus, series, {ij: kind.rounded() for ij, kind in self.third.items()})
+        third = {ij: kind.rounded() for ij, kind in self.third.items()}
+        return Functions(modulus, series, third, pair(self.K))
 
 
 def functions_in(ar: ManyDigits, request: Request) -> Functions:
@@ -90,7 +90,9 @@ def functions_in(ar: ManyDigits, request: Request) -> Functions:
         v = request.parameter_in(ar)
         check_parameter(ar, v, exact)
         third = {ij: third_kind(ar, ij, v, exact) for ij in THIRD}
-    return Functions(exact, series, third)
+    return Functions(
+        exact, series, third, complete_k(ar, exact.k_prime) if exact.k_prime else ar.inf
+    )
 
 
 def values(
@@ -102,19 +104,35 @@ def values(
 ) -> dict[str, Value]:
     """Return the columns at u, in numpy or an mpmath context; those `known` are not computed.
 
-    Omega and Pi of an imaginary parameter are given by their imaginary parts.
+    u is a factor of K where the request says so.  Omega and Pi of an imaginary parameter are given
+    by their imaginary parts.
     """
     unit = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
-    am, sn, cn, dn = jacobi(ar, u, functions.modulus)
+    if request.in_quarters:
+        x = of_quarters(ar, u)
+        am, sn, cn, dn = jacobi_at(ar, x, functions.modulus)
+        u = times_quarter(ar, u, functions.K)
+    else:
+        am, sn, cn, dn = jacobi(ar, u, functions.modulus)
     columns = {"u": u, f"am_{unit[0]}": am * unit[1], "sn": sn, "cn": cn, "dn": dn}
+    columns |= {name: ar.convert(known[name]) for name in columns if name in known}
     if not functions.series:
         return columns
-    x = in_periods(ar, u, functions.series)
-    if not ar.is_array and u and not x.rest:
-        raise TooFewDigitsError
+    if not request.in_quarters:
+        x = in_periods(ar, u, functions.series)
+        if not ar.is_array and u and not x.rest:
+            raise TooFewDigitsError
     for name, compute in _families(ar, x, functions, functions.series, request):
         columns[name] = ar.convert(known[name]) if name in known else compute()
     return columns
+
+
+def times_quarter(ar: FunctionArithmetic, factor: Value, K: Value) -> Value:
+    """Return a multiple of K, which is a pair for arrays."""
+    if not ar.is_array:
+        return factor * K
+    product, error = two_product(factor, K.high)
+    return product + (error + factor * K.low)
 
 
 def _families(
@@ -143,8 +161,14 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
     request = request.in_doubles()
     in_doubles = request.modulus.in_doubles()
     has_periods = in_doubles.k_prime > 0
-    limit = MAX_PERIODS * 2 * complete_k(DOUBLES, in_doubles.k_prime) if has_periods else MAX_TIME
-    check_reach("u", arguments, min(limit, MAX_TIME))
+    if request.in_quarters:
+        check_quarters(request)
+        check_reach("u in units of K", arguments, 2 * MAX_PERIODS)
+    else:
+        limit = (
+            MAX_PERIODS * 2 * complete_k(DOUBLES, in_doubles.k_prime) if has_periods else MAX_TIME
+        )
+        check_reach("u", arguments, min(limit, MAX_TIME))
     parameter = float(request.parameter)
     if request.has_parameter and has_periods and not request.imaginary:
         check_near(parameter, in_doubles)
@@ -153,7 +177,8 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
     def columns(u: Array) -> dict[str, Array]:
         with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
             table = values(ARRAYS, u, functions, request)
-        poles = abs(u) == abs(parameter)
+        put_exact_values(table, u, request)
+        poles = abs(table["u"]) == abs(parameter)
         if request.has_parameter and parameter and not request.imaginary:
             for name in {"omega11", "pi11"} & set(table):
                 table[name] = np.where(poles, np.nan, table[name])
@@ -175,6 +200,8 @@ def digit_rows(
 
     Raises LagtopError for a parameter out of range, before any row.
     """
+    if request.in_quarters:
+        check_quarters(request)
 
     @cache
     def at_precision(dps: int) -> tuple[ManyDigits, Functions]:
@@ -196,28 +223,8 @@ def digit_rows(
     return header, (list(at(u).values()) for u in arguments.decimals())
 
 
-def known_values(u: Fraction, request: Request) -> dict[str, float]:
-    """Return the columns that are exactly 0 at u, and not a number where they have a pole.
-
-    K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
-    rational places to think of.
-    """
-    name, value, _ = request.modulus
-    suffix = "_imag" if request.imaginary else ""
-    known: dict[str, float] = {}
-
-    def add(names: str, x: float) -> None:
-        for column in names.split():
-            known[column + suffix * column.startswith(("omega", "pi"))] = x
-
-    if value == (1 if name == "k_prime" else 0):
-        add(VANISH["k"], 0)
-    if u == 0:
-        add(VANISH["u"] + ("" if request.imaginary else " omega11 pi11"), 0)
-        add("zeta11", math.nan)
-    if request.parameter == 0:
-        add(VANISH["param"], 0)
-        add("pi11", math.nan)
-    elif abs(u) == abs(request.parameter) and not request.imaginary:
-        add("omega11 pi11", math.nan)
-    return known
+def check_quarters(request: Request) -> None:
+    """Raise LagtopError where K is infinite, so that no argument is a multiple of it."""
+    request.modulus.check()
+    if "k_prime" in request.modulus.zeros():
+        raise LagtopError("u must be a number, without K, for k = 1, where K is infinite", "u")

@@ -19,6 +19,7 @@ from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.types import Array
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
+from .periods import Periods, whole_and_rest
 from .theta import theta
 
 _LARGEST_ARGUMENT = 350.0
@@ -50,11 +51,11 @@ def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
     |u|/K costs.
     """
     if not ar.is_array:
-        return _by_theta(ar, u, modulus)
+        return _in_many_digits(ar, u, modulus)
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
         series = _series(modulus)
-        parts = [_evaluate(u.ravel()[block], series) for block in blocks(u.size)]
+        parts = [_of_arguments(u.ravel()[block], series) for block in blocks(u.size)]
         return Jacobi(*(np.concatenate(f).reshape(u.shape) for f in zip(*parts, strict=True)))
     u, *moduli = np.broadcast_arrays(u, *modulus)
     flat = [np.ravel(part) for part in (u, *moduli)]
@@ -64,8 +65,21 @@ def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
         for block in blocks(family.size):
             index = family[block]
             series = _series(Modulus(*(part[index] for part in flat[1:])))
-            results[:, index] = _evaluate(flat[0][index], series)
+            results[:, index] = _of_arguments(flat[0][index], series)
     return Jacobi(*results.reshape(4, *u.shape))
+
+
+@in_arithmetic
+def jacobi_at(ar: FunctionArithmetic, x: Periods, modulus: Modulus) -> Jacobi:
+    """Return the functions at x = u/2K, given with all its digits, for one modulus k < 1.
+
+    At whole quarters of arrays sn, cn, dn are 0, 1, -1 and k' exactly, as in Aksenov's table 2.
+    """
+    if ar.is_array:
+        return _evaluate(x.turns, x.rest, 0.0, _series(modulus))
+    if not modulus.k:
+        return _in_many_digits(ar, ar.pi * (x.turns + x.rest), modulus)
+    return _by_theta(ar, x, modulus)
 
 
 class _Series(NamedTuple):
@@ -128,15 +142,19 @@ def _hyperbolic(q: Value) -> tuple[Polynomial, Polynomial]:
     return above, tuple(scale * c for c in below)
 
 
-def _evaluate(u: Array, series: _Series) -> Jacobi:
+def _of_arguments(u: Array, series: _Series) -> Jacobi:
     """Return the functions of one block of arguments."""
+    return _evaluate(*reduce_phase(u, series.rate), u, series)
+
+
+def _evaluate(halves: Array, since: Array, u: Value, series: _Series) -> Jacobi:
+    """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0."""
     k_prime = series.k_prime
-    halves, since = reduce_phase(u, series.rate)
     far = abs(since) > 0.25
     side = np.copysign(1.0, since)
     y = np.where(far, 0.5 * side - since, since) * series.stretch
     if np.any(k_prime == 0):  # without a period
-        endless = np.broadcast_to(k_prime == 0, u.shape)
+        endless = np.broadcast_to(k_prime == 0, halves.shape)
         halves, far = np.where(endless, 0.0, halves), far & ~endless
         y = np.where(endless, u, y)
     above, below = _tangent(y, series)
@@ -166,25 +184,27 @@ def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
     return f * polynomial(series.above, x), polynomial(series.below, x)
 
 
-def _by_theta(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
-    """Return the functions of real or complex u in many digits, by quotients of theta functions."""
+def _in_many_digits(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
+    """Return the functions of real or complex u in many digits."""
     u = ar.convert(u)
     if not modulus.k_prime:
         am = 2 * ar.atan(ar.tanh(u / 2))
         return Jacobi(am, ar.tanh(u), 1 / ar.cosh(u), 1 / ar.cosh(u))
     if not modulus.k:
         return Jacobi(u, ar.sin(u), ar.cos(u), 1 + 0 * u)
-    K = complete_k(ar, modulus.k_prime)
-    halves = ar.nint(ar.re(u) / (2 * K))
-    x = u / (2 * K) - halves
-    zero = ar.convert(0)
-    sine, cosine, delta, below = (theta(ar, ij, x, modulus) for ij in ("11", "10", "00", "01"))
+    return _by_theta(ar, whole_and_rest(ar, u / (2 * complete_k(ar, modulus.k_prime))), modulus)
+
+
+def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus) -> Jacobi:
+    """Return the functions at x = u/2K by quotients of theta functions, for 0 < k < 1."""
+    halves, zero = x.turns, ar.convert(0)
+    sine, cosine, delta, below = (theta(ar, ij, x.rest, modulus) for ij in ("11", "10", "00", "01"))
     at_2, at_3, at_4 = (theta(ar, ij, zero, modulus) for ij in ("10", "00", "01"))
     sn, cn, dn = (
         at_3 / at_2 * sine / below,
         at_4 / at_2 * cosine / below,
         at_4 / at_3 * delta / below,
     )
-    am = ar.atan2(sn, cn) if ar.im(u) == 0 else -ar.mpc(0, 1) * ar.log(cn + ar.mpc(0, 1) * sn)
+    am = ar.atan2(sn, cn) if ar.im(x.rest) == 0 else -ar.mpc(0, 1) * ar.log(cn + ar.mpc(0, 1) * sn)
     sign = -1 if halves % 2 else 1
     return Jacobi(halves * ar.pi + am, sign * sn, sign * cn, dn)

@@ -2,30 +2,37 @@
 
 For 0 < k < 1 and real u, or complex u with |Im u| < K'; `ar` is an mpmath context.  They show how a
 series converges; `jacobi` and `complete_k` are the way to compute.
+
+The bounds hold for real u.  What n terms leave out has terms smaller in size than those of a
+geometric series, whose sum is the bound: |sin| and |cos| are at most 1, and each weight is at most
+q or k^2 times the one before, but for a factor that falls or is replaced by its greatest value.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import accumulate, count
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import complete_k, nome
 from .modulus import Modulus
 
+Bound = Callable[[int], Value]
+"""A bound of the error after n terms."""
+
 
 def sn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
     """Yield sums of sn u = 2 pi/(k K) sum q^(n-1/2)/(1 - q^(2n-1)) sin (2n-1) pi u/2K  (3.1.4)."""
     q, angle, scale = _parts(ar, u, modulus)
-    odd = (2 * n - 1 for n in count(1))
-    return accumulate(scale * ar.sqrt(q) ** n / (1 - q**n) * ar.sin(n * angle) for n in odd)
+    odd, root = (2 * n - 1 for n in count(1)), ar.sqrt(q)
+    return accumulate(scale * root**n / (1 - q**n) * ar.sin(n * angle) for n in odd)
 
 
 def cn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
     """Yield sums of cn u = 2 pi/(k K) sum q^(n-1/2)/(1 + q^(2n-1)) cos (2n-1) pi u/2K  (3.1.5)."""
     q, angle, scale = _parts(ar, u, modulus)
-    odd = (2 * n - 1 for n in count(1))
-    return accumulate(scale * ar.sqrt(q) ** n / (1 + q**n) * ar.cos(n * angle) for n in odd)
+    odd, root = (2 * n - 1 for n in count(1)), ar.sqrt(q)
+    return accumulate(scale * root**n / (1 + q**n) * ar.cos(n * angle) for n in odd)
 
 
 def am_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
@@ -41,6 +48,49 @@ def k_sums(ar: FunctionArithmetic, modulus: Modulus) -> Iterator[Value]:
     factors = (((2 * n - 1) / ar.convert(2 * n)) ** 2 * m for n in count(1))
     terms = accumulate(factors, lambda term, factor: term * factor, initial=ar.pi / 2)
     return accumulate(terms)
+
+
+def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+    """Return 2 pi/(k K) q^(n+1/2)/((1 - q)(1 - q^(2n+1))) of n, above the error of (3.1.4).
+
+    Beyond the n-th term 1/(1 - q^(2j-1)) <= 1/(1 - q^(2n+1)), and the sum of q^(j-1/2) over j > n
+    is q^(n+1/2)/(1 - q).
+    """
+    q, _, scale = _parts(ar, ar.convert(0), modulus)
+    first = scale * ar.sqrt(q) / (1 - q)
+    return lambda n: first * q**n / (1 - q ** (2 * n + 1))
+
+
+def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+    """Return 2 pi/(k K) q^(n+1/2)/(1 - q) of n, above the error of n terms of (3.1.5).
+
+    There 1/(1 + q^(2j-1)) < 1, and the rest is as in `sn_bound`.
+    """
+    q, _, scale = _parts(ar, ar.convert(0), modulus)
+    first = scale * ar.sqrt(q) / (1 - q)
+    return lambda n: first * q**n
+
+
+def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+    """Return 2 q^(n+1)/((n+1)(1 - q)) of n, above the error in radians of n terms of (3.1.7).
+
+    There 1/(j (1 + q^2j)) < 1/(n+1) for j > n, and the sum of q^j is q^(n+1)/(1 - q).
+    """
+    q, _, _ = _parts(ar, ar.convert(0), modulus)
+    first = 2 * q / (1 - q)
+    return lambda n: first * q**n / (n + 1)
+
+
+def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+    """Return k^2n/((2n + 1/2) k'^2) of n, or K if that is less: above the error of (3.1.8).
+
+    With c_j = 1 3 ... (2j-1)/(2 4 ... 2j): c_j^2 (j + 1/4) grows with j, by the factor
+    (16j^3 + 36j^2 + 24j + 5)/(16j^3 + 36j^2 + 24j + 4), to 1/pi (Wallis's product).  So the terms
+    pi/2 c_j^2 k^2j, j >= n, are below k^2j/(2n + 1/2), and the sum of k^2j is k^2n/k'^2.
+    """
+    complement = modulus.k_prime * modulus.k_prime
+    half, fall, K = ar.convert(0.5), ar.log1p(-complement), complete_k(ar, modulus.k_prime)
+    return lambda n: min(ar.exp(n * fall) / ((2 * n + half) * complement), K)
 
 
 def _parts(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> tuple[Value, Value, Value]:

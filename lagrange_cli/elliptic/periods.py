@@ -63,6 +63,11 @@ def whole_and_rest(ar: FunctionArithmetic, x: Complex) -> Periods:
     return Periods(turns, x - turns)
 
 
+def of_quarters(ar: FunctionArithmetic, factor: Value) -> Periods:
+    """Return a real multiple of K in periods 2K; that of an array is exact up to 2^52 K."""
+    return whole_and_rest(ar, factor / 2)
+
+
 def reduced(u: Array, rate: Rate) -> Periods:
     """Return real arguments in periods, for |u| up to 1e290."""
     u, high, middle, low = np.broadcast_arrays(np.asarray(u, dtype=float), *rate)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import islice
+from typing import NamedTuple
 
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
@@ -13,45 +14,107 @@ from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import jacobi
+from .modulus import Modulus
 from .modulus_input import ModulusInput
-from .nome_series import am_sums, cn_sums, k_sums, sn_sums
+from .nome_series import (
+    Bound,
+    am_bound,
+    am_sums,
+    cn_bound,
+    cn_sums,
+    k_bound,
+    k_sums,
+    sn_bound,
+    sn_sums,
+)
+
+TOLERANCE = "1e-16"
+"""The error, in the unit of the column, that the needed terms are counted for."""
 
 
-def series_rows(
-    modulus_input: ModulusInput, u: Fraction | None, terms: int
-) -> tuple[list[str], list[list[str]]]:
-    """Return the header and partial sums 1 to `terms`, each with its error.
+_DIGITS = 400
+"""Enough for every error that a double can hold."""
 
-    They are (3.1.8) for K and, at u, (3.1.7), (3.1.4), (3.1.5) for am, sn, cn.  Raises LagtopError
-    for k = 0 and k = 1, where the series are limits, and for u beyond 2^50 periods.
+
+class _Series(NamedTuple):
+    """The partial sums of a series, what they tend to, and a bound of the error after n terms."""
+
+    sums: Iterator[Value]
+    exact: Value
+    bound: Bound
+
+
+class SeriesTable(NamedTuple):
+    """Partial sums with their errors, and the bounds of the errors."""
+
+    header: list[str]
+    rows: Iterator[list[str]]
+    needed: dict[str, int]
+    """How many terms make the bound of each column at most 1e-16."""
+
+
+def series_table(
+    modulus_input: ModulusInput, u: Fraction | None, terms: int, *, in_quarters: bool = False
+) -> SeriesTable:
+    """Return partial sums 1 to `terms`, each with its error and a bound that is proved.
+
+    They are (3.1.8) for K and, at u (a factor of K if `in_quarters`), (3.1.7), (3.1.4), (3.1.5) for
+    am, sn, cn.  Raises LagtopError for k = 0 and k = 1, where the series are limits, and for u
+    beyond 2^50 periods.
     """
-    ar = ManyDigits()
-    exact = modulus_input.in_digits(ar)
-    if not (exact.k and exact.k_prime):
-        raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(exact.k)}")
-    sums: dict[str, tuple[Iterator[Value], Value]] = {
-        "K": (k_sums(ar, exact), complete_k(ar, exact.k_prime))
-    }
+    ar = ManyDigits(_DIGITS)
+    modulus = modulus_input.in_digits(ar)
+    if not (modulus.k and modulus.k_prime):
+        raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(modulus.k)}")
+    K = complete_k(ar, modulus.k_prime)
+    columns = {"K": _Series(k_sums(ar, modulus), K, k_bound(ar, modulus))}
     if u is not None:
-        limit = MAX_PERIODS * 2 * complete_k(ar, exact.k_prime)
-        if abs(u) > limit:
-            reach = ar.nstr(limit, 3)
-            raise LagtopError(f"u must be within 2^50 periods = {reach} of 0, got {float(u)}", "u")
-        x, unit = ar.convert(u), 1 if modulus_input.radians else 180 / ar.pi
-        am, sn, cn, _ = jacobi(ar, x, exact)
-        from_first_term = islice(am_sums(ar, x, exact), 1, None)
-        sums["am_rad" if modulus_input.radians else "am_deg"] = (
-            (unit * part for part in from_first_term),
-            unit * am,
-        )
-        sums |= {"sn": (sn_sums(ar, x, exact), sn), "cn": (cn_sums(ar, x, exact), cn)}
-    header = ["terms", *(name for key in sums for name in (key, f"{key}_error"))]
-    sums_exactly = [value for _, value in sums.values()]
-    table = []
-    for n, row in enumerate(zip(*(parts for parts, _ in sums.values()), strict=False), 1):
-        pairs = zip(row, sums_exactly, strict=True)
-        cells = (x for part, true in pairs for x in (part, abs(part - true)))
-        table.append([str(n), *(double_text(float(x)) for x in cells)])
-        if n == terms:
-            break
-    return header, table
+        argument = ar.convert(u) * (K if in_quarters else 1)
+        limit = MAX_PERIODS * 2 * K
+        if abs(argument) > limit:
+            reach, got = ar.nstr(limit, 3), float(argument)
+            raise LagtopError(f"u must be within 2^50 periods = {reach} of 0, got {got}", "u")
+        columns |= _at(ar, argument, modulus, radians=modulus_input.radians)
+    tolerance = ar.mpf(TOLERANCE)
+    return SeriesTable(
+        ["terms", *(name for key in columns for name in (key, f"{key}_error", f"{key}_bound"))],
+        _rows(list(columns.values()), terms),
+        {name: terms_needed(series.bound, tolerance) for name, series in columns.items()},
+    )
+
+
+def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[str, _Series]:
+    """Return the series at u."""
+    am, sn, cn, _ = jacobi(ar, u, modulus)
+    unit, bound = 1 if radians else 180 / ar.pi, am_bound(ar, modulus)
+    from_first_term = (unit * part for part in islice(am_sums(ar, u, modulus), 1, None))
+    return {
+        "am_rad" if radians else "am_deg": _Series(
+            from_first_term, unit * am, lambda n: unit * bound(n)
+        ),
+        "sn": _Series(sn_sums(ar, u, modulus), sn, sn_bound(ar, modulus)),
+        "cn": _Series(cn_sums(ar, u, modulus), cn, cn_bound(ar, modulus)),
+    }
+
+
+def _rows(columns: list[_Series], terms: int) -> Iterator[list[str]]:
+    """Yield the rows as texts."""
+    for n, sums in enumerate(zip(*(islice(x.sums, terms) for x in columns), strict=True), 1):
+        cells = [
+            x
+            for part, series in zip(sums, columns, strict=True)
+            for x in (part, abs(part - series.exact), series.bound(n))
+        ]
+        yield [str(n), *(double_text(float(x) + 0.0) for x in cells)]
+
+
+def terms_needed(bound: Bound, tolerance: Value) -> int:
+    """Return the least number of terms from which a falling bound is at most the tolerance."""
+    enough = 1  # Python's integers have no end, and k may be as close to 1 as it likes
+    while bound(enough) > tolerance:
+        enough *= 2
+    few = enough // 2
+    while enough - few > 1:
+        middle = (few + enough) // 2
+        few, enough = (middle, enough) if bound(middle) > tolerance else (few, middle)
+    return enough

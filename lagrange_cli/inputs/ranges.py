@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,16 +16,16 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
 
-def parse_range(text: str) -> Points:
+def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
     """Return the points of `start:stop:count` or, with equal ratios, `log:start:stop:count`.
 
-    Raises LagtopError for anything else, for a count of 1 between different ends, and for a
-    logarithmic range over 0.
+    `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
+    different ends, and for a logarithmic range over 0.
     """
     parts = text.removeprefix("log:").split(":")
     if len(parts) != 3:
         raise LagtopError(f"must be a range [log:]start:stop:count, got {text!r}")
-    first, last, exact_count = map(parse_number, parts)
+    first, last, exact_count = parse(parts[0]), parse(parts[1]), parse_number(parts[2])
     if exact_count.denominator != 1 or not 1 <= exact_count <= MOST_POINTS:
         raise LagtopError(f"must have a whole count of 1 to 1e9 in its range, got {text!r}")
     count = int(exact_count)

@@ -1,0 +1,91 @@
+"""The nome series converge for every real u and k < 1, as fast as their bounds say."""
+
+from __future__ import annotations
+
+import json
+from itertools import islice
+from typing import Any
+
+import mpmath
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli.arithmetic.many_digits import ManyDigits
+from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.elliptic.nome_series import (
+    am_bound,
+    am_sums,
+    cn_bound,
+    cn_sums,
+    k_bound,
+    k_sums,
+    sn_bound,
+    sn_sums,
+)
+from lagrange_cli.elliptic.series_table import terms_needed
+
+ar = ManyDigits(60)
+MODULI = ["1e-8", "0.03", "0.5", "0.9", "0.99", "0.9999"]
+ARGUMENTS = ["-2.3", "0.4", "1.7", "11", "1e6"]
+
+
+def exact(name: str, u: Any, m: Any) -> Any:
+    """Return a function by mpmath, from theta functions of its own or by R_F."""
+    with mpmath.workdps(80):
+        if name == "K":
+            return mpmath.ellipk(m)
+        sn, cn = (mpmath.ellipfun(f, u, m=m) for f in ("sn", "cn"))
+        if name != "am":
+            return sn if name == "sn" else cn
+        turns = mpmath.nint(u / (2 * mpmath.ellipk(m)))
+        sign = -1 if turns % 2 else 1
+        return turns * mpmath.pi + mpmath.atan2(sign * sn, sign * cn)
+
+
+@pytest.mark.parametrize("k", MODULI)
+def test_errors_are_below_their_bounds(k: str) -> None:
+    """Bounds are also worth something: some error is over a sixth of its bound, of K a third."""
+    given, m = modulus(ar, k=ar.mpf(k)), mpmath.mpf(k)
+    with mpmath.workdps(80):
+        m = mpmath.mpf(k) ** 2
+    series = {"sn": (sn_sums, sn_bound), "cn": (cn_sums, cn_bound), "am": (am_sums, am_bound)}
+    for name, (sums, bound_of) in series.items():
+        bound, shares = bound_of(ar, given), []
+        for u in map(ar.mpf, ARGUMENTS):
+            true, parts = exact(name, u, m), sums(ar, u, given)
+            for n, part in enumerate(islice(parts, name == "am", 30), 1):
+                if bound(n) > 1e-40:
+                    shares.append(abs(part - true) / bound(n))
+        assert shares
+        assert 1 / 6 < max(shares) <= 1, name
+    bound = k_bound(ar, given)
+    parts = enumerate(islice(k_sums(ar, given), 30), 1)
+    shares = [abs(part - exact("K", 0, m)) / bound(n) for n, part in parts if bound(n) > 1e-40]
+    assert max(shares) <= 1
+    assert max(shares) > 1 / 3 or k == "0.9999"
+
+
+@pytest.mark.parametrize("k", MODULI)
+def test_as_many_terms_as_are_needed(k: str) -> None:
+    """All four series converge for any real u: the bounds fall to 1e-16 and below."""
+    given = modulus(ar, k=ar.mpf(k))
+    for bound_of in (sn_bound, cn_bound, am_bound, k_bound):
+        bound = bound_of(ar, given)
+        n = terms_needed(bound, ar.mpf("1e-16"))
+        assert bound(n) <= 1e-16 < (bound(n - 1) if n > 1 else 1)
+        assert bound(terms_needed(bound, ar.mpf("1e-300"))) <= 1e-300
+
+
+def test_table_and_counts(lagtop: Lagtop) -> None:
+    """Errors that doubles can hold are errors of the series, however small."""
+    args = "jacobi --k 0.5 --u 0.7 --series 100 --format json".split()
+    result = lagtop(*args)
+    for row in json.loads(result.stdout):
+        for name in ("K", "am_deg", "sn", "cn"):
+            assert 0 <= row[f"{name}_error"] <= row[f"{name}_bound"], (name, row)
+    assert row["sn_error"] > 1e-180
+    counts = "K 24, am_deg 9, sn 10, cn 10"
+    assert result.stderr == f"Terms whose error is proved to be below 1e-16: {counts}\n"
+    close = lagtop("jacobi", "--k-prime", "1e-300", "--series", "1", "--format", "json")
+    assert "K 3.26e+601" in close.stderr
+    assert "inf" not in close.stdout
