@@ -47,7 +47,7 @@ def test_table_2_prints_exactly(digits: list[str], modulus: list[str], lagtop: L
 def test_zeros_and_poles_of_the_theta_functions(
     digits: list[str], modulus: str, parameter: str, lagtop: Lagtop
 ) -> None:
-    """They are at whole quarters; no other cell there is 0 or empty."""
+    """Zeros and poles are at whole quarters; no other cell there is 0 or empty."""
     args = ["--theta", "--zeta", "--omega", "--pi", "--param", parameter, "--format", "csv"]
     shown = lagtop(
         *["jacobi", *modulus.split(), "--u-range=-3K:3K:7", *args, *digits]
