@@ -145,6 +145,18 @@ def _() -> Sides:
     yield LEFT.angles(LEFT.T)[1], _steady_spin(LEFT) * LEFT.T + ar.pi
 
 
+def _alike(angle: int) -> Sides:
+    """Yield the growth of an angle in the first and in the second half of a period."""
+    for motion in MOTIONS:
+        start, half, end = (motion.angles(part * motion.T / 2)[angle] for part in range(3))
+        yield half - start, end - half
+
+
+@equation("section 6: the halves of the spin are alike")
+def _() -> Sides:
+    yield from _alike(1)
+
+
 @equation("(6,2)")
 def _() -> Sides:
     for motion in MOTIONS:
@@ -275,6 +287,11 @@ def _() -> Sides:
             growing = ar.sqrt(motion.a * (motion.u3 - motion.u2)) * t * (E - F * rest)
             right = drift + motion.sigma * (growing - part * ar.pi / 2)
             yield motion.angles(t)[2], right
+
+
+@equation("section 7: the halves of the precession are alike")
+def _() -> Sides:
+    yield from _alike(2)
 
 
 @equation("(7,2)")

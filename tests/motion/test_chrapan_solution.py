@@ -137,6 +137,15 @@ def _() -> Sides:
         yield motion.b, motion.C * motion.r0 / motion.A
 
 
+@equation("section 4 d: power of the weight")
+def _() -> Sides:
+    for motion, t in moments(*PARTS[:2]):
+        p, q = motion.body_rates(t)
+        p_rate, q_rate = (slope(partial(nth_value, motion.body_rates, i), t) for i in (0, 1))
+        theta, nutation = motion.angles(t)[0], motion.rates(t)[0]
+        yield motion.A * (p * p_rate + q * q_rate), motion.mgs * ar.sin(theta) * nutation
+
+
 @equation("section 4 d: c1 and c2")
 def _() -> Sides:
     for motion, t in moments():
