@@ -6,18 +6,33 @@ if TYPE_CHECKING:
     from .errors import LagtopError
     from .inputs.scene_file import read_scene
     from .inputs.top import Top
+    from .judge.compare import compare
+    from .judge.judgement import Judgement
     from .motion.regime import Regime
     from .motion.solve import Motion, solve
     from .sweeps.records import sweep
 
 __version__ = "0.1.0"
-__all__ = ["LagtopError", "Motion", "Regime", "Top", "__version__", "read_scene", "solve", "sweep"]
+__all__ = [
+    "Judgement",
+    "LagtopError",
+    "Motion",
+    "Regime",
+    "Top",
+    "__version__",
+    "compare",
+    "read_scene",
+    "solve",
+    "sweep",
+]
 
 _MODULES = {
+    "Judgement": "judge.judgement",
     "LagtopError": "errors",
     "Motion": "motion.solve",
     "Regime": "motion.regime",
     "Top": "inputs.top",
+    "compare": "judge.compare",
     "read_scene": "inputs.scene_file",
     "solve": "motion.solve",
     "sweep": "sweeps.records",

@@ -16,6 +16,7 @@ FLOORS = [
     {"__main__"},
     {"cli"},
     {"bench"},
+    {"judge"},
     {"plot"},
     {"sweeps"},
     {"motion"},
@@ -48,7 +49,7 @@ def imported_modules(path: Path) -> Iterator[list[str]]:
 
 def test_the_package_has_these_rooms_and_no_others() -> None:
     assert {path.name for path in PACKAGE.iterdir() if path.name != "__pycache__"} == {
-        *("cli", "bench", "plot", "sweeps", "motion"),
+        *("cli", "bench", "judge", "plot", "sweeps", "motion"),
         *("elliptic", "inputs", "output", "arithmetic"),
         *("errors.py", "__init__.py", "__main__.py", "py.typed"),
         *("LICENSE", "CHANGES.md"),

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import CannotWriteError, LagtopError
 from ..output.findings import Findings
 from ..output.write import write_bytes
-from ..plot.style import figure_bytes, require_matplotlib
+from ..plot.style import figure_bytes
 from .battery import CONTRACT
 from .front import is_done
 
@@ -17,27 +16,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-KINDS = (".svg", ".png")
 LEAST_ERROR = 1e-17
 LEAST_UNITS = 1e-2
 """Least values that are drawn; an error of 0 stands there."""
-
-
-def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for a kind of file that is not drawn or that is the report itself.
-
-    Raises LagtopError where matplotlib is missing, too, and CannotWriteError where there is no such
-    directory.
-    """
-    if path is None:
-        return
-    if Path(path).suffix.lower() not in KINDS:
-        raise LagtopError(f"plot must end in {' or '.join(KINDS)}, got {path!r}", "plot")
-    if Path(path).resolve() == Path(output).resolve():
-        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
-    require_matplotlib()
-    if not Path(path).resolve().parent.is_dir():
-        raise CannotWriteError(f"cannot write {path}: no such directory")
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:

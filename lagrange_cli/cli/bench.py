@@ -85,8 +85,9 @@ def command(
 
     use_one_thread()
     from ..bench import work_precision as bench
-    from ..bench.diagrams import check_plot, draw_long_spans, draw_work_precision
+    from ..bench.diagrams import draw_long_spans, draw_work_precision
     from ..bench.long_spans import compare_spans
+    from ..plot.style import check_plot
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)

@@ -76,7 +76,8 @@ def command(
     if samples is not None and not 1 <= samples <= MOST_SAMPLES:
         raise LagtopError(f"--samples must be in [1, {MOST_SAMPLES}], got {samples}")
     from ..bench import stability
-    from ..bench.diagrams import check_plot, draw_stability
+    from ..bench.diagrams import draw_stability
+    from ..plot.style import check_plot
 
     check_plot(plot, output)
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)

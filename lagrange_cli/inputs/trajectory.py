@@ -18,8 +18,6 @@ from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
-ROWS_AT_ONCE = 1 << 15
-
 _MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
 
 
@@ -48,7 +46,7 @@ class Table(Protocol):
         """The names of the columns, if they have any."""
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns, once, at most ROWS_AT_ONCE rows at a time; names are for errors."""
+        """Yield some columns, once, a block of rows at a time; names are for errors."""
 
 
 class Trajectory:

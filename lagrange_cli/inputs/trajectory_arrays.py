@@ -15,12 +15,15 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 import numpy as np
 
 from ..errors import DataError, LagtopError
-from .trajectory import ROWS_AT_ONCE, Block
+from .trajectory import Block
 from .trajectory_columns import quantities_in
 from .trajectory_text import parts
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+
+
+ROWS_AT_ONCE = 1 << 15
 
 
 class NpyStream:

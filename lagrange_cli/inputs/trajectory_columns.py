@@ -69,9 +69,9 @@ QUANTITIES: dict[str, Quantity] = {
         [
             *_spelt("quaternion quat q orientation attitude xquat -", "w x y z", "wxyz"),
             *_spelt("quaternion quat q orientation attitude", _DIGITS[1]),
-            *_spelt("qpos xquat ep eulerparameters", _DIGITS[1], "wxyz"),
-            *_spelt("qpos u", "3 4 5 6", "wxyz"),
+            *_spelt("qpos u", "3 4 5 6", "wxyz"),  # a position comes first
             *_spelt("bodyq", "3 4 5 6", "xyzw"),
+            *_spelt("qpos xquat ep eulerparameters", _DIGITS[1], "wxyz"),
         ],
     ),
     "matrix": Quantity(

@@ -8,14 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import chain, islice
-from typing import Any, BinaryIO
+from contextlib import suppress
+from itertools import chain
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..errors import DataError
-from .trajectory import ROWS_AT_ONCE, Block, Table
+from .trajectory import Block, Table
 from .trajectory_columns import names_in_comments
 
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
+
+BYTES_AT_ONCE = 1 << 21
 _COMMENT = b"#"
+_AROUND = b"[], \t"
+"""What may stand around the objects of an array, one per line."""
 _LONGEST = 1 << 20
 """Bytes of a line; a file without line ends is no table."""
 
@@ -24,29 +31,46 @@ Numbered = tuple[int, bytes]
 
 def read_text(stream: BinaryIO, name: str) -> Table:
     """Return the rows of a text.  Raises DataError where there are none."""
-    lines = _lines(stream, name)
+    lines = _Lines(stream, name)
     comments: list[str] = []
-    for number, line in lines:
+    while first := lines.one():
+        number, line = first
         if line.startswith(_COMMENT):
             comments.append(_decoded(line, name, number).lstrip("# \t"))
+        elif line == b"[":
+            continue
         elif line[:1] in {b"{", b"["}:
-            return JsonTable(name, chain([(number, line)], lines))
+            return JsonTable(name, first, lines)
         else:
-            return TextTable(name, (number, line), lines, comments)
+            return TextTable(name, first, lines, comments)
     raise DataError(f"{name} must hold a trajectory, got no row")
 
 
-def _lines(stream: BinaryIO, name: str) -> Iterator[Numbered]:
-    """Yield the lines that are not blank, stripped, by their numbers."""
-    number = 0
-    while line := stream.readline(_LONGEST):
-        number += 1
-        if len(line) == _LONGEST:
-            raise DataError(f"{name}, line {number}: a line must have less than {_LONGEST} bytes")
-        if number == 1:
-            line = line.removeprefix(b"\xef\xbb\xbf")
-        if line := line.strip(b" \r\n"):
-            yield number, line
+class _Lines:
+    """The lines of a text that are not blank, stripped, by their numbers."""
+
+    def __init__(self, stream: BinaryIO, name: str) -> None:
+        self.stream, self.name, self.number = stream, name, 0
+
+    def one(self) -> Numbered | None:
+        """Return the next line, or None at the end."""
+        while line := self.stream.readline(_LONGEST):
+            self.number += 1
+            if len(line) == _LONGEST:
+                wrong = f"a line must have less than {_LONGEST} bytes"
+                raise DataError(f"{self.name}, line {self.number}: {wrong}")
+            if self.number == 1:
+                line = line.removeprefix(b"\xef\xbb\xbf")
+            if stripped := line.strip(b" \r\n"):
+                return self.number, stripped
+        return None
+
+    def blocks(self) -> Iterator[list[Numbered]]:
+        """Yield the lines that are left, many at once."""
+        while lines := self.stream.readlines(BYTES_AT_ONCE):
+            first, self.number = self.number + 1, self.number + len(lines)
+            stripped = (line.strip(b" \r\n") for line in lines)
+            yield [x for x in enumerate(stripped, first) if x[1]]
 
 
 def _decoded(line: bytes, name: str, number: int) -> str:
@@ -61,38 +85,43 @@ class TextTable:
 
     place = "line"
 
-    def __init__(
-        self, name: str, first: Numbered, lines: Iterator[Numbered], comments: Sequence[str]
-    ) -> None:
+    def __init__(self, name: str, first: Numbered, lines: _Lines, comments: Sequence[str]) -> None:
         self.name = name
         text = _decoded(first[1], name, first[0])
         self.delimiter = next((x for x in ",;\t" if x in text), None)
         cells = self._cells(text)
         self.width = len(cells)
-        self.names: Sequence[str] | None
-        if any(_is_number(cell) for cell in cells):
-            self.names = names_in_comments(comments, self.width)
-            lines = chain([first], lines)
-        else:
-            self.names = cells
-        self._data = ((i, line) for i, line in lines if not line.startswith(_COMMENT))
+        has_header = not any(_is_number(cell) for cell in cells)
+        self.names: Sequence[str] | None = (
+            cells if has_header else names_in_comments(comments, self.width)
+        )
+        self._lines = chain([[] if has_header else [first]], lines.blocks())
 
     def _cells(self, line: str) -> list[str]:
         return [cell.strip().strip('"') for cell in line.split(self.delimiter)]
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
         """Yield some columns of the rows.  Raises DataError for what is no number."""
+        for lines in self._lines:
+            block = [x for x in lines if not x[1].startswith(_COMMENT)]
+            if block:
+                places, texts = zip(*block, strict=True)
+                yield Block(self._parsed(block, texts, columns, names), places)
+
+    def _parsed(
+        self,
+        block: Sequence[Numbered],
+        texts: Sequence[bytes],
+        columns: Sequence[int],
+        names: Sequence[str],
+    ) -> Array:
         import numpy as np
 
-        while block := list(islice(self._data, ROWS_AT_ONCE)):
-            places, lines = [i for i, _ in block], [line for _, line in block]
-            try:
-                values = np.loadtxt(lines, delimiter=self.delimiter, ndmin=2, comments=None)
-                if values.shape != (len(lines), self.width):
-                    raise ValueError(values.shape)
-                yield Block(values[:, columns], places)
-            except ValueError:
-                yield Block(np.array([self._row(*x, columns, names) for x in block]), places)
+        with suppress(ValueError):
+            values = np.loadtxt(texts, delimiter=self.delimiter, ndmin=2, comments=None)
+            if values.shape == (len(texts), self.width):
+                return values[:, columns]
+        return np.array([self._row(*x, columns, names) for x in block])
 
     def _row(
         self, number: int, line: bytes, columns: Sequence[int], names: Sequence[str]
@@ -126,17 +155,13 @@ class JsonTable:
 
     place = "line"
 
-    def __init__(self, name: str, lines: Iterator[Numbered]) -> None:
+    def __init__(self, name: str, first: Numbered, lines: _Lines) -> None:
         self.name = name
-        bare = ((i, line.strip(b"[], \t")) for i, line in lines)
-        objects = ((i, line) for i, line in bare if line)
-        first = next(objects, None)
-        if first is None:
-            raise DataError(f"{name} must hold a trajectory, got no row")
-        self._lines = chain([first], objects)
+        self._lines = chain([[first]], lines.blocks())
+        bare = first[1].strip(_AROUND)
         self.sizes = {
             key: len(value) if isinstance(value, list) else 0
-            for key, value in self._object(*first).items()
+            for key, value in self._object(first[0], bare).items()
             if isinstance(value, int | float | list | None)
         }
         self.names: Sequence[str] = [
@@ -148,9 +173,11 @@ class JsonTable:
         """Yield some columns of the rows.  Raises DataError for what is no number."""
         import numpy as np
 
-        while block := list(islice(self._lines, ROWS_AT_ONCE)):
-            values = np.array([self._row(*x) for x in block], dtype=np.float64)
-            yield Block(values[:, columns], [i for i, _ in block])
+        for lines in self._lines:
+            bare = ((i, line.strip(_AROUND)) for i, line in lines)
+            if block := [x for x in bare if x[1]]:
+                values = np.array([self._row(*x) for x in block], dtype=np.float64)
+                yield Block(values[:, columns], [i for i, _ in block])
 
     def _object(self, number: int, line: bytes) -> dict[str, Any]:
         import orjson

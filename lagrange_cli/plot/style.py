@@ -11,9 +11,10 @@ import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from ..errors import LagtopError
+from ..errors import CannotWriteError, LagtopError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,12 +56,33 @@ METADATA: dict[str, dict[str, Any]] = {
 """What matplotlib would add to each kind of file, and with it the day and the version."""
 
 
+REPORT_KINDS = (".svg", ".png")
+"""The kinds of file that the picture of a report may have."""
+
+
 def require_matplotlib() -> None:
     """Raise LagtopError, with the remedy, where matplotlib is missing."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
         raise LagtopError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
+
+
+def check_plot(path: str | None, output: str) -> None:
+    """Raise LagtopError for a kind of file that is not drawn, or that is the report itself.
+
+    Raises LagtopError where matplotlib is missing, too, and CannotWriteError where there is no such
+    directory.
+    """
+    if path is None:
+        return
+    if Path(path).suffix.lower() not in REPORT_KINDS:
+        raise LagtopError(f"plot must end in {' or '.join(REPORT_KINDS)}, got {path!r}", "plot")
+    if Path(path).resolve() == Path(output).resolve():
+        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
+    require_matplotlib()
+    if not Path(path).resolve().parent.is_dir():
+        raise CannotWriteError(f"cannot write {path}: no such directory")
 
 
 def figure_bytes(figure: Figure, fmt: str, dpi: float) -> bytes:

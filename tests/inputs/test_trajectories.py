@@ -17,7 +17,7 @@ from pyarrow import parquet
 
 from lagrange_cli import LagtopError
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs import trajectory
+from lagrange_cli.inputs import trajectory_arrays, trajectory_text
 from lagrange_cli.inputs.trajectory import open_trajectory
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES, expanded, quantities_in
 
@@ -55,6 +55,11 @@ def json_array(path: Path) -> None:
     path.write_text("[" + ",\n".join(rows) + "]\n")
 
 
+def json_array_over_lines(path: Path) -> None:
+    json_array(path)
+    path.write_text(path.read_text().replace("[", "[\n").replace("]", "\n]"))
+
+
 def structured(path: Path) -> None:
     np.save(path, np.rec.fromarrays(DATA.T, names=NAMES))  # type: ignore[call-overload]
 
@@ -82,6 +87,7 @@ FORMS: dict[str, Callable[[Path], object]] = {
     ),
     "ndjson": json_lines,
     "json": json_array,
+    "json, brackets on lines of their own": json_array_over_lines,
     "npy": structured,
     "npz": several_arrays,
     "parquet": columns_of_parquet,
@@ -106,9 +112,8 @@ def made(tmp_path: Path) -> Callable[[str], Path]:
 def test_every_form_holds_the_same_numbers(
     form: str, at_once: int, made: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in ("trajectory", "trajectory_text", "trajectory_arrays"):
-        module = __import__(f"lagrange_cli.inputs.{name}", fromlist=["ROWS_AT_ONCE"])
-        monkeypatch.setattr(module, "ROWS_AT_ONCE", at_once)
+    monkeypatch.setattr(trajectory_arrays, "ROWS_AT_ONCE", at_once)
+    monkeypatch.setattr(trajectory_text, "BYTES_AT_ONCE", 100 * at_once)
     found = read(made(form))
     assert np.array_equal(found["t"][:, 0], DATA[:, 0])
     assert np.array_equal(found["quaternion"], DATA[:, 1:])
@@ -181,6 +186,8 @@ def test_sensor_files_of_exudyn(
         ("t R11 R12 R13 R21 R22 R23 R31 R32 R33", {"matrix": [*range(1, 10)]}),
         ("t q.x q.y q.z q.w omega[0] omega[1] omega[2]", {"quaternion": [4, 1, 2, 3]}),
         ("theta_deg phi_deg psi_deg t", {"theta": [0], "phi": [1], "psi": [2]}),
+        ("t qpos_0 qpos_1 qpos_2 qpos_3 qvel_0 qvel_1 qvel_2", {"quaternion": [1, 2, 3, 4]}),
+        ("t " + " ".join(f"qpos{i}" for i in range(7)), {"quaternion": [4, 5, 6, 7]}),
         ("t roll pitch yaw", {"euler": [1, 2, 3]}),
     ],
 )
@@ -242,7 +249,7 @@ def test_truncated_files(form: str, made: Callable[[str], Path]) -> None:
 def test_a_place_is_right_after_the_first_block(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(trajectory, "ROWS_AT_ONCE", 2)
+    monkeypatch.setattr(trajectory_arrays, "ROWS_AT_ONCE", 2)
     np.save(tmp_path / "a.npy", np.array([[0, 0], [1, 0], [2, 0], [3, 0], [2.5, 0]]))
     with pytest.raises(DataError, match=r"row 5: t must not turn back, got 2\.5 after 3\.0"):
         read(tmp_path / "a.npy", ["t", "theta"])

@@ -1,0 +1,179 @@
+"""`lagtop compare`: the judge of trajectories."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..arithmetic.text import parse_number
+from ..errors import LagtopError
+from ..inputs.names import split_names
+from .command import ExamplesFirst
+from .options import (
+    FILE,
+    NAMES,
+    NUMBER,
+    Parsed,
+    input_options,
+    output_options,
+    solved,
+    write_report,
+)
+from .progress import with_progress
+
+if TYPE_CHECKING:
+    from ..judge.files import Session
+    from ..judge.seen import Quantities
+    from ..output.findings import Findings
+
+LONG = 1_000_000
+"""Rows of unknown number, whose progress is shown after a second."""
+
+
+def _write_names(formatter: click.HelpFormatter) -> None:
+    """Write the names of columns, of alignments and of keys."""
+    from ..inputs.trajectory_columns import shown_quantities
+
+    with formatter.section("Columns of a trajectory, by name"):
+        formatter.write_dl(list(shown_quantities().items()))
+
+
+def _parse_steps(text: str) -> list[float]:
+    return [float(parse_number(name)) for name in split_names(text)]
+
+
+@click.command(
+    "compare",
+    cls=ExamplesFirst,
+    shows=_write_names,
+    examples="""
+        lagtop compare mujoco.csv --m 1.587 --A 3.9032e-3 --C 1.7458e-3 --s 0.04 --g 9.81
+        lagtop compare sensor.txt --scene top.toml --align axis=y,start --max-error 1e-6
+        lagtop compare h1.csv h2.csv h3.csv --steps 1e-3,5e-4,2.5e-4 --plot errors.svg
+        lagtop compare state.npy --columns t,quaternion,_,_,_ --quaternion xyzw --format json
+        lagtop table --t-max 5 --columns t,quaternion | lagtop compare -
+    """,
+)
+@click.argument(
+    "trajectories",
+    nargs=-1,
+    required=True,
+    type=FILE,
+    metavar="TRAJECTORY...",
+)
+@click.option("--scene", type=FILE, metavar="FILE", help="Scene file; options win.")
+@input_options(NUMBER)
+@click.option(
+    "--columns",
+    type=NAMES,
+    help="Names of all columns from the left, whatever the files say; quaternion, matrix, axis and "
+    "the like stand for all of their parts, and _ leaves a column out.",
+)
+@click.option(
+    "--quaternion",
+    type=click.Choice(["wxyz", "xyzw"]),
+    help="Order of a quaternion whose names do not tell.  [default: what the first row proves]",
+)
+@click.option(
+    "--euler",
+    default="xyz",
+    show_default=True,
+    metavar="SEQUENCE",
+    help="Axes of `euler`, as scipy writes them: xyz about those of space, XYZ of the body.",
+)
+@click.option(
+    "--rates",
+    type=click.Choice(["body", "space"]),
+    default="body",
+    show_default=True,
+    help="Frame of an angular velocity whose names do not tell.",
+)
+@click.option(
+    "--align",
+    type=NAMES,
+    help="What is done first, with commas between: axis=y (the figure axis is the body's y; x, y, "
+    "z, -x, -y or -z), up=y (so is up in space), start (spin and precession count from the first "
+    "row), body or space (one rotation of that frame, taken from the first row), time (the first "
+    "row is at the time 0).",
+)
+@click.option(
+    "--steps",
+    type=Parsed("numbers", _parse_steps),
+    help="Steps of the trajectories, with commas between, for the order of convergence.",
+)
+@click.option("--max-error", type=NUMBER, help="Exit with 1 beyond this error, in radians.")
+@click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
+@output_options("table", "csv", "json")
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    trajectories: tuple[str, ...],
+    scene: str | None,
+    rad: bool,
+    columns: list[str] | None,
+    quaternion: str | None,
+    euler: str,
+    rates: str,
+    align: list[str] | None,
+    steps: list[float] | None,
+    max_error: Fraction | None,
+    plot: str | None,
+    fmt: str,
+    output: str,
+    **options: Any,
+) -> None:
+    """Judge trajectories that engines or integrators made, by the exact motion.
+
+    A trajectory is a file (CSV, TSV, text with or without a header, JSON lines, npy, npz or
+    Parquet) or - for standard input.  Its columns are known by their names, which stand below.
+    Angles are in degrees where neither names nor --rad say otherwise; all errors are in radians.
+
+    The verdict is one of fine, drifts, another top, off from the start and lost.  The exit code is
+    1 where a trajectory is lost or beyond --max-error.
+    """
+    from ..judge.alignment import alignment
+    from ..judge.files import Request, compare_files
+    from ..judge.report import failed, report
+    from ..judge.seen import Conventions
+    from ..plot.style import check_plot
+
+    if max_error is not None and not max_error > 0:
+        raise LagtopError(f"--max-error must be > 0, got {float(max_error)}")
+    check_plot(plot, output)
+    limit = None if max_error is None else float(max_error)
+    conventions = Conventions(quaternion, euler, rates, rad).checked()
+    request = Request(columns, conventions, alignment(align or []), limit, steps)
+    motion = solved(scene, rad, False, options)
+
+    def find() -> Findings:
+        session = compare_files(motion, trajectories, request, _watched)
+        if plot:
+            _draw(session, limit, plot)
+        return report(motion, session, request)
+
+    if failed(write_report(find, fmt, output), limit):
+        ctx.exit(1)
+
+
+def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:
+    return with_progress(blocks, 0, LONG, size=lambda block: len(block["t"]))
+
+
+def _draw(session: Session, limit: float | None, path: str) -> None:
+    from ..judge.judgement import LIMIT
+    from ..output.write import write_bytes
+    from ..plot.error_curves import ErrorCurve, draw_errors
+
+    found = session.convergence
+    compared = found.errors if found else [None] * len(session.judgements)
+    curves = [
+        ErrorCurve(str(x.file), x.t, x.error, x.step, error)
+        for x, error in zip(session.judgements, compared, strict=True)
+        if x.t is not None and x.error is not None
+    ]
+    write_bytes(path, partial(draw_errors, curves, limit or LIMIT, path))

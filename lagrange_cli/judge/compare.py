@@ -1,0 +1,128 @@
+"""`compare(top, t, quaternion=...)`: somebody's motion of a top, judged by the exact one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..inputs.trajectory_columns import QUANTITIES
+from ..motion.samplers import times_of
+from ..motion.solve import Motion, solve
+from .alignment import alignment
+from .convergence import Convergence, check_steps, convergence
+from .judgement import LIMIT, Given, Hearing, Judgement, judge
+from .seen import Conventions, Quantities
+from .slips import explanation
+from .verdict import verdict
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+def compare(
+    top: Top | Motion,
+    t: ArrayLike,
+    *,
+    quaternion: ArrayLike | None = None,
+    matrix: ArrayLike | None = None,
+    theta: ArrayLike | None = None,
+    phi: ArrayLike | None = None,
+    psi: ArrayLike | None = None,
+    euler: ArrayLike | None = None,
+    rotvec: ArrayLike | None = None,
+    axis: ArrayLike | None = None,
+    position: ArrayLike | None = None,
+    rates: ArrayLike | None = None,
+    angle_rates: ArrayLike | None = None,
+    quaternion_order: str | None = "wxyz",
+    euler_sequence: str = "xyz",
+    rates_frame: str = "body",
+    align: Sequence[str] = (),
+    max_error: float = LIMIT,
+) -> Judgement:
+    """Return the judgement of a trajectory at the times t, of n rows.
+
+    Given are any of: quaternion (n, 4) from body to space, matrix (n, 3, 3) or (n, 9), the angles
+    theta, phi, psi (n,), three angles about coordinate axes (n, 3) by a sequence in scipy's
+    notation, a rotation vector (n, 3), the figure axis (n, 3), the position of the mass centre from
+    the pivot (n, 3), angular velocity (n, 3) in the frame of the `body` or of `space`, and the
+    rates of theta, phi, psi (n, 3).  Angles are in radians.  `align` names what is done to the
+    trajectory first, as in `lagtop compare`.  Up to `max_error` radians it is fine.
+
+    Raises LagtopError for a bad argument, and for times that are not finite or turn back.
+    """
+    arrays = {
+        **{"quaternion": quaternion, "matrix": matrix, "theta": theta, "phi": phi, "psi": psi},
+        **{"euler": euler, "rotvec": rotvec, "axis": axis, "position": position},
+        **{"rates": rates, "angle_rates": angle_rates},
+    }
+    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
+    block = _quantities(t, {key: x for key, x in arrays.items() if x is not None})
+    given = Given([block], {}, conventions, alignment(align))
+    motion = top if isinstance(top, Motion) else solve(top)
+    return settled(motion, [(judge(motion, given), given)], max_error)[0][0]
+
+
+def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
+    """Return the arrays as quantities.  Raises LagtopError for one of another shape."""
+    times = times_of(t).reshape(-1, 1)
+    if not arrays:
+        raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
+    steps = np.diff(times[:, 0])
+    if not np.isfinite(times).all() or (np.any(steps > 0) and np.any(steps < 0)):
+        raise LagtopError("t must be finite and go on in one direction", "t")
+    block = {"t": times}
+    for key, array in arrays.items():
+        size = QUANTITIES[key].size
+        try:
+            values = np.asarray(array, dtype=np.float64)
+            block[key] = values.reshape(len(times), size)
+        except (TypeError, ValueError):
+            shape = np.shape(array) if isinstance(array, np.ndarray | Sequence) else array
+            raise LagtopError(
+                f"{key} must be real numbers of shape ({len(times)}, {size}), got {shape}"[:200],
+                key,
+            ) from None
+    return block
+
+
+def settled(
+    motion: Motion,
+    cases: Sequence[tuple[Hearing, Given]],
+    limit: float | None = None,
+    steps: Sequence[float] | None = None,
+) -> tuple[list[Judgement], Convergence | None]:
+    """Return the judgements of trajectories with their verdicts, and how they converge.
+
+    A slip is looked for where a trajectory is off from the start or beyond the limit; of several
+    with different steps, in the one of the least error.  Raises LagtopError for bad steps.
+    """
+    limit = LIMIT if limit is None else limit
+    judgements = [hearing.judgement for hearing, _ in cases]
+    found = None
+    if steps is not None:
+        check_steps(steps, len(cases))
+        judgements = [replace(x, step=step) for x, step in zip(judgements, steps, strict=True)]
+        found = convergence(judgements)
+        judgements = [replace(x, order=found.order if found else None) for x in judgements]
+    judgements = [
+        replace(judgement, **_slip(motion, *case, limit, found))
+        for judgement, case in zip(judgements, cases, strict=True)
+    ]
+    return [replace(x, verdict=verdict(x, limit, found)) for x in judgements], found
+
+
+def _slip(
+    motion: Motion, hearing: Hearing, given: Given, limit: float, found: Convergence | None
+) -> dict[str, Any]:
+    """Return the keys of the slip that explains a trajectory, if it needs to be explained."""
+    error = hearing.judgement.error_max
+    if error is None or (error <= limit and (found is None or found.falls)):
+        return {}
+    best = explanation(motion, hearing, given)
+    return {} if best is None else {"explained_by": best.name, "explained_error": best.error}

@@ -1,0 +1,81 @@
+"""Convergence of several trajectories of the same motion, made with different steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from .judgement import Judgement
+
+LOST_PHASE = 0.3
+"""An error in radians beyond which the motions have lost each other, and no order can be seen."""
+ROUNDING = 1e-8
+"""An error that need not fall any more."""
+LEAST_ORDER = 0.5
+
+
+class Convergence(NamedTuple):
+    """How the error depends on the step."""
+
+    order: float | None
+    """Fitted exponent; None where there are less than two errors to fit."""
+    falls: bool
+    """Whether the error falls with the step, or is that of rounding."""
+    until: float
+    """Time up to which the errors were compared: then the first of them loses the phase."""
+    errors: Sequence[float]
+    """Greatest error of each trajectory up to then."""
+
+
+def check_steps(steps: Sequence[float], count: int) -> None:
+    """Raise LagtopError for steps that are not positive or not as many as trajectories."""
+    if len(steps) != count:
+        raise LagtopError(
+            f"steps must be as many as trajectories, {count}, got {len(steps)}", "steps"
+        )
+    for step in steps:
+        if not step > 0:
+            raise LagtopError(f"steps must be > 0, got {step}", "steps")
+
+
+def convergence(judgements: Sequence[Judgement]) -> Convergence | None:
+    """Return how the errors of trajectories fall with their steps, or None for less than two.
+
+    The order is fitted to the greatest errors up to the time at which the first of them passes 0.3
+    rad.  Steps finer than that of the least error do not count: rounding grows there.
+    """
+    curves = [_greatest_so_far(judgement) for judgement in judgements]
+    if len({judgement.step for judgement in judgements}) < 2:
+        return None
+    until = min(_time_within(*curve) for curve in curves)
+    errors = [float(error[np.searchsorted(t, until, "right") - 1]) for t, error in curves]
+    points = sorted((x.step or 0.0, error) for x, error in zip(judgements, errors, strict=True))
+    least = min(range(len(points)), key=lambda i: points[i][1])
+    known = [(step, error) for step, error in points[least:] if 0 < error < LOST_PHASE]
+    order = _slope(known) if len({step for step, _ in known}) > 1 else None
+    falls = min(errors) < ROUNDING or (order is not None and order >= LEAST_ORDER)
+    return Convergence(order, falls, until, errors)
+
+
+def _greatest_so_far(judgement: Judgement) -> tuple[Array, Array]:
+    """Return the time since the first row and the greatest error so far, infinite when lost."""
+    assert judgement.t is not None
+    assert judgement.error is not None
+    error = np.nan_to_num(judgement.error, nan=np.inf)
+    return abs(judgement.t - judgement.t[0]), np.maximum.accumulate(error)
+
+
+def _time_within(t: Array, error: Array) -> float:
+    """Return the last time at which the phase is not lost; the first one where it always is."""
+    return float(t[max(int(np.searchsorted(error, LOST_PHASE)) - 1, 0)])
+
+
+def _slope(points: Sequence[tuple[float, float]]) -> float:
+    """Return the exponent of a power law through points, by least squares of the logarithms."""
+    x, y = (np.log(values) for values in zip(*points, strict=True))
+    x = x - x.mean()
+    return float(x @ y / (x @ x))

@@ -1,0 +1,75 @@
+"""Trajectories in files, judged one after the other, a block of rows at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from ..errors import DataError, LagtopError
+from ..inputs.trajectory import Trajectory, open_trajectory, shown_path
+from ..motion.solve import Motion
+from .alignment import Alignment
+from .compare import settled
+from .convergence import Convergence, check_steps
+from .judgement import Given, Hearing, Judgement, judge
+from .seen import Conventions, Quantities
+
+Watch = Callable[[Iterable[Quantities]], Iterable[Quantities]]
+"""Passes blocks on, and may show how many rows have passed."""
+
+
+class Request(NamedTuple):
+    """What is asked of trajectories in files."""
+
+    columns: Sequence[str] | None = None
+    """The names of all columns from the left; None for those that the files give."""
+    conventions: Conventions = Conventions()
+    align: Alignment = Alignment()
+    limit: float | None = None
+    steps: Sequence[float] | None = None
+
+
+class Session(NamedTuple):
+    """Trajectories that have been judged together."""
+
+    judgements: Sequence[Judgement]
+    convergence: Convergence | None
+
+
+def compare_files(
+    motion: Motion, paths: Sequence[str], request: Request, watch: Watch = iter
+) -> Session:
+    """Return the judgements of the trajectories in files, and how they converge.
+
+    Raises LagtopError for a bad request or a file that cannot be read, DataError for a bad one.
+    """
+    if paths.count("-") > 1:
+        raise LagtopError("standard input can be read once, got - twice")
+    if request.steps is not None:
+        check_steps(request.steps, len(paths))
+    cases = [_hearing(motion, path, request, watch) for path in paths]
+    judgements, found = settled(motion, cases, request.limit, request.steps)
+    return Session(judgements, found)
+
+
+def _hearing(motion: Motion, path: str, request: Request, watch: Watch) -> tuple[Hearing, Given]:
+    with open_trajectory(path, request.columns) as trajectory:
+        said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
+        given = Given(watch(_blocks(trajectory)), said, request.conventions, request.align)
+        try:
+            hearing = judge(motion, given)
+        except DataError:
+            raise
+        except LagtopError as error:
+            if error.key not in {None, "t"}:
+                raise
+            kind = DataError if error.key == "t" else LagtopError
+            raise kind(f"{shown_path(path)}: {error}") from None
+    named = replace(hearing.judgement, file=path)
+    return hearing._replace(judgement=named), given
+
+
+def _blocks(trajectory: Trajectory) -> Iterator[Quantities]:
+    for block, _ in trajectory.blocks():
+        yield block

@@ -1,0 +1,257 @@
+"""The judgement of one trajectory: its keys, and how the rows become it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..motion.solve import Motion
+from .alignment import Alignment, frames_of
+from .deviations import ANGLES, Deviations
+from .seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
+from .tally import Extremes, Fit, Kept, Passages
+
+LIMIT = 1e-3
+"""The error in radians (rad) up to which a trajectory is fine, unless told otherwise."""
+PASSED = {"t_past_1e_6": 1e-6, "t_past_1e_3": 1e-3, "t_past_0_1": 0.1, "t_past_1": 1.0}
+_JUDGED = {
+    "attitude": "attitude",
+    "axis": "axis",
+    "theta": "angles",
+    "phi": "angles",
+    "psi": "angles",
+    "rate": "rates",
+}
+"""What the error is of, by the first deviation that there is."""
+PROVED, DISPROVED = 1e-6, 1e-3
+"""Errors at the first row by which one order of a quaternion is right and the other is wrong."""
+
+
+def key(meaning: str, default: Any = None) -> Any:
+    """Return the field of a key of the record, with its meaning."""
+    return field(default=default, metadata={"meaning": meaning})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """What is said of one trajectory; angles are in radians, and what cannot be told is None."""
+
+    file: str | None = key("the file, `-` for standard input")
+    step: float | None = key("its step, by --steps")
+    verdict: str = key("the verdict, in a word", "fine")
+    rows: int = key("the number of rows", 0)
+    judged: str = key("what the error is of: attitude, axis, angles or rates", "")
+    error_max: float | None = key("greatest error: of the attitude, or of what is given of it")
+    attitude_error_max: float | None = key("greatest angle between the given and exact attitude")
+    attitude_error_final: float | None = key("the angle at the last row")
+    axis_error_max: float | None = key("greatest angle between the figure axes")
+    theta_error_max: float | None = key("greatest difference of the tilt")
+    theta_error_final: float | None = key("its size at the last row")
+    phi_error_max: float | None = key("greatest difference of the spin, in (-pi, pi]")
+    phi_error_final: float | None = key("its size at the last row")
+    psi_error_max: float | None = key("greatest difference of the precession, in (-pi, pi]")
+    psi_error_final: float | None = key("its size at the last row")
+    rate_error_max: float | None = key("greatest difference of the angular velocity, rad/time")
+    rate_error_final: float | None = key("its size at the last row")
+    theta_drift: float | None = key("growth of the tilt's difference per period, fitted")
+    phi_drift: float | None = key("growth of the spin's difference per period, fitted")
+    psi_drift: float | None = key("growth of the precession's difference per period, fitted")
+    theta_rest: float | None = key("what does not grow: root mean square about the fitted line")
+    phi_rest: float | None = key("the like for the spin")
+    psi_rest: float | None = key("the like for the precession")
+    period: float | None = key("the period: that of the nutation, or else of the spin, or else 1")
+    norm_drift: float | None = key(
+        "greatest distance from 1: of the norm of a quaternion or axis, of R R^T, of the "
+        "mass centre's distance over s"
+    )
+    energy_drift: float | None = key("greatest change of energy, over its size at the start")
+    Lz_drift: float | None = key("greatest change of the vertical angular momentum, likewise")
+    t_past_1e_6: float | None = key("first time at which the error is beyond 1e-6 rad")
+    t_past_1e_3: float | None = key("beyond 1e-3 rad")
+    t_past_0_1: float | None = key("beyond 0.1 rad")
+    t_past_1: float | None = key("beyond 1 rad")
+    lost_at: float | None = key("time of the first row that is not finite")
+    quaternion_order: str | None = key("order of the quaternion, where the first row has proved it")
+    order: float | None = key("order of convergence of all files, by --steps")
+    explained_by: str | None = key("the slip that explains the error best")
+    explained_error: float | None = key("greatest error that is left if that slip is undone")
+
+    error_start: float = field(default=math.nan, metadata={"is_key": False})
+    """Error at the first row."""
+    t: Array | None = field(default=None, repr=False, compare=False, metadata={"is_key": False})
+    """Times of at most 4096 rows, spread evenly."""
+    error: Array | None = field(default=None, repr=False, compare=False, metadata={"is_key": False})
+    """Errors at these times; NaN where the trajectory is lost."""
+
+    def record(self) -> dict[str, Any]:
+        """Return the judgement by key."""
+        return {name: getattr(self, name) for name in KEYS}
+
+
+KEYS: dict[str, str] = {
+    x.name: x.metadata["meaning"] for x in fields(Judgement) if "meaning" in x.metadata
+}
+"""The keys of a record with their meanings."""
+
+
+class Hearing(NamedTuple):
+    """A trajectory that has been gone through."""
+
+    judgement: Judgement
+    kept: Quantities
+    """Some rows of it, as they were given."""
+    conventions: Conventions
+    """Conventions by which it was read."""
+
+
+class Given(NamedTuple):
+    """A trajectory as it is given: blocks of quantities, and how they are meant."""
+
+    blocks: Iterable[Quantities]
+    said: Said
+    conventions: Conventions
+    wish: Alignment
+    change: Callable[[Seen], Seen] | None = None
+    """What is done to it before it is brought to our frames."""
+
+    def see(self, block: Quantities) -> Seen:
+        """Return what a block shows, in the frames of its maker."""
+        seen = see(block, self.conventions, self.said)
+        return seen if self.change is None else self.change(seen)
+
+
+def judge(motion: Motion, given: Given) -> Hearing:
+    """Return what a trajectory is like, but for its verdict.
+
+    Raises LagtopError for one without rows, and where nothing tells the order of a quaternion.
+    """
+    tally: _Tally | None = None
+    with ARRAYS.working():
+        for block in given.blocks:
+            if not len(block["t"]):
+                continue
+            if tally is None:
+                tally = _Tally(motion, given, _first_row(block))
+            tally.add(block)
+        if tally is None:
+            raise LagtopError("t must have at least one row")
+        return Hearing(tally.judgement(), tally.kept_rows(), tally.given.conventions)
+
+
+def errors_of(motion: Motion, given: Given) -> Array:
+    """Return the errors of a trajectory in one block against some other motion."""
+    (block,) = given.blocks
+    with ARRAYS.working():
+        frames = frames_of(given.wish, motion, given.see(_first_row(block)))
+        return Deviations(motion).of(frames.aligned(given.see(block)))["error"]
+
+
+def _first_row(block: Quantities) -> dict[str, Array]:
+    """Return the first row that is finite, or else the first one."""
+    finite = np.all([np.isfinite(values).all(axis=1) for values in block.values()], axis=0)
+    row = int(np.argmax(finite))
+    return rows_of(block, slice(row, row + 1))
+
+
+class _Tally:
+    """What is known of a trajectory so far."""
+
+    def __init__(self, motion: Motion, given: Given, first: Mapping[str, Array]) -> None:
+        self.motion, self.proved = motion, None
+        said_order = given.said.get("quaternion", ("", None))[0] or given.conventions.quaternion
+        if "quaternion" in first and not said_order:
+            self.proved = _proved_order(motion, given, first)
+            proved = given.conventions._replace(quaternion=self.proved)
+            given = given._replace(conventions=proved)
+        self.given = given
+        self.frames = frames_of(given.wish, motion, given.see(first))
+        self.deviations = Deviations(motion)
+        self.extremes: dict[str, Extremes] = {}
+        self.fits = {name: Fit() for name in ANGLES}
+        self.passages, self.kept = Passages(tuple(PASSED.values())), Kept()
+        self.rows, self.start = 0, math.nan
+        self.lost_at: float | None = None
+
+    def add(self, block: Quantities) -> None:
+        """Take a block of rows."""
+        seen = self.frames.aligned(self.given.see(block))
+        found = self.deviations.of(seen)
+        for name, values in found.items():
+            self.extremes.setdefault(name, Extremes()).add(values)
+        for name in ANGLES:
+            if name in found:
+                self.fits[name].add(seen.t, found[name])
+        error = found["error"]
+        self.passages.add(seen.t, error)
+        self.kept.add({**block, "error": error[:, np.newaxis]})
+        if not self.rows:
+            self.start = float(error[0])
+            self.judged = next(word for name, word in _JUDGED.items() if name in found)
+        if self.lost_at is None and (lost := np.flatnonzero(np.isnan(error))).size:
+            self.lost_at = float(seen.t[lost[0]])
+        self.rows += len(error)
+
+    def kept_rows(self) -> dict[str, Array]:
+        """Return some of the rows, as they were given."""
+        return {name: x for name, x in self.kept.rows().items() if name != "error"}
+
+    def judgement(self) -> Judgement:
+        """Return what is known, but for the verdict."""
+        period = self.motion.T_nutation or self.motion.T_spin or 1.0
+        values: dict[str, Any] = {}
+        for name in ("attitude", "axis", *ANGLES, "rate"):
+            values[f"{name}_error_max"] = self._extreme(name).greatest
+            if name != "axis":
+                values[f"{name}_error_final"] = self._extreme(name).last
+        for name in ("norm", "energy", "Lz"):
+            values[f"{name}_drift"] = self._extreme(name).greatest
+        for name, fit in self.fits.items():
+            if line := fit.line():
+                values |= {f"{name}_drift": line.slope * period, f"{name}_rest": line.rest}
+        kept = self.kept.rows()
+        passages: dict[str, Any] = {x: self.passages.times[size] for x, size in PASSED.items()}
+        known: dict[str, Any] = {x: None if math.isnan(y) else y for x, y in values.items()}
+        greatest = self._extreme("error").greatest
+        return Judgement(
+            rows=self.rows,
+            judged=self.judged,
+            error_max=None if math.isnan(greatest) else greatest,
+            period=period,
+            lost_at=self.lost_at,
+            quaternion_order=self.proved,
+            error_start=self.start,
+            t=kept["t"][:, 0] - self.frames.time,
+            error=kept["error"][:, 0],
+            **passages,
+            **known,
+        )
+
+    def _extreme(self, name: str) -> Extremes:
+        return self.extremes.get(name) or Extremes()
+
+
+def _proved_order(motion: Motion, given: Given, first: Mapping[str, Array]) -> str:
+    """Return the order of a quaternion by which the first row is right, where only one is.
+
+    Raises LagtopError where it is not.
+    """
+    errors = {}
+    for order in ORDERS:
+        conventions = given.conventions._replace(quaternion=order)
+        one = given._replace(blocks=[first], conventions=conventions)
+        errors[order] = float(np.nan_to_num(errors_of(motion, one)[0], nan=math.inf))
+    right, wrong = sorted(ORDERS, key=lambda order: errors[order])
+    if errors[right] < PROVED and errors[wrong] > DISPROVED:
+        return right
+    shown = ", ".join(f"{errors[order]:.1e} rad off by {order}" for order in ORDERS)
+    raise LagtopError(
+        f"the first row does not prove the order of the quaternion ({shown}): give the order "
+        "(--quaternion wxyz or xyzw)"
+    )

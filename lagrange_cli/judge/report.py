@@ -1,0 +1,124 @@
+"""The report on trajectories: a row for each, and what may be concluded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from ..motion.solve import Motion
+from ..output.findings import Field, Findings, short
+from .files import Request, Session
+from .judgement import KEYS, LIMIT, Judgement
+from .verdict import ANOTHER, DRIFTS, FINE, LOST, OFF
+
+_SHOWN: dict[str, tuple[str, Callable[[Any], str]]] = {
+    "file": ("file", str),
+    "step": ("step", lambda step: f"{step:g}"),
+    "verdict": ("verdict", str),
+    "rows": ("rows", str),
+    "error_max": ("max error", short),
+    "attitude_error_final": ("at the end", short),
+    "theta_error_max": ("theta", short),
+    "phi_error_max": ("phi", short),
+    "psi_error_max": ("psi", short),
+    "theta_drift": ("theta drift", short),
+    "phi_drift": ("phi drift", short),
+    "psi_drift": ("psi drift", short),
+    "norm_drift": ("norm", short),
+    "energy_drift": ("energy", short),
+    "Lz_drift": ("Lz", short),
+    "t_past_1e_3": ("past 1e-3 at", lambda t: f"{t:.4g}"),
+    "lost_at": ("lost at", lambda t: f"{t:.4g}"),
+}
+"""The columns of the table: their headings and how they are shown."""
+_TEXTS = {"file", "verdict", "judged", "explained_by", "quaternion_order"}
+FIELDS = [
+    Field(
+        key,
+        *_SHOWN.get(key, ("", str)),
+        is_text=key in _TEXTS,
+        names_the_row=key == "file",
+    )
+    for key in KEYS
+]
+
+
+def report(motion: Motion, session: Session, request: Request) -> Findings:
+    """Return the report on trajectories."""
+    shown = {key for key in _SHOWN if any(getattr(x, key) is not None for x in session.judgements)}
+    fields = [field if field.key in shown else field._replace(heading="") for field in FIELDS]
+    conclusions = list(_conclusions(session, LIMIT if request.limit is None else request.limit))
+    return Findings(_conditions(motion, session, request), fields, session.judgements, conclusions)
+
+
+def failed(findings: Findings, limit: float | None) -> bool:
+    """Return whether a trajectory is lost, or beyond a limit that was given."""
+    return any(
+        x.lost_at is not None or (limit is not None and not (x.error_max or 0.0) <= limit)
+        for x in findings.rows
+    )
+
+
+def _conditions(motion: Motion, session: Session, request: Request) -> dict[str, str]:
+    period = session.judgements[0].period
+    conditions = {
+        "scene": motion.top.options(),
+        "regime": f"{motion.regime}, period {period}",
+        "errors": f"radians, greatest of all rows; fine up to {request.limit or LIMIT:g}",
+        "drift": "growth of the difference per period, by a fitted line",
+    }
+    for judgement in session.judgements:
+        if judgement.quaternion_order:
+            conditions["quaternion"] = (
+                f"{judgement.quaternion_order}: the first row of {judgement.file} proves it"
+            )
+    return conditions
+
+
+def _conclusions(session: Session, limit: float) -> Iterator[str]:
+    for judgement in session.judgements:
+        yield f"{judgement.file}: {_sentence(judgement, limit)}"
+    found = session.convergence
+    if found is not None:
+        if not found.falls:
+            yield "The error does not fall with the step: this is the motion of another top."
+        elif found.order is not None:
+            yield f"The error falls with the step to the power of {found.order:.2f}."
+        else:
+            yield "The errors are too small or too large to show an order of convergence."
+    yield from _explanations(session.judgements)
+
+
+def _sentence(judgement: Judgement, limit: float) -> str:
+    error = judgement.error_max
+    most = "" if error is None else f"at most {error:.1e} rad off"
+    told = {
+        FINE: f"fine, {most}",
+        DRIFTS: f"drifts, {most}{_drift(judgement)}",
+        OFF: f"off from the start by {judgement.error_start:.1e} rad, {most}",
+        ANOTHER: f"moves like another top, {most}",
+        LOST: f"lost at t = {judgement.lost_at}" + (f", {most} before" if most else ""),
+    }
+    return told[judgement.verdict] + "."
+
+
+def _drift(judgement: Judgement) -> str:
+    drifts = {key: getattr(judgement, f"{key}_drift") for key in ("theta", "phi", "psi")}
+    known = {key: x for key, x in drifts.items() if x is not None}
+    if not known:
+        return ""
+    worst = max(known, key=lambda key: abs(known[key]))
+    return f"; {worst} drifts by {known[worst]:.1e} rad per period"
+
+
+def _explanations(judgements: Sequence[Judgement]) -> Iterator[str]:
+    """Yield what explains the trajectories, of the one that it explains best."""
+    explained = [x for x in judgements if x.explained_by is not None]
+    if explained:
+        best = min(explained, key=lambda x: x.explained_error or 0.0)
+        yield (
+            f"What explains it best: {best.explained_by}; with that undone {best.file} is at most "
+            f"{best.explained_error:.1e} rad off."
+        )
+    elif any(x.verdict in {ANOTHER, OFF} for x in judgements):
+        yield "None of the usual slips explains it."

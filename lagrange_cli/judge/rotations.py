@@ -1,0 +1,147 @@
+"""Rotations as quaternions w, x, y, z along the last axis, which need not be normalised."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arithmetic.types import Array
+
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+HALF_TURN_X = np.array([0.0, 1.0, 0.0, 0.0])
+HALF_TURN_Z = np.array([0.0, 0.0, 0.0, 1.0])
+
+_TO_Z = {
+    "x": np.array([0.5, -0.5, -0.5, -0.5]),
+    "y": np.array([0.5, 0.5, 0.5, 0.5]),
+    "z": IDENTITY,
+}
+"""Cyclic exchanges of the axes that bring one of them to z."""
+
+
+def product(first: Array, second: Array) -> Array:
+    """Return the rotation `second` followed by `first`."""
+    a, b, c, d = (first[..., i] for i in range(4))
+    w, x, y, z = (second[..., i] for i in range(4))
+    parts = (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+    return np.asarray(np.stack(np.broadcast_arrays(*parts), axis=-1), dtype=np.float64)
+
+
+def directed(values: Array) -> Array:
+    """Return quaternions or vectors, those of length 0 as NaN: they have no direction."""
+    length = np.linalg.norm(values, axis=-1, keepdims=True)
+    known: Array = np.where(length > 0, values, np.nan)
+    return known
+
+
+def conjugate(rotation: Array) -> Array:
+    """Return the inverse of a rotation, up to its norm."""
+    inverse: Array = rotation * np.array([1.0, -1.0, -1.0, -1.0])
+    return inverse
+
+
+def angle_between(first: Array, second: Array) -> Array:
+    """Return the angle of the rotation between two, in [0, pi], exact for tiny ones too."""
+    between = product(conjugate(first), second)
+    angle: Array = 2.0 * np.arctan2(np.linalg.norm(between[..., 1:], axis=-1), abs(between[..., 0]))
+    return angle
+
+
+def rotated(rotation: Array, vectors: Array) -> Array:
+    """Return the vectors turned by the rotations."""
+    unit = rotation / np.linalg.norm(rotation, axis=-1, keepdims=True)
+    pure = np.concatenate([np.zeros_like(vectors[..., :1]), vectors], axis=-1)
+    turned: Array = product(product(unit, pure), conjugate(unit))[..., 1:]
+    return turned
+
+
+def about_z(angle: float) -> Array:
+    """Return the rotation by an angle about z."""
+    return np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
+
+
+def to_z(axis: str) -> Array:
+    """Return a rotation that brings an axis (x, -x, y, -y, z or -z) to z."""
+    turn: Array = _TO_Z[axis[-1]]
+    return product(HALF_TURN_X, turn) if axis.startswith("-") else turn
+
+
+def of_angles(theta: Array, phi: Array, psi: Array) -> Array:
+    """Return the rotation from body to space of tilt, spin and precession."""
+    sum_, difference = (psi + phi) / 2, (psi - phi) / 2
+    upper, lower = np.cos(theta / 2), np.sin(theta / 2)
+    parts = [
+        upper * np.cos(sum_),
+        lower * np.cos(difference),
+        lower * np.sin(difference),
+        upper * np.sin(sum_),
+    ]
+    return np.stack(parts, axis=-1)
+
+
+def angles_of(rotation: Array) -> dict[str, Array]:
+    """Return tilt, spin and precession of rotations; the last two may be off by whole turns."""
+    w, x, y, z = (rotation[..., i] for i in range(4))
+    upper, lower = np.arctan2(z, w), np.arctan2(y, x)
+    tilt = 2.0 * np.arctan2(np.hypot(x, y), np.hypot(w, z))
+    return {"theta": tilt, "phi": upper - lower, "psi": upper + lower}
+
+
+def axis_of(rotation: Array) -> Array:
+    """Return where rotations from body to space take the body's z axis."""
+    return rotated(rotation, np.broadcast_to([0.0, 0.0, 1.0], (*rotation.shape[:-1], 3)))
+
+
+def angles_of_axis(axis: Array) -> dict[str, Array]:
+    """Return tilt and precession of a figure axis (sin theta sin psi, -sin theta cos psi, ...)."""
+    x, y, z = (axis[..., i] for i in range(3))
+    return {"theta": np.arctan2(np.hypot(x, y), z), "psi": np.arctan2(x, -y)}
+
+
+def angle_between_vectors(first: Array, second: Array) -> Array:
+    """Return the angle between vectors, in [0, pi], exact for tiny ones too."""
+    across = np.linalg.norm(np.cross(first, second), axis=-1)
+    angle: Array = np.arctan2(across, np.sum(first * second, axis=-1))
+    return angle
+
+
+def within_half_turn(angle: Array) -> Array:
+    """Return the angle brought to (-pi, pi] by whole turns."""
+    brought: Array = angle - np.ceil(angle / (2 * np.pi) - 0.5) * (2 * np.pi)
+    return brought
+
+
+def of_matrix(rows: Array) -> tuple[Array, Array]:
+    """Return the rotations nearest to matrices, given row by row, and how far these are from them.
+
+    The distance is the greatest element of R R^T - 1.  What is no rotation, such as a reflection,
+    is NaN.
+    """
+    from scipy.spatial.transform import Rotation
+
+    matrices = rows.reshape(-1, 3, 3)
+    gram = np.einsum("nij,nkj->nik", matrices, matrices)
+    fault: Array = np.max(np.abs(gram - np.eye(3)), axis=(1, 2))
+    good = np.asarray(np.isfinite(rows).all(axis=1))
+    good[good] = np.linalg.det(matrices[good]) > 0
+    found = np.full((len(rows), 4), np.nan)
+    if good.any():
+        found[good] = Rotation.from_matrix(matrices[good]).as_quat(scalar_first=True)
+    return found, fault
+
+
+def of_euler(sequence: str, angles: Array) -> Array:
+    """Return rotations by three angles about coordinate axes, in scipy's notation of sequences."""
+    from scipy.spatial.transform import Rotation
+
+    return np.asarray(Rotation.from_euler(sequence, angles).as_quat(scalar_first=True))
+
+
+def of_vector(vectors: Array) -> Array:
+    """Return rotations by vectors: each about its direction, by its length."""
+    angle = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.concatenate([np.cos(angle / 2), np.sinc(angle / (2 * np.pi)) / 2 * vectors], axis=1)

@@ -1,0 +1,177 @@
+"""What a trajectory shows of the motion: its quantities, read by their conventions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from . import rotations
+
+ANGLES = ("theta", "phi", "psi")
+ORDERS = ("wxyz", "xyzw")
+FRAMES = ("body", "space")
+
+
+class Conventions(NamedTuple):
+    """How numbers are meant where their names do not say it."""
+
+    quaternion: str | None = None
+    """Order of its parts, `wxyz` or `xyzw`; None for the one that the first row proves."""
+    euler: str = "xyz"
+    """Sequence of axes as scipy writes it: small letters for those of space, large for the body."""
+    rates: str = "body"
+    """Frame of the angular velocity, `body` or `space`."""
+    radians: bool = False
+
+    def checked(self) -> Conventions:
+        """Return the conventions.  Raises LagtopError for one that is not known."""
+        if self.quaternion not in {None, *ORDERS}:
+            _refuse("quaternion_order", "wxyz or xyzw", self.quaternion)
+        if not isinstance(self.euler, str) or not _is_sequence(self.euler):
+            wanted = "three axes, as in xyz (about those of space) or XYZ (of the body)"
+            _refuse("euler_sequence", wanted, self.euler)
+        if self.rates not in FRAMES:
+            _refuse("rates_frame", "body or space", self.rates)
+        return self
+
+
+def _is_sequence(text: str) -> bool:
+    """Return whether a text names three axes of which neighbours differ."""
+    return bool(re.fullmatch(r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})", text))
+
+
+def _refuse(key: str, wanted: str, got: object) -> None:
+    raise LagtopError(f"{key} must be {wanted}, got {got!r}"[:200], key)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The motion at some times, as far as it is given; what is not given is None."""
+
+    t: Array
+    quaternion: Array | None = None
+    """From body to space, shape (n, 4)."""
+    axis: Array | None = None
+    """Figure axis in space, shape (n, 3)."""
+    angles: Mapping[str, Array] = field(default_factory=dict)
+    """Tilt, spin and precession in radians, where only some of them are given."""
+    body_rates: Array | None = None
+    space_rates: Array | None = None
+    norm: Array | None = None
+    """Distance of a quaternion's norm from 1, and the like for matrices and axes."""
+    distance: Array | None = None
+    """Distance of the mass centre from the pivot."""
+
+    def turned(self, space: Array, body: Array) -> Seen:
+        """Return the motion seen from other frames.
+
+        `space` takes the coordinates in space to the new ones, `body` those in the body.
+        """
+        q, axis, rates, fixed = self.quaternion, self.axis, self.body_rates, self.space_rates
+        return replace(
+            self,
+            quaternion=None
+            if q is None
+            else rotations.product(rotations.product(space, q), rotations.conjugate(body)),
+            axis=None if axis is None else rotations.rotated(space, axis),
+            body_rates=None if rates is None else rotations.rotated(body, rates),
+            space_rates=None if fixed is None else rotations.rotated(space, fixed),
+        )
+
+
+Quantities = Mapping[str, Array]
+"""Arrays of shape (n, parts) by the name of the quantity (see `inputs.trajectory_columns`)."""
+
+
+Said = Mapping[str, tuple[str, str | None]]
+"""The convention and the unit of angles that go with the name of a quantity."""
+
+
+def see(given: Quantities, conventions: Conventions, said: Said) -> Seen:
+    """Return what quantities show.  What names say wins over the conventions."""
+    reader = _Reader(given, conventions, said)
+    seen = Seen(given["t"][:, 0], **reader.attitude())
+    return replace(seen, **reader.rates(seen))
+
+
+class _Reader:
+    """Quantities with their conventions."""
+
+    def __init__(self, given: Quantities, conventions: Conventions, said: Said) -> None:
+        self.given, self.conventions, self.said = given, conventions, said
+
+    def attitude(self) -> dict[str, Any]:
+        """Return the attitude, from the first quantity that gives all of it, or most of it."""
+        alone = {key: self.angle(key)[:, 0] for key in ANGLES if key in self.given}
+        if len(alone) == len(ANGLES) and not {"quaternion", "matrix"} & set(self.given):
+            return {"quaternion": rotations.of_angles(**alone)}
+        for key in ("quaternion", "matrix", "euler", "rotvec", "axis"):
+            if key in self.given:
+                found: dict[str, Any] = getattr(self, f"of_{key}")()
+                return found
+        if alone or "position" not in self.given:
+            return {"angles": alone}
+        position = self.given["position"]
+        return {
+            "axis": rotations.directed(position),
+            "distance": np.linalg.norm(position, axis=1),
+        }
+
+    def of_quaternion(self) -> dict[str, Any]:
+        """Return the attitude from a quaternion."""
+        order = self.convention("quaternion", self.conventions.quaternion or ORDERS[0])
+        q = self.given["quaternion"][:, [order.index(part) for part in "wxyz"]]
+        return {"quaternion": rotations.directed(q), "norm": np.linalg.norm(q, axis=1) - 1.0}
+
+    def of_matrix(self) -> dict[str, Any]:
+        """Return the attitude from a matrix."""
+        q, fault = rotations.of_matrix(self.given["matrix"])
+        return {"quaternion": q, "norm": fault}
+
+    def of_euler(self) -> dict[str, Any]:
+        """Return the attitude from three angles about coordinate axes."""
+        sequence = self.convention("euler", self.conventions.euler)
+        return {"quaternion": rotations.of_euler(sequence, self.angle("euler"))}
+
+    def of_rotvec(self) -> dict[str, Any]:
+        """Return the attitude from a rotation vector."""
+        return {"quaternion": rotations.of_vector(self.given["rotvec"])}
+
+    def of_axis(self) -> dict[str, Any]:
+        """Return the figure axis."""
+        axis = self.given["axis"]
+        return {"axis": rotations.directed(axis), "norm": np.linalg.norm(axis, axis=1) - 1.0}
+
+    def rates(self, seen: Seen) -> dict[str, Any]:
+        """Return the angular velocity, in the frame that it is given in."""
+        if "rates" in self.given:
+            frame = self.convention("rates", self.conventions.rates)
+            return {f"{frame}_rates": self.given["rates"]}
+        if "angle_rates" not in self.given or seen.quaternion is None:
+            return {}
+        psi = rotations.angles_of(seen.quaternion)["psi"]
+        nutation, spin, precession = (self.given["angle_rates"][:, i] for i in range(3))
+        rates = rotations.axis_of(seen.quaternion) * spin[:, np.newaxis]
+        rates += np.stack([nutation * np.cos(psi), nutation * np.sin(psi), precession], axis=1)
+        return {"space_rates": rates}
+
+    def convention(self, key: str, other: str) -> str:
+        """Return what the names of a quantity say, or else the other."""
+        return self.said.get(key, ("", None))[0] or other
+
+    def angle(self, key: str) -> Array:
+        """Return angles in radians."""
+        unit = self.said.get(key, ("", None))[1]
+        in_radians = self.conventions.radians if unit is None else unit == "rad"
+        return self.given[key] if in_radians else np.radians(self.given[key])
+
+
+def rows_of(given: Quantities, rows: Sequence[int] | slice | Array) -> dict[str, Array]:
+    """Return some of the rows of all quantities."""
+    return {key: values[cast(Any, rows)] for key, values in given.items()}

@@ -1,0 +1,215 @@
+"""The usual slips: each is undone in turn, and the one that explains an error best is named.
+
+Another slip is one entry of SLIPS, or of `_slips_of_rates` where it needs a start with rates.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..motion.solve import Motion, solve
+from . import rotations
+from .alignment import Alignment
+from .judgement import Given, Hearing, errors_of
+from .rotations import HALF_TURN_X, HALF_TURN_Z
+from .seen import Seen
+
+EXPLAINS = 0.1
+"""The part of the error that may be left where a slip explains it."""
+
+
+class Slip(NamedTuple):
+    """A slip: the top that moved in the place of the one that was meant, or another reading."""
+
+    name: str
+    top: Callable[[Top], Top] | None = None
+    seen: Callable[[Seen], Seen] | None = None
+    wish: Callable[[Alignment], Alignment] | None = None
+    other_unit: bool = False
+    """Whether angles whose names have no unit are in the other one."""
+
+    def reading(self, given: Given) -> Given:
+        """Return the trajectory as it is read without the slip."""
+        conventions = given.conventions
+        if self.other_unit:
+            conventions = conventions._replace(radians=not conventions.radians)
+        wish = given.wish if self.wish is None else self.wish(given.wish)
+        return given._replace(conventions=conventions, wish=wish, change=self.seen)
+
+
+class Explanation(NamedTuple):
+    """The slip that explains a trajectory best."""
+
+    name: str
+    error: float
+    """Greatest error that is left."""
+
+
+def explanation(motion: Motion, hearing: Hearing, given: Given) -> Explanation | None:
+    """Return the slip that leaves the least error in the rows that were kept, if it explains them.
+
+    Rows that are lost do not count.
+    """
+    kept = given._replace(blocks=[hearing.kept], conventions=hearing.conventions)
+    left = [
+        Explanation(slip.name, error)
+        for slip in [*SLIPS, *_slips_of_rates(motion.top)]
+        if (error := _error_without(slip, motion, kept)) is not None
+    ]
+    best = min(left, key=lambda x: x.error, default=None)
+    error = hearing.judgement.error_max
+    return best if best and error and best.error <= EXPLAINS * error else None
+
+
+def _error_without(slip: Slip, motion: Motion, given: Given) -> float | None:
+    """Return the greatest error without a slip, or None for one that cannot be."""
+    try:
+        moved = motion if slip.top is None else solve(slip.top(motion.top))
+        errors = errors_of(moved, slip.reading(given))
+    except LagtopError:
+        return None
+    return None if np.isnan(errors).all() else float(np.nanmax(errors))
+
+
+def _tilt(top: Top) -> float:
+    return float(top.inputs(radians=True)["theta0_rad"])
+
+
+def _moment_moved(sign: int) -> Callable[[Top], Top]:
+    return lambda top: top.replace(
+        A=Fraction(top.A) + sign * Fraction(top.m) * Fraction(top.s) ** 2
+    )
+
+
+def _spin_times(factor: float) -> Callable[[Top], Top]:
+    return lambda top: top.replace(r0=float(top.r0) * factor)
+
+
+def _tilt_of(top: Top, side: int) -> Top:
+    """Return the top whose tilt in degrees counts as radians, on one side of the upright."""
+    angle = math.remainder(math.degrees(_tilt(top)), 2 * math.pi)
+    if angle * side < 0:
+        raise LagtopError("the axis starts on the other side")
+    return top.replace(theta0_rad=abs(angle), thetadot0=side * top.thetadot0)
+
+
+def _upside_down(top: Top) -> Top:
+    """Return the top as it is seen upside down, where gravity points upwards."""
+    tilt = math.pi - _tilt(top)
+    return top.replace(theta0_rad=tilt, psidot0=-top.psidot0, thetadot0=-top.thetadot0)
+
+
+def _turned(space: Array, body: Array) -> Callable[[Seen], Seen]:
+    return lambda seen: seen.turned(space, body)
+
+
+def _with_quaternion(change: Callable[[Array], Array]) -> Callable[[Seen], Seen]:
+    def changed(seen: Seen) -> Seen:
+        q = seen.quaternion
+        return seen if q is None else replace(seen, quaternion=change(q))
+
+    return changed
+
+
+def _exchanged(seen: Seen) -> Seen:
+    """Return what is seen if spin and precession have each other's names."""
+    if seen.quaternion is not None:
+        angles = rotations.angles_of(seen.quaternion)
+        q = rotations.of_angles(angles["theta"], phi=angles["psi"], psi=angles["phi"])
+        return replace(seen, quaternion=q)
+    names = {"theta": "theta", "phi": "psi", "psi": "phi"}
+    return replace(seen, angles={names[key]: x for key, x in seen.angles.items()})
+
+
+def _framed(axis: str = "z", up: str = "z") -> Callable[[Alignment], Alignment]:
+    """Return the alignment with these frames, and with the angles counted from the first row."""
+
+    def aligned(wish: Alignment) -> Alignment:
+        if wish.hides_frames:
+            raise LagtopError("the frames come from the first row")
+        return wish._replace(start=True, axis=axis, up=up)
+
+    return aligned
+
+
+SLIPS = [
+    Slip(
+        "A: the moment about the pivot taken as about the mass centre (A + m s^2)", _moment_moved(1)
+    ),
+    Slip(
+        "A: the moment about the mass centre taken as about the pivot (A - m s^2)",
+        _moment_moved(-1),
+    ),
+    Slip("A and C exchanged", lambda top: top.replace(A=top.C, C=top.A)),
+    Slip("r0 with the wrong sign", _spin_times(-1)),
+    Slip("r0 in radians taken as degrees", _spin_times(math.pi / 180)),
+    Slip("r0 in degrees taken as radians", _spin_times(180 / math.pi)),
+    Slip("r0 in radians taken as turns a minute", _spin_times(math.pi / 30)),
+    Slip("r0 in turns a minute taken as radians", _spin_times(30 / math.pi)),
+    Slip("theta0 in radians taken as degrees", lambda top: top.replace(theta0_deg=_tilt(top))),
+    Slip("theta0 in degrees taken as radians", lambda top: _tilt_of(top, 1)),
+    Slip(
+        "theta0 in degrees taken as radians",
+        lambda top: _tilt_of(top, -1),
+        _turned(HALF_TURN_Z, HALF_TURN_Z),
+    ),
+    Slip("g left out", lambda top: top.replace(g=0)),
+    Slip(
+        "g upwards",
+        _upside_down,
+        _turned(
+            rotations.product(rotations.conjugate(HALF_TURN_Z), HALF_TURN_X),
+            rotations.conjugate(HALF_TURN_Z),
+        ),
+    ),
+    Slip(
+        "the quaternion is the conjugate, from space to body",
+        None,
+        _with_quaternion(rotations.conjugate),
+    ),
+    Slip(
+        "the quaternion is xyzw and was read as wxyz",
+        None,
+        _with_quaternion(lambda q: np.roll(q, 1, 1)),
+    ),
+    Slip(
+        "the quaternion is wxyz and was read as xyzw",
+        None,
+        _with_quaternion(lambda q: np.roll(q, -1, 1)),
+    ),
+    Slip("phi and psi have each other's names", None, _exchanged),
+    Slip("angles in degrees taken as radians, or the reverse", other_unit=True),
+    Slip("spin and precession do not start at 0 (--align start)", wish=_framed()),
+    *(
+        Slip(
+            f"the figure axis is the body's {axis} axis (--align axis={axis},start)",
+            wish=_framed(axis=axis),
+        )
+        for axis in ("x", "y", "-z")
+    ),
+    *(
+        Slip(f"up is the {up} axis of space (--align up={up},start)", wish=_framed(up=up))
+        for up in ("x", "y", "-z")
+    ),
+]
+"""Every slip that any top may suffer."""
+
+
+def _slips_of_rates(top: Top) -> Iterator[Slip]:
+    """Yield the slips of a start that is not at rest."""
+    if top.psidot0:
+        along = Fraction(top.psidot0) * Fraction(math.cos(_tilt(top)))
+        yield Slip("psidot0 with the wrong sign", lambda x: x.replace(psidot0=-x.psidot0))
+        yield Slip("r0 taken as phi'", lambda x: x.replace(r0=Fraction(x.r0) + along))
+        yield Slip("phi' taken as r0", lambda x: x.replace(r0=Fraction(x.r0) - along))
+    if top.thetadot0:
+        yield Slip("thetadot0 with the wrong sign", lambda x: x.replace(thetadot0=-x.thetadot0))
