@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass, fields
 
 from ..inputs.names import check_names
 from ..output.findings import Field, Findings, short
+from ..sweeps.jobs import in_order
 from .battery import (
     CONTRACT,
     DIGITS,
@@ -74,15 +76,24 @@ def chosen_strata(names: Sequence[str] | None) -> list[str]:
     return list(STRATA) if names is None else check_names("strata", names, STRATA)
 
 
-def run_battery(strata: Sequence[str], samples: int, seed: int, steps: Steps) -> Findings:
-    """Return the report on so many scenes of each stratum."""
+def run_battery(
+    strata: Sequence[str], samples: int, seed: int, steps: Steps, jobs: int = 1
+) -> Findings:
+    """Return the report on so many scenes of each stratum, judged by so many processes."""
     cases: dict[str, list[Case]] = {name: [] for name in strata}
-    for name, i in steps([(name, i) for name in strata for i in range(samples)], "scenes"):
-        cases[name].append(judge(hard_scene(name, seed, i, TIMES)))
+    scenes = [(name, seed, i) for name in strata for i in range(samples)]
+    with closing(in_order(judged, scenes, jobs)) as found:
+        for name, _, _ in steps(scenes, "scenes"):
+            cases[name].append(next(found))
     stratum_rows = [stratum_row(name, of_stratum) for name, of_stratum in cases.items()]
     agreement = max(case.agreement for of_stratum in cases.values() for case in of_stratum)
     conditions = _conditions(samples, seed, agreement)
     return Findings(conditions, FIELDS, stratum_rows, _conclusions(stratum_rows))
+
+
+def judged(scene: tuple[str, int, int]) -> Case:
+    """Return what became of a scene: stratum, seed and number."""
+    return judge(hard_scene(*scene, TIMES))
 
 
 def stratum_row(name: str, cases: Sequence[Case]) -> StratumRow:

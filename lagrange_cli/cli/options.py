@@ -182,6 +182,21 @@ def scene_options(command: F) -> F:
     return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml]")(command)
 
 
+def _parse_jobs(text: str) -> int:
+    from ..sweeps.jobs import parse_jobs
+
+    return parse_jobs(text)
+
+
+def jobs_option(command: F) -> F:
+    """Add the option --jobs."""
+    return click.option(
+        "--jobs",
+        type=Parsed("N|auto", _parse_jobs),
+        help="Processes that share the work; auto: one per core.  [default: 1]",
+    )(command)
+
+
 def digits_option(most: int) -> Callable[[F], F]:
     """Add the option --digits, from 1 to `most`."""
 

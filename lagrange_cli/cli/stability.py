@@ -13,6 +13,7 @@ from .options import (
     FILE,
     NAMES,
     exclude,
+    jobs_option,
     output_options,
     write_report,
 )
@@ -42,7 +43,7 @@ class _ListingStrata(ExamplesFirst):
     examples="""
         lagtop stability
         lagtop stability --strata separatrix,thresholds --samples 50
-        lagtop stability --thorough --seed 7 --format csv -o battery.csv
+        lagtop stability --thorough --seed 7 --jobs auto --format csv -o battery.csv
         lagtop stability --plot stability.svg
     """,
 )
@@ -52,6 +53,7 @@ class _ListingStrata(ExamplesFirst):
     "--seed", type=COUNT, default=str(SEED), show_default=True, help="Seed of the random scenes."
 )
 @click.option("--strata", type=NAMES, help="Only these, with commas between.")
+@jobs_option
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
 @click.pass_context
@@ -61,6 +63,7 @@ def command(
     thorough: bool,
     seed: int,
     strata: list[str] | None,
+    jobs: int | None,
     plot: str | None,
     fmt: str,
     output: str,
@@ -83,7 +86,7 @@ def command(
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)
 
     def find() -> Findings:
-        findings = stability.run_battery(chosen, count, seed, with_steps)
+        findings = stability.run_battery(chosen, count, seed, with_steps, jobs or 1)
         if plot:
             draw_stability(findings, plot)
         return findings

@@ -17,6 +17,7 @@ from .options import (
     by_key,
     exclude,
     input_options,
+    jobs_option,
     output_options,
 )
 from .progress import with_count, with_progress
@@ -48,6 +49,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
         lagtop sweep tops.csv --format ndjson -o solved.ndjson
         jq -c .top log.json | lagtop sweep - --keys T_nutation,error
+        lagtop sweep --r0 10:200:1e6 --jobs auto -o tops.csv
         lagtop sweep --r0 10:200:1e5 --parts out
         lagtop sweep --r0 10:200:1e5 --shard $SLURM_ARRAY_TASK_ID/100 --parts out
         lagtop sweep tops.csv --dask local -o solved.csv
@@ -60,11 +62,12 @@ def _parse_shard(text: str) -> tuple[int, int]:
 @click.option(
     "--shard", type=Parsed("I/N", _parse_shard), help="Only every N-th part, from the I-th on."
 )
+@jobs_option
 @click.option(
     "--dask",
     "cluster",
     metavar="ADDRESS|local",
-    help="Compute the parts on a Dask cluster, or on all cores of this machine.",
+    help="Compute the parts on a Dask cluster, or on one of this machine.",
 )
 @click.option(
     "--parts",
@@ -80,6 +83,7 @@ def command(
     keys: list[str] | None,
     fail_fast: bool,
     shard: tuple[int, int] | None,
+    jobs: int | None,
     cluster: str | None,
     folder: str | None,
     fmt: str,
@@ -104,6 +108,7 @@ def command(
     from ..sweeps.parts import Tally, shard_of
     from ..sweeps.plan import plan
 
+    exclude({"--jobs": jobs, "--dask": cluster})
     exclude({"--parts": folder, "--output": None if output == "-" else output})
     if folder is not None and fmt == "json":
         raise LagtopError("--format json is one array: with --parts take csv or ndjson")
@@ -126,7 +131,7 @@ def command(
     if folder is not None:
         parts_folder = Folder(folder, todo.sweep, todo.description)
         blocks = parts_folder.missing(blocks, tally)
-    with computed(todo.sweep, blocks, cluster) as parts:
+    with computed(todo.sweep, blocks, cluster, jobs or 1) as parts:
         passing = tally.until_error(parts, ended=to_stdout) if fail_fast else tally.passing(parts)
         if todo.size:
             share = todo.size // (shard or (1, 1))[1]

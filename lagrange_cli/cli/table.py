@@ -21,6 +21,7 @@ from .options import (
     by_key,
     digits_option,
     exclude,
+    jobs_option,
     output_options,
     scene_options,
     solved,
@@ -44,7 +45,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
         lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
         lagtop table --t-min -5 --t-max 5 --n 1e6 --rad -o angles.csv
         lagtop table --t-max 1 --columns t,axis,energy
-        lagtop table --tops tops.csv --t-max 1 --n 11
+        lagtop table --tops tops.csv --t-max 1 --n 11 --jobs auto
         seq 0 0.25 2 | lagtop table --times - --format json
     """,
 )
@@ -71,6 +72,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
     metavar="FILE|-",
     help="A table of each top in a file, CSV or JSON lines as for `sweep`, one after the other.",
 )
+@jobs_option
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("csv", "json", "table")
@@ -84,6 +86,7 @@ def command(
     times: str | None,
     columns: list[str] | None,
     tops: str | None,
+    jobs: int | None,
     wrap: bool,
     digits: int | None,
     fmt: str,
@@ -97,10 +100,12 @@ def command(
     precession count on from 0 at t = 0 unless --wrap.  The times are t-min + i dt, each rounded
     once.
     """
-    from ..motion.table import DEFAULT_COLUMNS
+    from ..motion.table import DEFAULT_COLUMNS, DEFAULT_ROWS
 
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})
+    if jobs is not None and tops is None:
+        raise LagtopError("--jobs shares out many tops: it needs --tops")
     exclude({"--tops": tops, "--digits": digits})
     stdin = {"--tops -": tops, "--times -": times}
     exclude({name: True if path == "-" else None for name, path in stdin.items()})
@@ -113,6 +118,8 @@ def command(
         DEFAULT_COLUMNS if columns is None else columns,
         rad,
         wrap,
+        jobs or 1,
+        count or (None if dt or times else DEFAULT_ROWS),
     )
     if tops is None:
         _write_one(solved(scene, rad, digits is not None, options), wish, digits, fmt, output)
@@ -129,6 +136,9 @@ class Wish(NamedTuple):
     columns: Sequence[str]
     radians: bool
     wrap: bool
+    jobs: int
+    rows_per_top: int | None
+    """Their number, where the options tell it."""
 
 
 def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion], Points] | None:
@@ -143,8 +153,11 @@ def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion],
     file = TimesFile(times)
     if tops is None and fmt != "table":
         return lambda _: file
-    listed = file.listed(None if tops is not None else MAX_TABLE_ROWS + 1)
-    return lambda _: listed
+    return partial(_same, file.listed(None if tops is not None else MAX_TABLE_ROWS + 1))
+
+
+def _same(times: Points, _: Motion) -> Points:
+    return times
 
 
 def _grid(motion: Motion, **interval: Any) -> Points:
@@ -169,10 +182,17 @@ def _write_many(tops: str, shared: Mapping[str, float], wish: Wish, fmt: str, ou
     from ..sweeps.parts import Tally
     from ..sweeps.tables import open_tables
 
-    tables = open_tables(
-        tops, shared, wish.columns, wish.times, radians=wish.radians, wrap=wish.wrap, fmt=fmt
+    tables, lines = open_tables(
+        tops,
+        shared,
+        wish.columns,
+        wish.times,
+        radians=wish.radians,
+        wrap=wish.wrap,
+        fmt=fmt,
+        rows_per_top=wish.rows_per_top,
     )
     tally = Tally()
-    texts = (part.text for part in tally.passing(tables.parts()))
+    texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))
     write_text_blocks(fmt, tables.header, with_count(texts, "blocks"), output)
     tally.check()

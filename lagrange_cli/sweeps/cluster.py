@@ -1,4 +1,4 @@
-"""Where the parts of a sweep are computed: in this process or on a Dask cluster."""
+"""Where the parts of a sweep are computed: here, by several processes or by a Dask cluster."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ import signal
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from itertools import chain, repeat
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
 from ..errors import LagtopError, UnavailableError
+from .jobs import in_order
 from .parts import NumberedBlock, Part, Sweep
 
 if TYPE_CHECKING:
@@ -29,15 +30,18 @@ _BETWEEN_LOOKS = 1.0
 
 @contextmanager
 def computed(
-    sweep: Sweep, blocks: Iterable[NumberedBlock], address: str | None
+    sweep: Sweep, blocks: Iterable[NumberedBlock], address: str | None, jobs: int = 1
 ) -> Iterator[Iterator[Part]]:
-    """Yield the parts in their order, made here or on a Dask cluster (its address, or `local`).
+    """Yield the parts in their order, made by so many processes, or by a Dask cluster.
+
+    The address of a cluster may be `local`, for one of its own.
 
     Raises UnavailableError for a cluster that cannot be reached, has no worker, or whose workers
     have no lagtop or another version of it; LagtopError for an address that is none.
     """
     if address is None:
-        yield map(sweep.part, blocks)
+        with closing(in_order(sweep.part, blocks, jobs)) as parts:
+            yield parts
         return
     client = _client(address)
     try:

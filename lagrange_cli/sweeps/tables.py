@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -15,16 +16,18 @@ from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.solve import Motion, solve
 from ..motion.table import headings, rows
 from ..output.write import block_text
+from .jobs import in_order
 from .parts import Part
 
 _TOPS_AT_ONCE = 64
+_ROWS_PER_TASK = 10_000
+"""Rows that are worth the way to another process."""
 
 
 class Tables(NamedTuple):
     """What to do with every top of a file."""
 
     source: TopsFile
-    lines: Iterator[Lines]
     shared: Mapping[str, float]
     """Inputs of all tops that have none of their own."""
     columns: Sequence[str]
@@ -40,11 +43,19 @@ class Tables(NamedTuple):
         carried = self.source.carried or ["line"]
         return [*carried, *headings(self.columns, radians=self.radians), "error"]
 
-    def parts(self) -> Iterator[Part]:
+    def parts(self, lines: Lines) -> Iterator[Part]:
         """Yield blocks of rows as text; a top that has no table has one row with its error."""
-        for lines in self.lines:
-            for row in lines.rows():
-                yield from self._table(row)
+        for row in lines.rows():
+            yield from self._table(row)
+
+    def listed(self, lines: Lines) -> list[Part]:
+        """Return the parts of some lines together, as another process has to."""
+        return list(self.parts(lines))
+
+    def computed(self, lines: Iterable[Lines], jobs: int) -> Iterator[Part]:
+        """Yield the parts of all lines in their order, computed by so many processes."""
+        work = self.parts if jobs == 1 else self.listed
+        return chain.from_iterable(in_order(work, lines, jobs))
 
     def _table(self, row: TopRow) -> Iterator[Part]:
         try:
@@ -77,7 +88,13 @@ def open_tables(
     radians: bool,
     wrap: bool,
     fmt: str,
-) -> Tables:
-    """Return the tables of the tops in a file.  Raises LagtopError if it cannot be read."""
-    source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], _TOPS_AT_ONCE)
-    return Tables(source, lines, shared, columns, times, radians, wrap, fmt)
+    rows_per_top: int | None = None,
+) -> tuple[Tables, Iterator[Lines]]:
+    """Return the tables of the tops in a file, and its lines a few at a time.
+
+    They are fewer where a top has many rows, or nobody knows how many.  Raises LagtopError if the
+    file cannot be read.
+    """
+    at_once = 1 if not rows_per_top else min(max(_ROWS_PER_TASK // rows_per_top, 1), _TOPS_AT_ONCE)
+    source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
+    return Tables(source, shared, columns, times, radians, wrap, fmt), lines
