@@ -49,7 +49,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
         lagtop sweep tops.csv --format ndjson -o solved.ndjson
         jq -c .top log.json | lagtop sweep - --keys T_nutation,error
-        lagtop sweep --r0 10:200:1e6 --jobs auto -o tops.csv
+        lagtop sweep --r0 10:200:1e5 --jobs auto -o solved.csv
         lagtop sweep --r0 10:200:1e5 --parts out
         lagtop sweep --r0 10:200:1e5 --shard $SLURM_ARRAY_TASK_ID/100 --parts out
         lagtop sweep tops.csv --dask local -o solved.csv
