@@ -105,9 +105,12 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
 
 def gaps_of(ar: Arithmetic[R], facts: Facts, state: State[R]) -> Gaps[R]:
     """Return the gaps of any top."""
-    if facts.at_rest and not (facts.steady or facts.regime == "separatrix"):
-        return gaps_from_rest(ar, state)
-    return gaps_from_start(ar, state, facts)
+    return gaps_from_rest(ar, state) if released(facts) else gaps_from_start(ar, state, facts)
+
+
+def released(facts: Facts) -> bool:
+    """Return whether a top starts at rest and falls, so that nothing cancels in its gaps."""
+    return facts.at_rest and not (facts.steady or facts.regime == "separatrix")
 
 
 def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:

@@ -16,7 +16,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from .columns import COLUMNS, Chosen, need_rate
 from .samplers import Attitude
-from .solve import Motion
+from .solve import SAMPLER_DIGITS, Motion
 
 
 class ColumnConstants(NamedTuple):
@@ -41,7 +41,7 @@ class ColumnConstants(NamedTuple):
 
 def column_constants(motion: Motion) -> ColumnConstants:
     """Return the constants of a motion, rounded from many digits."""
-    kind = motion.settled_kind(30)
+    kind = motion.settled_kind(SAMPLER_DIGITS)
     state, gaps, top = kind.state, kind.gaps, motion.top
     with kind.ar.working():
         around = state.psi_rate * state.sin

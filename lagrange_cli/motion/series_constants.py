@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .kinds import Constant, Nutating, Separatrix
     from .samplers import ConstantSampler, SeparatrixSampler, ThetaSampler
 
-_NEGLIGIBLE = 2.0**-60
+_NEGLIGIBLE = Decimal(2) ** -60
 
 
 class Attitude(NamedTuple, Generic[R]):
@@ -211,7 +211,7 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
             max_time=float(int(MAX_PERIODS) * c.period),
             scale=float(series.scale),
             hyperbolic=series.hyperbolic,
-            frames=[_rounded(frame, series) for frame in frames],
+            frames=[_rounded(ar, frame, series) for frame in frames],
             growths=growths(
                 ar,
                 rates=(motion.mean_spin_rate, motion.mean_precession_rate),
@@ -261,19 +261,20 @@ def _reach(rate: Decimal) -> float:
     return float(int(MAX_PERIODS) / rate) if rate else float("inf")
 
 
-def _rounded(frame: Frame, series: Series) -> Frame:
+def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
     """Return the frame in doubles, without the coefficients that are too small to matter."""
+    # sin^2 and sinh^2 are at most this where a step ends, half of `scale` from its middle
+    greatest = ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
 
     def component(c: Component) -> Component:
-        real, imag = (_trimmed(x, series.hyperbolic) for x in (c.real, c.imag))
-        return Component(real, imag, c.even)
+        return Component(_trimmed(c.real, greatest), _trimmed(c.imag, greatest), c.even)
 
-    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, series.hyperbolic))
+    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, greatest))
 
 
-def _trimmed(polynomial: Polynomial, hyperbolic: bool) -> Polynomial:
-    kept = [float(coefficient) for coefficient in polynomial]
-    smallest = 0.0 if hyperbolic else _NEGLIGIBLE * abs(kept[0])
-    while len(kept) > 2 and abs(kept[-1]) <= smallest:
+def _trimmed(polynomial: Polynomial, greatest: Decimal) -> Polynomial:
+    """Return the coefficients that matter beside the first, up to the greatest argument."""
+    kept, least = list(polynomial), _NEGLIGIBLE * abs(polynomial[0])
+    while len(kept) > 2 and abs(kept[-1]) * greatest ** (len(kept) - 1) <= least:
         del kept[-1]
-    return kept
+    return [float(coefficient) for coefficient in kept]

@@ -12,7 +12,7 @@ from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, 
 from ..arithmetic.decimals import decimals
 from ..errors import LagtopError
 from ..inputs.top import Top
-from .gaps import agree, are_told_apart, gaps_of, state
+from .gaps import agree, are_told_apart, gaps_of, released, state
 from .kinds import Kind, kind_of
 from .record import NUMBER_KEYS, all_keys, number_key, record_keys, requested_keys, unit_name
 from .regime import Exact, Regime, exact
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from .samplers import Angles, Sampler
 
 T = TypeVar("T")
+
+SAMPLER_DIGITS = 40
+"""Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
 
 
 def solve(top: Top) -> Motion:
@@ -229,9 +232,12 @@ class Motion:
                 kind = self.kind(working)
             except (TooFewDigitsError, InvalidOperation, DivisionByZero):
                 continue
-            with kind.ar.working():
-                if previous is not None and agree(kind.gaps, previous.gaps, digits):
-                    return kind
+            if released(self.exact.facts):
+                return kind
+            if previous is not None:
+                with kind.ar.working():
+                    if agree(kind.gaps, previous.gaps, digits):
+                        return previous
             previous = kind
         raise LagtopError("the roots of the cubic cannot be told apart")
 
@@ -274,7 +280,7 @@ class Motion:
     def sampler(self) -> Sampler:
         """Return the series behind `angles`, made once."""
         if self._sampler is None:
-            self._sampler = self.settled_kind(48).sampler()
+            self._sampler = self.settled_kind(SAMPLER_DIGITS).sampler()
         return self._sampler
 
 

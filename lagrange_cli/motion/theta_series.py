@@ -13,6 +13,7 @@ all four families by one recurrence; sinh and cosh are the same with s -> -sinh^
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..arithmetic.protocol import SeriesArithmetic, Value
@@ -23,12 +24,10 @@ TERMS = 4
 Polynomial = list[Any]
 """Coefficients in s, the lowest power first."""
 
-_COS_ODD, _SIN_ODD, _COS_EVEN, _SIN_EVEN = (
-    ([1], [1, -4]),
-    ([1], [3, -4]),
-    ([1], [1, -2]),
-    ([0], [2]),
-)
+Family = tuple[tuple[int, ...], tuple[int, ...]]
+"""The first two of a family of polynomials in s, which give the others."""
+_COS_ODD, _SIN_ODD = ((1,), (1, -4)), ((1,), (3, -4))
+_COS_EVEN, _SIN_EVEN = ((1,), (1, -2)), ((0,), (2,))
 
 
 class Component(NamedTuple):
@@ -144,8 +143,10 @@ def _circular_components(
     ar: SeriesArithmetic[Any], weights: list[Value], y: Value, size: Value, sign: int
 ) -> Components:
     """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0."""
-    cosh = [w * ar.cosh((2 * n + 1) * y) for n, w in enumerate(weights)]
-    sinh = [w * ar.sinh((2 * n + 1) * y) for n, w in enumerate(weights)]
+    sinh = ar.sinh(y)
+    first = ar.sqrt(1 + sinh * sinh), sinh
+    odd = _multiples(first, _doubled(*first, -1), -1, len(weights))
+    cosh, sinh = ([w * x for w, x in zip(weights, part, strict=True)] for part in odd)
     unit = size / sum(cosh)
     return (
         Component(_sum(_COS_ODD, 1, unit, cosh), _sum(_SIN_ODD, 1, sign * unit, sinh)),
@@ -154,6 +155,26 @@ def _circular_components(
             _sum(_SIN_ODD, 1, sign * unit, _alternate(cosh)),
         ),
     )
+
+
+def _doubled(cos: Value, sin: Value, curvature: int) -> tuple[Value, Value]:
+    """Return cosine and sine of twice an angle, or the hyperbolic ones for a curvature of -1."""
+    return 1 - 2 * curvature * sin * sin, 2 * sin * cos
+
+
+def _multiples(
+    first: tuple[Value, Value], step: tuple[Value, Value], curvature: int, count: int
+) -> tuple[list[Value], list[Value]]:
+    """Return cosines and sines of first, first + step, first + 2 step ..., by those of both.
+
+    A factor that all the sines, or all the cosines, have in common keeps its digits.
+    """
+    cosines, sines = [first[0]], [first[1]]
+    for _ in range(count - 1):
+        c, s = cosines[-1], sines[-1]
+        cosines.append(c * step[0] - curvature * s * step[1])
+        sines.append(s * step[0] + c * step[1])
+    return cosines, sines
 
 
 def _weights(q: Value, terms: int) -> list[Value]:
@@ -170,10 +191,15 @@ def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
     ar: SeriesArithmetic[Any], even: list[Value], odd: list[Value], v: Value, sign: int, size: Value
 ) -> Components:
     """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h."""
-    cos_even = _alternate([w * ar.cos(2 * n * v) for n, w in enumerate(even)])
-    sin_even = _alternate([w * ar.sin(2 * n * v) for n, w in enumerate(even)])
-    cos_odd = _alternate([w * ar.cos((2 * n + 1) * v) for n, w in enumerate(odd)])
-    sin_odd = _alternate([w * ar.sin((2 * n + 1) * v) for n, w in enumerate(odd)])
+    first = ar.cos(v), ar.sin(v)
+    step, none = _doubled(*first, 1), (1 + 0 * v, 0 * v)
+    (cos_even, sin_even), (cos_odd, sin_odd) = (
+        [_alternate([w * x for w, x in zip(weights, part, strict=True)]) for part in multiples]
+        for weights, multiples in (
+            (even, _multiples(none, step, 1, len(even))),
+            (odd, _multiples(first, step, 1, len(odd))),
+        )
+    )
     unit = size / sum(cos_even)
     return (
         Component(
@@ -195,17 +221,22 @@ def _alternate(terms: list[Value]) -> list[Value]:
     return [-term if n % 2 else term for n, term in enumerate(terms)]
 
 
-def _sum(
-    family: tuple[list[int], list[int]], curvature: int, unit: Value, weights: list[Value]
-) -> Polynomial:
-    """Return a weighted sum of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
+def _sum(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Polynomial:
+    """Return a weighted sum of the polynomials of a family, times a unit."""
     total: Polynomial = [0 * unit] * len(weights)
-    power, following = family
-    for weight in weights:
-        for i, coefficient in enumerate(power):
-            total[i] += unit * weight * coefficient * curvature**i
-        power, following = following, _next(power, following)
-    return total
+    for weight, polynomial in zip(weights, _polynomials(family, len(weights)), strict=True):
+        for i, coefficient in enumerate(polynomial):
+            total[i] += weight * coefficient
+    return [unit * x if i % 2 == 0 else curvature * unit * x for i, x in enumerate(total)]
+
+
+@lru_cache(maxsize=64)
+def _polynomials(family: Family, count: int) -> list[list[int]]:
+    """Return the first polynomials in s of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
+    found = [list(polynomial) for polynomial in family]
+    while len(found) < count:
+        found.append(_next(*found[-2:]))
+    return found[:count]
 
 
 def _next(previous: list[int], current: list[int]) -> list[int]:
