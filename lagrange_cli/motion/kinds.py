@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -23,7 +24,32 @@ class Nutating(SpinPrecession[R]):
     """A top whose tilt goes to and fro between u1 and u2."""
 
     lacks: frozenset[str] = frozenset()
-    remark: str | None = None
+
+    def remark(self: Nutating[Decimal], *, radians: bool = False) -> str | None:
+        """Return what there is to say of a fast top, with its nutation in degrees or `radians`."""
+        if not self.facts.fast:
+            return None
+        numbers = (self.nodding, self.T_nutation, self.elementary_rate, self.excess)
+        nodding, *others = map(float, numbers)
+        return fast_remark(nodding if radians else math.degrees(nodding), *others, radians=radians)
+
+    @quantity
+    def nodding(self) -> R:
+        """The greatest nutation theta_max - theta_min in radians, without a difference."""
+        ar, gaps = self.ar, self.gaps
+        across = ar.sqrt(gaps.above_u2 * gaps.below_u1) + ar.sqrt(gaps.below_u2 * gaps.above_u1)
+        along = ar.sqrt(gaps.below_u1 * gaps.below_u2) + ar.sqrt(gaps.above_u1 * gaps.above_u2)
+        return 2 * ar.atan2(2 * gaps.u1_u2 / across, along)
+
+    @quantity
+    def elementary_rate(self) -> R:
+        """The rate mgs/(C r0) = a/2b of the precession by the elementary theory of fast tops."""
+        return self.state.a / (2 * self.state.b)
+
+    @quantity
+    def excess(self) -> R:
+        """How far the mean precession (7,3) exceeds the elementary rate, relative to that."""
+        return self.mean_precession_rate / self.elementary_rate - 1
 
     def spinor(self: Nutating[Decimal]) -> Spinor[Decimal]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
@@ -44,9 +70,8 @@ class Constant(Moduli[R]):
     lacks = frozenset("amplitude_deg alpha u_quarter spin_rate_half precession_rate_half".split())
     path: str | None = None
 
-    @property
-    def remark(self) -> str | None:
-        """Nothing to add."""
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return None: there is nothing to add."""
         return None
 
     @quantity
@@ -124,9 +149,8 @@ class Vertical(Constant[R]):
         "mean_precession_rate precession_rate_start T_precession".split()
     )
 
-    @property
-    def remark(self) -> str | None:
-        """Which angles have a meaning, and whether the motion is stable."""
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return which angles have a meaning, and whether the motion is stable."""
         return vertical_remark(self.facts.regime, bool(self.facts.stable))
 
 
@@ -138,6 +162,22 @@ def vertical_remark(regime: Regime, stable: bool) -> str:
     return f"only phi + psi is defined; {word} (lambda = b^2/2a {sign} 1)"
 
 
+def fast_remark(
+    nodding: float, period: float, elementary: float, excess: float, *, radians: bool
+) -> str:
+    """Return what a pseudo-regular precession is in numbers.
+
+    `nodding` is the greatest nutation in degrees or radians, `excess` how far the mean precession
+    exceeds the elementary rate, relative to that.
+    """
+    parts = round(excess * 1e6)
+    mean = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}"
+    return (
+        f"pseudo-regular precession: nods by {nodding:.3g} {'rad' if radians else 'deg'} in "
+        f"{period:.3g} time; its mean is {mean} mgs/(C r0) = {elementary:.3g} rad/time"
+    )
+
+
 class Separatrix(SpinPrecession[R]):
     """The swing up to the vertical in infinite time: u1 = u3 = 1, k = 1."""
 
@@ -145,7 +185,10 @@ class Separatrix(SpinPrecession[R]):
         "amplitude_deg alpha K T_nutation T_spin T_precession u_quarter mean_spin_rate "
         "mean_precession_rate spin_rate_half precession_rate_half".split()
     )
-    remark = "rises to the vertical in infinite time"
+
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return what becomes of the top."""
+        return "rises to the vertical in infinite time"
 
     @quantity
     def m(self) -> R:

@@ -69,8 +69,7 @@ class Motion:
     @property
     def remark(self) -> str | None:
         """One line on what is special about the motion, or None."""
-        remark: str | None = self._settled_kind.remark
-        return remark
+        return self._settled_kind.remark()
 
     def __getattr__(self, name: str) -> Any:
         """Return a number by its key, a float, or None where the motion has none."""
@@ -148,7 +147,10 @@ class Motion:
             shown = unit_name(name, radians=radians)
             if shown in wanted:
                 values[shown] = number(name, radians)
-        values |= {name: getattr(self, name) for name in wanted & {"path", "remark"}}
+        if "path" in wanted:
+            values["path"] = self.path
+        if "remark" in wanted:
+            values["remark"] = self._settled_kind.remark(radians=radians)
         return {name: values[name] for name in names if name in wanted}
 
     def _double_in(self, name: str, radians: bool) -> float | None:

@@ -9,6 +9,7 @@ an invalid one gets an `error` and no numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,8 +21,8 @@ from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion import record as motion_record
 from ..motion.gaps import gaps_of
-from ..motion.kinds import kind_of, vertical_remark
-from ..motion.regime import Facts, Regime
+from ..motion.kinds import fast_remark, kind_of, vertical_remark
+from ..motion.regime import FAST, Facts, Regime
 from ..motion.solve import solve
 from .start_arrays import StartArrays
 from .top_arrays import TopArrays
@@ -153,13 +154,28 @@ class _Block:
             value = None if name in motion.lacks else getattr(motion, name)
             if value is not None:
                 self.columns[key][chosen] = np.radians(value) if key != name else value
-        remarks: list[str] | None = None
+        remarks: Sequence[str | None] | None = None
         if regime in {Regime.SLEEPING, Regime.HANGING}:
             remarks = [vertical_remark(regime, stable) for stable in state.sleep >= 0]
+        elif regime is Regime.REGULAR and "remark" in self.texts:
+            remarks = self._fast_remarks(tops, motion)
         path = "cusped" if regime is Regime.REGULAR else None
         for key, texts in (("regime", regime.value), ("path", path), ("remark", remarks)):
             if key in self.texts:
                 self.columns[key][chosen] = texts
+
+    def _fast_remarks(self, tops: TopArrays, motion: Any) -> list[str | None]:
+        """Return what `solve` says of each pseudo-regular precession among tops."""
+        remarks: list[str | None] = [None] * tops.m.size
+        rows = np.flatnonzero(motion.b * motion.b > 0.99 * FAST * motion.a)
+        rows = rows[tops.part(rows).fast()] if rows.size else rows
+        if rows.size:
+            nodding = motion.nodding if self.radians else np.degrees(motion.nodding)
+            quantities = nodding, motion.T_nutation, motion.elementary_rate, motion.excess
+            numbers = (x[rows].tolist() for x in quantities)
+            for row, *found in zip(rows.tolist(), *numbers, strict=True):
+                remarks[row] = fast_remark(*found, radians=self.radians)
+        return remarks
 
     def fill_moving(self, left: Mask) -> Mask:
         """Fill rows that start with other rates as far as they can be trusted; return the rest."""

@@ -14,7 +14,7 @@ from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.types import Array, Mask
 from ..inputs.top import Tilt
 from ..motion.gaps import State
-from ..motion.regime import Regime, regimes
+from ..motion.regime import FAST, Regime, regimes
 
 _LARGE, _SMALL = 1e30, 1e-30
 """Between these sizes no formula leaves the range of doubles."""
@@ -140,6 +140,13 @@ class TopArrays(NamedTuple):
             theta_rate=zero,
             psi_rate=zero,
         )
+
+    def fast(self) -> Mask:
+        """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
+        m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
+        b, threshold = C * r0 / A, DoubleDouble(np.full_like(self.m, float(FAST)))
+        fast: Mask = (b * b - (m * g * s / A).scaled(2) * threshold).high >= 0
+        return fast
 
     def tilt(self) -> Tilt[Array]:
         """Return sines and cosines of theta0 and theta0/2, each with full relative accuracy."""

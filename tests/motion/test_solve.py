@@ -219,3 +219,40 @@ def test_regimes_that_do_not_nutate_by_their_numbers() -> None:
         "only phi + psi is defined; unstable"
     )
     assert solve(Top(r0=0.0)).path is None
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("tilt", [1.0, 30.0, 90.0, 179.0])
+def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
+    """The threshold is (C r0)^2 = 100 A m g s, to the last bit; the numbers are the oracle's."""
+    unit = {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": 1.0, "theta0_deg": tilt}
+    assert solve(Top(**unit, r0=sign * math.nextafter(10.0, 0.0))).remark is None
+    for r0 in (10.0, 400.0):
+        constants = oracle.constants(oracle.Scene(**unit, r0=sign * r0))
+        with mpmath.workdps(40):
+            nods = mpmath.degrees(mpmath.acos(constants["u2"])) - tilt
+            rate = mpmath.mpf(sign) / mpmath.mpf(r0)
+            parts = int(mpmath.nint((constants["mean_precession_rate"] / rate - 1) * 10**6))
+        period, where = float(constants["T_nutation"]), "below" if parts < 0 else "above"
+        assert abs(parts) < 10_300
+        assert 0 < nods < 1.15
+        assert solve(Top(**unit, r0=sign * r0)).remark == (
+            f"pseudo-regular precession: nods by {float(nods):.3g} deg in {period:.3g} time; its "
+            f"mean is {abs(parts)} ppm {where} mgs/(C r0) = {float(rate):.3g} rad/time"
+        )
+
+
+@pytest.mark.parametrize(
+    "start", [{"r0": 50.0}, {"r0": 1000.0, "psidot0": 0.1}, {"r0": 1000.0, "g": 0.0}, {"r0": 0.0}]
+)
+def test_other_precessions_are_not_pseudo_regular(start: dict[str, float]) -> None:
+    assert "pseudo" not in (solve(Top(**start)).remark or "")
+
+
+def test_the_remark_is_in_radians_where_the_record_is() -> None:
+    top = Top(r0=1000.0)
+    keys = ["remark"]
+    degrees, radians = (solve(top).record(radians=x, keys=keys)["remark"] for x in (False, True))
+    nods, nods_in_radians = (float(text.split()[4]) for text in (degrees, radians))
+    assert (" deg in " in degrees, " rad in " in radians) == (True, True)
+    assert math.radians(nods) == pytest.approx(nods_in_radians, rel=0.01)

@@ -532,3 +532,21 @@ def test_arrays_that_are_no_real_numbers(values: Any, message: str) -> None:
 )
 def test_arrays_of_many_types(values: Any) -> None:
     assert sweep(r0=values, keys=["r0"])["r0"].tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("radians", [False, True])
+def test_remarks_of_fast_tops_are_those_of_solve(radians: bool) -> None:
+    """On both sides of (C r0)^2 = 100 A m g s, and a million times beyond it."""
+    r0 = [10.0, math.nextafter(10.0, 0.0), -10.0, 9.0, 11.0, -37.5, 1e3, 1e6, -1e9, 0.0]
+    tilts = np.array([[0.0, 0.01, 30.0, 90.0, 150.0, 180.0]]).T
+    unit = {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": 1.0}
+    keys = ["remark", "error"]
+    columns = sweep(**unit, r0=r0, theta0_deg=tilts, keys=keys, radians=radians)
+    assert not columns["error"].any()
+    told = 0
+    for i, j in np.ndindex(*columns["remark"].shape):
+        motion = solve(Top(**unit, r0=r0[j], theta0_deg=float(tilts[i, 0])))
+        record = motion.record(keys=["remark"], radians=radians)
+        assert columns["remark"][i, j] == record["remark"], (i, j)
+        told += "pseudo" in (record["remark"] or "")
+    assert told == 7 * 4
