@@ -6,6 +6,7 @@ Arb's arithmetic-geometric mean, and Omega and Pi from their definitions.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -111,3 +112,120 @@ def units(computed: float, exact: Exact, *, with_v: bool) -> float:
     error = abs(ball(computed) - exact.value)
     assert float(error.rad()) < 1e-3 * EPS * unit, "the judge needs more bits"
     return float(error.mid()) / (EPS * unit)
+
+
+class ComplexJudge:
+    """The functions of complex numbers and of any modulus: real, imaginary or above 1.
+
+    Theta functions are Arb's at the tau = iK'/K of the modulus itself, which is not brought into
+    [0, 1], and sn, cn, dn are their quotients.
+    """
+
+    def __init__(self, k: complex, bits: int = 700) -> None:
+        ctx.prec = self.bits = bits
+        m = ball(k.real) ** 2 - ball(k.imag) ** 2
+        complement = acb(1 - m).sqrt()
+        self.K = acb(arb.pi()) / 2 / acb(1).agm(complement)
+        self.K_prime = acb(arb.pi()) / 2 / acb(1).agm(acb(m).sqrt())
+        if self.K_prime.imag > 0:  # on its cut, where both sides are as good
+            self.K_prime = self.K_prime.conjugate()
+        self.tau = acb(0, 1) * self.K_prime / self.K
+        self.large = k.real > 1
+        self.real_period = 2 * self.K if not self.large else acb(2 * self._inner(m)[0])
+        self.imag_period = 2 * self._inner(m)[1]
+
+    def _inner(self, m: Any) -> tuple[Any, Any]:
+        """Return the half periods of all functions along the axes, by the squares of theta."""
+        real = arb.pi() / 2 / _agm((1 - m).sqrt()) if m < 1 else self.K.real
+        if m < 0:
+            return real, self.K_prime.real
+        return real, self.K_prime.real
+
+    def theta(self, ij: str, z: Any, order: int = 0) -> Any:
+        """Return Theta_ij or a derivative of it."""
+        value = (z / (2 * self.K)).modular_theta(self.tau, order)[INDEX[ij]]
+        return value / (2 * self.K) ** order
+
+    def zeta(self, ij: str, z: Any) -> tuple[Any, Any]:
+        """Return Z_ij, and its derivative."""
+        value, slope, bend = (self.theta(ij, z, order) for order in range(3))
+        ratio = slope / value
+        return ratio, bend / value - ratio * ratio
+
+    def rest(self, u: Any) -> Any:
+        """Return a number less whole periods along both axes."""
+        half, period = ball(Fraction(1, 2)), self.real_period.real
+        real = u.real - period * (u.real / period + half).floor()
+        imag = u.imag - self.imag_period * (u.imag / self.imag_period + half).floor()
+        return acb(real, imag)
+
+    def jacobi(self, z: Any) -> tuple[Any, Any, Any]:
+        """Return sn, cn, dn."""
+        one, two, three, four = (z / (2 * self.K)).modular_theta(self.tau)
+        zero: Any = acb(0)
+        _, at_2, at_3, at_4 = zero.modular_theta(self.tau)
+        return (
+            at_3 * one / (at_2 * four),
+            at_4 * two / (at_2 * four),
+            at_4 * three / (at_3 * four),
+        )
+
+    def columns(self, u: complex, v: complex | None) -> Iterator[tuple[str, Exact]]:
+        """Yield every function by its column; of logarithms there are several, i pi apart."""
+        ctx.prec = self.bits
+        z = acb(ball(u.real), ball(u.imag))
+        size = abs(self.rest(z))
+        sn, cn, dn = self.jacobi(z)
+        m = (self.theta("10", acb(0)) / self.theta("00", acb(0))) ** 4
+        yield "am", Exact(-acb(0, 1) * (cn + acb(0, 1) * sn).log(), size * abs(dn), arb(0))
+        for name, value, slope in (
+            ("sn", sn, cn * dn),
+            ("cn", cn, sn * dn),
+            ("dn", dn, m * sn * cn),
+        ):
+            yield name, Exact(value, size * abs(slope), arb(0))
+        reach = abs(z) if self.large else abs(acb(self.rest(z).real, z.imag))
+        for ij in INDEX:
+            if u or ij != "11":
+                value, slope = self.zeta(ij, z)
+                far = reach if self.large else size
+                yield f"zeta{ij}", Exact(value, far * abs(slope), arb(0))
+            yield f"theta{ij}", Exact(self.theta(ij, z), reach * abs(self.theta(ij, z, 1)), arb(0))
+        if v is None:
+            return
+        size = reach if self.large else size
+        w = acb(ball(v.real), ball(v.imag))
+        width = abs(w if self.large else self.rest(w))
+        for ij in ("01", "00", "11"):
+            on_line = abs(u.imag) == abs(v.imag) or not v
+            if on_line and (ij == "11" or (self.large and ij == "00")):
+                continue  # on a line of zeros, where the mean of two values is no logarithm
+            quotient = self.theta(ij, z - w) / self.theta(ij, z + w)
+            behind = quotient.real < 0  # away from the cut of the logarithm
+            turned = (-quotient).log() + acb(0, arb.pi()) if behind else quotient.log()
+            omega = turned / 2
+            less, more = self.zeta(ij, z - w)[0], self.zeta(ij, z + w)[0]
+            at_v, bend = self.zeta(ij, w)
+            by_u, by_v = (less - more) / 2, -(less + more) / 2
+            yield f"omega{ij}", Exact(omega, size * abs(by_u), width * abs(by_v))
+            by_u, by_v = at_v + by_u, by_v + z * bend
+            yield f"pi{ij}", Exact(z * at_v + omega, size * abs(by_u), width * abs(by_v))
+
+
+STEPS = {"am": 2 * math.pi, "omega": 1j * math.pi, "pi": 1j * math.pi}
+"""What a function is known up to multiples of, by its name without indices."""
+
+
+def complex_units(name: str, computed: complex, exact: Exact) -> float:
+    """Return the error of a complex number in eps (max(1, |f|) + |u f'| + |v df/dv|)."""
+    error = acb(ball(computed.real), ball(computed.imag)) - exact.value
+    step = STEPS.get(name.rstrip("01"))
+    if step:
+        exact_step = arb.pi() * (2 if name == "am" else 1)
+        part = error.real if name == "am" else error.imag
+        many = exact_step * (part / exact_step + ball(Fraction(1, 2))).floor()
+        error = error - (acb(many) if name == "am" else acb(0, many))
+    size = abs(complex(computed))
+    unit = max(1.0, size) + float(exact.by_u.mid()) + float(exact.by_v.mid())
+    assert float(abs(error).rad()) < 1e-3 * EPS * unit, "the judge needs more bits"
+    return float(abs(error).mid()) / (EPS * unit)

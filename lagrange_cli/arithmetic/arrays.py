@@ -80,6 +80,7 @@ class ArrayFunctions(Arrays):
     log1p = staticmethod(np.log1p)
     sinh = staticmethod(np.sinh)
     cosh = staticmethod(np.cosh)
+    asinh = staticmethod(np.arcsinh)
     tanh = staticmethod(np.tanh)
     atan = staticmethod(np.arctan)
     atanh = staticmethod(np.arctanh)
@@ -87,6 +88,7 @@ class ArrayFunctions(Arrays):
     nint = staticmethod(np.rint)
     re = staticmethod(np.real)
     im = staticmethod(np.imag)
+    conj = staticmethod(np.conj)
 
     @staticmethod
     def convert(value: Any) -> Any:

@@ -156,6 +156,9 @@ class FunctionArithmetic(Protocol):
     def cosh(self, x: Any, /) -> Any:
         """Return the hyperbolic cosine of x."""
 
+    def asinh(self, x: Any, /) -> Any:
+        """Return the inverse hyperbolic sine of x."""
+
     def tanh(self, x: Any, /) -> Any:
         """Return the hyperbolic tangent of x."""
 
@@ -179,6 +182,9 @@ class FunctionArithmetic(Protocol):
 
     def im(self, x: Any, /) -> Any:
         """Return the imaginary part of x."""
+
+    def conj(self, x: Any, /) -> Any:
+        """Return the complex conjugate of x."""
 
     def mpc(self, real: Any, imag: Any, /) -> Any:
         """Return the complex number with these parts."""

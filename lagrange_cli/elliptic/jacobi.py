@@ -76,7 +76,7 @@ def jacobi_at(ar: FunctionArithmetic, x: Periods, modulus: Modulus) -> Jacobi:
     At whole quarters of arrays sn, cn, dn are 0, 1, -1 and k' exactly, as in Aksenov's table 2.
     """
     if ar.is_array:
-        return _evaluate(x.turns, x.rest, 0.0, _series(modulus))
+        return _evaluate(x.turns, x.rest, 0.0, _series(modulus), x.low)
     if not modulus.k:
         return _in_many_digits(ar, ar.pi * (x.turns + x.rest), modulus)
     return _by_theta(ar, x, modulus)
@@ -147,12 +147,15 @@ def _of_arguments(u: Array, series: _Series) -> Jacobi:
     return _evaluate(*reduce_phase(u, series.rate), u, series)
 
 
-def _evaluate(halves: Array, since: Array, u: Value, series: _Series) -> Jacobi:
-    """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0."""
+def _evaluate(halves: Array, since: Array, u: Value, series: _Series, low: Value = 0.0) -> Jacobi:
+    """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0.
+
+    `low` is what rounding took from `since`.
+    """
     k_prime = series.k_prime
     far = abs(since) > 0.25
     side = np.copysign(1.0, since)
-    y = np.where(far, 0.5 * side - since, since) * series.stretch
+    y = np.where(far, (0.5 * side - since) - low, since) * series.stretch
     if np.any(k_prime == 0):  # without a period
         endless = np.broadcast_to(k_prime == 0, halves.shape)
         halves, far = np.where(endless, 0.0, halves), far & ~endless

@@ -1,0 +1,95 @@
+"""Moduli beyond [0, 1]: the imaginary ones, k = i kbar, and those above 1.
+
+Functions of such a modulus are those of one in [0, 1] at an argument that is stretched by a real
+factor.  For imaginary k = i kbar these are kbar/sqrt(1 + kbar^2) and sqrt(1 + kbar^2), Chrapan's
+(1,1), (2,2) and (3,4), where tau = iK'/K is taken one unit further.  For k > 1 they are 1/k and k
+(DLMF 22.17), where tau/(1 - tau) takes the place of tau; K is complex then, on the side of its cut
+where k^2 has a small negative imaginary part, as in mpmath.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import NamedTuple
+
+from ..arithmetic.exact_complex import ExactComplex
+from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.protocol import Value
+from ..errors import LagtopError
+from .complete import complete_k, period_mean
+from .modulus import Modulus, constants, modulus
+
+
+class Kind(Enum):
+    """Where a modulus lies."""
+
+    UNIT = "in [0, 1]"
+    IMAGINARY = "imaginary"
+    LARGE = "above 1"
+
+
+class AnyModulus(NamedTuple):
+    """A modulus in [0, 1], and how the functions of any modulus follow from those of this one."""
+
+    kind: Kind
+    modulus: Modulus
+    stretch: Value = 1
+    """What the argument is multiplied by."""
+
+
+class AnyConstants(NamedTuple):
+    """K, K', E, E' and the nome q of any modulus; None for what is infinite."""
+
+    k_prime: Value
+    K: Value
+    K_prime: Value
+    E: Value
+    E_prime: Value
+    q: Value
+
+
+def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
+    """Return what a modulus k >= 0, or an imaginary one i kbar with kbar > 0, is reduced to.
+
+    `ar` is an mpmath context.  Raises LagtopError for other numbers.
+    """
+    real, imag = ar.convert(k.real), ar.convert(k.imag)
+    if not (ar.isfinite(real) and ar.isfinite(imag)) or (real and imag) or real < 0 or imag < 0:
+        shown = k if isinstance(k, ExactComplex) else complex(k)
+        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {shown}", "k")
+    if imag:
+        root = ar.sqrt(1 + imag * imag)
+        return AnyModulus(Kind.IMAGINARY, Modulus(imag / root, 1 / root), root)
+    if real > 1:
+        complement = ar.sqrt((real - 1) * (real + 1)) / real
+        return AnyModulus(Kind.LARGE, Modulus(1 / real, complement), real)
+    return AnyModulus(Kind.UNIT, modulus(ar, k=real))
+
+
+def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:
+    """Return the constants of a modulus in an mpmath context.
+
+    Imaginary k: K' = k'(K' - iK) of the modulus in [0, 1], and q is negative.  k > 1: k' is i
+    sqrt(k^2 - 1), and K, E and q are complex.
+    """
+    (k, k_prime, _), s = given.modulus, given.stretch
+    K, K_prime, E, E_prime, q = constants(ar, given.modulus)
+    if given.kind is Kind.IMAGINARY:
+        both = ar.mpc(K_prime, -K) / s
+        return AnyConstants(s, K / s, both, s * E, _e_beyond(ar, k_prime, k), -q)
+    if given.kind is Kind.LARGE:
+        K_here, K_prime_here = ar.mpc(K, -K_prime) / s, K_prime / s
+        q = ar.exp(-ar.pi * K_prime_here / K_here)
+        E_here = _e_beyond(ar, k, k_prime)
+        return AnyConstants(ar.mpc(0, s * k_prime), K_here, K_prime_here, E_here, s * E_prime, q)
+    return AnyConstants(k_prime, K, K_prime, E, E_prime, q)
+
+
+def _e_beyond(ar: ManyDigits, k: Value, k_prime: Value) -> Value:
+    """Return E of the modulus 1/k > 1, which is {E - k'^2 K + i (E' - k^2 K')}/k (DLMF 19.7.3).
+
+    E - k'^2 K is k^2 K times the mean of cn^2 over a period, so that nothing cancels.
+    """
+    here = complete_k(ar, k_prime) * period_mean(ar, k_prime, 1, 1, 0 * k)
+    there = complete_k(ar, k) * period_mean(ar, k, 1, 1, 0 * k)
+    return ar.mpc(k * here, k_prime**2 / k * there)

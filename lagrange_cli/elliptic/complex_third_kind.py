@@ -1,0 +1,207 @@
+"""Omega and Pi (Chrapan sections 2 and 3) of complex arguments and parameters and of any modulus.
+
+    Omega_ij(eta, v) = log[Theta_ij(eta - v)/Theta_ij(eta + v)]/2,   Pi_ij = eta Z_ij(v) + Omega_ij
+
+The text leaves the branch of the logarithm open, and its equations hold modulo i pi.  Here log
+Theta_ij is continuous on each side of the lines on which Theta_ij has its zeros, which are Im z =
+2nK' for 11 and 10, (2n + 1)K' for 01 and 00; its mirror image in the real axis is its conjugate; it
+is continuous on the imaginary axis, where a zero turns it by half a turn; and on a line it is the
+mean of both sides.  So real and imaginary parameters have the values that `third_kind` gives.
+For k > 1 this is the branch of the modulus 1/k.
+
+What log Theta is made of, beside a series close to 1, are polynomials in the coordinates of eta and
+v.  Their difference is written out, so that nothing cancels, and what both functions grow by over
+the periods is computed once, in many digits.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.double_double import DoubleDouble
+from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.protocol import FunctionArithmetic, Value
+from .any_modulus import Kind
+from .complex_theta import absolute, base_at, inner_name, rises, slope_in_cell
+from .lattice import Coordinate, Fine, Lattice, Place, coarse, fine, place
+from .periods import Complex
+
+
+class Parameter(NamedTuple):
+    """A parameter v and what Omega_ij and Pi_ij need of it, in a context or in doubles."""
+
+    ij: str
+    periods: Lattice
+    at: Place
+    slope: Complex
+    """d log theta by the argument in periods, of the series and its height alone, at v."""
+    along: Complex
+    """What Pi grows by when eta grows by 2K, but for half turns."""
+    up: Complex
+    """What Pi grows by when eta grows by 2iK', but for half turns."""
+    turns: Value
+    """The half turns that are left out of `along`, so that it is small where they cancel."""
+    side: int
+    """Sign of the height of v, where the rise of a series with it is not in the slope; else 0."""
+
+    def rounded(self, ar: FunctionArithmetic) -> Parameter:
+        """Return the parameter with its constants in doubles, to go with arrays."""
+        x, y = (Coordinate(float(end.whole), fine(ar, end.rest)) for end in self.at)
+        return self._replace(
+            periods=self.periods.rounded(ar),
+            at=Place(x, y),
+            slope=complex(self.slope),
+            along=complex(self.along),
+            up=complex(self.up),
+        )
+
+
+def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Parameter:
+    """Return Omega_ij and Pi_ij of a parameter, with constants in an mpmath context.
+
+    Where Z_ij has its pole, at v = 0 of the function 11, the constants of Pi are not numbers.
+    """
+    at = place(ar, v, periods)
+    inner = inner_name(ij, periods.kind)
+    r, s = at.x.rest, at.y.rest
+    height = s if periods.circular else r
+    if inner == "11" and not (r or s):
+        none = ar.mpc(ar.nan, ar.nan)
+        return Parameter(ij, periods, at, none, none, none, 0, 0)
+    whole = slope_in_cell(ar, inner, at, periods)
+    t, T = periods.steepness, periods.ratio
+    bell = ar.mpc(0, 0) if periods.circular else ar.mpc(2 * t * r, 2 * ar.pi * s)
+    rise = ar.mpc(0, ar.pi) if periods.circular else ar.mpc(-t, 0)
+    side = int(ar.sign(height)) if rises(inner, periods) else 0
+    if abs(whole + bell) < abs(whole + bell + side * rise):
+        side = 0  # next to v = 0, where the rises on both sides cancel
+    slope = whole + bell + side * rise
+    up = ar.mpc(0, T) * whole + 2 * ar.pi * ar.mpc(-T * s, r)
+    turns = int(ar.nint(ar.im(whole) / ar.pi))
+    along = whole - ar.mpc(0, turns * ar.pi)
+    return Parameter(ij, periods, at, slope, along, up, turns, side)
+
+
+@in_arithmetic
+def complex_omega(ar: FunctionArithmetic, eta: Complex, given: Parameter) -> Complex:
+    """Return Omega_ij(eta, v) of complex numbers eta."""
+    return omega_at(ar, place(ar, eta, given.periods), given)
+
+
+@in_arithmetic
+def complex_pi(ar: FunctionArithmetic, eta: Complex, given: Parameter) -> Complex:
+    """Return Pi_ij(eta, v) of complex numbers eta; not a number where it has a pole for each."""
+    return pi_at(ar, place(ar, eta, given.periods), given)
+
+
+def omega_at(ar: FunctionArithmetic, at: Place, given: Parameter) -> Complex:
+    """Return Omega_ij at a place."""
+    T, v, u = given.periods.ratio, given.at, at.within(ar)
+    cell = _Cell(ar, u, given)
+    (r, s), (a, b) = map(_coarse_rests, (at, v))
+    height, other = (u.y, v.y) if given.periods.circular else (u.x, v.x)
+    bends = given.periods.kind is Kind.LARGE
+    rise, turns = cell.rise, cell.half_turns(at)
+    if bends or not given.periods.circular:
+        rise = rise + 2 * (height.rest * other.rest)
+    real, imag = given.periods.steepness * coarse(rise), cell.phase
+    if not given.periods.circular:
+        imag = imag + 2 * (r * b + s * a)
+        real = real - 2 * ar.pi * T * s * b * (0 if bends else 1)
+    x, y, V, W = at.x.total(), at.y.total(), v.x.total(), v.y.total()
+    if bends:
+        share = (x + y) * (V + W) / (1 + T * T)
+        real = real - 2 * ar.pi * T * share
+        imag = imag - 2 * (y * W + x * b + V * s - share)
+    else:
+        real = real - 2 * ar.pi * T * (at.y.whole * W + s * v.y.whole)
+        turns = turns + 2 * (v.y.whole * at.x.whole + at.y.whole * v.x.whole)
+        imag = imag + 2 * (v.y.whole * r + at.y.whole * a)
+    return cell.logarithm + ar.mpc(real, ar.pi * (imag + turns))
+
+
+def pi_at(ar: FunctionArithmetic, at: Place, given: Parameter) -> Complex:
+    """Return Pi_ij at a place."""
+    T, t, u = given.periods.ratio, given.periods.steepness, at.within(ar)
+    cell = _Cell(ar, u, given)
+    r, s = _coarse_rests(at)
+    height = (u.y if given.periods.circular else u.x).rest
+    rise = cell.rise + given.side * height
+    phase = cell.phase + given.side * (-r if given.periods.circular else s)
+    turns = cell.half_turns(at) + 2 * given.at.x.whole * at.y.whole + given.turns * at.x.whole
+    within = ar.mpc(t * coarse(rise), ar.pi * (phase + turns))
+    within = within + (ar.mpc(r, T * s) * given.slope + cell.logarithm)
+    return at.x.whole * given.along + (at.y.whole * given.up + within)
+
+
+class _Cell:
+    """What log Theta(u - v) - log Theta(u + v) is made of, for u and v less whole periods."""
+
+    rise: Fine
+    """Half the difference of the heights, in units of the steepness."""
+    phase: Value
+    """Half the difference of the phases, in half turns."""
+    logarithm: Complex
+    """Half the difference of the logarithms of the series."""
+
+    def __init__(self, ar: FunctionArithmetic, u: Place, given: Parameter) -> None:
+        periods, v = given.periods, given.at
+        self.inner = inner_name(given.ij, periods.kind)
+        self.given = given
+        self.places = less, more = u.shifted(ar, v, -1), u.shifted(ar, v, 1)
+        ends = [place_.y if periods.circular else place_.x for place_ in self.places]
+        steps = [end.whole * (end.rest * 2 + end.whole) for end in _fine(ends)]
+        rise = (steps[0] - steps[1]) * 0.5
+        if rises(self.inner, periods):
+            rise = rise + (absolute(ends[0].rest) - absolute(ends[1].rest)) * 0.5
+        self.rise = rise
+        if periods.circular:
+            here = [coarse(u.x.rest - v.x.rest), coarse(u.x.rest + v.x.rest)]
+            self.phase = more.y.whole * here[1] - less.y.whole * here[0]
+        else:
+            self.phase = less.x.whole * coarse(less.y.rest) - more.x.whole * coarse(more.y.rest)
+        values = [base_at(ar, self.inner, end, periods).value for end in self.places]
+        angles = [self._angle(ar, z, end) for z, end in zip(values, self.places, strict=True)]
+        size = ar.log(abs(values[0]) / abs(values[1]))
+        self.logarithm = ar.mpc(size, angles[0] - angles[1]) / 2
+
+    def _angle(self, ar: FunctionArithmetic, value: Complex, at: Place) -> Value:
+        """Return the angle of the series at a place; on a line of zeros the mean of both sides."""
+        angle = ar.atan2(ar.im(value), ar.re(value))
+        if self.inner == "11":  # from -pi/2 to 3 pi/2 above the line of zeros
+            side = 1 - 2 * (coarse(at.y.rest) < 0)
+            angle = side * (ar.atan2(-ar.re(value), side * ar.im(value)) + ar.pi / 2)
+        if self.inner[0] == "1":
+            angle = ar.where(coarse(at.y.rest) == 0, 0 * angle, angle)
+        return angle
+
+    def half_turns(self, at: Place) -> Value:
+        """Return the half turns of the difference, those over the periods of u and v included."""
+        (less, more), v = self.places, self.given.at
+        turns = -less.y.whole * (at.x.whole - v.x.whole) + more.y.whole * (at.x.whole + v.x.whole)
+        if self.inner[1] == "1":
+            turns = turns + (less.y.whole - more.y.whole) / 2 - v.y.whole
+        if self.inner[0] == "1":
+            sides = [_sign(coarse(end.y.rest)) for end in (less, more)]
+            across = sides[0] * (less.x.whole + at.x.whole - v.x.whole)
+            turns = turns - (across - sides[1] * (more.x.whole + at.x.whole + v.x.whole)) / 2
+        return turns
+
+
+def _sign(x: Value) -> Value:
+    """Return -1, 0 or 1."""
+    return (x > 0) * 1 - (x < 0) * 1
+
+
+def _coarse_rests(at: Place) -> tuple[Value, Value]:
+    """Return the rests of a place."""
+    return coarse(at.x.rest), coarse(at.y.rest)
+
+
+def _fine(ends: list[Coordinate]) -> list[Coordinate]:
+    """Return coordinates whose whole parts go with their rests."""
+    return [
+        Coordinate(DoubleDouble(end.whole), end.rest) if isinstance(end.rest, DoubleDouble) else end
+        for end in ends
+    ]
