@@ -42,6 +42,12 @@ def _write_names(formatter: click.HelpFormatter) -> None:
         formatter.write_dl(list(shown_quantities().items()))
 
 
+def _parse_sequence(text: str) -> str:
+    from ..judge.seen import euler_sequence
+
+    return euler_sequence(text)
+
+
 def _parse_steps(text: str) -> list[float]:
     return [float(parse_number(name)) for name in split_names(text)]
 
@@ -80,6 +86,7 @@ def _parse_steps(text: str) -> list[float]:
 )
 @click.option(
     "--euler",
+    type=Parsed("sequence", _parse_sequence),
     default="xyz",
     show_default=True,
     metavar="SEQUENCE",

@@ -99,8 +99,8 @@ def settled(
 ) -> tuple[list[Judgement], Convergence | None]:
     """Return the judgements of trajectories with their verdicts, and how they converge.
 
-    A slip is looked for where a trajectory is off from the start or beyond the limit; of several
-    with different steps, in the one of the least error.  Raises LagtopError for bad steps.
+    A slip is looked for where a trajectory is beyond the limit, but not where the error falls with
+    the step: there the top is the right one.  Raises LagtopError for bad steps.
     """
     limit = LIMIT if limit is None else limit
     judgements = [hearing.judgement for hearing, _ in cases]
@@ -122,7 +122,7 @@ def _slip(
 ) -> dict[str, Any]:
     """Return the keys of the slip that explains a trajectory, if it needs to be explained."""
     error = hearing.judgement.error_max
-    if error is None or (error <= limit and (found is None or found.falls)):
+    if error is None or (error <= limit if found is None else found.falls):
         return {}
     best = explanation(motion, hearing, given)
     return {} if best is None else {"explained_by": best.name, "explained_error": best.error}

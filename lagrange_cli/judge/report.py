@@ -7,12 +7,13 @@ from typing import Any
 
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
+from ..output.terminal import one_line
 from .files import Request, Session
 from .judgement import KEYS, LIMIT, Judgement
 from .verdict import ANOTHER, DRIFTS, FINE, LOST, OFF
 
 _SHOWN: dict[str, tuple[str, Callable[[Any], str]]] = {
-    "file": ("file", str),
+    "file": ("file", one_line),
     "step": ("step", lambda step: f"{step:g}"),
     "verdict": ("verdict", str),
     "rows": ("rows", str),
@@ -67,17 +68,14 @@ def _conditions(motion: Motion, session: Session, request: Request) -> dict[str,
         "errors": f"radians, greatest of all rows; fine up to {request.limit or LIMIT:g}",
         "drift": "growth of the difference per period, by a fitted line",
     }
-    for judgement in session.judgements:
-        if judgement.quaternion_order:
-            conditions["quaternion"] = (
-                f"{judgement.quaternion_order}: the first row of {judgement.file} proves it"
-            )
+    if orders := {x.quaternion_order for x in session.judgements if x.quaternion_order}:
+        conditions["quaternion"] = f"{' or '.join(sorted(orders))}, as the first row proves"
     return conditions
 
 
 def _conclusions(session: Session, limit: float) -> Iterator[str]:
     for judgement in session.judgements:
-        yield f"{judgement.file}: {_sentence(judgement, limit)}"
+        yield f"{_name(judgement)}: {_sentence(judgement, limit)}"
     found = session.convergence
     if found is not None:
         if not found.falls:
@@ -87,6 +85,10 @@ def _conclusions(session: Session, limit: float) -> Iterator[str]:
         else:
             yield "The errors are too small or too large to show an order of convergence."
     yield from _explanations(session.judgements)
+
+
+def _name(judgement: Judgement) -> str:
+    return one_line(judgement.file or "")
 
 
 def _sentence(judgement: Judgement, limit: float) -> str:
@@ -117,8 +119,8 @@ def _explanations(judgements: Sequence[Judgement]) -> Iterator[str]:
     if explained:
         best = min(explained, key=lambda x: x.explained_error or 0.0)
         yield (
-            f"What explains it best: {best.explained_by}; with that undone {best.file} is at most "
-            f"{best.explained_error:.1e} rad off."
+            f"What explains it best: {best.explained_by}; with that undone {_name(best)} is at "
+            f"most {best.explained_error:.1e} rad off."
         )
     elif any(x.verdict in {ANOTHER, OFF} for x in judgements):
         yield "None of the usual slips explains it."

@@ -33,17 +33,24 @@ class Conventions(NamedTuple):
         """Return the conventions.  Raises LagtopError for one that is not known."""
         if self.quaternion not in {None, *ORDERS}:
             _refuse("quaternion_order", "wxyz or xyzw", self.quaternion)
-        if not isinstance(self.euler, str) or not _is_sequence(self.euler):
-            wanted = "three axes, as in xyz (about those of space) or XYZ (of the body)"
-            _refuse("euler_sequence", wanted, self.euler)
+        try:
+            euler_sequence(self.euler)
+        except LagtopError as error:
+            raise LagtopError(f"euler_sequence {error}", "euler_sequence") from None
         if self.rates not in FRAMES:
             _refuse("rates_frame", "body or space", self.rates)
         return self
 
 
-def _is_sequence(text: str) -> bool:
-    """Return whether a text names three axes of which neighbours differ."""
-    return bool(re.fullmatch(r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})", text))
+def euler_sequence(text: str) -> str:
+    """Return a text that names three axes of which neighbours differ, in scipy's notation.
+
+    Raises LagtopError for another one.
+    """
+    if not re.fullmatch(r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})", str(text)):
+        wanted = "three axes, as in xyz (about those of space) or XYZ (of the body)"
+        raise LagtopError(f"must be {wanted}, got {str(text)[:60]!r}")
+    return text
 
 
 def _refuse(key: str, wanted: str, got: object) -> None:

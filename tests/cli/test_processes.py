@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import LAGTOP, process
 
@@ -36,6 +37,7 @@ def loaded(*args: str) -> set[str]:
         ("table --r0 0 --format json", {"numpy", "orjson"}),
         ("solve --get T_nutation", set()),
         ("sweep --help", set()),
+        ("compare --help", set()),
         ("sweep --r0 1:2:3", {"numpy", "orjson"}),
     ],
 )
@@ -186,6 +188,20 @@ def test_memory_does_not_grow_with_the_rows(command: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
+@pytest.mark.parametrize("form", ["csv", "json", "npy"])
+def test_memory_does_not_grow_with_the_rows_of_a_trajectory(form: str, tmp_path: Path) -> None:
+    used, path = [], tmp_path / "trajectory.npy"
+    for count in ("1e5", "1e6"):
+        how = ["--t-max", "10", "--n", count, "--columns", "t,theta", "-o", str(path)]
+        process("table", *how, "--format", "json" if form == "json" else "csv")
+        if form == "npy":
+            np.save(path, np.loadtxt(path, delimiter=",", skiprows=1))
+        used.append(most_memory("compare", str(path), "--columns", "t,theta"))
+    assert used[1] < 200
+    assert used[1] < used[0] + 15, used
+
+
 def test_output_to_a_file(tmp_path: Path) -> None:
     target = tmp_path / "out.csv"
     target.write_text("old")

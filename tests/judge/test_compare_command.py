@@ -1,0 +1,203 @@
+"""`lagtop compare`: files, options, reports, pictures and exit codes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Lagtop, assert_one_line
+from engines import Body, Run, rk4, semi_implicit_euler
+from scipy.spatial.transform import Rotation
+
+from lagrange_cli import Top
+from lagrange_cli.judge.judgement import KEYS
+from lagrange_cli.plot.error_curves import ErrorCurve, draw_errors
+
+TOP = Top(psidot0=3)
+OPTIONS = ["--psidot0", 3]
+HEADER = "t,qw,qx,qy,qz,p,q,r"
+
+
+def write(path: Path, run: Run, header: str = HEADER) -> Path:
+    np.savetxt(path, np.column_stack(run), delimiter=",", header=header, comments="", fmt="%.17g")
+    return path
+
+
+@pytest.fixture
+def right(tmp_path: Path) -> Path:
+    """Return the file of a good trajectory."""
+    return write(tmp_path / "right.csv", rk4(Body.of(TOP), 1e-3, 1))
+
+
+@pytest.fixture
+def coarse(tmp_path: Path) -> Path:
+    """Return the file of a trajectory that drifts."""
+    return write(tmp_path / "coarse.csv", semi_implicit_euler(Body.of(TOP), 1e-3, 1))
+
+
+def rows_of(text: str) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = json.loads(text)["rows"]
+    return rows
+
+
+def test_formats_say_the_same(lagtop: Lagtop, right: Path, coarse: Path) -> None:
+    shown = {
+        fmt: lagtop("compare", right, coarse, *OPTIONS, "--format", fmt)
+        for fmt in ("json", "csv", "table")
+    }
+    assert {result.exit_code for result in shown.values()} == {0}
+    rows = rows_of(shown["json"].stdout)
+    assert [row["verdict"] for row in rows] == ["fine", "drifts"]
+    assert [list(row) for row in rows] == [[*KEYS]] * 2
+    for row, cells in zip(rows, csv.DictReader(io.StringIO(shown["csv"].stdout)), strict=True):
+        known = {key: "" if x is None else str(x) for key, x in row.items()}
+        assert cells["verdict"] == known["verdict"]
+        assert float(cells["psi_drift"]) == row["psi_drift"]
+        assert [key for key, x in cells.items() if not x] == [
+            key for key in known if not known[key]
+        ]
+    table = shown["table"].stdout
+    assert "coarse.csv: drifts, at most 7.5e-01 rad off; psi drifts" in table
+    assert "scene      --m 1587.0" in table
+    assert "lost at" not in table
+
+
+@pytest.mark.parametrize(("limit", "code"), [(None, 0), ("1e-4", 0), ("1e-9", 1)])
+def test_a_limit_for_tests_of_others(
+    lagtop: Lagtop, right: Path, limit: str | None, code: int
+) -> None:
+    given = [] if limit is None else ["--max-error", limit]
+    result = lagtop("compare", right, *OPTIONS, *given, "--format", "json")
+    assert result.exit_code == code
+    (row,) = rows_of(result.stdout)
+    assert row["verdict"] == ("drifts" if code else "fine")
+
+
+def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> None:
+    """The engine takes the moment about the pivot as that about the mass centre."""
+    steps, wrong = [4e-3, 2e-3], TOP.replace(A=39032 + 1587 * 16)
+    for top, name in ((TOP, "right"), (wrong, "wrong")):
+        for h in steps:
+            write(tmp_path / f"{name}-{h}.csv", rk4(Body.of(top), h, 1))
+    how = [*OPTIONS, "--steps", "4e-3,2e-3"]
+    right = lagtop("compare", *sorted(tmp_path.glob("right*"))[::-1], *how, "--format", "json")
+    (coarse, fine) = rows_of(right.stdout)
+    assert 3.5 < fine["order"] == coarse["order"] < 5
+    assert [row["step"] for row in (coarse, fine)] == steps
+    result = lagtop("compare", *sorted(tmp_path.glob("wrong*"))[::-1], *how)
+    assert (
+        "The error does not fall with the step: this is the motion of another top." in result.stdout
+    )
+    assert "taken as about the mass centre (A + m s^2); with that undone" in result.stdout
+
+
+def test_rows_that_are_not_finite(lagtop: Lagtop, right: Path) -> None:
+    lines = right.read_text().splitlines()
+    lines[501:] = [line.replace(line.split(",")[2], "nan") for line in lines[501:]]
+    right.write_text("\n".join(lines))
+    result = lagtop("compare", right, *OPTIONS)
+    assert result.exit_code == 1
+    assert "right.csv: lost at t = 0.5, at most" in result.stdout
+
+
+def test_order_frames_and_units_by_options(lagtop: Lagtop, tmp_path: Path) -> None:
+    t, states = rk4(Body.of(TOP), 1e-3, 0.5)
+    turn = Rotation.from_quat(states[:, :4], scalar_first=True)
+    moved = turn * Rotation.from_matrix(np.eye(3)[[2, 0, 1]])
+    np.save(tmp_path / "a.npy", np.column_stack([t + 3, moved.as_quat(), states[:, 4]]))
+    how = ["--columns", "t,quaternion,_", "--align", "axis=y,time"]
+    result = lagtop("compare", tmp_path / "a.npy", *OPTIONS, *how)
+    assert "xyzw, as the first row proves" in result.stdout
+    assert "a.npy: fine" in result.stdout
+    for rad, angles in (("", turn.as_euler("XYZ", degrees=True)), ("--rad", turn.as_euler("XYZ"))):
+        np.save(tmp_path / "b.npy", np.column_stack([t, angles]))
+        how = ["--columns", "t,euler", "--euler", "XYZ", *filter(None, [rad])]
+        assert "b.npy: fine" in lagtop("compare", tmp_path / "b.npy", *OPTIONS, *how).stdout
+
+
+def test_the_scene_may_be_a_file(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text("psidot0 = 3\nr0 = 7\n")
+    how = ["--scene", tmp_path / "scene.toml", "--r0", 50]
+    assert "right.csv: fine" in lagtop("compare", right, *how).stdout
+
+
+def test_standard_input(lagtop: Lagtop, right: Path) -> None:
+    result = lagtop("compare", "-", *OPTIONS, input=right.read_bytes())
+    assert "\n-: fine, at most" in result.stdout
+
+
+@pytest.mark.slow
+def test_pictures(lagtop: Lagtop, right: Path, coarse: Path, tmp_path: Path) -> None:
+    how = [*OPTIONS, "--plot", tmp_path / "a.svg"]
+    plain = lagtop("compare", right, coarse, *how)
+    assert plain.exit_code == 0
+    text = (tmp_path / "a.svg").read_text()
+    assert "</svg>" in text
+    lagtop("compare", right, coarse, *how, "--steps", "1e-3,2e-3")
+    assert len((tmp_path / "a.svg").read_text()) > len(text)
+    assert_one_line(
+        lagtop("compare", right, "--plot", "a.pdf"), 2, "--plot must end in .svg or .png"
+    )
+
+
+@pytest.mark.slow
+def test_a_picture_without_a_single_error() -> None:
+    t = np.linspace(0, 1, 5)
+    for error in (np.zeros(5), np.full(5, np.nan)):
+        assert draw_errors([ErrorCurve("a", t, error, 0.1, 0.0)], 1e-3, "a.png")[:4] == b"\x89PNG"
+
+
+@pytest.fixture
+def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Go to a folder with some files of one row."""
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("t,theta\n0,30\n")
+    Path("b.csv").write_text("t,theta\n0,x\n")
+    Path("c.csv").write_text("t,theta\n1e99,30\n")
+    Path("d.csv").write_text("t,q0,q1,q2,q3\n0,0.5,0.5,0.5,0.5\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        ([], 2, "Missing argument 'TRAJECTORY...'."),
+        (["nowhere.csv"], 2, "nowhere.csv: No such file or directory"),
+        (["-", "-"], 2, "standard input can be read once, got - twice"),
+        (["a.csv", "--steps", "1,2"], 2, "--steps must be as many as trajectories, 1, got 2"),
+        (["a.csv", "--steps", "-1"], 2, "--steps must be > 0, got -1.0"),
+        (["a.csv", "--steps", "x"], 2, "--steps must be a finite decimal number, got 'x'"),
+        (["a.csv", "--max-error", "0"], 2, "--max-error must be > 0, got 0.0"),
+        (["a.csv", "--align", "axis=w"], 2, "--align must be among axis=y, up=y, start"),
+        (["a.csv", "--euler", "xxy"], 2, "--euler must be three axes"),
+        (["a.csv", "--quaternion", "xyz"], 2, "Invalid value for '--quaternion'"),
+        (["a.csv", "--columns", "t,thta"], 2, "--columns must be among t, quaternion"),
+        (["a.csv", "--columns", "t"], 2, "--columns must name all 2 columns of a.csv"),
+        (["b.csv"], 65, "b.csv, line 2, column 2: theta must be a number, got 'x'"),
+        (["c.csv"], 65, "c.csv: t must be finite and within 2^50 periods"),
+        (["d.csv"], 2, "d.csv: the first row does not prove the order of the quaternion"),
+        (["a.csv", "--theta0", "200"], 2, "theta0_deg must be in [0, 180]"),
+    ],
+)
+@pytest.mark.usefixtures("small_files")
+def test_bad_requests_get_one_line(
+    lagtop: Lagtop, arguments: list[str], code: int, message: str
+) -> None:
+    assert_one_line(lagtop("compare", *arguments), code, message)
+
+
+def test_nothing_is_written_for_a_bad_file(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
+    (tmp_path / "out.csv").write_text("old")
+    right.write_text(right.read_text()[:-30])
+    assert lagtop("compare", right, "-o", tmp_path / "out.csv").exit_code == 65
+    assert (tmp_path / "out.csv").read_text() == "old"
+
+
+def test_help_lists_columns(lagtop: Lagtop) -> None:
+    shown = lagtop("compare", "--help").stdout
+    assert "quaternion from body to space" in shown
+    assert "lagtop compare - " in shown or "lagtop compare -\n" in shown
