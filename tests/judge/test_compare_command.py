@@ -154,7 +154,7 @@ def test_a_picture_without_a_single_error() -> None:
 
 @pytest.fixture
 def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Go to a folder with some files of one row."""
+    """Work in a folder with some files of one row."""
     monkeypatch.chdir(tmp_path)
     Path("a.csv").write_text("t,theta\n0,30\n")
     Path("b.csv").write_text("t,theta\n0,x\n")
