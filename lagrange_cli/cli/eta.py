@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..output.layouts import ETA
 from ..output.write import write_record, write_table
@@ -15,7 +16,9 @@ from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
     RANGE,
+    Parsed,
     digits_option,
+    exclude,
     listed,
     output_options,
 )
@@ -26,6 +29,22 @@ if TYPE_CHECKING:
     from ..elliptic.quadrature import Quadrature
 
 
+class Distance(NamedTuple):
+    """A number, or a multiple of i."""
+
+    size: Fraction
+    imaginary: bool
+
+
+def _parse_distance(text: str) -> Distance:
+    """Return 0.7 or, imaginary, 0.7i."""
+    text = text.strip()
+    return Distance(parse_number(text.removesuffix("i")), text.endswith("i"))
+
+
+DISTANCE = Parsed("number", _parse_distance)
+
+
 @click.command(
     "eta",
     cls=ExamplesFirst,
@@ -33,16 +52,18 @@ if TYPE_CHECKING:
         lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
         lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --tau-range 0:10:101 --format csv
         lagtop eta --delta 0.7 --delta-star 0.2 --gap-above 1e-12 --gap-below 2 --digits 30
-        lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0.1 --tau 0.2
+        lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0.1 --tau 0.2 --chain
+        lagtop eta --delta 0.5 --delta-star -0.5 --p 0.1 --q 0.7i
         lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
     """,
 )
 @click.option("--delta", type=NUMBER, required=True, help="Upper end of the band.")
 @click.option("--delta-star", type=NUMBER, required=True, help="Lower end of the band.")
 @click.option("--p", type=NUMBER, help="Middle of the two outer roots p - q and p + q.")
-@click.option("--q", type=NUMBER, help="Half their distance.")
+@click.option("--q", type=DISTANCE, help="Half their distance; 0.7i for the roots p +- 0.7i.")
 @click.option("--gap-above", type=NUMBER, help="From delta up to an outer root, instead.")
 @click.option("--gap-below", type=NUMBER, help="From delta* down to an outer root, instead.")
+@click.option("--quadratic", is_flag=True, help="Both outer roots are at infinity, instead.")
 @click.option(
     "--g",
     type=NUMBER,
@@ -55,19 +76,24 @@ if TYPE_CHECKING:
 )
 @click.option("--tau", "single", type=NUMBER, multiple=True, help="Time; may be repeated.")
 @click.option("--tau-range", "grid", type=RANGE, help="Times, as [log:]start:stop:count.")
+@click.option("--chain", is_flag=True, help="h1, theta and xi' of every tau too.")
+@click.option("--rad", is_flag=True, help="theta in radians.")
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("table", "csv", "json")
 def command(
     delta: Fraction,
     delta_star: Fraction,
     p: Fraction | None,
-    q: Fraction | None,
+    q: Distance | None,
     gap_above: Fraction | None,
     gap_below: Fraction | None,
+    quadratic: bool,
     g: Fraction,
     c3: Fraction,
     single: tuple[Fraction, ...],
     grid: Points | None,
+    chain: bool,
+    rad: bool,
     digits: int | None,
     fmt: str,
     output: str,
@@ -77,43 +103,61 @@ def command(
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2), the motion of a satellite
     in latitude.
 
-    Without --tau the constants are written; with it eta and its rate.  The outer roots are given by
-    --p and --q, or by the gaps to them; with one gap alone the other outer root is at infinity, as
-    for Lagrange's top.
+    Without --tau the constants are written; with it eta and its rate, and under --chain also h1,
+    theta and xi' of (3.2.9) to (3.2.11).  The outer roots are given by --p and --q (imaginary, as
+    0.7i, for a complex pair), or by the gaps to them; with one gap alone the other outer root is at
+    infinity, as for Lagrange's top, and under --quadratic both are.
     """
-    from ..elliptic.eta import digit_rows, record, rows
+    from ..elliptic.eta import record
+    from ..elliptic.eta_table import digit_rows, header, rows
 
     times = listed("tau", single, grid)
-    quadrature = _quadrature(delta, delta_star, {"--p": p, "--q": q}, (gap_above, gap_below), g)
-    if times is None:
-        write_record(record(quadrature, digits), fmt, output, lambda: ETA)
-    elif digits is None:
-        header, blocks = rows(quadrature, times, c3)
-        write_table(header, with_progress(blocks, times.count, 3_000_000), fmt, output)
+    if quadratic:
+        ways = {"--p": p, "--q": q, "--gap-above": gap_above, "--gap-below": gap_below}
+        for name, value in ways.items():
+            exclude({"--quadratic": quadratic, name: value})
+        from ..elliptic.quadrature import Quadrature
+
+        quadrature = Quadrature(delta_star, delta, (), g)
     else:
-        header, lines = digit_rows(quadrature, times, c3, digits)
+        quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
+    if times is None:
+        if chain:
+            raise LagtopError("--chain needs --tau or --tau-range")
+        write_record(record(quadrature, digits, c3), fmt, output, lambda: ETA)
+        return
+    unit = ("rad" if rad else "deg") if chain else ""
+    if digits is None:
+        parts = with_progress(rows(quadrature, times, c3, unit), times.count, 3_000_000)
+        write_table(header(unit), parts, fmt, output)
+    else:
+        lines = digit_rows(quadrature, times, c3, digits, unit)
         texts = with_progress(([line] for line in lines), times.count, 1000)
-        write_table(header, texts, fmt, output)
+        write_table(header(unit), texts, fmt, output)
 
 
 def _quadrature(
     delta: Fraction,
     delta_star: Fraction,
-    middle: dict[str, Fraction | None],
+    middle: tuple[Fraction | None, Distance | None],
     gaps: tuple[Fraction | None, Fraction | None],
     g: Fraction,
 ) -> Quadrature:
     """Return the quadrature from either way to give the outer roots; it is checked when used."""
     from ..elliptic.quadrature import Quadrature
 
-    p, q = middle.values()
+    p, q = middle
     above, below = gaps
     if (p is None) != (q is None) or (p is None) == (above is None and below is None):
-        raise LagtopError("give either --p and --q or one or both of --gap-above, --gap-below")
+        raise LagtopError(
+            "give either --p and --q or one or both of --gap-above, --gap-below, or --quadratic"
+        )
     if p is not None and q is not None:
-        if q < 0:
-            raise LagtopError(f"--q must be >= 0, got {float(q)}")
-        return Quadrature(delta_star, delta, (p - q, p + q), g)
+        if q.size < 0:
+            raise LagtopError(f"--q must be >= 0, got {float(q.size)}{'i' * q.imaginary}")
+        if q.imaginary and q.size:
+            return Quadrature(delta_star, delta, (p, p), g, q.size)
+        return Quadrature(delta_star, delta, (p - q.size, p + q.size), g)
     for name, gap in {"--gap-above": above, "--gap-below": below}.items():
         if gap is not None and gap <= 0:
             raise LagtopError(f"{name} must be > 0 (the period is infinite at 0), got {float(gap)}")

@@ -3,7 +3,8 @@
     (d eta/d tau)^2 = g (delta - eta)(eta - delta*) times the distances of eta from the outer roots
 
 Of the two outer roots p +- q one lies on each side of the band [delta*, delta] (the satellite), or
-both on one side (hyperbolic motion), or one is at infinity (parabolic motion; Lagrange's top).  The
+both on one side or beside it as a complex pair (hyperbolic motion), or one or both are at infinity
+(parabolic motion; Lagrange's top).  The
 roots are exact rationals, so their gaps are; and what is made of the gaps are sums and products of
 positive numbers, so that nothing is lost as roots come close to each other.
 
@@ -17,23 +18,15 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import agm
 from .jacobi import jacobi
 from .modulus import Modulus
-from .proved_digits import require_digits, settled_or_rounded, settled_texts
+from .proved_digits import settled_or_rounded
 from .quadrature import Quadrature
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from ..arithmetic.points import Points
-    from ..arithmetic.text import NumberText
-    from ..arithmetic.types import Array
+    pass
 
 
 class EtaConstants(NamedTuple):
@@ -44,11 +37,11 @@ class EtaConstants(NamedTuple):
     m2: Value
     """m'' (3.2.3)."""
     k: Value
-    """Modulus (3.2.5)."""
+    """Modulus (3.2.5); of a complex pair of roots k/i."""
     k1: Value
-    """Modulus (3.2.8)."""
+    """Modulus (3.2.8); of a complex pair of roots k1/i."""
     k1_prime: Value
-    """Complement of k1."""
+    """Complement of k1, which is above 1 where k1 is imaginary."""
     sigma1: Value
     """Rate of the argument (3.2.8)."""
     s: Value
@@ -67,11 +60,13 @@ def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstant
     m'^2 and m''^2 are products of the distances of delta and delta* from the outer roots, and
     2 sigma1/sqrt(g) is a sum of square roots of such products, in each layout.
     """
+    if quadrature.height:
+        return _constants_of_pair(ar, quadrature)
     outer = quadrature.outer
-    lower, upper, g = (ar.convert(x) for x in (quadrature.lower, quadrature.upper, quadrature.g))
+    g = ar.convert(quadrature.g)
     to_lower = [ar.convert(abs(root - quadrature.lower)) for root in outer]
     to_upper = [ar.convert(abs(root - quadrature.upper)) for root in outer]
-    apart = ar.convert(abs(outer[0] - outer[-1]) if len(outer) > 1 else Fraction(1))
+    apart = ar.convert(abs(outer[0] - outer[1]) if len(outer) > 1 else Fraction(len(outer)))
     m1, m2 = ar.sqrt(prod(to_upper)), ar.sqrt(prod(to_lower))
     if len(outer) > 1:
         crossed = ar.sqrt(to_lower[0] * to_upper[1]) + ar.sqrt(to_lower[1] * to_upper[0])
@@ -80,12 +75,59 @@ def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstant
     sigma1 = ar.sqrt(g) * crossed / 2
     k1 = ar.convert(quadrature.upper - quadrature.lower) * apart / crossed**2
     k1_prime = 2 * ar.sqrt(m1 * m2) / crossed
+    return _constants_from(ar, quadrature, (m1, m2), k1 / k1_prime, k1, k1_prime, sigma1)
+
+
+def _constants_of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
+    """Return the constants where the outer roots are p +- i height, so that k and k1 are imaginary.
+
+    m' and m'' are the distances of delta and delta* from these roots.  All that is subtracted in
+    kappa^2 = -k^2 = (D^2 - (m' - m'')^2)/(4 m' m''), D = delta - delta*, is exact; and
+    kappa' = sqrt((m' + m'' - D)(m' + m'' + D)/(4 m' m'')) is sigma1/sqrt(g m' m'').
+    """
+    p = quadrature.outer[0]
+    above, below = quadrature.upper - p, quadrature.lower - p
+    g, width, height = (
+        ar.convert(x)
+        for x in (quadrature.g, quadrature.upper - quadrature.lower, quadrature.height)
+    )
+    m1, m2 = (ar.sqrt(ar.convert(square)) for square in quadrature.squares)
+    product, crossed = m1 * m2, ar.convert(above * below)
+    if above * below > 0:
+        rest = ar.convert(above**2 + below**2 + quadrature.height**2)
+        between = height**2 * rest / (product + crossed)
+    else:
+        between = product - crossed
+    kappa = width * ar.sqrt((height**2 + between) / (2 * product)) / (m1 + m2)
+    excess = _beyond(ar, m1, above, height) + _beyond(ar, m2, -below, height)
+    sigma1 = ar.sqrt(g * excess * (m1 + m2 + width)) / 2
+    kappa_prime = sigma1 / ar.sqrt(g * product)
+    return _constants_from(
+        ar, quadrature, (m1, m2), kappa, kappa / kappa_prime, 1 / kappa_prime, sigma1
+    )
+
+
+def _beyond(ar: FunctionArithmetic, distance: Value, part: Fraction, height: Value) -> Value:
+    """Return a distance sqrt(part^2 + height^2) less its part, which may be negative."""
+    exact = ar.convert(part)
+    return height**2 / (distance + exact) if part > 0 else distance - exact
+
+
+def _constants_from(
+    ar: FunctionArithmetic,
+    quadrature: Quadrature,
+    distances: tuple[Value, Value],
+    *moduli_and_rate: Value,
+) -> EtaConstants:
+    """Return all constants from m', m'', and from k, k1, k1', sigma1."""
+    (m1, m2), (k, k1, k1_prime, sigma1) = distances, moduli_and_rate
+    lower, upper, g = (ar.convert(x) for x in (quadrature.lower, quadrature.upper, quadrature.g))
     rise, fall = _sum_and_difference(ar, quadrature, m2 * upper, m1 * lower)
     square1, square2 = quadrature.squares
     return EtaConstants(
         m1=m1,
         m2=m2,
-        k=k1 / k1_prime,
+        k=k,
         k1=k1,
         k1_prime=k1_prime,
         sigma1=sigma1,
@@ -110,7 +152,9 @@ def _sum_and_difference(
     return (difference / (high - low) if high - low else high + low), high - low
 
 
-def record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
+def record(
+    quadrature: Quadrature, digits: int | None = None, c3: Fraction = Fraction(0)
+) -> dict[str, Any]:
     """Return roots and constants, each the nearest double or to so many significant digits.
 
     Raises LagtopError as `Quadrature.check` does and, for doubles, `Quadrature.check_doubles`.
@@ -120,7 +164,7 @@ def record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
     else:
         quadrature.check_doubles()
     zeros = _zeros_of_record(quadrature)
-    return settled_or_rounded(lambda ar: _record_in(ar, quadrature), digits, zeros)
+    return settled_or_rounded(lambda ar: _record_in(ar, quadrature, c3), digits, zeros)
 
 
 def _zeros_of_record(quadrature: Quadrature) -> set[str]:
@@ -131,33 +175,40 @@ def _zeros_of_record(quadrature: Quadrature) -> set[str]:
     exact = {
         "delta": upper,
         "delta_star": lower,
-        "p": outer[0] + outer[-1],
-        "q": outer[0] - outer[-1],
-        "outer_root": outer[0],
+        "p": sum(outer),
+        "q": outer[0] - outer[-1] if outer else 0,
+        "outer_root": sum(outer),
         "d": square2 - square1,
         "s": not (opposite and upper * lower >= 0),
         "gamma": not (opposite and upper * lower <= 0),
-        "k": (upper - lower) * (outer[0] - outer[-1] if len(outer) > 1 else 1),
+        "k": (upper - lower) * (outer[0] - outer[1] if len(outer) > 1 else len(outer)),
     }
-    return {name for name, x in exact.items() if not x} | ({"k1"} if not exact["k"] else set())
+    if quadrature.height:
+        exact["k_imag"] = upper - lower
+    zeros = {name for name, x in exact.items() if not x}
+    return zeros | {name.replace("k", "k1") for name in zeros & {"k", "k_imag"}}
 
 
-def _record_in(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Any]:
+def _record_in(ar: FunctionArithmetic, quadrature: Quadrature, c3: Fraction) -> dict[str, Any]:
     """Return the record in an mpmath context; None for what the layout does not have."""
     c, outer = eta_constants(ar, quadrature), quadrature.outer
-    pair_of_roots = len(outer) > 1
+    pair_of_roots, imaginary = len(outer) > 1, bool(quadrature.height)
     return {
         "delta": ar.convert(quadrature.upper),
         "delta_star": ar.convert(quadrature.lower),
         "p": ar.convert((outer[0] + outer[-1]) / 2) if pair_of_roots else None,
-        "q": ar.convert(abs(outer[0] - outer[-1]) / 2) if pair_of_roots else None,
-        "outer_root": None if pair_of_roots else ar.convert(outer[0]),
+        "q": ar.convert(abs(outer[0] - outer[1]) / 2) if pair_of_roots and not imaginary else None,
+        "q_imag": ar.convert(quadrature.height) if imaginary else None,
+        "outer_root": ar.convert(outer[0]) if len(outer) == 1 else None,
         "g": ar.convert(quadrature.g),
         "layout": quadrature.layout,
+        "kind": quadrature.kind,
         "m_prime": c.m1,
         "m_double_prime": c.m2,
-        "k": c.k,
-        "k1": c.k1,
+        "k": None if imaginary else c.k,
+        "k_imag": c.k if imaginary else None,
+        "k1": None if imaginary else c.k1,
+        "k1_imag": c.k1 if imaginary else None,
         "k1_prime": c.k1_prime,
         "K1": c.period * c.sigma1 / 4,
         "sigma1": c.sigma1,
@@ -165,6 +216,7 @@ def _record_in(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Any]
         "d": c.d,
         "gamma": c.gamma,
         "period": c.period,
+        "tau3": ar.convert(c3) - c.period / 4,
     }
 
 
@@ -183,11 +235,17 @@ class Band(NamedTuple):
     """Distances of the outer roots that lie above, from delta."""
     g: Value
     """The leading coefficient."""
+    pair: tuple[Value, Value, Value] | None = None
+    """Of a complex pair p +- i height: delta* - p, delta - p, height."""
 
 
 def band_of(ar: FunctionArithmetic, quadrature: Quadrature) -> Band:
     """Return the gaps of the exact roots, each rounded once."""
-    lower, upper, outer, g = quadrature
+    lower, upper, outer, g, height = quadrature
+    pair = None
+    if height:
+        pair = ar.convert(lower - outer[0]), ar.convert(upper - outer[0]), ar.convert(height)
+        outer = ()
     return Band(
         lower=ar.convert(lower),
         upper=ar.convert(upper),
@@ -195,77 +253,39 @@ def band_of(ar: FunctionArithmetic, quadrature: Quadrature) -> Band:
         below=[ar.convert(lower - root) for root in outer if root < lower],
         above=[ar.convert(root - upper) for root in outer if root > upper],
         g=ar.convert(g),
+        pair=pair,
     )
+
+
+def modulus_in_use(c: EtaConstants, band: Band) -> Modulus:
+    """Return k1 or, where that is imaginary, kappa = k/i: with k1 = i kappa/kappa'."""
+    if band.pair:
+        return Modulus(c.k, 1 / c.k1_prime, 0 * c.k)
+    return Modulus(c.k1, c.k1_prime, 0 * c.k1)
 
 
 def eta_and_rate(
     ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band
 ) -> tuple[Value, Value]:
-    """Return eta and d eta/d tau where v = sigma1 w/2, w the time since a passage of delta*.
+    """Return eta and d eta/d tau where v = 2K w/T, w the time since a passage of delta*.
 
     eta - delta* : delta - eta = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2, which is (3.2.10) to
-    (3.2.12) after a halving of the argument: both distances keep their digits.
+    (3.2.12) after a halving of the argument: both distances keep their digits.  Of a complex pair
+    of roots it is m'' (sn v dn v)^2 : m' cn^2 v of the modulus kappa.
     """
-    _, sn, cn, dn = jacobi(ar, v, Modulus(c.k1, c.k1_prime, 0 * c.k1))
-    up, down = abs(ar.sqrt(band.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
+    _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, band))
+    if band.pair:
+        up, down = abs(ar.sqrt(c.m2) * sn * dn), abs(ar.sqrt(c.m1) * cn)
+    else:
+        up, down = abs(ar.sqrt(band.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
     larger = ar.where(up < down, down, up)  # so that no square leaves the range
     up, down = (up / larger) ** 2, (down / larger) ** 2
     risen, left = band.width * up / (up + down), band.width * down / (up + down)
     eta = ar.where(risen < left, band.lower + risen, band.upper - left)
     gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
+    if band.pair:
+        from_lower, from_upper, height = band.pair
+        apart = ar.where(risen < left, from_lower + risen, from_upper - left)
+        gaps = [ar.sqrt(apart * apart + height * height)] * 2
     size = prod(map(ar.sqrt, (band.g, risen, left, *gaps)))
     return eta, ar.where(sn * cn < 0, -size, size)
-
-
-def rows(quadrature: Quadrature, times: Points, c3: Fraction) -> tuple[list[str], Iterator[Array]]:
-    """Return the header tau, eta, etadot and blocks of rows; eta = delta* at tau = -c3.
-
-    Raises LagtopError as `Quadrature.check_doubles` does, and for times beyond 2^50 periods.
-    """
-    import numpy as np
-
-    from ..arithmetic.double_double import pair, reduce_phase
-    from .complete import complete_k
-
-    quadrature.check_doubles()
-    exact = ManyDigits()
-    exactly = eta_constants(exact, quadrature)
-    rate = pair(1 / exactly.period)
-    offset = exact.convert(c3) / exactly.period
-    shift = float(offset - exact.nint(offset))
-    c, band = EtaConstants(*map(float, exactly)), band_of(ARRAYS, quadrature)
-    check_reach("tau", times, min(MAX_PERIODS * c.period, MAX_TIME))
-    half_period = 2 * complete_k(DOUBLES, float(c.k1_prime))
-
-    def block(tau: Array) -> Array:
-        with np.errstate(all="ignore"):  # squares of small numbers may leave the doubles
-            _, since = reduce_phase(tau, rate, shift)
-            eta, etadot = eta_and_rate(ARRAYS, half_period * (since + shift), c, band)
-        return np.stack([tau, eta, etadot], axis=1) + 0.0  # no -0
-
-    return ["tau", "eta", "etadot"], (block(tau) for tau in times.blocks())
-
-
-def digit_rows(
-    quadrature: Quadrature, times: Points, c3: Fraction, digits: int
-) -> tuple[list[str], Iterator[list[NumberText]]]:
-    """Return the header tau, eta, etadot and rows to so many significant digits.
-
-    Raises LagtopError as `Quadrature.check` does.
-    """
-    quadrature.check()
-    still = quadrature.lower == quadrature.upper
-
-    def at(tau: Fraction) -> list[NumberText]:
-        def compute(ar: ManyDigits) -> dict[str, Value]:
-            c, time = eta_constants(ar, quadrature), ar.convert(tau + c3)
-            require_digits(ar, digits, abs(time / c.period))
-            eta, rate = eta_and_rate(ar, c.sigma1 * time / 2, c, band_of(ar, quadrature))
-            return {"tau": ar.convert(tau), "eta": eta, "etadot": rate}
-
-        at_start = still or tau + c3 == 0
-        zero = {"tau": tau == 0, "eta": at_start and not quadrature.lower, "etadot": at_start}
-        known = [name for name, is_zero in zero.items() if is_zero]
-        return list(settled_texts(compute, digits, known).values())
-
-    return ["tau", "eta", "etadot"], (at(tau) for tau in times.decimals())

@@ -13,7 +13,7 @@ LEAST, MOST = Fraction("1e-100"), Fraction("1e100")
 
 
 class Quadrature(NamedTuple):
-    """The radicand: the band, one or two outer roots, and g, which is -2 alpha1 c^2 in (3.2.1).
+    """The radicand: the band, up to two outer roots, and g, which is -2 alpha1 c^2 in (3.2.1).
 
     `check` it before use.
     """
@@ -23,9 +23,11 @@ class Quadrature(NamedTuple):
     upper: Fraction
     """delta."""
     outer: tuple[Fraction, ...]
-    """The outer roots that are not at infinity, in any order."""
+    """The outer roots that are not at infinity, in any order; of a complex pair the real parts."""
     g: Fraction = Fraction(1)
     """The leading coefficient, without its sign."""
+    height: Fraction = Fraction(0)
+    """Size of the imaginary parts of a complex pair."""
 
     def check(self) -> None:
         """Raise LagtopError unless the motion is periodic: an empty band, an outer root in it."""
@@ -36,7 +38,12 @@ class Quadrature(NamedTuple):
             )
         if self.g <= 0:
             raise LagtopError(f"g must be > 0, got {float(self.g)}", "g")
-        for root in self.outer:
+        for root in () if self.height else self.outer:
+            if root in {self.lower, self.upper}:
+                raise LagtopError(
+                    "an outer root at an end of the band makes the period infinite (k1 = 1), "
+                    f"got {float(root)}"
+                )
             if self.lower <= root <= self.upper:
                 raise LagtopError(
                     "the outer roots must lie outside the band from delta* to delta, "
@@ -52,7 +59,9 @@ class Quadrature(NamedTuple):
             "delta_star": [self.lower],
             "g": [self.g],
             "delta - delta_star": [self.upper - self.lower],
-            "the gap to an outer root": gaps,
+            "the gap to an outer root": [] if self.height else gaps,
+            "q": [self.height],
+            "p": self.outer[:1] if self.height else [],
         }
         for name, values in sizes.items():
             for value in values:
@@ -68,12 +77,28 @@ class Quadrature(NamedTuple):
         """Squares of m' and m'' (3.2.3), exactly."""
         to_upper = prod((abs(root - self.upper) for root in self.outer), start=Fraction(1))
         to_lower = prod((abs(root - self.lower) for root in self.outer), start=Fraction(1))
-        return to_upper, to_lower
+        return to_upper + self.height**2, to_lower + self.height**2
 
     @property
     def layout(self) -> str:
         """Places of the outer roots, in words."""
+        if self.height:
+            return "complex pair"
+        if not self.outer:
+            return "both at infinity"
         above = sum(root > self.upper for root in self.outer)
         if len(self.outer) == 1:
             return "one above" if above else "one below"
         return ("both below", "one on each side", "both above")[above]
+
+    @property
+    def kind(self) -> str:
+        """The radicand by its degree, and what is degenerate about it."""
+        degree = ("quadratic", "cubic", "quartic")[len(self.outer)]
+        if self.lower == self.upper:
+            return f"{degree}, the band is a double root: eta is constant"
+        if not self.outer:
+            return "quadratic, k1 = 0: a harmonic oscillation"
+        if len(set(self.outer)) < len(self.outer) and not self.height:
+            return "quartic with a double outer root, k1 = 0: circular functions"
+        return "quartic, k1 is imaginary" if self.height else degree

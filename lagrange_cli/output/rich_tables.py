@@ -32,7 +32,7 @@ _TEXT_WIDTH = 100
 _BOLD = re.compile("\x1b\\[[0-9;]*m")
 _ASCII = str.maketrans(
     {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "⁴": "^4", "§": "sec. "}
-    | {"β": "beta", "δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta"}
+    | {"β": "beta", "δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta", "τ": "tau"}
 )
 
 

@@ -102,7 +102,7 @@ def test_the_examples_are_so_many() -> None:
     counts = {command.name: len(command.examples) for command in commands()}
     assert counts == {
         **{"main": 3, "solve": 8, "table": 6, "sweep": 8, "plot": 5},
-        **{"jacobi": 8, "eta": 5, "bench": 4, "stability": 4},
+        **{"jacobi": 8, "eta": 6, "bench": 4, "stability": 4},
     }
     assert len(EXAMPLES) == 48 + 3
     lines = [line for command in commands() for line in command.examples]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from typing import Any
 
@@ -16,7 +17,8 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import units
-from lagrange_cli.elliptic.eta import digit_rows, eta_constants, record, rows
+from lagrange_cli.elliptic.eta import eta_constants, record
+from lagrange_cli.elliptic.eta_table import digit_rows, header, rows
 from lagrange_cli.elliptic.quadrature import Quadrature
 
 ORBITS = {
@@ -43,6 +45,22 @@ ORBITS = {
         Fraction("0.277"), Fraction("0.866"), (Fraction("1.29"),), Fraction("319.09")
     ),
     "cubic, root below": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction("-0.4"),)),
+    "complex pair inside": Quadrature(
+        Fraction("-0.5"), Fraction("0.6"), (Fraction("0.1"),) * 2, Fraction(2), Fraction("0.7")
+    ),
+    "complex pair above": Quadrature(
+        Fraction("-0.5"), Fraction("0.6"), (Fraction(3),) * 2, Fraction(1), Fraction("0.01")
+    ),
+    "complex pair below": Quadrature(
+        Fraction("0.5"), Fraction("0.6"), (Fraction("-2"),) * 2, Fraction(1), Fraction("9")
+    ),
+    "complex pair close to the band": Quadrature(
+        Fraction("-0.5"), Fraction("0.6"), (Fraction("0.2"),) * 2, Fraction(1), Fraction("1e-6")
+    ),
+    "complex pair close to an end": Quadrature(
+        Fraction("-0.5"), Fraction("0.6"), (Fraction("0.6"),) * 2, Fraction(1), Fraction("1e-9")
+    ),
+    "quadratic": Quadrature(Fraction("-0.5"), Fraction("0.7"), (), Fraction("0.3")),
     "equal outer roots": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction(2), Fraction(2))),
 }
 TOP_KEYS = ["a", "u1", "u2", "u3", "T_nutation"]
@@ -53,8 +71,8 @@ class Integral:
     """tau as a function of eta by quadrature over eta = middle - half cos chi; the judge."""
 
     def __init__(self, of: Quadrature) -> None:
-        numbers = (of.lower, of.upper, of.g, *of.outer)
-        self.lower, self.upper, self.g, *self.outer = (
+        numbers = (of.lower, of.upper, of.g, of.height, *of.outer)
+        self.lower, self.upper, self.g, self.height, *self.outer = (
             mpmath.mpf(x.numerator) / x.denominator for x in numbers
         )
 
@@ -64,12 +82,18 @@ class Integral:
     def pace(self, chi: Any) -> Any:
         """Return d tau/d chi."""
         eta = self.eta(chi)
-        return 1 / mpmath.sqrt(self.g * abs(mpmath.fprod(eta - root for root in self.outer)))
+        product = abs(mpmath.fprod(eta - root for root in self.outer))
+        return 1 / mpmath.sqrt(self.g * (product + self.height**2))
 
     def tau(self, chi: Any) -> Any:
         """Return tau since delta* at chi = 0; split where an outer root is close."""
         corners = [mpmath.mpf(10) ** -n for n in (12, 9, 6, 4, 2)]
-        ends = sorted({*corners, 1, mpmath.pi - 1, *(mpmath.pi - x for x in corners)})
+        ends: Any = {*corners, 1, mpmath.pi - 1, *(mpmath.pi - x for x in corners)}
+        if self.height and self.lower < self.outer[0] < self.upper:
+            share = (self.outer[0] - self.lower) / (self.upper - self.lower)
+            middle = 2 * mpmath.asin(mpmath.sqrt(share))
+            ends |= {middle, *(middle + sign * x for x in corners for sign in (-1, 1))}
+        ends = sorted(ends)
         return mpmath.quad(self.pace, [0, *(x for x in ends if x < chi), chi])
 
     def chi(self, tau: Any, guess: Any) -> Any:
@@ -89,7 +113,7 @@ def test_eta(name: str) -> None:
         period = 2 * integral.tau(mpmath.pi)
         assert abs(mpmath.mpf(eta_constants(ManyDigits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
-        block = next(rows(of, ListedPoints(times), Fraction(0))[1])
+        block = next(rows(of, ListedPoints(times), Fraction(0)))
         for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             tau = time - period * mpmath.nint(time / period)
@@ -101,6 +125,48 @@ def test_eta(name: str) -> None:
             assert units(eta, integral.eta(chi), slope, tau) <= 1.6
             size = max(1, abs(slope)) * mpmath.sqrt(integral.g)
             assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in ORBITS if "close" not in name])
+def test_chain(name: str) -> None:
+    """xi' and theta by (3.2.2) from the quadrature, and h1 by (3.2.7) from theta.
+
+    Within 4 units of eps (max(1, |f|) + |tau df/dtau|); the worst seen is below 2.
+    """
+    of = ORBITS[name]
+    with mpmath.workdps(60):
+        integral = Integral(of)
+        period = 2 * integral.tau(mpmath.pi)
+        less, more = (mpmath.sqrt(mpmath.mpf(x.numerator) / x.denominator) for x in of.squares)
+        sign = -1 if of.height or of.layout in {"both above", "both below"} else 1
+        width2 = (integral.upper - integral.lower) ** 2
+        k2 = (sign * width2 + (less - more) ** 2) / (4 * less * more)
+        if len(of.outer) < 2:
+            k2 = (less - more) ** 2 / (4 * less * more)
+        k2 = abs(k2) if sign < 0 and not of.height else k2
+        m, sigma1 = k2 / (1 + k2), mpmath.sqrt(integral.g * less * more * (1 + k2))
+        assert abs(4 * mpmath.ellipk(m) / sigma1 / period - 1) < 1e-40
+        times = [Fraction(float(period) * part) for part in PARTS]
+        block = next(rows(of, ListedPoints(times), Fraction(0), "rad"))
+        for exact_time, row in zip(times, block.tolist(), strict=True):
+            time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
+            turns = mpmath.nint(time / period)
+            tau = time - period * turns
+            _, eta, _, h1, theta, xi = row
+            risen = (mpmath.mpf(eta) - integral.lower) / (integral.upper - integral.lower)
+            guess = 2 * mpmath.asin(mpmath.sqrt(max(0, min(1, risen))))
+            chi = integral.chi(abs(tau), guess)
+            half = mpmath.atan2(  # (3.2.2): tan^2 of half of theta + pi/2
+                mpmath.sqrt(less) * mpmath.sin(chi / 2), mpmath.sqrt(more) * mpmath.cos(chi / 2)
+            )
+            within = mpmath.sign(tau) * 2 * half - mpmath.pi / 2
+            pace = sigma1 * mpmath.sqrt(1 - m * mpmath.sin(within) ** 2)
+            assert units(theta, within + 2 * mpmath.pi * turns, pace, tau) <= 2
+            assert units(xi, mpmath.sin(within), pace * mpmath.cos(within), tau) <= 2
+            exact_h1 = sigma1 * time - mpmath.ellipk(m)
+            assert units(h1, exact_h1, sigma1, tau) <= 2
+            assert abs(mpmath.ellipf(within, m) + 4 * turns * mpmath.ellipk(m) - exact_h1) < 1e-15
 
 
 def rational(value: Any) -> Fraction:
@@ -115,7 +181,7 @@ def test_the_top_is_the_cubic_case() -> None:
     exact = {key: Fraction(x) for key, x in solve(Top()).digits(50, keys=TOP_KEYS).items()}
     of = Quadrature(exact["u2"], exact["u1"], (exact["u3"],), exact["a"])
     times = np.linspace(-3, 400, 1001)
-    block = next(rows(of, ListedPoints([Fraction(t) for t in times]), exact["T_nutation"] / 2)[1])
+    block = next(rows(of, ListedPoints([Fraction(t) for t in times]), exact["T_nutation"] / 2))
     assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
     assert float(eta_constants(ManyDigits(50), of).period) == solve(Top()).T_nutation
 
@@ -135,7 +201,7 @@ def test_energy_and_ends(
     upper = lower + width
     ends = [upper + gaps[0] if above else lower - gaps[0], lower - gaps[-1]]
     of = Quadrature(lower, upper, tuple(ends[: len(gaps)]))
-    ((_, eta, rate),) = next(rows(of, ListedPoints([tau]), Fraction(0))[1]).tolist()
+    ((_, eta, rate),) = next(rows(of, ListedPoints([tau]), Fraction(0))).tolist()
     assert lower <= Fraction(eta) + Fraction("1e-15")
     assert Fraction(eta) <= upper + Fraction("1e-15")
     radicand = (upper - Fraction(eta)) * (Fraction(eta) - lower)
@@ -152,16 +218,16 @@ def test_far_times(lagtop: Lagtop) -> None:
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
     of = ORBITS["generic"]
     period = eta_constants(ManyDigits(60), of).period
-    shifted = next(rows(of, ListedPoints([Fraction(1)]), rational(10**15 * period))[1])
+    shifted = next(rows(of, ListedPoints([Fraction(1)]), rational(10**15 * period)))
     assert shifted == pytest.approx(
-        next(rows(of, ListedPoints([Fraction(1)]), Fraction(0))[1]), abs=1e-14
+        next(rows(of, ListedPoints([Fraction(1)]), Fraction(0))), abs=1e-14
     )
 
 
 def test_digits_close_to_the_ends() -> None:
     """Next to a turning point eta is reckoned from there."""
     of = Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2)))
-    ((_, eta, _),) = next(rows(of, ListedPoints([Fraction("1e-9")]), Fraction(0))[1]).tolist()
+    ((_, eta, _),) = next(rows(of, ListedPoints([Fraction("1e-9")]), Fraction(0))).tolist()
     assert eta == pytest.approx(0.5e-18, rel=1e-12, abs=0)
 
 
@@ -176,9 +242,9 @@ LOW, HIGH, OUT, IN = (Fraction(x) for x in ("-0.5", "0.6", "-1.3", "1.5"))
 
 def test_digits_agree_with_doubles() -> None:
     of, times = ORBITS["generic"], ListedPoints([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
-    block = next(rows(of, times, Fraction("0.4"))[1])
-    header, texts = digit_rows(of, times, Fraction("0.4"), 30)
-    assert header == ["tau", "eta", "etadot"]
+    block = next(rows(of, times, Fraction("0.4")))
+    texts = digit_rows(of, times, Fraction("0.4"), 30)
+    assert header() == ["tau", "eta", "etadot"]
     assert block == pytest.approx(np.array([[float(x) for x in row] for row in texts]), abs=1e-15)
     assert record(of)["sigma1"] == float(record(of, 30)["sigma1"])
 
@@ -205,6 +271,11 @@ def test_digits_agree_with_doubles() -> None:
         ("--delta 1 --delta-star 0 --gap-below 1 --tau-range 0:1:0", "--tau-range must have"),
         ("--delta 1 --delta-star 0 --gap-below 1 --tau 1 --tau-range 0:1:5", "exclude each other"),
         ("--delta x --delta-star 0 --gap-below 1", "--delta must be a finite decimal"),
+        ("--delta 1 --delta-star 0 --p 0 --q xi", "--q must be a finite decimal"),
+        ("--delta 1 --delta-star 0 --p 0 --q=-2i", "--q must be >= 0, got -2.0i"),
+        ("--delta 1 --delta-star 0 --p 0 --quadratic", "--quadratic and --p exclude each other"),
+        ("--delta 1 --delta-star 0 --p 3 --q 2", "makes the period infinite (k1 = 1), got 1.0"),
+        ("--delta 1 --delta-star 0 --quadratic --chain", "--chain needs --tau or --tau-range"),
     ],
 )
 def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
@@ -212,6 +283,69 @@ def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
     assert (result.exit_code, result.stdout) == (2, "")
     assert message in result.stderr
     assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("outer", "kind"),
+    [
+        ("--p 0 --q 2", "quartic"),
+        ("--p 3 --q 0", "quartic with a double outer root, k1 = 0: circular functions"),
+        ("--p 3 --q 0i", "quartic with a double outer root, k1 = 0: circular functions"),
+        ("--p 0.1 --q 2i", "quartic, k1 is imaginary"),
+        ("--gap-above 1", "cubic"),
+        ("--quadratic", "quadratic, k1 = 0: a harmonic oscillation"),
+    ],
+)
+def test_degenerate_radicands_are_named(lagtop: Lagtop, outer: str, kind: str) -> None:
+    args = f"eta --delta 0.5 --delta-star -0.25 {outer} --format json".split()
+    assert json.loads(lagtop(*args).stdout)["kind"] == kind
+    still = json.loads(lagtop(*args, "--delta-star", "0.5").stdout)
+    degree = kind.split(maxsplit=1)[0].rstrip(",")
+    assert still["kind"] == f"{degree}, the band is a double root: eta is constant"
+
+
+def test_complex_pair_with_digits() -> None:
+    """Constants by (3.2.3), (3.2.5) with a minus, (3.2.8) and (3.2.12), cancelling in 300 digits.
+
+    Roots are next to the band, far from it, and next to an end of a narrow band.
+    """
+    cases = [
+        ("-0.5", "0.6", "0.1", "1e-60"),
+        ("-0.5", "0.6", "1e40", "3"),
+        ("0.6", "0.6000000000000000000000000000000000000001", "0.6", "1e-50"),
+    ]
+    for lower, upper, p, height in cases:
+        band, roots = (Fraction(lower), Fraction(upper)), (Fraction(p),) * 2
+        of = Quadrature(*band, roots, height=Fraction(height))
+        shown = record(of, 30, Fraction("0.3"))
+        with mpmath.workdps(300):
+            low, high, middle, far = map(mpmath.mpf, (lower, upper, p, height))
+            m1, m2 = mpmath.hypot(high - middle, far), mpmath.hypot(low - middle, far)
+            k2 = ((m1 - m2) ** 2 - (high - low) ** 2) / (4 * m1 * m2)
+            sigma1 = mpmath.sqrt(m1 * m2 * (1 + k2))
+            exact = {"m_prime": m1, "m_double_prime": m2, "sigma1": sigma1}
+            exact |= {"k_imag": mpmath.sqrt(-k2), "k1_imag": mpmath.sqrt(-k2 / (1 + k2))}
+            exact |= {"K1": mpmath.ellipk(k2 / (1 + k2)), "k1_prime": 1 / mpmath.sqrt(1 + k2)}
+            exact |= {"period": 4 * exact["K1"] / sigma1, "d": (m2 - m1) / (m1 + m2)}
+            exact["tau3"] = mpmath.mpf("0.3") - exact["K1"] / sigma1
+            for name, value in exact.items():
+                if value:
+                    assert abs(mpmath.mpf(shown[name]) / value - 1) < 1e-29, (name, p)
+
+
+def test_chain_of_the_command(lagtop: Lagtop) -> None:
+    """At tau = -c3 theta is -90 degrees; a pair of roots on the axis is what it tends to."""
+    args = "eta --delta 0.5 --delta-star -0.25 --chain --c3 2 --tau -2 --tau 0.5".split()
+    for outer in ("--p 0 --q 2", "--p 0.1 --q 2i", "--quadratic"):
+        shown = json.loads(lagtop(*args, *outer.split(), "--format", "json").stdout)
+        assert (shown[0]["theta_deg"], shown[0]["xi_prime"]) == (-90, -1)
+        digits = lagtop(*args, *outer.split(), "--digits", "25", "--format", "json").stdout
+        for one, other in zip(shown, json.loads(digits), strict=True):
+            assert one == pytest.approx({x: float(y) for x, y in other.items()}, rel=1e-14)
+        radians = lagtop(*args, *outer.split(), "--rad", "--format", "json").stdout
+        assert json.loads(radians)[1]["theta_rad"] == pytest.approx(
+            np.radians(shown[1]["theta_deg"]), rel=1e-15
+        )
 
 
 def test_check_names_the_root() -> None:
