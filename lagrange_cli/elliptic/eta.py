@@ -236,7 +236,7 @@ class Band(NamedTuple):
     g: Value
     """The leading coefficient."""
     pair: tuple[Value, Value, Value] | None = None
-    """Of a complex pair p +- i height: delta* - p, delta - p, height."""
+    """The numbers delta* - p, delta - p and height of a complex pair p +- i height."""
 
 
 def band_of(ar: FunctionArithmetic, quadrature: Quadrature) -> Band:
