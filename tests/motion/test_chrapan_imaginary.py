@@ -127,6 +127,43 @@ def _() -> Sides:
             yield ar.exp(2 * value), _pi01_there(motion, t, v)
 
 
+def _weighted(motion: Motion, t: Any) -> tuple[Any, Any]:
+    """Return sn/(cn dn) times Pi01 of each parameter, from the roots, over sqrt(a (u3 - u1))/b."""
+    ours = form(motion)
+    size = motion.b / ar.sqrt(motion.a * (motion.u3 - motion.u1))
+    first, second = (
+        size * x.sn / (x.cn * x.dn) * value
+        for x, value in zip(ours.at_parameters, ours.pi01(t), strict=True)
+    )
+    return first, second
+
+
+@equation("section 4 i: precession by Pi01 and the values at its parameters")
+def _() -> Sides:
+    for motion, t in moments(*FEW):
+        first, second = _weighted(motion, t)
+        yield first - second, motion.angles(t)[2]
+
+
+@equation("section 4 l: spin by Pi01 and the values at its parameters")
+def _() -> Sides:
+    for motion, t in moments(*FEW):
+        first, second = _weighted(motion, t)
+        yield motion.r0 * t + first + second, motion.angles(t)[1]
+
+
+@equation("section 4 j: sn, cn, dn of i alpha for the real modulus")
+def _() -> Sides:
+    for motion in MOTIONS:
+        u1, u2, u3 = motion.roots
+        sn, cn, dn = (
+            ar.ellipfun(name, J * form(motion).alpha, m=motion.k**2) for name in ("sn", "cn", "dn")
+        )
+        yield sn**2, -(u3 - u2) / (1 + u2)
+        yield cn, ar.sqrt((u3 + 1) / (1 + u2))
+        yield dn**2, (1 + u1) / (1 + u2)
+
+
 @equation("section 4 i: precession by Pi01")
 def _() -> Sides:
     for motion, t in moments():
