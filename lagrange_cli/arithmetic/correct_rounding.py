@@ -19,6 +19,7 @@ _TIE = Decimal("1e-300")
 _MOST_DIGITS = 2_000
 
 
+_INFINITE = float("inf")
 _WIDE = own_context(2 * _MOST_DIGITS, [])
 _PATIENCE = 2
 """Precisions to try before asking whether a number is known exactly."""
@@ -88,6 +89,20 @@ def _rounded(value: Decimal, previous: Decimal, rounding: Callable[[Decimal], T]
     if wide.compare(error, wide.multiply(size, _TIE)) < 0:
         return rounding(own_context(250, []).plus(value))
     return None
+
+
+def nearest_double(name: str) -> Callable[[Decimal], float]:
+    """Return the rounding of a number to doubles.  It raises LagtopError beyond their range."""
+
+    def rounding(value: Decimal) -> float:
+        nearest = float(value)
+        if not abs(nearest) < _INFINITE:
+            raise LagtopError(
+                f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
+            )
+        return nearest
+
+    return rounding
 
 
 def text_of(value: Decimal | Fraction, digits: int) -> NumberText:

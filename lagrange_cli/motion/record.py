@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from .quantity import Key, keys_of
 from .spin_precession import SpinPrecession
+
+if TYPE_CHECKING:
+    from decimal import Decimal
+
+    from .kinds import Kind
+    from .regime import Exact
 
 _INPUTS = {
     "m": Key("Inputs", "m", "mass", "mass"),
@@ -56,6 +64,18 @@ def requested_keys() -> dict[str, Key]:
     from .requested import REQUESTED  # not for a record
 
     return REQUESTED
+
+
+def source_of(name: str, kind: Kind[Decimal], exact: Exact) -> Any:
+    """Return the object that computes a number: a kind, or what stands on it for those on request.
+
+    Such objects are made anew for each number; what they share is computed by the kind.
+    """
+    if name in _NUMBERS:
+        return kind
+    from .worked_example import WorkedExample  # the last of the classes with such keys
+
+    return WorkedExample(kind, exact)
 
 
 def all_keys(*, radians: bool = False) -> list[str]:

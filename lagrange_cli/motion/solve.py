@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, precisions, text_of
+from ..arithmetic.correct_rounding import (
+    TooFewDigitsError,
+    correctly_rounded,
+    nearest_double,
+    precisions,
+    text_of,
+)
 from ..arithmetic.decimals import decimals
 from ..errors import LagtopError
 from ..inputs.top import Top
 from .gaps import agree, are_told_apart, gaps_of, released, state
 from .kinds import Kind, kind_of
-from .record import NUMBER_KEYS, all_keys, number_key, record_keys, requested_keys, unit_name
+from .record import (
+    NUMBER_KEYS,
+    all_keys,
+    number_key,
+    record_keys,
+    requested_keys,
+    source_of,
+    unit_name,
+)
 from .regime import Exact, Regime, exact
 
 if TYPE_CHECKING:
@@ -76,7 +89,7 @@ class Motion:
         if number_key(name) is None:
             raise AttributeError(f"a motion has no {name!r}")
         if name not in self._doubles:
-            self._doubles[name] = self._number(name, _nearest_double(name), _double_of_fraction)
+            self._doubles[name] = self._number(name, nearest_double(name), float)
         return self._doubles[name]
 
     def __dir__(self) -> Sequence[str]:
@@ -157,7 +170,7 @@ class Motion:
         if not (radians and name.endswith("_deg")):
             value: float | None = getattr(self, name)
             return value
-        return self._number(name, _nearest_double(name), _double_of_fraction, radians=True)
+        return self._number(name, nearest_double(name), float, radians=True)
 
     def _number(
         self,
@@ -182,7 +195,7 @@ class Motion:
 
         def value_in(digits: int) -> Decimal | None:
             kind = self.kind(digits)
-            value: Decimal | None = getattr(self._source(name, kind), name)
+            value: Decimal | None = getattr(source_of(name, kind, self.exact), name)
             if not in_radians or value is None:
                 return value
             with kind.ar.working():
@@ -197,14 +210,6 @@ class Motion:
             exactly=exactly,
             lost=8 if self.exact.facts.at_rest and not cancels else None,
         )
-
-    def _source(self, name: str, kind: Kind[Decimal]) -> Any:
-        """Return the object that computes a key: the kind, or what is asked for on request."""
-        if name in NUMBER_KEYS:
-            return kind
-        from .worked_example import WorkedExample  # the last of the classes with such keys
-
-        return WorkedExample(kind, self.exact)
 
     def kind(self, digits: int) -> Kind[Decimal]:
         """Return the motion computed with so many decimal digits.
@@ -284,19 +289,3 @@ class Motion:
         if self._sampler is None:
             self._sampler = self.settled_kind(SAMPLER_DIGITS).sampler()
         return self._sampler
-
-
-def _nearest_double(name: str) -> Callable[[Decimal], float]:
-    def rounding(value: Decimal) -> float:
-        nearest = float(value)
-        if not math.isfinite(nearest):
-            raise LagtopError(
-                f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
-            )
-        return nearest
-
-    return rounding
-
-
-def _double_of_fraction(value: Fraction) -> float:
-    return float(value)
