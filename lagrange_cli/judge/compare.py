@@ -44,6 +44,7 @@ def compare(
     rates_frame: str = "body",
     align: Sequence[str] = (),
     max_error: float = LIMIT,
+    step: float | None = None,
 ) -> Judgement:
     """Return the judgement of a trajectory at the times t, of n rows.
 
@@ -52,7 +53,8 @@ def compare(
     notation, a rotation vector (n, 3), the figure axis (n, 3), the position of the mass centre from
     the pivot (n, 3), angular velocity (n, 3) in the frame of the `body` or of `space`, and the
     rates of theta, phi, psi (n, 3).  Angles are in radians.  `align` names what is done to the
-    trajectory first, as in `lagtop compare`.  Up to `max_error` radians it is fine.
+    trajectory first, as in `lagtop compare`.  Up to `max_error` radians it is fine.  `step` is kept
+    in the judgement, for `convergence` of several.
 
     Raises LagtopError for a bad argument, and for times that are not finite or turn back.
     """
@@ -65,7 +67,8 @@ def compare(
     block = _quantities(t, {key: x for key, x in arrays.items() if x is not None})
     given = Given([block], {}, conventions, alignment(align))
     motion = top if isinstance(top, Motion) else solve(top)
-    return settled(motion, [(judge(motion, given), given)], max_error)[0][0]
+    (judgement,), _ = settled(motion, [(judge(motion, given), given)], max_error)
+    return replace(judgement, step=step)
 
 
 def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:

@@ -39,7 +39,7 @@ def key(meaning: str, default: Any = None) -> Any:
     return field(default=default, metadata={"meaning": meaning})
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Judgement:
     """What is said of one trajectory; angles are in radians, and what cannot be told is None."""
 
@@ -83,16 +83,19 @@ class Judgement:
     explained_by: str | None = key("the slip that explains the error best")
     explained_error: float | None = key("greatest error that is left if that slip is undone")
 
-    error_start: float = field(default=math.nan, metadata={"is_key": False})
+    error_start: float = field(default=math.nan, compare=False)
     """Error at the first row."""
-    t: Array | None = field(default=None, repr=False, compare=False, metadata={"is_key": False})
+    t: Array | None = field(default=None, compare=False)
     """Times of at most 4096 rows, spread evenly."""
-    error: Array | None = field(default=None, repr=False, compare=False, metadata={"is_key": False})
+    error: Array | None = field(default=None, compare=False)
     """Errors at these times; NaN where the trajectory is lost."""
 
     def record(self) -> dict[str, Any]:
         """Return the judgement by key."""
         return {name: getattr(self, name) for name in KEYS}
+
+    def __repr__(self) -> str:
+        return f"<Judgement: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"
 
 
 KEYS: dict[str, str] = {

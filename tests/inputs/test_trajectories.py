@@ -255,6 +255,15 @@ def test_a_place_is_right_after_the_first_block(
         read(tmp_path / "a.npy", ["t", "theta"])
 
 
+def test_times_may_run_backwards(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("t,theta\n0,1\n-1,2\n-1,3\n-2,4\n")
+    assert read(path)["t"][:, 0].tolist() == [0, -1, -1, -2]
+    path.write_text("t,theta\n0,1\n-1,2\n-0.5,3\n")
+    with pytest.raises(DataError, match=r"line 4: t must not turn back, got -0\.5 after -1\.0"):
+        read(path)
+
+
 @pytest.mark.parametrize(
     ("columns", "message"),
     [

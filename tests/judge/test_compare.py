@@ -179,6 +179,40 @@ def test_drift_of_energy_and_norm_of_an_integrator() -> None:
     assert most(judgement.rate_error_final, 1)
 
 
+@pytest.mark.parametrize(("tilt", "sign"), [(0, 1), (180, -1)])
+def test_upright_and_hanging_tops_have_one_angle(tilt: int, sign: int) -> None:
+    """Upright, a turn about the vertical is one of the spin; hanging, it is one against it."""
+    top = Top(theta0_deg=tilt, r0=70)
+    _, states = dop853(Body.of(top), T)
+    turned = about_z(0.25) * Rotation.from_quat(states[:, :4], scalar_first=True) * about_z(-0.1)
+    judgement = compare(top, T, quaternion=scalar_first(turned))
+    assert judgement.phi_error_max == pytest.approx(0.15 if sign > 0 else 0.35, abs=1e-9)
+    assert judgement.attitude_error_max == pytest.approx(judgement.phi_error_max, abs=1e-9)
+    assert judgement.psi_error_max is None
+
+
+@pytest.mark.parametrize(
+    ("printed", "least", "most_off"),
+    [
+        ((-0.70828, 0.43878, 0.54573, 0.0894), 0, 1e-5),
+        ((-0.70813, 0.43881, 0.54593, 0.089251), 3e-4, 6e-4),
+        ((-0.70824157, 0.43878143, 0.54578152, 0.08937154), 5e-5, 2e-4),
+    ],
+)
+def test_published_attitudes_of_the_heavy_top(
+    printed: tuple[float, ...], least: float, most_off: float
+) -> None:
+    """EXUDYN's heavyTop.py prints them at t = 0.2: Runge-Kutta, generalised alpha, its own.
+
+    The top of Bruels, Cardona and Arnold has its axis along y.
+    """
+    top = Top(m=15, A=15.234375, C=0.46875, s=1, g=9.81, r0=150, theta0_deg=90, psidot0=-4.61538)
+    q = [(1, 0, 0, 0), printed]
+    judgement = compare(top, [0, 0.2], quaternion=q, align=["axis=y", "start"])
+    assert judgement.attitude_error_max is not None
+    assert least <= judgement.attitude_error_max < most_off
+
+
 # Frames.
 
 
@@ -268,6 +302,18 @@ def test_the_error_of_another_top_does_not_fall() -> None:
 def test_rounding_need_not_fall() -> None:
     rows = judged(TOP, [(T, STATES), (T, STATES)], [1e-3, 1e-4])
     assert {row.verdict for row in rows} == {"fine"}
+
+
+def test_steps_finer_than_the_best_do_not_count() -> None:
+    """Rounding grows with the number of steps: 1e-9 at the step of 1e-5."""
+    runs = [
+        compare(TOP, T, theta=ANGLES[:, 1] + size, step=h)
+        for h, size in ((1e-2, 1e-2), (1e-3, 1e-4), (1e-4, 1e-6), (1e-5, 1e-3))
+    ]
+    found = convergence(runs[::-1])
+    assert found is not None
+    assert found.order == pytest.approx(2, abs=1e-3)
+    assert convergence(runs[:1]) is None
 
 
 SHIFT = 1587 * 16
