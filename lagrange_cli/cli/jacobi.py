@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..arithmetic.text import parse_number
+from ..arithmetic.exact_complex import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import JACOBI
 from ..output.write import write_record, write_table
 from .command import ExamplesFirst
+from .jacobi_complex import complex_points, is_real, write_complex
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -41,13 +42,18 @@ def _parse_multiple(text: str) -> Multiple:
     return parse_multiple(text)
 
 
+def _parse_argument(text: str) -> Multiple | ExactComplex:
+    return parse_complex(text) if text.strip().endswith("i") else _parse_multiple(text)
+
+
 def _parse_multiples(text: str) -> Multiples:
     from ..inputs.multiples import parse_multiples
 
     return parse_multiples(text)
 
 
-MULTIPLE = Parsed("number", _parse_multiple)
+ARGUMENT = Parsed("number", _parse_argument)
+COMPLEX = Parsed("number", parse_complex)
 MULTIPLES = Parsed("range", _parse_multiples)
 
 
@@ -63,17 +69,18 @@ MULTIPLES = Parsed("range", _parse_multiples)
         lagtop jacobi --k 0.8 --u-range 0:4K:5
         lagtop jacobi --modular-angle 45 --phi 30 --phi 60
         lagtop jacobi --k 0.99 --u 1 --series 10
+        lagtop jacobi --k 0.8i --u 0.3+0.7i --pi --param 0.2+0.1i
     """,
 )
-@click.option("--k", type=NUMBER, help="Modulus, 0 to 1.")
+@click.option("--k", type=COMPLEX, help="Modulus, 0 to 1, above 1, or imaginary as 0.8i.")
 @click.option("--k-prime", type=NUMBER, help="Its complement, for k close to 1.")
 @click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")
 @click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
 @click.option(
     *("--u", "single"),
-    type=MULTIPLE,
+    type=ARGUMENT,
     multiple=True,
-    help="Argument, as 0.5 or, in units of K, K, -2.5K, K/2, 3K/4; may be repeated.",
+    help="Argument, as 0.5, 0.3+0.7i or, in units of K, K, -2.5K, K/2, 3K/4; may be repeated.",
 )
 @click.option("--u-range", "grid", type=MULTIPLES, help="Arguments, as [log:]start:stop:count.")
 @click.option("--phi", "amplitudes", type=NUMBER, multiple=True, help="F and E of it instead.")
@@ -82,7 +89,9 @@ MULTIPLES = Parsed("range", _parse_multiples)
 @click.option("--zeta", is_flag=True, help="Their logarithmic derivatives too.")
 @click.option("--omega", is_flag=True, help="Chrapan's Omega functions of u and --param too.")
 @click.option("--pi", is_flag=True, help="Chrapan's Pi functions of u and --param too.")
-@click.option("--param", metavar="V|Vi", help="Parameter of Omega and Pi, real or imaginary.")
+@click.option(
+    "--param", metavar="NUMBER", help="Parameter of Omega and Pi, as 0.7, 0.7i, 0.2+0.7i."
+)
 @click.option(
     "--series", "terms", type=COUNT, metavar="N", help="Partial sums of the nome series instead."
 )
@@ -90,11 +99,11 @@ MULTIPLES = Parsed("range", _parse_multiples)
 @digits_option(MOST_TABLE_DIGITS)
 @output_options("table", "csv", "json")
 def command(
-    k: Fraction | None,
+    k: ExactComplex | None,
     k_prime: Fraction | None,
     angle: Fraction | None,
     q: Fraction | None,
-    single: tuple[Multiple, ...],
+    single: tuple[Multiple | ExactComplex, ...],
     grid: Multiples | None,
     amplitudes: tuple[Fraction, ...],
     fan: Points | None,
@@ -118,18 +127,36 @@ def command(
     Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param,
     u and a real v less whole periods.  u and a real v go up to 2^50 periods, an imaginary v up to
     K'; what is beyond is refused.  An empty cell is a pole.
+
+    Where a modulus is imaginary or above 1, an argument complex, or a parameter neither real nor
+    imaginary, columns end in _re and _im, and imaginary parts go up to 2^50 periods too.  Omega and
+    Pi are continuous between the lines of zeros of theta; am is empty beyond its branch points.
     """
     from ..elliptic.function_table import Request
     from ..elliptic.modulus_input import ModulusInput, constants_record
 
-    named = {"k": k, "k_prime": k_prime, "modular_angle": angle, "nome": q}
+    beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
+    real_k = None if k is None else k.real
+    named = {"k": real_k, "k_prime": k_prime, "modular_angle": angle, "nome": q}
     chosen = [(name, value) for name, value in named.items() if value is not None]
     if len(chosen) != 1:
         raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
     modulus = ModulusInput(*chosen[0], radians=rad)
     flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
     families = tuple(name for name, wanted in flags.items() if wanted)
-    arguments, in_quarters = _arguments(single, grid)
+    parameter, imaginary = _parameter(param, families)
+    if beyond or not is_real(single, parameter):
+        exclude({"complex numbers or such a modulus": True, "--phi": amplitudes or fan})
+        exclude({"complex numbers or such a modulus": True, "--series": terms})
+        points = complex_points(single, grid)
+        if points is None and families:
+            raise LagtopError(f"--{families[0]} needs --u or --u-range")
+        given = k if beyond and k is not None else modulus
+        write_complex(points, (given, families, parameter, rad), digits, (fmt, output))
+        return
+    arguments, in_quarters = _arguments(
+        [u for u in single if not isinstance(u, ExactComplex)], grid
+    )
     angles = listed("phi", amplitudes, fan)
     if angles:
         others = {"--u": arguments, "--series": terms, f"--{(*families, '')[0]}": families or None}
@@ -147,34 +174,34 @@ def command(
             raise LagtopError(f"--{families[0]} needs --u or --u-range")
         write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
         return
-    parameter, imaginary = _parameter(param, families)
-    request = Request(modulus, families, parameter, imaginary, rad, in_quarters)
+    part = parameter.imag if imaginary else parameter.real
+    request = Request(modulus, families, part, imaginary, rad, in_quarters)
     _write_rows(arguments, request, digits, fmt, output)
 
 
-def _arguments(single: tuple[Multiple, ...], grid: Multiples | None) -> tuple[Points | None, bool]:
+def _arguments(single: list[Multiple], grid: Multiples | None) -> tuple[Points | None, bool]:
     """Return the arguments, if any, and whether they are factors of K."""
     from ..inputs.multiples import listed_multiples
 
     exclude({"--u": single or None, "--u-range": grid})
     if not (single or grid):
         return None, False
-    return grid or listed_multiples(single)
+    return grid or listed_multiples(tuple(single))
 
 
-def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[Fraction, bool]:
-    """Return the value of --param, and whether it is imaginary."""
+def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactComplex, bool]:
+    """Return the value of --param, 0 where it is not needed, and whether it is imaginary."""
     if not {"omega", "pi"} & set(families):
         if param is not None:
             raise LagtopError("--param needs --omega or --pi")
-        return Fraction(0), False
+        return ExactComplex(Fraction(0)), False
     if param is None:
-        raise LagtopError("--omega and --pi need --param, as 0.7 or, imaginary, as 0.7i")
-    text = param.strip()
+        raise LagtopError("--omega and --pi need --param, as 0.7, 0.7i or 0.2+0.7i")
     try:
-        return parse_number(text.removesuffix("i")), text.endswith("i")
+        value = parse_complex(param)
     except LagtopError as error:
         raise LagtopError(f"--param {error}; an imaginary one is written 0.7i") from None
+    return value, not value.real and param.strip().endswith("i")
 
 
 def _write_rows(

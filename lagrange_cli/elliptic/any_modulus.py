@@ -9,6 +9,7 @@ where k^2 has a small negative imaginary part, as in mpmath.
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 from typing import NamedTuple
 
@@ -53,10 +54,8 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
 
     `ar` is an mpmath context.  Raises LagtopError for other numbers.
     """
+    check_any_modulus(k)
     real, imag = ar.convert(k.real), ar.convert(k.imag)
-    if not (ar.isfinite(real) and ar.isfinite(imag)) or (real and imag) or real < 0 or imag < 0:
-        shown = k if isinstance(k, ExactComplex) else complex(k)
-        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {shown}", "k")
     if imag:
         root = ar.sqrt(1 + imag * imag)
         return AnyModulus(Kind.IMAGINARY, Modulus(imag / root, 1 / root), root)
@@ -64,6 +63,13 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
         complement = ar.sqrt((real - 1) * (real + 1)) / real
         return AnyModulus(Kind.LARGE, Modulus(1 / real, complement), real)
     return AnyModulus(Kind.UNIT, modulus(ar, k=real))
+
+
+def check_any_modulus(k: ExactComplex | complex) -> None:
+    """Raise LagtopError unless k is 0 or more, or i times a positive number."""
+    real, imag = k.real, k.imag
+    if not (real >= 0 and imag >= 0 and not (real and imag) and max(real, imag) < math.inf):
+        raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
 
 
 def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:

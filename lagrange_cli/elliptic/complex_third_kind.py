@@ -109,13 +109,14 @@ def omega_at(ar: FunctionArithmetic, at: Place, given: Parameter) -> Complex:
     if not given.periods.circular:
         imag = imag + 2 * (r * b + s * a)
         real = real - 2 * ar.pi * T * s * b * (0 if bends else 1)
-    x, y, V, W = at.x.total(), at.y.total(), v.x.total(), v.y.total()
     if bends:
-        share = (x + y) * (V + W) / (1 + T * T)
-        real = real - 2 * ar.pi * T * share
-        imag = imag - 2 * (y * W + x * b + V * s - share)
+        x, y, V, W = (end.exactly() for end in (*at, *v))
+        share = (x + y) * (V + W) * given.periods.bend
+        real = coarse(rise * given.periods.steep - share * given.periods.lift * 2)
+        waves = y * W + x * v.y.rest + at.y.rest * V - share
+        imag = imag - 2 * coarse(waves)
     else:
-        real = real - 2 * ar.pi * T * (at.y.whole * W + s * v.y.whole)
+        real = real - 2 * ar.pi * T * (at.y.whole * v.y.total() + s * v.y.whole)
         turns = turns + 2 * (v.y.whole * at.x.whole + at.y.whole * v.x.whole)
         imag = imag + 2 * (v.y.whole * r + at.y.whole * a)
     return cell.logarithm + ar.mpc(real, ar.pi * (imag + turns))

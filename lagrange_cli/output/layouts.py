@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 
@@ -34,6 +34,23 @@ JACOBI: Layout = {
         Line("E_prime", "E'", "second kind, k'"),
     ],
 }
+
+
+def in_parts(layout: Layout, keys: Collection[str]) -> Layout:
+    """Return a layout of complex numbers, each as a line of its real and its imaginary part.
+
+    Only lines whose keys are among `keys` are there.
+    """
+    return {
+        group: [
+            line._replace(key=f"{line.key}_{part}", symbol=f"{sign} {line.symbol}")
+            for line in lines
+            for part, sign in (("re", "Re"), ("im", "Im"))
+            if f"{line.key}_{part}" in keys
+        ]
+        for group, lines in layout.items()
+    }
+
 
 ETA: Layout = {
     "Roots": [

@@ -347,7 +347,7 @@ def test_series_of_the_command(lagtop: Lagtop) -> None:
     [
         ("", "give exactly one of --k, --k-prime, --modular-angle, --nome"),
         ("--k 0.5 --nome 0.1", "give exactly one of"),
-        ("--k 1.5", "--k must be in [0, 1], got 1.5"),
+        ("--k=-1", "--k must be 0 or more, or imaginary as 0.8i, got -1.0"),
         ("--k-prime -1", "--k-prime must be in [0, 1], got -1.0"),
         ("--modular-angle 91", "--modular-angle must be in [0, 90], got 91.0"),
         ("--nome 1", "--nome must be in [0, 1), got 1.0"),

@@ -1,0 +1,141 @@
+"""`lagtop jacobi` of complex numbers, of imaginary moduli and of those above 1."""
+
+from __future__ import annotations
+
+import json
+import random
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+from conftest import Lagtop
+from function_judge import ComplexJudge, complex_units
+
+from lagrange_cli import LagtopError
+from lagrange_cli.arithmetic.exact_complex import parse_complex
+
+EVERYTHING = "--theta --zeta --omega --pi --param 0.2+0.7i --format json"
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.3", 0.3),
+        ("i", 1j),
+        ("-i", -1j),
+        ("0.7i", 0.7j),
+        ("-0.5+i", -0.5 + 1j),
+        ("1e-3-2e-4i", 0.001 - 0.0002j),
+        ("-1e+3i", -1000j),
+    ],
+)
+def test_complex_numbers_are_read(text: str, value: complex) -> None:
+    assert complex(parse_complex(text)) == value
+
+
+@pytest.mark.parametrize("text", ["0.3+-0.7i", "xi", "0.3+0.7j", "1i2i", "0.3+0.7ii", "1e400i", ""])
+def test_other_texts_are_refused(text: str) -> None:
+    with pytest.raises(LagtopError, match="must be"):
+        parse_complex(text)
+
+
+def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
+    """Return the columns of a row with both parts, which may be numbers or texts."""
+    return {
+        name.removesuffix("_re"): complex(float(row[name]), float(row[f"{name[:-3]}_im"]))
+        for name in row
+        if name.endswith("_re") and row[name] is not None
+    }
+
+
+@pytest.mark.parametrize("k", ["0.8", "0.8i", "1.5"])
+def test_every_column(k: str, lagtop: Lagtop) -> None:
+    args = f"jacobi --k {k} --rad --u 0.3+0.7i --u=-4-1i {EVERYTHING}"
+    rows = json.loads(lagtop(*args.split()).stdout)
+    many = json.loads(lagtop(*args.split(), "--digits", "20").stdout)
+    judge = ComplexJudge(complex(parse_complex(k)))
+    for u, row, digits in zip((0.3 + 0.7j, -4 - 1j), rows, many, strict=True):
+        cells, exactly = complex_cells(row), complex_cells(digits)
+        assert cells["u"] == u
+        for name, exact in judge.columns(u, 0.2 + 0.7j):
+            column = f"{name}_rad" if name == "am" else name
+            if column not in cells:
+                assert exactly.keys() == cells.keys()
+                continue
+            assert complex_units(name, cells[column], exact) <= 4, name
+            assert exactly[column] == pytest.approx(cells[column], rel=1e-14, abs=1e-15)
+
+
+def test_constants(lagtop: Lagtop) -> None:
+    """The nearest doubles to what mpmath has, on its side of the cuts."""
+    for text, square in (("0.8i", "-0.64"), ("1.5", "2.25")):
+        record = json.loads(lagtop("jacobi", "--k", text, "--format", "json").stdout)
+        with mpmath.workdps(40):
+            m = mpmath.mpf(square)
+            exact = {"K": mpmath.ellipk(m), "K_prime": mpmath.ellipk(1 - m), "E": mpmath.ellipe(m)}
+        for name, value in exact.items():
+            found = complex(record[f"{name}_re"], record[f"{name}_im"])
+            assert found == complex(value)
+    assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
+
+
+def test_digits_are_right(lagtop: Lagtop) -> None:
+    """All of those printed, of sn, against mpmath."""
+    rng = random.Random("digits")
+    for _ in range(3):
+        u = f"{rng.uniform(-3, 3):.4f}{rng.uniform(-2, 2):+.4f}i"
+        args = f"jacobi --k 0.8i --u={u} --digits 30 --format json"
+        row = json.loads(lagtop(*args.split(), "--theta").stdout)[0]
+        with mpmath.workdps(50):
+            real, imag = (mpmath.mpf(str(part)) for part in map(_decimal, parse_complex(u)))
+            exact = mpmath.ellipfun("sn", mpmath.mpc(real, imag), m=-mpmath.mpf("0.64"))
+            shown = mpmath.mpc(str(row["sn_re"]), str(row["sn_im"]))
+            assert abs(shown.real / exact.real - 1) < 1e-15
+            assert abs(shown.imag / exact.imag - 1) < 1e-15
+
+
+def _decimal(exact: Fraction) -> Any:
+    return mpmath.mpf(exact.numerator) / exact.denominator
+
+
+@pytest.mark.parametrize("digits", ["", " --digits 12"])
+def test_poles_and_zeros(digits: str, lagtop: Lagtop) -> None:
+    args = f"jacobi --k 0.5 --u 0 --u 1+i --u=-1-i --u 9i --zeta --pi --param 1+i{digits}"
+    rows = json.loads(lagtop(*args.split(), "--format", "json").stdout)
+    assert [row["pi11_re"] is None for row in rows] == [False, True, True, False]
+    assert [row["zeta11_im"] is None for row in rows] == [True, False, False, False]
+    assert [row["am_deg_re"] is None for row in rows] == [False, False, False, True]
+    assert (rows[0]["sn_re"], rows[0]["pi01_im"], rows[3]["sn_re"]) == (0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        ("--k 1+2i", "--k must be 0 or more, or imaginary as 0.8i, got 1.0+2.0i"),
+        ("--k=-0.8i --u 1", "--k must be 0 or more, or imaginary as 0.8i, got -0.8i"),
+        ("--k x", "--k must be a finite decimal number, got 'x'"),
+        ("--k 1.5 --phi 30", "and --phi exclude each other"),
+        ("--k 0.5 --u i --series 3", "and --series exclude each other"),
+        ("--k 0.5 --u i --u 2K", "--u must be without K beside complex numbers"),
+        ("--k 1 --u i --theta", "--k must not be 0 or 1 for theta functions of complex arguments"),
+        ("--k 1e-160 --u i", "--k must be farther than 1e-150 from 0"),
+        ("--k 1e30 --u i", "--k must be at most 1e+20 (or give --digits)"),
+        ("--k 0.8 --u 1e20+i", "--u must be within 2^50 periods = 4.49e+15 of 0, got 1e+20"),
+        ("--k 0.8 --u 1+1e20i", "the imaginary part of u must be within 2^50 periods"),
+        ("--k 0.8 --u 1 --pi --param 1+1e20i", "--param must have parts within 2^50 periods"),
+        ("--k 0.8 --u 1+i --pi", "--omega and --pi need --param, as 0.7, 0.7i or 0.2+0.7i"),
+        ("--k 1.5 --pi --param 1", "--pi needs --u or --u-range"),
+        ("--k 0.8 --u 1+2", "--u must be a finite decimal number"),
+    ],
+)
+def test_bad_input(args: str, message: str, lagtop: Lagtop) -> None:
+    result = lagtop("jacobi", *args.split())
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_real_input_prints_what_it_did(lagtop: Lagtop) -> None:
+    shown = lagtop(*"jacobi --k 0.5 --u 0.3 --pi --param 0i --format csv".split()).stdout
+    assert shown.splitlines()[0] == "u,am_deg,sn,cn,dn,pi01_imag,pi00_imag,pi11_imag"
