@@ -121,7 +121,7 @@ def complex_digit_rows(
 
     Raises LagtopError for a modulus out of range, before any row.
     """
-    kind = request.modulus_in(ManyDigits()).kind
+    kind, _, stretch = request.modulus_in(ManyDigits())
 
     @cache
     def at_precision(dps: int) -> tuple[ManyDigits, _Functions]:
@@ -133,7 +133,7 @@ def complex_digit_rows(
 
         def compute(context: ManyDigits) -> dict[str, Value]:
             for far in (*u, *request.parameter):
-                require_digits(context, digits, abs(context.convert(far)))
+                require_digits(context, digits, abs(context.convert(far)) * stretch)
             ar, functions = at_precision(context.dps)
             z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
             columns = _columns(ar, z, functions, request, known.poles)
