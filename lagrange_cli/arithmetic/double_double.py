@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .types import Array, Mask
+from .workspace import HEAP, Space
 
 _SPLITTER = 2.0**27 + 1
 
@@ -44,42 +45,53 @@ def triple(value: Any) -> Triple:
     return Triple(float(high), float(middle), float(value - kind(high) - kind(middle)))
 
 
-def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
-    """Return x * factor and its rounding error, exactly (Dekker)."""
+def two_product(x: Array, factor: float | Array, space: Space = HEAP) -> tuple[Array, Array]:
+    """Return x * factor and its rounding error, exactly (Dekker), in arrays of a workspace."""
     scaled = factor * _SPLITTER
     factor_high = scaled - (scaled - factor)
     factor_low = factor - factor_high
-    high = x * _SPLITTER
-    high -= high - x
-    low = x - high
-    product = x * factor
-    error = high * factor_high
+    one, other = space.new(), space.new()
+    high: Array = np.multiply(x, _SPLITTER, out=one)
+    high -= np.subtract(high, x, out=other)
+    low: Array = np.subtract(x, high, out=other)
+    product: Array = np.multiply(x, factor, out=space.new())
+    error: Array = np.multiply(high, factor_high, out=space.new())
     error -= product
     high *= factor_low
     error += high
-    error += low * factor_high
+    error += np.multiply(low, factor_high, out=one)
     low *= factor_low
     error += low
+    space.free(one, other)
     return product, error
 
 
-def reduce_phase(t: Array, rate: Pair, offset: float = 0.0) -> tuple[Array, Array]:
+def reduce_phase(
+    t: Array, rate: Pair, offset: float = 0.0, space: Space = HEAP
+) -> tuple[Array, Array]:
     """Return the integer nearest to t * rate + offset, and t * rate less it, with all digits."""
-    since, rest = two_product(t, rate.high)
-    rest += t * rate.low
-    step = np.rint(since + offset) if offset else np.rint(since)
+    since, rest = two_product(t, rate.high, space)
+    target = space.new()
+    rest += np.multiply(t, rate.low, out=target)
+    step: Array = np.rint(np.add(since, offset, out=target) if offset else since, out=target)
     since -= step
     since += rest
+    space.free(rest)
     return step, since
 
 
-def fraction_of_product(t: Array, rate: Triple) -> Array:
+def fraction_of_product(t: Array, rate: Triple, space: Space = HEAP) -> Array:
     """Return t * rate less whole numbers, free of cancellation, within a few halves of 0."""
-    total = np.multiply(t, rate.low)
+    total: Array = np.multiply(t, rate.low, out=space.new())
+    target = space.new()
     for part in (rate.middle, rate.high):
-        product, error = two_product(t, part)
-        total += error - np.rint(error)
-        total += product - np.rint(product)
+        product, error = two_product(t, part, space)
+        error -= np.rint(error, out=target)
+        product -= np.rint(product, out=target)
+        total += error
+        total += product
+        space.free(product, error)
+    space.free(target)
     return total
 
 

@@ -130,11 +130,12 @@ class Top(Values):
             return Tilt(ar.sin(arc), ar.cos(arc), ar.sin(arc / 2), ar.cos(arc / 2))
         tilt = Fraction(_known(self.theta0_deg))
         nearer = ar.convert(min(tilt, 180 - tilt)) * ar.pi / 180
-        sin_half, cos_half = ar.sin(nearer / 2), ar.cos(nearer / 2)
+        sin_half = ar.sin(nearer / 2)
+        cos_half = ar.sqrt(1 - sin_half * sin_half)
+        sine, cosine = 2 * sin_half * cos_half, ar.sin(ar.convert(90 - tilt) * ar.pi / 180)
         if tilt > 90:
             sin_half, cos_half = cos_half, sin_half
-        cosine = ar.sin(ar.convert(90 - tilt) * ar.pi / 180)
-        return Tilt(ar.sin(nearer), cosine, sin_half, cos_half)
+        return Tilt(sine, cosine, sin_half, cos_half)
 
     @property
     def is_released(self) -> bool:

@@ -3,87 +3,112 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from typing import NamedTuple
 
 from ..inputs.names import check_names
 
 
+class Needs(NamedTuple):
+    """What is needed of X and Y (see `samplers`), which is computed only then."""
+
+    moduli: bool = False
+    arguments: bool = False
+    rate: bool = False
+
+    def __or__(self, other: Needs) -> Needs:
+        """Return what either needs."""
+        return Needs(*(one or another for one, another in zip(self, other, strict=True)))
+
+
+NOTHING, TILT, TURN = Needs(), Needs(moduli=True), Needs(arguments=True)
+ATTITUDE, SWING = TILT | TURN, TILT | Needs(rate=True)
+
+
+class Part(NamedTuple):
+    """One column."""
+
+    heading: str
+    """A `*` stands for the unit of angles."""
+    method: str
+    """The method of `sample.Sample` that computes it."""
+    needs: Needs
+
+
 class Column(NamedTuple):
     """One or several columns by name."""
 
-    headings: Sequence[str]
-    """A `*` stands for the unit of angles."""
-    method: str
-    """The method of `sample.Sample` that computes them."""
     meaning: str
-    needs_rate: bool = False
+    parts: Sequence[Part]
+
+
+def _one(meaning: str, needs: Needs, method: str, heading: str) -> Column:
+    return Column(meaning, [Part(heading, method, needs)])
 
 
 COLUMNS: dict[str, Column] = {
-    "t": Column(["t"], "times", "time"),
-    "theta": Column(["theta_*"], "theta", "tilt"),
-    "phi": Column(["phi_*"], "phi", "spin"),
-    "psi": Column(["psi_*"], "psi", "precession"),
-    "dphi": Column(["dphi_*"], "phi_remainder", "spin less its mean growth (6,4), a wave"),
-    "dpsi": Column(["dpsi_*"], "psi_remainder", "precession less its mean growth (7,4), a wave"),
-    "u": Column(["u"], "cosine", "cos(theta)"),
-    "thetadot": Column(["thetadot"], "nutation_rate", "nutation rate", True),
-    "phidot": Column(["phidot"], "phi_rate", "spin rate"),
-    "psidot": Column(["psidot"], "psi_rate", "precession rate"),
-    "p": Column(["p"], "p", "angular velocity about the body's x axis", True),
-    "q": Column(["q"], "q", "angular velocity about the body's y axis", True),
-    "r": Column(["r"], "r", "angular velocity about the figure axis"),
-    "moment": Column(["moment"], "moment", "moment of the weight about the line of nodes"),
+    "t": _one("time", NOTHING, "times", "t"),
+    "theta": _one("tilt", TILT, "theta", "theta_*"),
+    "phi": _one("spin", TURN, "phi", "phi_*"),
+    "psi": _one("precession", TURN, "psi", "psi_*"),
+    "dphi": _one("spin less its mean growth (6,4), a wave", TURN, "phi_remainder", "dphi_*"),
+    "dpsi": _one("precession less its mean growth (7,4), a wave", TURN, "psi_remainder", "dpsi_*"),
+    "u": _one("cos(theta)", TILT, "cosine", "u"),
+    "thetadot": _one("nutation rate", SWING, "nutation_rate", "thetadot"),
+    "phidot": _one("spin rate", TILT, "phi_rate", "phidot"),
+    "psidot": _one("precession rate", TILT, "psi_rate", "psidot"),
+    "p": _one("angular velocity about the body's x axis", SWING | TURN, "p", "p"),
+    "q": _one("angular velocity about the body's y axis", SWING | TURN, "q", "q"),
+    "r": _one("angular velocity about the figure axis", NOTHING, "r", "r"),
+    "moment": _one("moment of the weight about the line of nodes", TILT, "moment", "moment"),
     "axis": Column(
-        ["axis_x", "axis_y", "axis_z"], "axis", "figure axis in space: axis_x, axis_y, axis_z"
+        "figure axis in space: axis_x, axis_y, axis_z",
+        [
+            Part("axis_x", "axis_x", ATTITUDE),
+            Part("axis_y", "axis_y", ATTITUDE),
+            Part("axis_z", "cosine", TILT),
+        ],
     ),
     "quaternion": Column(
-        ["quaternion_w", "quaternion_x", "quaternion_y", "quaternion_z"],
-        "quaternion",
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
+        [Part(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE) for part in "wxyz"],
     ),
-    "energy": Column(["energy"], "energy", "energy; constant but for rounding", True),
-    "Lz": Column(
-        ["Lz"], "vertical_momentum", "vertical angular momentum; constant but for rounding"
+    "energy": _one("energy; constant but for rounding", SWING, "energy", "energy"),
+    "Lz": _one(
+        "vertical angular momentum; constant but for rounding", TILT, "vertical_momentum", "Lz"
     ),
 }
 
 _SINGLE = {
-    heading: (name, i)
-    for name, column in COLUMNS.items()
-    if len(column.headings) > 1
-    for i, heading in enumerate(column.headings)
+    part.heading: [part]
+    for column in COLUMNS.values()
+    if len(column.parts) > 1
+    for part in column.parts
 }
 """Each column of a group by its own name."""
 
 
-class Chosen(NamedTuple):
-    """One column that was asked for."""
-
-    name: str
-    """The heading without a unit."""
-    heading: str
-    group: str
-    part: int
+def name_of(part: Part) -> str:
+    """Return the heading of a column without a unit."""
+    return part.heading.removesuffix("_*")
 
 
-def chosen_columns(names: Sequence[str]) -> list[Chosen]:
+def chosen_columns(names: Sequence[str]) -> list[Part]:
     """Return the columns of some names, groups expanded.
 
     Raises LagtopError for a name that is unknown or comes twice.
     """
     check_names("columns", names, [*COLUMNS, *_SINGLE])
-    chosen = []
-    for name in names:
-        group, index = _SINGLE.get(name, (name, None))
-        for i, heading in enumerate(COLUMNS[group].headings):
-            if index in {None, i}:
-                chosen.append(Chosen(heading.removesuffix("_*"), heading, group, i))
-    headings = [column.heading for column in chosen]
+    chosen = [
+        part
+        for name in names
+        for part in (_SINGLE[name] if name in _SINGLE else COLUMNS[name].parts)
+    ]
+    headings = [part.heading for part in chosen]
     check_names("columns", headings, headings)
     return chosen
 
 
-def need_rate(chosen: Sequence[Chosen]) -> bool:
-    """Return whether one of the columns needs the nutation rate."""
-    return any(COLUMNS[column.group].needs_rate for column in chosen)
+def needs_of(chosen: Sequence[Part]) -> Needs:
+    """Return what some columns need together."""
+    return reduce(Needs.__or__, (part.needs for part in chosen), NOTHING)

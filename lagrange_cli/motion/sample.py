@@ -13,9 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.blocks import blocks
 from ..arithmetic.types import Array
-from .columns import COLUMNS, Chosen, need_rate
-from .samplers import Attitude
+from ..arithmetic.workspace import Workspace
+from .attitude import Attitude, needed
+from .columns import NOTHING, Part, needs_of
 from .solve import SAMPLER_DIGITS, Motion
 
 
@@ -67,56 +69,74 @@ class Sample:
         self, t: Array, attitude: Attitude, constants: ColumnConstants, wrap: bool
     ) -> None:
         self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
-        self.x, self.y = attitude.spinor.x, attitude.spinor.y
-        self._groups: dict[str, Sequence[Array]] = {}
 
-    def column(self, chosen: Chosen) -> Array:
-        """Return a column; its group is computed once."""
-        if chosen.group not in self._groups:
-            self._groups[chosen.group] = getattr(self, COLUMNS[chosen.group].method)()
-        return self._groups[chosen.group][chosen.part]
+    def write(self, part: Part, target: Array) -> None:
+        """Write a column into an array, in the order of the times."""
+        order = slice(None) if part.needs == NOTHING else self.attitude.order
+        target[order] = getattr(self, part.method)()
 
-    def times(self) -> list[Array]:
+    def times(self) -> Array:
         """Return the times."""
-        return [self.t]
+        return self.t
 
-    def theta(self) -> list[Array]:
-        """Return the tilt."""
-        return [self.attitude.theta()]
-
-    def phi(self) -> list[Array]:
-        """Return the spin."""
-        return [self.attitude.phi(wrap=self.wrap)]
-
-    def psi(self) -> list[Array]:
-        """Return the precession."""
-        return [self.attitude.psi(wrap=self.wrap)]
-
-    def phi_remainder(self) -> list[Array]:
-        """Return the spin less its mean growth (6,4)."""
-        return [self.attitude.phi_remainder()]
-
-    def psi_remainder(self) -> list[Array]:
-        """Return the precession less its mean growth (7,4)."""
-        return [self.attitude.psi_remainder()]
-
-    def cosine(self) -> list[Array]:
-        """Return cos(theta) (4,6)."""
-        return [self.u]
-
-    def r(self) -> list[Array]:
+    def r(self) -> float:
         """Return the angular velocity about the figure axis, which is constant."""
-        return [np.full_like(self.t, self.constants.r0)]
+        return self.constants.r0
+
+    def theta(self) -> Array:
+        """Return the tilt."""
+        return self.attitude.theta()
+
+    def phi(self) -> Array:
+        """Return the spin."""
+        return self.attitude.phi(wrap=self.wrap)
+
+    def psi(self) -> Array:
+        """Return the precession."""
+        return self.attitude.psi(wrap=self.wrap)
+
+    def phi_remainder(self) -> Array:
+        """Return the spin less its mean growth (6,4)."""
+        return self.attitude.phi_remainder()
+
+    def psi_remainder(self) -> Array:
+        """Return the precession less its mean growth (7,4)."""
+        return self.attitude.psi_remainder()
+
+    def cosine(self) -> Array:
+        """Return cos(theta) (4,6)."""
+        return self.u
+
+    @cached_property
+    def x2(self) -> Array:
+        """|X|^2."""
+        return needed(self.attitude.spinor.x2)
+
+    @cached_property
+    def y2(self) -> Array:
+        """|Y|^2."""
+        return needed(self.attitude.spinor.y2)
+
+    @cached_property
+    def x(self) -> Array:
+        """|X|."""
+        return np.sqrt(self.x2, out=self._new())
+
+    @cached_property
+    def y(self) -> Array:
+        """|Y|."""
+        return np.sqrt(self.y2, out=self._new())
 
     @cached_property
     def norm(self) -> Array:
         """N."""
-        return self.x * self.x + self.y * self.y
+        return np.add(self.x2, self.y2, out=self._new())
 
     @cached_property
     def u(self) -> Array:
         """cos(theta) (4,6)."""
-        return (self.x - self.y) * (self.x + self.y) / self.norm
+        difference = np.subtract(self.x2, self.y2, out=self._new())
+        return np.divide(difference, self.norm, out=difference)
 
     @cached_property
     def sine(self) -> Array:
@@ -127,26 +147,25 @@ class Sample:
     def poles(self) -> tuple[Array, Array]:
         """(beta + b)/2/(1 + u) and (beta - b)/2/(1 - u), the two parts of the precession rate."""
         return (
-            _over(self.constants.plus * self.norm, 2.0 * self.x * self.x),
-            _over(self.constants.minus * self.norm, 2.0 * self.y * self.y),
+            _over(self.constants.plus * self.norm, 2.0 * self.x2),
+            _over(self.constants.minus * self.norm, 2.0 * self.y2),
         )
 
-    def phi_rate(self) -> list[Array]:
+    def phi_rate(self) -> Array:
         """Return the spin rate (4,8)."""
         south, north = self.poles
-        return [self.constants.drift + south - north]
+        return self.constants.drift + south - north
 
-    def psi_rate(self) -> list[Array]:
+    def psi_rate(self) -> Array:
         """Return the precession rate (4,7)."""
         south, north = self.poles
-        return [south + north]
+        return south + north
 
     @cached_property
     def theta_rate(self) -> Array:
         """(5,3), with its sign; on a pole by the energy (4,2), with the sign of the start."""
         product = 2.0 * self.norm * self.x * self.y
-        rate = self.attitude.spinor.rate
-        assert rate is not None
+        rate = needed(self.attitude.spinor.rate)
         speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
         speed *= self.constants.rises
         return np.divide(rate, product, out=speed, where=product != 0.0)
@@ -167,47 +186,77 @@ class Sample:
             self.across * cos - self.theta_rate * sin,
         )
 
-    def nutation_rate(self) -> list[Array]:
+    def nutation_rate(self) -> Array:
         """Return the nutation rate (5,3)."""
-        return [self.theta_rate]
+        return self.theta_rate
 
-    def p(self) -> list[Array]:
+    def p(self) -> Array:
         """Return the angular velocity about the body's x axis (4,1)."""
-        return [self.body_rates[0]]
+        return self.body_rates[0]
 
-    def q(self) -> list[Array]:
+    def q(self) -> Array:
         """Return the angular velocity about the body's y axis (4,1)."""
-        return [self.body_rates[1]]
+        return self.body_rates[1]
 
-    def moment(self) -> list[Array]:
+    def moment(self) -> Array:
         """Return mgs sin(theta), the moment s k' x (-mg k) of section 4 a, which has no other part.
 
         The line of nodes lies at psi in the horizontal plane.
         """
-        return [self.constants.torque * self.sine]
+        return self.constants.torque * self.sine
 
-    def axis(self) -> list[Array]:
-        """Return the figure axis in space; the line of nodes lies along x at psi = 0."""
-        psi = self.attitude.psi(wrap=True)
-        return [self.sine * np.sin(psi), -self.sine * np.cos(psi), self.u]
+    @cached_property
+    def around(self) -> Array:
+        """The precession, without whole turns; the line of nodes lies along x at psi = 0."""
+        return self.attitude.psi(wrap=True)
 
-    def quaternion(self) -> list[Array]:
-        """Return w, x, y, z of the rotation from body to space: X = w + i z, Y = x + i y."""
-        arg_x, arg_y = self.attitude.args()
+    def axis_x(self) -> Array:
+        """Return the x part of the figure axis in space."""
+        return self.sine * np.sin(self.around)
+
+    def axis_y(self) -> Array:
+        """Return the y part of the figure axis in space."""
+        return -self.sine * np.cos(self.around)
+
+    @cached_property
+    def unit_spinor(self) -> tuple[Array, Array, Array, Array]:
+        """|X|, |Y|, each over sqrt(N), and the arguments, continuous in time."""
         size = np.sqrt(self.norm)
-        x, y = self.x / size, self.y / size
-        return [x * np.cos(arg_x), y * np.cos(arg_y), y * np.sin(arg_y), x * np.sin(arg_x)]
+        return self.x / size, self.y / size, *self.attitude.args()
 
-    def energy(self) -> list[Array]:
+    def quaternion_w(self) -> Array:
+        """Return the real part of X = w + i z, of the rotation from body to space."""
+        x, _, arg_x, _ = self.unit_spinor
+        return x * np.cos(arg_x)
+
+    def quaternion_x(self) -> Array:
+        """Return the real part of Y = x + i y."""
+        _, y, _, arg_y = self.unit_spinor
+        return y * np.cos(arg_y)
+
+    def quaternion_y(self) -> Array:
+        """Return the imaginary part of Y = x + i y."""
+        _, y, _, arg_y = self.unit_spinor
+        return y * np.sin(arg_y)
+
+    def quaternion_z(self) -> Array:
+        """Return the imaginary part of X = w + i z."""
+        x, _, arg_x, _ = self.unit_spinor
+        return x * np.sin(arg_x)
+
+    def energy(self) -> Array:
         """Return A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs cos(theta) (4,2)."""
         c = self.constants
         swing = self.theta_rate**2 + self.across**2
-        return [0.5 * c.A * swing + 0.5 * c.C * c.r0 * c.r0 + c.torque * self.u]
+        return 0.5 * c.A * swing + 0.5 * c.C * c.r0 * c.r0 + c.torque * self.u
 
-    def vertical_momentum(self) -> list[Array]:
+    def vertical_momentum(self) -> Array:
         """Return A psi' sin^2 theta + C r0 cos(theta), constant (4,3)."""
         c = self.constants
-        return [c.A * self.across * self.sine + c.C * c.r0 * self.u]
+        return c.A * self.across * self.sine + c.C * c.r0 * self.u
+
+    def _new(self) -> Array:
+        return self.attitude.space.new()
 
 
 def _over(value: Array, divisor: Array) -> Array:
@@ -216,10 +265,15 @@ def _over(value: Array, divisor: Array) -> Array:
 
 
 def samples(
-    motion: Motion, t: Array, chosen: Sequence[Chosen], *, wrap: bool
+    motion: Motion, t: Array, chosen: Sequence[Part], *, wrap: bool
 ) -> Iterator[tuple[slice, Sample]]:
-    """Yield the motion at the times t, a block at a time, with what some columns need."""
-    sampler, constants = motion.sampler(), column_constants(motion)
+    """Yield the motion at the times t, a block at a time, with what some columns need.
+
+    A sample lends its arrays: it is used up when the next one is asked for.
+    """
+    sampler, constants, needs = motion.sampler(), column_constants(motion), needs_of(chosen)
     sampler.check(t)
-    for part, attitude in sampler.attitudes(t, rate=need_rate(chosen)):
-        yield part, Sample(t[part], attitude, constants, wrap)
+    for part in blocks(t.size):
+        some = t[part]
+        with Workspace(some.size) as space:
+            yield part, Sample(some, sampler.attitude(some, needs, space), constants, wrap)

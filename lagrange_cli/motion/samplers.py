@@ -5,35 +5,37 @@ Chrapan's sections 3 and 4 are their logarithms), each a theta function times a 
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
-One atan2 each gives the tilt and the half sum and half difference of the other two angles.  Of the
-half-period representations `series` takes the ones whose zeros are the passes over the poles: there
-real and imaginary part vanish each by itself, and nothing cancels.
+One arctangent each gives the tilt and the half sum and half difference of the other two angles.
+Of the half-period representations `series` takes the ones whose zeros are the passes over the
+poles: there real and imaginary part vanish each by itself, and nothing cancels.
 
-A time is first reduced, exactly, to whole steps and a phase; then a few multiplications a sample
+A time is first reduced, exactly, to whole steps and a phase; then a few multiplications per sample
 evaluate the polynomials, however far the time.  All constants come from the many-digit arithmetic
-of the caller.
+of the caller.  A block is computed in the order of its phases: those about one turning point come
+before those about the other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import blocks, polynomial
+from ..arithmetic.blocks import blocks
 from ..arithmetic.double_double import Pair, reduce_phase
 from ..arithmetic.points import MAX_TIME
 from ..arithmetic.types import Array
+from ..arithmetic.workspace import Workspace
 from ..errors import LagtopError
-from .attitude import Growths
+from .attitude import Attitude, Growths, Spinor
+from .columns import ATTITUDE, NOTHING, Needs
 from .theta_series import Component, Frame, Polynomial
 
-Grow = Callable[[Array, Array, Array], Array]
-"""A method of `Growth`: an angle from the times, the parts of their steps, and the series."""
+_IN_ORDER = slice(None)
 
 
 class Angles(NamedTuple):
@@ -47,69 +49,23 @@ class Angles(NamedTuple):
     """Precession."""
 
 
-class Spinor(NamedTuple):
-    """X and Y about their turning point, up to a common positive factor."""
+class Functions(NamedTuple):
+    """The functions of the phase that the series are made of, see `theta_series`."""
 
-    x: Array
-    """|X|."""
-    y: Array
-    """|Y|."""
-    arg_x: Array
-    arg_y: Array
-    rate: Array | None
-    """2 (x^2 + y^2) x y times the nutation rate, where it was asked for."""
+    S: Array
+    C: Array | None
+    """None where it is a factor of all of X and Y."""
+    s: Array
 
-
-@dataclass(frozen=True)
-class Attitude:
-    """The attitude at a block of times; each of its angles is computed when it is asked for."""
-
-    growths: Growths
-    t: Array
-    since: Array
-    """The part of a step that has passed since the whole ones."""
-    spinor: Spinor
-
-    def theta(self) -> Array:
-        """Return the tilt."""
-        theta: Array = np.arctan2(self.spinor.y, self.spinor.x)
-        theta *= 2.0
-        return theta
-
-    def phi(self, *, wrap: bool = False) -> Array:
-        """Return the spin, arg X - arg Y."""
-        growth = self.growths.phi
-        return self._angle(growth.wrapped if wrap else growth.unwrapped, -1)
-
-    def psi(self, *, wrap: bool = False) -> Array:
-        """Return the precession, arg X + arg Y."""
-        growth = self.growths.psi
-        return self._angle(growth.wrapped if wrap else growth.unwrapped, 1)
-
-    def phi_remainder(self) -> Array:
-        """Return the spin less its mean growth (6,4)."""
-        return self._angle(self.growths.phi.remainder, -1)
-
-    def psi_remainder(self) -> Array:
-        """Return the precession less its mean growth (7,4)."""
-        return self._angle(self.growths.psi.remainder, 1)
-
-    def args(self) -> tuple[Array, Array]:
-        """Return (psi + phi)/2 and (psi - phi)/2, each in (-pi, pi]."""
-        return (
-            self.growths.arg_x.wrapped(self.t, self.since, self.spinor.arg_x.copy()),
-            self.growths.arg_y.wrapped(self.t, self.since, self.spinor.arg_y.copy()),
-        )
-
-    def _angle(self, grow: Grow, sign: int) -> Array:
-        """Return what a method of a `Growth` makes of the sum or the difference of the series."""
-        x, y = self.spinor.arg_x, self.spinor.arg_y
-        return grow(self.t, self.since, x + y if sign > 0 else x - y)
+    def part(self, rows: slice) -> Functions:
+        """Return them at some phases."""
+        return Functions(*(x if x is None else x[rows] for x in self))  # type: ignore[arg-type]
 
 
 class Sampler:
     """The constants of one motion that its angles need, ready to be evaluated."""
 
+    growths: Growths
     max_time: float
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
@@ -119,31 +75,28 @@ class Sampler:
         flat = np.ascontiguousarray(times).reshape(-1)
         angles = Angles(*(np.empty_like(flat) for _ in range(3)))
         with ARRAYS.working():
-            for part, attitude in self.attitudes(flat):
-                angles.theta[part] = attitude.theta()
-                angles.phi[part] = attitude.phi(wrap=wrap)
-                angles.psi[part] = attitude.psi(wrap=wrap)
+            for part in blocks(flat.size):
+                some = flat[part]
+                with Workspace(some.size) as space:
+                    at = self.attitude(some, ATTITUDE, space)
+                    angles.theta[part][at.order] = at.theta()
+                    angles.phi[part][at.order] = at.phi(wrap=wrap)
+                    angles.psi[part][at.order] = at.psi(wrap=wrap)
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
-    def attitudes(self, t: Array, *, rate: bool = False) -> Iterator[tuple[slice, Attitude]]:
-        """Yield the attitude block by block, with the nutation rate where `rate` asks for it."""
-        for part in blocks(t.size):
-            yield part, self.attitude(t[part], rate)
-
-    def attitude(self, t: Array, rate: bool) -> Attitude:
-        """Return the attitude at a block of times."""
+    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
+        """Return what is needed of the attitude at a block of times, in arrays of a workspace."""
         raise NotImplementedError
 
     def check(self, t: ArrayLike) -> None:
         """Raise LagtopError where a time is not finite or names no phase."""
-        times = times_of(t)
-        bad = ~(np.abs(times) <= min(self.max_time, MAX_TIME))
-        if bad.any():
-            raise LagtopError(
-                f"t must be finite and within 2^50 periods = {min(self.max_time, MAX_TIME):.3g}, "
-                f"got {times[bad].flat[0]}",
-                "t",
-            )
+        times, limit = times_of(t), min(self.max_time, MAX_TIME)
+        if not times.size or (times.min() >= -limit and times.max() <= limit):
+            return
+        bad = times[~(np.abs(times) <= limit)]
+        raise LagtopError(
+            f"t must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", "t"
+        )
 
 
 @dataclass(frozen=True)
@@ -160,31 +113,49 @@ class ThetaSampler(Sampler):
     """About the turning points of the even and of the odd steps."""
     growths: Growths
 
-    def attitude(self, t: Array, rate: bool) -> Attitude:
+    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
         """Return the attitude at a block of times, by the series about the nearer turning point."""
-        step, since = reduce_phase(t, self.steps_per_time, self.offset)
-        argument = (since + self.offset if self.offset else since) * self.scale
-        spinor = self._spinor_by_parity(step, argument, rate)
-        return Attitude(self.growths, t, since, spinor)
+        if needs == NOTHING:
+            return Attitude(self.growths, space, _IN_ORDER, t, t, Spinor())
+        step, since = reduce_phase(t, self.steps_per_time, self.offset, space)
+        order, even = _by_parity(step, space)
+        space.free(step)
+        if order is not _IN_ORDER:
+            since = _taken(since, order, space)
+            t = _taken(t, order, space) if needs.arguments else t
+        argument = np.add(since, self.offset, out=space.new())
+        argument *= self.scale
+        spinor = self._spinor(argument, even, needs, space)
+        return Attitude(self.growths, space, order, t, since, spinor)
 
-    def _spinor_by_parity(self, step: Array, argument: Array, rate: bool) -> Spinor:
-        half = step * 0.5
-        odd = np.rint(half) != half
-        x, y, arg_x, arg_y = (np.empty_like(step) for _ in range(4))
-        whole = Spinor(x, y, arg_x, arg_y, np.empty_like(step) if rate else None)
-        for frame, chosen in zip(self.frames, (~odd, odd), strict=True):
-            index = np.flatnonzero(chosen)
-            some = self._spinor(frame, argument[index], rate)
-            for target, part in zip(whole, some, strict=True):
-                if target is not None:
-                    target[index] = part
-        return whole
+    def _spinor(self, argument: Array, even: int, needs: Needs, space: Workspace) -> Spinor:
+        """Return X and Y; the first arguments, so many, are about the first turning point."""
+        functions = (_hyperbolic if self.hyperbolic else _circular)(argument, space)
+        rows = slice(even), slice(even, None)
+        frames = [
+            (some, functions.part(some), x) for some, x in zip(rows, self.frames, strict=True)
+        ]
 
-    def _spinor(self, frame: Frame, argument: Array, rate: bool) -> Spinor:
-        S, C, s = (_hyperbolic if self.hyperbolic else _circular)(argument)
-        x, arg_x = _polar(*_component(frame.x, S, C, s))
-        y, arg_y = _polar(*_component(frame.y, S, C, s))
-        return Spinor(x, y, arg_x, arg_y, _rate(frame.rate, S, C, s) if rate else None)
+        def polar(name: str) -> tuple[Array | None, Array | None]:
+            """Return squared modulus and argument of X or Y."""
+            real, imag = space.new(), space.new()
+            for some, there, frame in frames:
+                _write_component(getattr(frame, name), there, real[some], imag[some])
+            leading = [getattr(frame, name).real[0] for frame in self.frames]
+            argument = _argument(real, imag, all(leading), space) if needs.arguments else None
+            real *= real
+            imag *= imag
+            real += imag
+            space.free(imag)
+            return real, argument
+
+        (x2, arg_x), (y2, arg_y) = polar("x"), polar("y")
+        rate = space.new() if needs.rate else None
+        if rate is not None:
+            for some, there, frame in frames:
+                _write_rate(frame.rate, there, rate[some])
+        space.free(*functions)
+        return Spinor(x2, y2, arg_x, arg_y, rate)
 
 
 @dataclass(frozen=True)
@@ -196,11 +167,11 @@ class ConstantSampler(Sampler):
     growths: Growths
     max_time: float
 
-    def attitude(self, t: Array, rate: bool) -> Attitude:
+    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
         """Return the attitude at a block of times: there is no phase."""
-        zero = np.zeros_like(t)
-        x, y = np.full_like(t, self.x), np.full_like(t, self.y)
-        return Attitude(self.growths, t, zero, Spinor(x, y, zero, zero, zero if rate else None))
+        zero, x, y = np.zeros_like(t), np.full_like(t, self.x), np.full_like(t, self.y)
+        spinor = Spinor(x * x, y * y, zero, zero, zero, tilt=2.0 * np.arctan2(y, x))
+        return Attitude(self.growths, space, _IN_ORDER, t, zero, spinor)
 
 
 @dataclass(frozen=True)
@@ -217,16 +188,18 @@ class SeparatrixSampler(Sampler):
     growths: Growths
     max_time: float
 
-    def attitude(self, t: Array, rate: bool) -> Attitude:
+    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
         """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
         h = t * self.speed + self.offset
         shrink = np.exp(-np.abs(h))
         sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
-        x, arg_x = _polar(np.full_like(h, self.x), self.y * self.sign * tanh)
-        y = self.y * sech
-        falling = -4.0 * self.speed * y * y * tanh if rate else None
+        real, imag = np.full_like(h, self.x), self.y * self.sign * tanh
+        x2, y = real * real + imag * imag, self.y * sech
+        arg_x = np.arctan2(imag, real)
+        falling = -4.0 * self.speed * y * y * tanh if needs.rate else None
         zero = np.zeros_like(h)
-        return Attitude(self.growths, t, zero, Spinor(x, y, arg_x, zero, falling))
+        spinor = Spinor(x2, y * y, arg_x, zero, falling)
+        return Attitude(self.growths, space, _IN_ORDER, t, zero, spinor)
 
 
 def times_of(t: ArrayLike) -> Array:
@@ -242,40 +215,78 @@ def times_of(t: ArrayLike) -> Array:
         raise LagtopError(f"t must be real numbers, got {repr(t)[:60]}", "t") from None
 
 
-def _circular(x: Array) -> tuple[Array, None, Array]:
-    """Return S, C and s of angles; X and Y share the factor cos x, which is divided out."""
-    tangent = np.tan(x)
-    square = tangent * tangent
-    square /= square + 1.0
-    return tangent, None, square
+def _by_parity(step: Array, space: Workspace) -> tuple[Any, int]:
+    """Return where the even steps stand and after them the odd ones, and how many are even."""
+    half = np.multiply(step, 0.5, out=space.new())
+    whole = np.rint(half, out=step)
+    even = half == whole
+    count = int(np.count_nonzero(even))
+    space.free(half)
+    if count in {0, step.size}:
+        return _IN_ORDER, count
+    order = space.new().view(np.intp)
+    order[:count] = np.flatnonzero(even)
+    order[count:] = np.flatnonzero(np.logical_not(even, out=even))
+    return order, count
 
 
-def _hyperbolic(x: Array) -> tuple[Array, Array, Array]:
-    sinh = np.sinh(x)
-    square = sinh * sinh
-    return sinh, np.sqrt(square + 1.0), square
+def _taken(values: Array, order: Any, space: Workspace) -> Array:
+    """Return values in another order."""
+    taken: Array = np.take(values, order, out=space.new(), mode="clip")  # all are in range
+    space.free(values)
+    return taken
 
 
-def _component(component: Component, S: Array, C: Array | None, s: Array) -> tuple[Array, Array]:
-    """Return real and imaginary part of X or Y."""
-    real, imag = polynomial(component.real, s), polynomial(component.imag, s)
-    imag *= S
-    if C is not None:
+def _circular(x: Array, space: Workspace) -> Functions:
+    """Return the functions of angles; X and Y share the factor cos x, which is divided out."""
+    tangent = np.tan(x, out=x)
+    square = np.multiply(tangent, tangent, out=space.new())
+    more = np.add(square, 1.0, out=space.new())
+    square /= more
+    space.free(more)
+    return Functions(tangent, None, square)
+
+
+def _hyperbolic(x: Array, space: Workspace) -> Functions:
+    """Return the hyperbolic functions of arguments, which are overwritten."""
+    sinh = np.sinh(x, out=x)
+    square = np.multiply(sinh, sinh, out=space.new())
+    cosh = np.add(square, 1.0, out=space.new())
+    return Functions(sinh, np.sqrt(cosh, out=cosh), square)
+
+
+def _write_component(component: Component, at: Functions, real: Array, imag: Array) -> None:
+    """Write real and imaginary part of X or Y."""
+    _write_polynomial(component.real, at.s, real)
+    _write_polynomial(component.imag, at.s, imag)
+    imag *= at.S
+    if at.C is not None:
         scaled = imag if component.even else real
-        scaled *= C
-    return real, imag
+        scaled *= at.C
 
 
-def _rate(coefficients: Polynomial, S: Array, C: Array | None, s: Array) -> Array:
-    rate: Array = polynomial(coefficients, s)
-    rate *= S
-    rate *= C if C is not None else 1.0 + S * S
-    return rate
+def _write_rate(coefficients: Polynomial, at: Functions, rate: Array) -> None:
+    """Write what goes with the nutation rate."""
+    _write_polynomial(coefficients, at.s, rate)
+    rate *= at.S
+    rate *= at.C if at.C is not None else 1.0 + at.S * at.S
 
 
-def _polar(real: Array, imag: Array) -> tuple[Array, Array]:
-    """Return modulus and argument."""
-    square = real * real
-    square += imag * imag
-    modulus: Array = np.sqrt(square, out=square)
-    return modulus, np.arctan2(imag, real, out=imag)
+def _write_polynomial(coefficients: Polynomial, x: Array, value: Array) -> None:
+    """Write the value of two coefficients at least, the lowest power first."""
+    np.multiply(x, coefficients[-1], out=value)
+    for coefficient in coefficients[-2:0:-1]:
+        value += coefficient
+        value *= x
+    value += coefficients[0]
+
+
+def _argument(real: Array, imag: Array, off_the_pole: bool, space: Workspace) -> Array:
+    """Return the argument, within a quarter turn of 0.
+
+    The real part is positive; where the axis meets a pole it is 0.
+    """
+    if not off_the_pole:
+        return np.arctan2(imag, real, out=space.new())
+    tangent = np.divide(imag, real, out=space.new())
+    return np.arctan(tangent, out=tangent)

@@ -78,10 +78,11 @@ def rows(
     def blocks() -> Iterator[Array]:
         for t in times.blocks():
             for _, sample in samples(motion, t, chosen, wrap=wrap):
-                block = np.stack([sample.column(column) for column in chosen], axis=1)
-                for i, heading in enumerate(header):
+                block = np.empty((sample.t.size, len(chosen)))
+                for column, heading, target in zip(chosen, header, block.T, strict=True):
+                    sample.write(column, target)
                     if heading.endswith("_deg"):
-                        np.degrees(block[:, i], out=block[:, i])
+                        np.degrees(target, out=target)
                 yield block
 
     return header, blocks()
@@ -102,18 +103,18 @@ def table(
     import numpy as np
 
     from ..arithmetic.arrays import ARRAYS
-    from .columns import chosen_columns
+    from .columns import chosen_columns, name_of
     from .sample import samples
     from .samplers import times_of
 
     chosen, times = chosen_columns(columns), times_of(t)
     motion.sampler().check(times)
     flat = np.ascontiguousarray(times).reshape(-1)
-    found = {column.name: np.empty_like(flat) for column in chosen}
+    found = {name_of(column): np.empty_like(flat) for column in chosen}
     with ARRAYS.working():
         for part, sample in samples(motion, flat, chosen, wrap=wrap):
             for column in chosen:
-                found[column.name][part] = sample.column(column)
+                sample.write(column, found[name_of(column)][part])
     return {name: values.reshape(times.shape) for name, values in found.items()}
 
 

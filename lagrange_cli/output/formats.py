@@ -103,8 +103,10 @@ class Csv(Format):
 
         if not len(columns[0]):
             return b""
-        if len(columns) == 1 < len(names) and isinstance(columns[0], np.ndarray):
-            return _array_lines(columns[0])
+        if len(columns) == 1 and isinstance(columns[0], np.ndarray):
+            text = _array_lines(columns[0])
+            if len(names) > 1 or (b"\n\n" not in text and not text.startswith(b"\n")):
+                return text
         cells = [
             _array_lines(x).splitlines()
             if isinstance(x, np.ndarray)

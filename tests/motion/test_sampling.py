@@ -1,0 +1,135 @@
+"""What is asked for decides what is computed, and blocks share their arrays without harm."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes import UNIT
+
+from lagrange_cli import Motion, Top, solve
+from lagrange_cli.arithmetic.workspace import Workspace
+from lagrange_cli.motion import samplers
+from lagrange_cli.motion.columns import COLUMNS, chosen_columns, name_of
+from lagrange_cli.motion.sample import samples
+
+STARTS: dict[str, dict[str, float]] = {
+    "hyperbolic": {},
+    "circular": {"r0": 200},
+    "general": {"psidot0": 3, "thetadot0": 2},
+    "pendulum": {"r0": 0},
+    "over a pole": {"theta0_deg": 0, "thetadot0": 3},
+    "sleeping": {"theta0_deg": 0},
+    "steady": UNIT | {"r0": 1.5, "theta0_deg": 60, "psidot0": 1},
+    "separatrix": UNIT | {"r0": 1, "theta0_deg": 90, "psidot0": 1, "thetadot0": 1},
+}
+T = np.linspace(-3, 40, 40_000)
+
+
+@pytest.mark.parametrize("start", STARTS, ids=str)
+def test_a_column_is_the_same_whatever_stands_beside_it(start: str) -> None:
+    motion = solve(Top(**STARTS[start]))
+    together = motion.table(T, list(COLUMNS))
+    for part in chosen_columns(list(COLUMNS)):
+        alone = motion.table(T, [name_of(part)])[name_of(part)]
+        np.testing.assert_array_equal(alone, together[name_of(part)])
+
+
+def _forbidden(*_: Any) -> Any:
+    pytest.fail("this was not asked for")
+
+
+@pytest.mark.parametrize(
+    ("columns", "forbidden"),
+    [
+        ("t r", "reduce_phase _hyperbolic _circular _write_component _argument _write_rate"),
+        ("u theta psidot phidot axis_z moment Lz", "_argument _write_rate"),
+        ("thetadot energy", "_argument"),
+        ("phi psi dphi dpsi quaternion axis", "_write_rate"),
+    ],
+)
+@pytest.mark.parametrize("start", ["hyperbolic", "circular"])
+def test_what_is_not_asked_for_is_not_computed(
+    start: str, columns: str, forbidden: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motion = solve(Top(**STARTS[start]))
+    expected = motion.table(T, list(COLUMNS))
+    for name in forbidden.split():
+        monkeypatch.setattr(samplers, name, _forbidden)
+    for name, values in motion.table(T, columns.split()).items():
+        np.testing.assert_array_equal(values, expected[name])
+
+
+@pytest.mark.parametrize("name", ["_argument", "_write_rate", "reduce_phase"])
+def test_what_is_asked_for_is_computed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else the test before would show nothing."""
+    monkeypatch.setattr(samplers, name, _forbidden)
+    with pytest.raises(pytest.fail.Exception):
+        solve(Top()).table(T, ["p"])
+
+
+def test_threads_share_no_arrays() -> None:
+    motions = [solve(Top(r0=r0)) for r0 in (30, 40, 50, 200)]
+    alone = [np.stack(motion.angles(T)) for motion in motions]
+
+    def again(i: int) -> bool:
+        return np.array_equal(np.stack(motions[i % 4].angles(T)), alone[i % 4])
+
+    with ThreadPoolExecutor(4) as pool:
+        assert all(pool.map(again, range(40)))
+
+
+def test_motions_may_be_sampled_in_turns() -> None:
+    part = chosen_columns(["phi"])[0]
+
+    def blocks(motion: Motion) -> Any:
+        for rows, sample in samples(motion, T, [part], wrap=False):
+            target = np.empty(sample.t.size)
+            yield lambda sample=sample, target=target: sample.write(part, target), rows, target
+
+    one, other = solve(Top()), solve(Top(r0=200))
+    for (write, rows, mine), (write_other, _, theirs) in zip(
+        blocks(one), blocks(other), strict=True
+    ):
+        write()
+        write_other()
+        np.testing.assert_array_equal(mine, one.angles(T).phi[rows])
+        np.testing.assert_array_equal(theirs, other.angles(T).phi[rows])
+
+
+def test_a_workspace_lends_each_array_once() -> None:
+    with Workspace(10) as space:
+        arrays = [space.new() for _ in range(5)]
+        assert len({array.ctypes.data for array in arrays}) == 5
+        space.free(arrays[2])
+        assert space.new().ctypes.data == arrays[2].ctypes.data
+    with Workspace(3) as space:
+        assert space.new().size == 3
+
+
+@pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385, 40_000])
+@pytest.mark.parametrize("start", ["hyperbolic", "circular"])
+def test_blocks_fit_together(start: str, count: int) -> None:
+    motion = solve(Top(**STARTS[start]))
+    for whole, part in zip(motion.angles(T), motion.angles(T[:count]), strict=True):
+        np.testing.assert_array_equal(whole[:count], part)
+
+
+def _counts(motion: Motion) -> list[int]:
+    frames = vars(motion.sampler())["frames"]
+    return [len(part) for frame in frames for c in (frame.x, frame.y) for part in c[:2]]
+
+
+def test_series_near_the_separatrix_are_short() -> None:
+    """The nome of the complement is small there: fewer terms do, as few as for a fast top."""
+    near, far = solve(Top(theta0_deg=1e-3, r0=37)), solve(Top())
+    assert max(_counts(near)) == 2 < max(_counts(far)) == 4
+    assert max(_counts(solve(Top(r0=2000)))) == 2
+
+
+def test_times_are_left_as_they_were() -> None:
+    times = T.copy()
+    solve(Top()).table(times, list(COLUMNS))
+    np.testing.assert_array_equal(times, T)
