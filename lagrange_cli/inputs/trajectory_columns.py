@@ -65,7 +65,7 @@ QUANTITIES: dict[str, Quantity] = {
     "t": Quantity("time", "t, time, timestamp", _spelt("t time timestamp times simtime", "-")),
     "quaternion": Quantity(
         "quaternion from body to space",
-        "quaternion_w …, qw qx qy qz; by number: quaternion_0 …, q0 …",
+        "quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...",
         [
             *_spelt("quaternion quat q orientation attitude xquat -", "w x y z", "wxyz"),
             *_spelt("quaternion quat q orientation attitude", _DIGITS[1]),
@@ -76,7 +76,7 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "matrix": Quantity(
         "rotation matrix from body to space, row by row",
-        "matrix_0 …, r11 r12 … r33, R00 … R22",
+        "matrix_0 ..., r11 r12 ... r33, R00 ... R22",
         [
             *_spelt(_MATRIX, _DIGITS[2]),
             *_spelt(_MATRIX, "11 12 13 21 22 23 31 32 33"),
@@ -89,7 +89,7 @@ QUANTITIES: dict[str, Quantity] = {
     "psi": Quantity("precession", "psi, psi_deg, psi_rad", _spelt("psi precession", "-"), True),
     "euler": Quantity(
         "three angles of turns about coordinate axes",
-        "euler_0 …, roll pitch yaw",
+        "euler_0 ..., roll pitch yaw",
         [
             *_spelt("euler rpy", _DIGITS[0]),
             Spelling(["roll", "pitch", "yaw"], "xyz"),
@@ -99,7 +99,7 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "rotvec": Quantity(
         "rotation vector from body to space, in radians",
-        "rotvec_x …, rv0 rv1 rv2",
+        "rotvec_x ..., rv0 rv1 rv2",
         [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("rotvec rotationvector rv", parts)],
     ),
     "axis": Quantity(
@@ -109,13 +109,13 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "position": Quantity(
         "mass centre in space, from the pivot; read where nothing above is given",
-        "x y z, com_x …, tx ty tz",
+        "x y z, com_x ..., tx ty tz",
         [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("position com pos p t", parts)]
         + _spelt("-", _XYZ),
     ),
     "rates": Quantity(
         "angular velocity in radians per unit of time",
-        "p q r (body), omega_x …, omega_body_x …, omega_space_x …, wx wy wz",
+        "p q r (body), omega_x ..., omega_body_x ..., omega_space_x ..., wx wy wz",
         [
             *_spelt("-", "p q r", "body"),
             *(

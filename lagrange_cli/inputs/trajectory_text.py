@@ -56,9 +56,7 @@ class _Lines:
         """Return the next line, or None at the end."""
         while line := self.stream.readline(_LONGEST):
             self.number += 1
-            if len(line) == _LONGEST:
-                wrong = f"a line must have less than {_LONGEST} bytes"
-                raise DataError(f"{self.name}, line {self.number}: {wrong}")
+            self._check(line, self.number)
             if self.number == 1:
                 line = line.removeprefix(b"\xef\xbb\xbf")
             if stripped := line.strip(b" \r\n"):
@@ -67,10 +65,21 @@ class _Lines:
 
     def blocks(self) -> Iterator[list[Numbered]]:
         """Yield the lines that are left, many at once."""
-        while lines := self.stream.readlines(BYTES_AT_ONCE):
-            first, self.number = self.number + 1, self.number + len(lines)
-            stripped = (line.strip(b" \r\n") for line in lines)
+        while chunk := self.stream.read(BYTES_AT_ONCE):
+            if not chunk.endswith(b"\n"):
+                chunk += self.stream.readline(_LONGEST)
+            first, self.number = self.number + 1, self.number + chunk.count(b"\n")
+            lines = chunk.split(b"\n")
+            longest = max(lines, key=len)
+            self._check(longest, first + lines.index(longest))
+            stripped = (line.strip(b" \r") for line in lines)
             yield [x for x in enumerate(stripped, first) if x[1]]
+
+    def _check(self, line: bytes, number: int) -> None:
+        """Raise DataError for a line that is too long to be a row."""
+        if len(line) >= _LONGEST:
+            wrong = f"a line must have less than {_LONGEST} bytes"
+            raise DataError(f"{self.name}, line {number}: {wrong}")
 
 
 def _decoded(line: bytes, name: str, number: int) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..inputs.trajectory_columns import QUANTITIES
@@ -83,15 +84,30 @@ def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
     for key, array in arrays.items():
         size = QUANTITIES[key].size
         try:
-            values = np.asarray(array, dtype=np.float64)
-            block[key] = values.reshape(len(times), size)
+            block[key] = _real(array).reshape(len(times), size)
         except (TypeError, ValueError):
-            shape = np.shape(array) if isinstance(array, np.ndarray | Sequence) else array
-            raise LagtopError(
-                f"{key} must be real numbers of shape ({len(times)}, {size}), got {shape}"[:200],
-                key,
-            ) from None
+            wanted = f"real numbers of shape ({len(times)}, {size})"
+            raise LagtopError(f"{key} must be {wanted}, got {_shown(array)}", key) from None
     return block
+
+
+def _real(array: ArrayLike) -> Array:
+    """Return an array of real numbers, NaN where it is masked.
+
+    Raises TypeError or ValueError for anything else.
+    """
+    values: Any = np.ma.asarray(array)
+    if values.dtype.kind not in "iufO":
+        raise TypeError(values.dtype)
+    numbers: Array = values.astype(np.float64).filled(np.nan)
+    return numbers
+
+
+def _shown(array: ArrayLike) -> str:
+    """Return the type and the shape of an array, or a short text of what is none."""
+    if isinstance(array, np.ndarray):
+        return f"{array.dtype} of shape {array.shape}"
+    return repr(array)[:60]
 
 
 def settled(

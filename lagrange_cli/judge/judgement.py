@@ -48,7 +48,10 @@ class Judgement:
     verdict: str = key("the verdict, in a word", "fine")
     rows: int = key("the number of rows", 0)
     judged: str = key("what the error is of: attitude, axis, angles or rates", "")
-    error_max: float | None = key("greatest error: of the attitude, or of what is given of it")
+    error_max: float | None = key(
+        "greatest error: of the attitude, or of what is given of it "
+        "(of an angular velocity over the size of the rates)"
+    )
     attitude_error_max: float | None = key("greatest angle between the given and exact attitude")
     attitude_error_final: float | None = key("the angle at the last row")
     axis_error_max: float | None = key("greatest angle between the figure axes")

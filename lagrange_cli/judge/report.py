@@ -93,11 +93,12 @@ def _name(judgement: Judgement) -> str:
 
 def _sentence(judgement: Judgement, limit: float) -> str:
     error = judgement.error_max
-    most = "" if error is None else f"at most {error:.1e} rad off"
+    unit = "of the rates" if judgement.judged == "rates" else "rad"
+    most = "" if error is None else f"at most {error:.1e} {unit} off"
     told = {
         FINE: f"fine, {most}",
         DRIFTS: f"drifts, {most}{_drift(judgement)}",
-        OFF: f"off from the start by {judgement.error_start:.1e} rad, {most}",
+        OFF: f"off from the start by {judgement.error_start:.1e} {unit}, {most}",
         ANOTHER: f"moves like another top, {most}",
         LOST: f"lost at t = {judgement.lost_at}" + (f", {most} before" if most else ""),
     }

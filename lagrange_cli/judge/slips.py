@@ -130,6 +130,10 @@ def _exchanged(seen: Seen) -> Seen:
     return replace(seen, angles={names[key]: x for key, x in seen.angles.items()})
 
 
+def _in_the_other_frame(seen: Seen) -> Seen:
+    return replace(seen, body_rates=seen.space_rates, space_rates=seen.body_rates)
+
+
 def _framed(axis: str = "z", up: str = "z") -> Callable[[Alignment], Alignment]:
     """Return the alignment with these frames, and with the angles counted from the first row."""
 
@@ -187,6 +191,7 @@ SLIPS = [
         _with_quaternion(lambda q: np.roll(q, -1, 1)),
     ),
     Slip("phi and psi have each other's names", None, _exchanged),
+    Slip("the angular velocity is in the other frame (--rates)", None, _in_the_other_frame),
     Slip("angles in degrees taken as radians, or the reverse", other_unit=True),
     Slip("spin and precession do not start at 0 (--align start)", wish=_framed()),
     *(

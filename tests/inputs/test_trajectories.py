@@ -217,6 +217,8 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         (b"t,theta\n0,1\n1,\xff\n", "line 3: a row must be UTF-8 text"),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
         (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),
+        (b"x" * 2_000_000, "line 1: a line must have less than 1048576 bytes"),
+        (b"t,theta\n0,1\n" + b"1" * 4_000_000, "line 3: a line must have less than 1048576 bytes"),
         (b"0 1\n", "has no header: name its 2 columns by --columns, such as t,quaternion"),
         (b"a,b\n0,1\n", "must have columns among the time (t, time, timestamp) and"),
         (b"t,qx,qy\n0,1,2\n", "must have columns among"),

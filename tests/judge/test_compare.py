@@ -366,6 +366,7 @@ READINGS: dict[str, dict[str, Any]] = {
     "was read as wxyz": {"quaternion": np.asarray(TURN.as_quat())},
     "was read as xyzw": {"quaternion": Q, "quaternion_order": "xyzw"},
     "each other's names": {"phi": ANGLES[:, 2], "psi": ANGLES[:, 0], "theta": ANGLES[:, 1]},
+    "other frame": {"rates": TURN.apply(RATES)},
     "taken as radians": {"theta": np.degrees(ANGLES[:, 1])},
     "--align start": {"quaternion": scalar_first(about_z(1) * TURN)},
     "axis=y,start": {"quaternion": scalar_first(TURN * Rotation.from_matrix(np.eye(3)[[2, 0, 1]]))},
@@ -403,6 +404,11 @@ def test_a_quaternion_of_length_0_is_lost() -> None:
     assert compare(TOP, T, quaternion=q).lost_at == T[7]
     nothing = compare(TOP, T, quaternion=0 * Q)
     assert (nothing.verdict, nothing.lost_at, nothing.error_max) == ("lost", 0, None)
+
+
+def test_masked_numbers_are_missing() -> None:
+    theta = np.ma.masked_array(ANGLES[:, 1], T > 1)
+    assert compare(TOP, T, theta=theta).lost_at == T[101]
 
 
 def test_one_row() -> None:
@@ -453,6 +459,9 @@ def test_rows_that_are_kept_are_spread_evenly(block: int) -> None:
     [
         ({}, "compare must be given an attitude"),
         ({"quaternion": Q[:5]}, r"quaternion must be real numbers of shape \(201, 4\)"),
+        ({"theta": ["1"] * 201}, r"theta must be real numbers of shape \(201, 1\), got \['1'"),
+        ({"theta": T > 1}, r"theta must be real numbers .* got bool of shape \(201,\)"),
+        ({"theta": 1j * T}, r"theta must be real numbers .* got complex128 of shape"),
         ({"theta": ["x"] * 201}, r"theta must be real numbers of shape \(201, 1\)"),
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
         ({"quaternion": Q, "euler_sequence": "xxz"}, "euler_sequence must be three axes"),
