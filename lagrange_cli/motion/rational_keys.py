@@ -52,6 +52,8 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
             keys["mean_spin_rate"] = exact.r0 - exact.b
         else:
             keys["mean_precession_rate"] = Fraction(0)
+    if facts.drifts:
+        keys["mean_spin_rate"] = exact.r0 - exact.b / 2
     return keys | _zeros_of_roots(exact) | _half_rates(exact)
 
 

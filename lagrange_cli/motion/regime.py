@@ -61,6 +61,8 @@ class Facts(Values):
     """u2 is exactly -1."""
     cusp: bool = False
     """The precession stands still at u1."""
+    drifts: bool = False
+    """beta = b u3: the mean spin is the drift r0 - b/2 alone."""
     sign_plus: Any = 1
     """Sign of beta + b; 1 where it is 0, the limit being the same from both sides."""
     sign_minus: Any = 1
@@ -133,9 +135,10 @@ def _facts(
     upper_root = 0
     if not minus and not vertical and not separatrix:
         upper_root = 3 if over < 0 else int(not steady)
-    # beta/b is a root: b theta'^2 + psi' (b psi' - a) (1 - u^2); it is u1 if it is less than 1
+    # beta/b is a root: b theta'^2 + psi' (b psi' - a) (1 - u^2); it is u1 if it is less than 1,
+    # and u3 if it is more
     stands = psi_rate * (b * psi_rate - a)
-    cusp = minus * b < 0 and cosine.vanishes(
+    is_root = bool(minus * b) and cosine.vanishes(
         Polynomial(stands + b * theta_rate * theta_rate, 0, -stands)
     )
     named = regimes(
@@ -156,7 +159,8 @@ def _facts(
         pole=pole,
         upper_root=upper_root,
         over_bottom=not plus and not steady,
-        cusp=cusp,
+        cusp=is_root and minus * b < 0,
+        drifts=is_root and minus * b > 0,
         sign_plus=plus or 1,
         sign_minus=minus or 1,
         stable=b * b >= 2 * a,

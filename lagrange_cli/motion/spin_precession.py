@@ -71,10 +71,15 @@ class SpinPrecession(Nutation[R]):
 
     @key("Mean rates", "φ' mean", "spin", "rad/time", "(6,3)", cancels=True)
     def mean_spin_rate(self) -> R:
-        """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation."""
+        """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation.
+
+        Where beta = b u3 the integral (6,1) holds with u3 for u1, and its arccot comes back.
+        """
         if self.facts.at_rest:
             half_turn = self.half_turn_rate
             return self.state.spin_drift + self.ar.where(self.r0 < 0, -half_turn, half_turn)
+        if self.facts.drifts:
+            return self.state.spin_drift
         if self.facts.free or self._meets_a_pole:
             return self.state.pole_drift + self._south - self._north
         return self.r0 + self._whole_south - self._whole_north

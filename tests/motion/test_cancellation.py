@@ -132,6 +132,30 @@ def test_record_and_angles_agree_over_the_pole(thetadot0: float) -> None:
         assert judge.ulps(key, rate) <= 0.5 + 1e-9
 
 
+@pytest.mark.parametrize(
+    ("C", "r0", "theta0_deg"),
+    [(1, 0.5, 100), (1, -0.5, 100), (0.5, 1, 60), (0.5, 0.5, 140), (0.25, 1, 120)],
+)
+def test_mean_spin_where_the_precession_would_stand_still_at_u3(
+    C: float, r0: float, theta0_deg: float
+) -> None:
+    """With b psi' = a and beta > b, beta/b is the root u3; the mean spin is rational."""
+    scene = UNIT | {"C": C, "r0": r0, "theta0_deg": theta0_deg, "psidot0": 2 / (C * r0)}
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
+    assert motion.mean_spin_rate == r0 * (1 - C / 2)
+    assert judge.ulps("mean_spin_rate", r0 * (1 - C / 2)) <= 1e-9
+
+
+def test_a_mean_spin_of_zero() -> None:
+    """Of a flat body, C = 2A, nothing is left of it: no number of digits would have told that."""
+    inputs = {"A": 2, "m": 2, "C": 4, "s": 1, "g": 1}
+    motion = solve(Top(**inputs, r0=0.25, theta0_deg=135, psidot0=4))
+    assert motion.mean_spin_rate == 0
+    assert motion.T_spin is None
+    assert motion.digits(5)["mean_spin_rate"] == "0.0"
+    assert abs(motion.angles(1e6 * motion.T_nutation).phi) < 1e-6
+
+
 # Any number of digits
 
 
