@@ -214,6 +214,7 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         (b"t,theta\n0,1\n\n# c\n1,1_0\n", "line 5, column 2: theta must be a number, got '1_0'"),
         (b"t,theta\n0,1\n1\n", "line 3: a row must have 2 cells, got 1"),
         (b"t,theta\n0,1\n1,2,3\n", "line 3: a row must have 2 cells, got 3"),
+        (b"t,theta\n0,1,2\n1,2,3\n", "line 2: a row must have 2 cells, got 3"),
         (b"t,theta\n0,1\n1,\xff\n", "line 3: a row must be UTF-8 text"),
         (b"t,theta\n0,1\n,2\n", "line 3: t must be a finite number, got nan"),
         (b"t,theta\n0,1\n1,2\n# c\n0.5,3\n", "line 5: t must not turn back, got 0.5 after 1.0"),

@@ -116,6 +116,12 @@ def test_what_is_not_given_is_null(form: str, known: set[str]) -> None:
     assert record["Lz_drift"] is None
 
 
+def test_the_distance_of_the_mass_centre_is_judged() -> None:
+    position = TURN.apply([0, 0, 4.0])
+    assert most(compare(TOP, T, position=position).norm_drift, 1e-12)
+    assert compare(TOP, T, position=1.5 * position).norm_drift == pytest.approx(0.5)
+
+
 def test_rates_of_the_angles_give_energy_and_momentum() -> None:
     exact = solve(TOP).table(T, ["thetadot", "phidot", "psidot"])
     rates = np.stack([exact[f"{angle}dot"] for angle in ("theta", "phi", "psi")], axis=1)
@@ -299,6 +305,16 @@ def test_the_error_of_another_top_does_not_fall() -> None:
     assert not found.falls
 
 
+def test_a_small_error_that_does_not_fall_is_explained_too() -> None:
+    top = Top(psidot0=1e-5)
+    run = dop853(Body.of(top.replace(r0=50 + 1e-5 * math.cos(math.pi / 6))), T)
+    rows = judged(top, [run, run], [1e-3, 1e-4])
+    assert {(row.verdict, row.explained_by) for row in rows} == {
+        ("another top", "r0 taken as phi'")
+    }
+    assert most(rows[0].error_max, 1e-4)
+
+
 def test_rounding_need_not_fall() -> None:
     rows = judged(TOP, [(T, STATES), (T, STATES)], [1e-3, 1e-4])
     assert {row.verdict for row in rows} == {"fine"}
@@ -404,6 +420,20 @@ def test_a_quaternion_of_length_0_is_lost() -> None:
     assert compare(TOP, T, quaternion=q).lost_at == T[7]
     nothing = compare(TOP, T, quaternion=0 * Q)
     assert (nothing.verdict, nothing.lost_at, nothing.error_max) == ("lost", 0, None)
+
+
+def test_frames_come_from_the_first_row_that_is_finite() -> None:
+    q = scalar_first(about_z(1) * TURN)
+    q[:3] = math.nan
+    judgement = compare(TOP, T, quaternion=q, align=["start"])
+    assert judgement.lost_at == 0
+    assert most(judgement.error_max, 2e-12)
+
+
+@pytest.mark.parametrize(("size", "word"), [(9e-4, "fine"), (2e-3, "off from the start")])
+def test_a_first_row_beyond_the_limit(size: float, word: str) -> None:
+    assert compare(TOP, T, theta=ANGLES[:, 1] + size).verdict == word
+    assert compare(TOP, T, theta=ANGLES[:, 1] + size, max_error=0.1).verdict == "fine"
 
 
 def test_masked_numbers_are_missing() -> None:
