@@ -10,9 +10,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import click
+import numpy as np
 import pytest
 from conftest import ROOT
+from engines import Body, dop853, rk4
+from scipy.spatial.transform import Rotation
 
+from lagrange_cli import Top
 from lagrange_cli.cli.command import ExamplesFirst
 from lagrange_cli.cli.group import main
 
@@ -60,10 +64,28 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "tops.csv").write_text("id,r0,theta0_deg\na,40,20\nb,-60,110\n")
     tops = [{"time": i, "top": {"r0": 40 + i}} for i in range(3)]
     (tmp_path / "log.json").write_text("".join(json.dumps(x) + "\n" for x in tops))
+    write_trajectories(tmp_path)
     started = "if __name__ == '__main__':  # as pip writes it: workers import this file\n    main()"
     script(tmp_path / "bin" / "lagtop", f"from lagrange_cli.__main__ import main\n{started}")
     script(tmp_path / "bin" / "jq", JQ)
     return tmp_path
+
+
+def write_trajectories(folder: Path) -> None:
+    """Write the trajectories that the examples of the judge read, and their scene."""
+    tops = {"mujoco": Top(m=1.587, A=3.9032e-3, C=1.7458e-3, s=0.04, g=9.81)}
+    tops |= dict.fromkeys(("h1", "h2", "h3"), Top())
+    for i, (name, top) in enumerate(tops.items()):
+        runs = np.column_stack(rk4(Body.of(top), 4e-3 / 2**i, 0.1))
+        header = "t,qw,qx,qy,qz,p,q,r"
+        np.savetxt(folder / f"{name}.csv", runs, delimiter=",", header=header, comments="")
+    np.save(folder / "state.npy", runs[:, [0, 2, 3, 4, 1, 5, 6, 7]])
+    (folder / "top.toml").write_text("psidot0 = 1\n")
+    t, states = dop853(Body.of(Top(psidot0=1)), np.linspace(0, 1, 20))
+    turn = Rotation.from_quat(states[:, :4], scalar_first=True)
+    matrices = (turn * Rotation.from_matrix(np.eye(3)[[2, 0, 1]])).as_matrix().reshape(-1, 9)
+    comment = "OutputVariableType = RotationMatrix"
+    np.savetxt(folder / "sensor.txt", np.column_stack([t, matrices]), delimiter=",", header=comment)
 
 
 def script(path: Path, code: str) -> None:
@@ -84,6 +106,7 @@ def test_examples_of_the_help_run(example: str, folder: Path) -> None:
         "PYTHONPATH": str(ROOT),
         "SLURM_ARRAY_TASK_ID": "7",
     }
+    before = [*folder.iterdir()]
     done = subprocess.run(
         ["bash", "-e", "-o", "pipefail", "-c", line],
         capture_output=True,
@@ -93,8 +116,7 @@ def test_examples_of_the_help_run(example: str, folder: Path) -> None:
     )
     assert done.returncode == 0, done.stderr.decode()
     assert b"Error" not in done.stderr
-    before = {"sample_inputs", "tops.csv", "log.json", "bin"}
-    made = [path for path in folder.iterdir() if path.name not in before or "> tops" in line]
+    made = [path for path in folder.iterdir() if path not in before or "> tops" in line]
     assert done.stdout or made or "$(" in line, "it writes nothing"
 
 
