@@ -166,8 +166,11 @@ def _with_slope(
     keeps its digits next to its zero, and its derivative here, where that keeps them next to 0.
     """
     if ij == "10":
-        value, _ = _sums(ar, "11", x.half_further(ar), series)
+        further = x.half_further(ar)
+        value, _ = _sums(ar, "11", further, series)
         _, slope = _sums(ar, "10", x, series)
+        if not (ar.is_array and np.isrealobj(x.rest)):  # of a real x the two bells are one
+            value *= _bell(ar, "11", further.rest, series) / _bell(ar, "10", x.rest, series)
         return value, slope
     return _sums(ar, ij, x, series)
 

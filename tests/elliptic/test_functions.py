@@ -180,6 +180,24 @@ def test_complex_arguments() -> None:
             assert abs(complex(ours) / complex(exact) - 1) < 1e-13
 
 
+@pytest.mark.parametrize("real", [0.0, 0.5, -0.5, 1.0, 1.5])
+@pytest.mark.parametrize("k", [0.1, 0.76, 0.999])
+def test_complex_arguments_above_zeros_and_halves(k: float, real: float) -> None:
+    """Where the real part stands on a tie between two ways of reduction."""
+    ar = ManyDigits(40)
+    m = ar.mpf(k) ** 2
+    q = ar.exp(-ar.pi * ar.ellipk(1 - m) / ar.ellipk(m))
+    for ij, n in {"01": 4, "00": 3, "11": 1, "10": 2}.items():
+        x = ar.mpc(real, 0.55)
+        value, slope = (ar.jtheta(n, ar.pi * x, q, derivative=i) for i in (0, 1))
+        assert abs(theta(ar, ij, x, modulus(ar, k=k)) / value - 1) < 1e-37
+        computed = theta(ARRAYS, ij, complex(real, 0.55), modulus(ARRAYS, k=k))
+        assert abs(complex(computed) / complex(value) - 1) < 1e-14
+        zeta_there = zeta(ar, ij, 2 * ar.ellipk(m) * x, modulus(ar, k=k))
+        size = abs(ar.pi * slope / value) + 1
+        assert abs(zeta_there * 2 * ar.ellipk(m) - ar.pi * slope / value) < 1e-36 * size
+
+
 def test_omega_on_arrays() -> None:
     """Real and imaginary parameters, both families of moduli in one array, against many digits."""
     ar = ManyDigits(40)
