@@ -52,6 +52,14 @@ class AbsentError(LagtopError):
     exit_code = 1
 
 
+class OutOfRangeError(LagtopError):
+    """A number that is beyond the range of doubles."""
+
+
+class OutOfRangeWarning(UserWarning):
+    """Some numbers of a record are beyond the range of doubles, and None in it."""
+
+
 class NothingToDrawError(LagtopError):
     """A picture was asked for that the motion does not have."""
 

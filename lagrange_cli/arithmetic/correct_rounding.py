@@ -7,7 +7,7 @@ from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
 from typing import TypeVar
 
-from ..errors import LagtopError
+from ..errors import LagtopError, OutOfRangeError
 from .decimals import own_context
 from .text import NumberText
 
@@ -92,12 +92,12 @@ def _rounded(value: Decimal, previous: Decimal, rounding: Callable[[Decimal], T]
 
 
 def nearest_double(name: str) -> Callable[[Decimal], float]:
-    """Return the rounding of a number to doubles.  It raises LagtopError beyond their range."""
+    """Return the rounding of a number to doubles.  It raises OutOfRangeError beyond them."""
 
     def rounding(value: Decimal) -> float:
         nearest = float(value)
         if not abs(nearest) < _INFINITE:
-            raise LagtopError(
+            raise OutOfRangeError(
                 f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
             )
         return nearest

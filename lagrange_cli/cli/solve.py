@@ -12,6 +12,7 @@ from ..output.write import write_record, write_value
 from .command import ExamplesFirst, chain_layout, top_layout, write_keys
 from .options import (
     MOST_RECORD_DIGITS,
+    complain,
     digits_option,
     exclude,
     given,
@@ -78,8 +79,12 @@ def command(
         keys = _steps(motion, rad)
     if digits:
         record = motion.digits(digits, radians=rad, keys=keys)
-    else:
+    elif keys:
         record = motion.record(radians=rad, keys=keys)
+    else:
+        record, beyond = motion.record_in_range(radians=rad)
+        if beyond:
+            complain("Warning: " + "; ".join(map(str, beyond)))
     if derivation and keys:
         record = {name: record[name] for name in keys}
     if key is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .quantity import Key, keys_of
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
 
     from .kinds import Kind
     from .regime import Exact
+    from .solve import Motion
 
 _INPUTS = {
     "m": Key("Inputs", "m", "mass", "mass"),
@@ -88,3 +90,29 @@ def record_keys(*, radians: bool = False) -> list[str]:
     """Return all keys of a record in their order."""
     names = [*_INPUTS, "regime", *NUMBER_KEYS, "path", "remark"]
     return [unit_name(name, radians=radians) for name in names]
+
+
+def record_of(
+    motion: Motion,
+    inputs: Mapping[str, Any],
+    number: Callable[[str, bool], Any],
+    *,
+    radians: bool,
+    keys: Collection[str] | None,
+) -> dict[str, Any]:
+    """Return inputs and results by key in their order, or some of them; `number` gives a number."""
+    names = record_keys(radians=radians)
+    wanted = set(names if keys is None else keys)
+    numbers = NUMBER_KEYS
+    if not wanted <= set(names):
+        names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
+    values = dict(inputs) | {"regime": motion.regime.value}
+    for name in numbers:
+        shown = unit_name(name, radians=radians)
+        if shown in wanted:
+            values[shown] = number(name, radians)
+    if "path" in wanted:
+        values["path"] = motion.path
+    if "remark" in wanted:
+        values["remark"] = motion.settled_kind(8).remark(radians=radians)
+    return {name: values[name] for name in names if name in wanted}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Collection, Sequence
 from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -15,19 +16,11 @@ from ..arithmetic.correct_rounding import (
     text_of,
 )
 from ..arithmetic.decimals import decimals
-from ..errors import LagtopError
+from ..errors import LagtopError, OutOfRangeError, OutOfRangeWarning
 from ..inputs.top import Top
 from .gaps import agree, are_told_apart, gaps_of, released, state
 from .kinds import Kind, kind_of
-from .record import (
-    NUMBER_KEYS,
-    all_keys,
-    number_key,
-    record_keys,
-    requested_keys,
-    source_of,
-    unit_name,
-)
+from .record import NUMBER_KEYS, number_key, record_of, requested_keys, source_of
 from .regime import Exact, Regime, exact
 
 if TYPE_CHECKING:
@@ -116,10 +109,31 @@ class Motion:
     ) -> dict[str, Any]:
         """Return inputs and results by key, in the order of the paper; `radians` for all angles.
 
-        `keys` asks for some of them only.  Raises LagtopError where one of these leaves the range
-        of doubles.
+        A number beyond the range of doubles is None, and an OutOfRangeWarning names it.  `keys`
+        asks for some of them only; of these it raises OutOfRangeError.
         """
-        return self._record(radians, keys, self.top.inputs(radians=radians), self._double_in)
+        record, beyond = self.record_in_range(radians=radians, keys=keys)
+        if beyond and keys is not None:
+            raise beyond[0]
+        if beyond:
+            warnings.warn("; ".join(map(str, beyond)), OutOfRangeWarning, stacklevel=2)
+        return record
+
+    def record_in_range(
+        self, *, radians: bool = False, keys: Collection[str] | None = None
+    ) -> tuple[dict[str, Any], list[OutOfRangeError]]:
+        """Return the record, and what is to be said of numbers beyond the range of doubles."""
+        beyond = []
+
+        def number(name: str, radians: bool) -> float | None:
+            try:
+                return self._double_in(name, radians)
+            except OutOfRangeError as error:
+                beyond.append(error)
+                return None
+
+        inputs = self.top.inputs(radians=radians)
+        return record_of(self, inputs, number, radians=radians, keys=keys), beyond
 
     def digits(
         self, digits: int, *, radians: bool = False, keys: Collection[str] | None = None
@@ -141,30 +155,7 @@ class Motion:
                 name: text_of(x if isinstance(x, Decimal) else Fraction(x), digits)
                 for name, x in self.top.inputs(radians=radians, ar=ar).items()
             }
-        return self._record(radians, keys, inputs, number)
-
-    def _record(
-        self,
-        radians: bool,
-        keys: Collection[str] | None,
-        inputs: Mapping[str, Any],
-        number: Callable[[str, bool], Any],
-    ) -> dict[str, Any]:
-        names = record_keys(radians=radians)
-        wanted = set(names if keys is None else keys)
-        numbers = NUMBER_KEYS
-        if not wanted <= set(names):
-            names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
-        values = dict(inputs) | {"regime": self.regime.value}
-        for name in numbers:
-            shown = unit_name(name, radians=radians)
-            if shown in wanted:
-                values[shown] = number(name, radians)
-        if "path" in wanted:
-            values["path"] = self.path
-        if "remark" in wanted:
-            values["remark"] = self._settled_kind.remark(radians=radians)
-        return {name: values[name] for name in names if name in wanted}
+        return record_of(self, inputs, number, radians=radians, keys=keys)
 
     def _double_in(self, name: str, radians: bool) -> float | None:
         if not (radians and name.endswith("_deg")):

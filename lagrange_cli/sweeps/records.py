@@ -47,7 +47,8 @@ def sweep(
     """Return the records of many tops: arrays by key, in the shape of the inputs together.
 
     Inputs are those of `Top`, numbers or arrays.  A number that a regime does not have is NaN, a
-    text None; `error` says what is wrong with a top, which has neither.  Only `keys` are computed.
+    text None; `error` says what is wrong with a top, which has neither, or with a number beyond the
+    range of doubles, which alone is NaN.  Only `keys` are computed.
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
     chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
@@ -113,11 +114,10 @@ def records(
                 block.fill(rows, regime)
                 left &= ~rows
         left = block.fill_moving(left)
-        for row in np.flatnonzero(left).tolist():
-            block.solve(row, [*block.texts, *block.numbers])
-        if block.requested:
-            for row in range(tops.m.size):
-                block.solve(row, block.requested)
+        alone = np.flatnonzero(left).tolist()
+        for row in range(tops.m.size) if block.requested else alone:
+            keys_left = [*block.texts, *block.numbers] if left[row] else []
+            block.solve(row, [*keys_left, *block.requested])
         return {key: block.columns[key] for key in keys}
 
 
@@ -203,10 +203,13 @@ class _Block:
         if self.columns["error"][row] is not None:
             return
         try:
-            record = solve(Top(**self.tops.one(row))).record(radians=self.radians, keys=keys)
+            motion = solve(Top(**self.tops.one(row)))
+            record, beyond = motion.record_in_range(radians=self.radians, keys=keys)
         except LagtopError as error:
             self.columns["error"][row] = str(error)
             return
+        if beyond:
+            self.columns["error"][row] = "; ".join(map(str, beyond))
         for key in keys:
             if record[key] is not None:
                 self.columns[key][row] = record[key]
