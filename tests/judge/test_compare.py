@@ -57,11 +57,11 @@ def most(value: float | None, bound: float) -> bool:
     ],
 )
 def test_an_integrator_is_fine(top: Top) -> None:
-    """Worst seen: 2.5e-12 rad."""
+    """Worst seen: 9.8e-13 rad."""
     _, states = dop853(Body.of(top), T)
     judgement = compare(top, T, quaternion=states[:, :4], rates=states[:, 4:])
     assert judgement.verdict == "fine"
-    assert most(judgement.attitude_error_max, 1e-11)
+    assert most(judgement.attitude_error_max, 5e-12)
     assert most(judgement.energy_drift, 1e-12)
     assert most(judgement.Lz_drift, 1e-12)
     assert most(judgement.norm_drift, 1e-12)
@@ -90,7 +90,7 @@ PARTS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("form", [*FORMS, *PARTS])
 def test_every_form_is_read(form: str) -> None:
-    """Worst seen: 4.7e-13 rad."""
+    """Worst seen: 9.8e-13 rad."""
     judgement = compare(TOP, T, **(FORMS | PARTS)[form])
     assert judgement.verdict == "fine"
     assert most(judgement.error_max, 2e-12)
@@ -137,7 +137,7 @@ def test_rates_of_the_angles_give_energy_and_momentum() -> None:
 
 @pytest.mark.parametrize("size", [1e-12, 1e-9, 1e-4, 0.3, 3.0])
 def test_an_error_of_known_size_is_measured(size: float) -> None:
-    """Worst seen: 4e-13 rad from the size."""
+    """The trajectory itself is 9.8e-13 rad off."""
     spun = compare(TOP, T, quaternion=scalar_first(TURN * about_z(size)))
     turned = compare(TOP, T, quaternion=scalar_first(about_z(-size) * TURN))
     tilted = compare(TOP, T, theta=ANGLES[:, 1] - size)
