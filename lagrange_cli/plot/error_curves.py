@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,11 +11,10 @@ from .style import LIGHT, figure_bytes, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from ..arithmetic.types import Array
 
-LEAST = 1e-17
-"""Least error that is drawn over the step; one of 0 stands there."""
 _DASHES = ("-", "--", "-.", ":")
 _MARKS = "os^Dv<>pP*X"
 
@@ -37,43 +37,54 @@ class ErrorCurve(NamedTuple):
         errors: Array = np.where(self.error > 0, self.error, np.nan)
         return errors
 
+    @property
+    def has_step(self) -> bool:
+        """Whether there is an error over a step that logarithms have."""
+        return bool(self.step and self.compared and math.isfinite(self.compared))
+
 
 def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
-    """Return the picture in the format of the name of its file.
-
-    Over time there is a line for each trajectory, darker for the first one; beside it, where there
-    are steps, its error over the step.
-    """
+    """Return the picture in the format of the name of its file."""
     from matplotlib.figure import Figure
 
-    has_steps = any(curve.compared for curve in curves)
+    with_steps = any(curve.has_step for curve in curves)
     with styled(LIGHT, 0.9):
-        figure = Figure(figsize=(10 if has_steps else 7.5, 4.6), layout="constrained")
-        over_time, *over_step = figure.subplots(1, 2 if has_steps else 1, squeeze=False)[0]
-        colors = scale(LIGHT)([i / max(len(curves) - 1, 1) for i in range(len(curves))])
-        for i, curve in enumerate(curves):
-            look = {"color": colors[i], "ls": _DASHES[i % len(_DASHES)]}
-            over_time.plot(curve.t, curve.positive(), lw=1.2, label=curve.name, **look)
-        over_time.axhline(limit, color=LIGHT.quiet, lw=0.8)
-        over_time.set(yscale="log", xlabel="time", ylabel="error (rad)")
-        over_time.set_title("Error over time")
-        over_time.legend(fontsize=8)
-        for axes in over_step:
-            _draw_convergence(axes, curves, colors)
+        figure = Figure(figsize=(10 if with_steps else 7.5, 4.6), layout="constrained")
+        draw_error_panels(figure, curves, limit)
         return figure_bytes(figure, Path(path).suffix.lower()[1:], 150)
 
 
-def _draw_convergence(axes: Axes, curves: Sequence[ErrorCurve], colors: Array) -> None:
-    """Draw error over step, with the slopes of the orders 1, 2 and 4 beside the coarsest."""
-    points = [(x.step, max(x.compared, LEAST)) for x in curves if x.step and x.compared]
+def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float) -> None:
+    """Draw a line over time for each trajectory, darker for the first ones, and the limit.
+
+    Beside it, where there are steps, is the error of each over its step.
+    """
+    stepped = [curve for curve in curves if curve.has_step]
+    over_time, *over_step = figure.subplots(1, 2 if stepped else 1, squeeze=False)[0]
+    shades = scale(LIGHT)([i / max(len(curves) - 1, 1) for i in range(len(curves))])
+    colors = {curve.name: shade for curve, shade in zip(curves, shades, strict=True)}
     for i, curve in enumerate(curves):
-        if curve.step and curve.compared:
-            mark = _MARKS[i % len(_MARKS)]
-            axes.plot(curve.step, max(curve.compared, LEAST), mark, color=colors[i], ms=7)
-    step, error = max(points)
-    finest = min(points)[0]
+        look = {"color": colors[curve.name], "ls": _DASHES[i % len(_DASHES)]}
+        over_time.plot(curve.t, curve.positive(), lw=1.2, label=curve.name, **look)
+    over_time.axhline(limit, color=LIGHT.quiet, lw=0.8)
+    over_time.set(yscale="log", xlabel="time", ylabel="error (rad)")
+    over_time.set_title("Error over time")
+    over_time.legend(fontsize=8)
+    for axes in over_step:
+        _draw_convergence(axes, stepped, colors)
+
+
+def _draw_convergence(
+    axes: Axes, curves: Sequence[ErrorCurve], colors: Mapping[str, Array]
+) -> None:
+    """Draw error over step, with the slopes of the orders 1, 2 and 4 from the coarsest."""
+    points = {curve.name: (curve.step or 0.0, curve.compared or 0.0) for curve in curves}
+    for i, (name, point) in enumerate(points.items()):
+        axes.plot(*point, _MARKS[i % len(_MARKS)], color=colors[name], ms=7)
+    step, error = max(points.values())
+    finest = min(points.values())[0]
     for order in (1, 2, 4):
-        ends = [error, max(error * (finest / step) ** order, LEAST)]
+        ends = [error, error * (finest / step) ** order]
         axes.plot([step, finest], ends, color=LIGHT.quiet, lw=0.7, ls=":")
         axes.annotate(
             *(f"order {order}", (finest, ends[1])),
