@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ LOST_PHASE = 0.3
 ROUNDING = 1e-8
 """An error that need not fall any more."""
 LEAST_ORDER = 0.5
+"""An order that any method has which converges at all."""
 
 
 class Convergence(NamedTuple):
@@ -24,7 +26,7 @@ class Convergence(NamedTuple):
     order: float | None
     """Fitted exponent; None where there are less than two errors to fit."""
     falls: bool
-    """Whether the error falls with the step, or is that of rounding."""
+    """Whether the error depends on the step, or is that of rounding."""
     until: float
     """Time up to which the errors were compared: then the first of them loses the phase."""
     errors: Sequence[float]
@@ -57,8 +59,18 @@ def convergence(judgements: Sequence[Judgement]) -> Convergence | None:
     least = min(range(len(points)), key=lambda i: points[i][1])
     known = [(step, error) for step, error in points[least:] if 0 < error < LOST_PHASE]
     order = _slope(known) if len({step for step, _ in known}) > 1 else None
-    falls = min(errors) < ROUNDING or (order is not None and order >= LEAST_ORDER)
-    return Convergence(order, falls, until, errors)
+    return Convergence(order, _depends_on_step(points), until, errors)
+
+
+def _depends_on_step(points: Sequence[tuple[float, float]]) -> bool:
+    """Return whether some error is that of rounding, or much less than another, for its step.
+
+    Errors that are nearly the same whatever the step are those of another motion.
+    """
+    steps, errors = zip(*points, strict=True)
+    if not ROUNDING <= min(errors) < math.inf:
+        return True
+    return bool(max(errors) >= min(errors) * (max(steps) / min(steps)) ** LEAST_ORDER)
 
 
 def _greatest_so_far(judgement: Judgement) -> tuple[Array, Array]:

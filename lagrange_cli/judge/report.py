@@ -8,6 +8,7 @@ from typing import Any
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
 from ..output.terminal import one_line
+from .convergence import LEAST_ORDER
 from .files import Request, Session
 from .judgement import KEYS, LIMIT, Judgement
 from .verdict import ANOTHER, DRIFTS, FINE, LOST, OFF
@@ -80,10 +81,12 @@ def _conclusions(session: Session, limit: float) -> Iterator[str]:
     if found is not None:
         if not found.falls:
             yield "The error does not fall with the step: this is the motion of another top."
-        elif found.order is not None:
-            yield f"The error falls with the step to the power of {found.order:.2f}."
-        else:
+        elif found.order is None:
             yield "The errors are too small or too large to show an order of convergence."
+        elif found.order < LEAST_ORDER:
+            yield "The error depends on the step, but shows no order: give runs of one method."
+        else:
+            yield f"The error falls with the step to the power of {found.order:.2f}."
     yield from _explanations(session.judgements)
 
 

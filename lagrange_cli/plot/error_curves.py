@@ -94,4 +94,7 @@ def _draw_convergence(
             color=LIGHT.quiet,
         )
     axes.set(xscale="log", yscale="log", xlabel="step", ylabel="error (rad)")
+    steps = sorted({step for step, _ in points.values()})
+    axes.set_xticks(steps, [f"{step:g}" for step in steps], rotation=30)
+    axes.set_xticks([], minor=True)
     axes.set_title("Convergence")

@@ -332,6 +332,13 @@ def test_steps_finer_than_the_best_do_not_count() -> None:
     assert convergence(runs[:1]) is None
 
 
+def test_two_methods_at_once_are_not_another_top() -> None:
+    sizes = ((1e-3, 1e-6), (1e-3, 1e-1), (2e-3, 1e-5), (2e-3, 2e-1))
+    found = convergence([compare(TOP, T, theta=ANGLES[:, 1] + x, step=h) for h, x in sizes])
+    assert found is not None
+    assert found.falls
+
+
 SHIFT = 1587 * 16
 TOPS: dict[str, Top] = {
     "A + m s^2": TOP.replace(A=39032 + SHIFT),
