@@ -147,7 +147,7 @@ def test_mean_spin_where_the_precession_would_stand_still_at_u3(
 
 
 def test_a_mean_spin_of_zero() -> None:
-    """Of a flat body, C = 2A, nothing is left of it: no number of digits would have told that."""
+    """The drift of a flat body, C = 2A, is 0: no number of digits would have told that."""
     inputs = {"A": 2, "m": 2, "C": 4, "s": 1, "g": 1}
     motion = solve(Top(**inputs, r0=0.25, theta0_deg=135, psidot0=4))
     assert motion.mean_spin_rate == 0

@@ -178,7 +178,7 @@ def test_numbers_out_of_range() -> None:
     with pytest.raises(LagtopError, match="A must be >= 1e-100, got 1e-200"):
         solve(Top(A=1e-200, C=1e-200))
     with pytest.raises(LagtopError, match=r"T_nutation must be within 1\.8e308 in size"):
-        solve(Top(g=5e-324, s=1e-320, r0=0)).T_nutation
+        _ = solve(Top(g=5e-324, s=1e-320, r0=0)).T_nutation
     assert solve(Top(g=5e-324, s=1e-320, r0=0)).k_prime < 1
 
 
