@@ -112,15 +112,18 @@ def _quaternion_slope(p: Problem, _: Any) -> Slope:
     return slope
 
 
-def _quaternion_angles(rows: Array) -> Sampled:
-    upper, lower = rows[2] + 1j * rows[5], rows[3] + 1j * rows[4]
+def quaternion_angles(parts: Array) -> Sampled:
+    """Return the angles, turns aside, from rows of the parts w, x, y, z of quaternions."""
+    upper, lower = parts[0] + 1j * parts[3], parts[1] + 1j * parts[2]
     mean, half = np.angle(upper), np.angle(lower)
     return 2 * np.arctan2(np.abs(lower), np.abs(upper)), mean - half, mean + half
 
 
 FORMS = {
     "euler": Form(_euler_start, _euler_slope, lambda rows: (rows[0], rows[2], rows[3]), True),
-    "quaternion": Form(_quaternion_start, _quaternion_slope, _quaternion_angles, False),
+    "quaternion": Form(
+        _quaternion_start, _quaternion_slope, lambda rows: quaternion_angles(rows[2:]), False
+    ),
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
@@ -48,9 +49,17 @@ class Method(NamedTuple):
     """Whether it counts the turns of spin and precession; if not, they are known modulo 2 pi."""
     costly: bool = False
     """A millisecond a sample: timed at the judged times only."""
+    engine: str = ""
+    """The distribution that it runs in a process of its own; it is not imported here."""
 
     def check_package(self) -> None:
         """Raise NotApplicableError where the package is missing."""
         name = self.package.partition(".")[0]
         if name and find_spec(name) is None:
-            raise NotApplicableError(f"needs {name}: pip install {name}")
+            raise NotApplicableError(
+                f"needs {self.engine or name}: pip install {self.engine or name}"
+            )
+
+    def mark(self) -> str | None:
+        """Return the engine and its version, which mark its rows; None for other methods."""
+        return f"{self.engine} {version(self.engine)}" if self.engine else None

@@ -19,6 +19,7 @@ from ..motion.regime import Regime
 from ..motion.solve import Motion
 from ..output.findings import Findings
 from .closed_forms import CLOSED_FORMS
+from .engines.families import FAMILIES, engines
 from .front import ANGLES, FIELDS, NOT_APPLICABLE, MethodRow, conclusions, is_out, with_front
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import common_conditions, warm_allocator
@@ -63,15 +64,36 @@ def nutation_period(motion: Motion) -> float:
     return float(motion.T_nutation or math.inf)
 
 
-def all_methods(limit: float) -> dict[str, Method]:
-    """Return every method by name; a run may take `limit` seconds."""
+def usual_methods(limit: float) -> dict[str, Method]:
+    """Return the methods of a plain comparison by name; a run may take `limit` seconds."""
     return CLOSED_FORMS | integrators(limit)
 
 
+def all_methods(limit: float) -> dict[str, Method]:
+    """Return every method by name, engines too."""
+    return usual_methods(limit) | engines(limit)
+
+
+def groups() -> dict[str, list[str]]:
+    """Return the names that stand for several methods: all engines, and each of them."""
+    found = {
+        family: [name for name, x in engines(1.0).items() if x.engine == family]
+        for family in FAMILIES
+    }
+    return {"engines": [name for names in found.values() for name in names]} | found
+
+
 def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
-    """Return the methods with these names, or all.  Raises LagtopError for an unknown one."""
-    known = all_methods(limit)
-    return {x: known[x] for x in (known if names is None else check_names("methods", names, known))}
+    """Return the methods with these names, of methods or groups of them, or the usual ones.
+
+    Raises LagtopError for an unknown one.
+    """
+    if names is None:
+        return usual_methods(limit)
+    known, several = all_methods(limit), groups()
+    check_names("methods", names, [*known, *(x for x in several if x not in known)])
+    single = dict.fromkeys(x for name in names for x in several.get(name, [name]))
+    return {name: known[name] for name in single}
 
 
 def task(
@@ -121,13 +143,14 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
         ns_min=min(seconds) / times.size * 1e9,
         ns_median=statistics.median(seconds) / times.size * 1e9,
         runs=len(seconds),
+        remark=method.mark(),
     )
     kept = range(times.size) if method.costly else work.judged.tolist()
     return _judged(timed, work, [[angle[i] for angle in angles] for i in kept], method)
 
 
 def _set_up(method: Method, work: Task, setting: Any) -> tuple[Sample, float]:
-    if method.package:
+    if method.package and not method.engine:
         import_module(method.package)
     begun = time.perf_counter()
     sample = method.prepare(work.motion.top, setting)

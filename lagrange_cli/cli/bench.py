@@ -36,10 +36,12 @@ class _ListingMethods(ExamplesFirst):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the names, which are imported only here."""
-        from ..bench.work_precision import all_methods
+        from ..bench.work_precision import all_methods, groups
 
         with formatter.section("Methods"):
             formatter.write_text(", ".join(all_methods(1.0)))
+        with formatter.section("Groups of methods"):
+            formatter.write_text(", ".join(groups()))
 
 
 @click.command(
@@ -50,12 +52,13 @@ class _ListingMethods(ExamplesFirst):
         lagtop bench sample_inputs/stiff-top.toml --plot work-precision.svg
         lagtop bench --methods lagtop,DOP853-quaternion --t-max 100 --n 1e5 --format csv
         lagtop bench --long --plot drift.png
+        lagtop bench --methods lagtop,engines --n 1000
     """,
 )
 @scene_options
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
-@click.option("--methods", type=NAMES, help="Only these, with commas between.")
+@click.option("--methods", type=NAMES, help="Only these, with commas between.  [default: all but engines]")
 @click.option(
     "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
 )
@@ -78,8 +81,8 @@ def command(
     """Compare closed forms and integrators: error against run time at the same times.
 
     Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
-    timed on one thread.  Taylor's method needs heyoka (extra `bench`); a method whose package is
-    missing says so.  A * marks the Pareto front: no other run is both faster and more accurate.
+    timed on one thread.  Taylor's method needs heyoka (extra `bench`), and engines need themselves
+    (extra `engines`); a method whose package is missing says so.  A * marks the Pareto front: no other run is both faster and more accurate.
     """
     from ..bench.machine import use_one_thread
 

@@ -27,6 +27,7 @@ SHORTER = {
     " --thorough": "",
     "--t-max 100 --n 1e5": "--t-max 1 --n 1e3",
     "--n 1e6": "--n 1e4",
+    "--methods lagtop,engines --n 1000": "--methods lagtop,mujoco --n 3",
 }
 """What a test has no time for: minutes of measurement.  Later options win over these."""
 SLOW = ("plot", "bench", "stability")

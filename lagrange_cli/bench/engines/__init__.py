@@ -1,0 +1,1 @@
+"""Real physics engines as methods of the comparison, each in a process of its own."""

@@ -1,0 +1,185 @@
+"""Engines as methods of `lagtop bench`: right models, and processes that fail without harm."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli import LagtopError, Top, compare, solve
+from lagrange_cli.bench import method as methods
+from lagrange_cli.bench import work_precision as bench
+from lagrange_cli.bench.engines import process, wire
+from lagrange_cli.bench.engines.body import scaled_body
+from lagrange_cli.bench.engines.families import FAMILIES, IMPORTS, engines
+from lagrange_cli.bench.engines.process import engine_attitudes, engine_sample
+from lagrange_cli.bench.method import FailedError, NotApplicableError
+from lagrange_cli.bench.work_precision import measure, task
+from lagrange_cli.judge.convergence import convergence
+from lagrange_cli.judge.judgement import Judgement
+
+GENERAL = Top(theta0_deg=50, thetadot0=-2, psidot0=3, r0=-40)
+PERIODS, GAPS = 2, 50
+"""Span, and gaps between its times, 25 to a period: all steps below fit into them."""
+
+ORDERS = {
+    "mujoco-euler": (1, [800, 1600, 3200]),
+    "mujoco-rk4": (4, [50, 100, 200]),
+    "exudyn-rk44": (4, [50, 100, 200]),
+    "exudyn-rk67": (6, [50, 75, 100]),
+    "exudyn-alpha": (2, [200, 400, 800]),
+    "pybullet": (1, [800, 1600, 3200]),
+    "drake-discrete": (1, [800, 1600, 3200]),
+}
+"""Orders that the schemes with a fixed step should have, and steps that show them."""
+ERRORS = {"drake-rk3": 1e-6, "drake-rk5": 1e-7}
+"""Errors that the schemes with a tolerance stay below at their tightest one."""
+
+
+def engine(name: str) -> tuple[str, str]:
+    """Return package and scheme of a method; skip the test where the package is missing."""
+    package, _, short = name.partition("-")
+    if find_spec(IMPORTS.get(package, package)) is None:
+        pytest.skip(f"{package} is not installed: pip install {package}")
+    return package, FAMILIES[package][short].name
+
+
+def judged(name: str, top: Top, setting: Any) -> Judgement:
+    """Return what the judge of trajectories says of an engine."""
+    package, scheme = engine(name)
+    t = np.linspace(0, PERIODS * float(solve(top).T_nutation or 0), GAPS + 1)
+    attitudes = engine_attitudes(package, scheme, top, setting, 60.0)(t)
+    fixed = name in ORDERS
+    return compare(top, t, quaternion=attitudes, step=1 / setting if fixed else None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ORDERS)
+@pytest.mark.parametrize("top", [Top(), GENERAL], ids=["released", "general"])
+def test_order_of_convergence(name: str, top: Top) -> None:
+    """A wrong model would keep its error, whatever the step; orders seen are in bench/README."""
+    order, steps = ORDERS[name]
+    found = convergence([judged(name, top, n) for n in steps])
+    assert found is not None
+    assert found.falls
+    assert found.order == pytest.approx(order, abs=0.25 * order)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ERRORS)
+@pytest.mark.parametrize("top", [Top(), GENERAL], ids=["released", "general"])
+def test_error_falls_with_the_tolerance(name: str, top: Top) -> None:
+    coarse, *_, fine = engines(9)[name].settings
+    error = judged(name, top, fine).attitude_error_max or 0
+    assert error < ERRORS[name]
+    assert error < (judged(name, top, coarse).attitude_error_max or 0) / 100
+
+
+def test_every_scheme_is_validated() -> None:
+    assert {*ORDERS, *ERRORS} == set(engines(1))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*ORDERS, *ERRORS])
+def test_row_of_an_engine(name: str) -> None:
+    """Rows have the version; one time does too, and a run begins at the start each time."""
+    package, _ = engine(name)
+    method = engines(60.0)[name]
+    motion = solve(GENERAL)
+    one = measure(task(motion, 0.1, 1), name, method, method.settings[-1])
+    many = measure(task(motion, 0.1, 5), name, method, method.settings[-1])
+    assert one.remark == many.remark == method.mark()
+    assert one.remark is not None
+    assert one.remark.startswith(f"{package} ")
+    assert one.error_max is not None
+    assert one.error_max < 0.02
+    assert many.error_end == pytest.approx(one.error_max, rel=0.5, abs=1e-9)
+    assert many.runs is not None
+    back = measure(task(motion, -0.1, 1), name, method, method.settings[0])
+    assert back.remark == "not applicable: engines run forwards only"
+
+
+FAKE = """
+import os, sys, time
+from lagrange_cli.bench.engines.serve import serve
+def build(body, scheme, setting):
+    if scheme == "refuses":
+        raise RuntimeError("no such thing\\nand more")
+    print("engines are talkative", flush=True)
+    def simulate(times):
+        if scheme == "crashes":
+            os.abort()
+        if scheme == "hangs":
+            time.sleep(60)
+        return __import__("numpy").tile([1.0, 0, 0, 0], (len(times), 1))
+    return simulate
+serve(build)
+"""
+
+
+@pytest.fixture
+def fake(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, float], Any]:
+    """Return a function that makes an engine of our own which behaves badly."""
+    (tmp_path / "fakes").mkdir()
+    (tmp_path / "fakes" / "fake.py").write_text(FAKE)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setattr(process, "__package__", "fakes")
+    return lambda scheme, limit: engine_sample("fake", scheme, Top(), 1, limit)
+
+
+@pytest.mark.slow
+def test_engines_that_go_wrong(fake: Callable[[str, float], Any]) -> None:
+    times = np.linspace(0, 1, 3)
+    assert np.array(fake("talks", 20.0)(times)).tolist() == [[0.0] * 3] * 3
+    with pytest.raises(FailedError, match=r"^RuntimeError: no such thing$"):
+        fake("refuses", 20.0)
+    with pytest.raises(FailedError, match=r"^its process ended with exit code -?\d+$"):
+        fake("crashes", 20.0)(times)
+    with pytest.raises(FailedError, match=r"^took more than 0.2 s$"):
+        fake("hangs", 0.2)(times)
+
+
+def test_bodies_that_cannot_be_built() -> None:
+    for top in (Top(C=60000), Top(s=5)):
+        with pytest.raises(NotApplicableError, match="refuse a body"):
+            scaled_body(top, 1.0)
+    body, clock = scaled_body(Top(C=2 * (39032 - 1587 * 16)), 1.0)
+    assert body.C == pytest.approx(2 * body.central)
+    assert body.period == clock
+
+
+def test_messages_that_are_cut_off() -> None:
+    import io
+
+    stream = io.BytesIO()
+    wire.send(stream, b"abc")
+    whole = stream.getvalue()
+    assert wire.receive(io.BytesIO(whole)) == b"abc"
+    for size in (0, 3, len(whole) - 1):
+        with pytest.raises(EOFError):
+            wire.receive(io.BytesIO(whole[:size]))
+
+
+def test_groups_stand_for_their_methods() -> None:
+    names = list(engines(1))
+    assert list(bench.chosen_methods(["engines"], 1)) == names
+    assert list(bench.chosen_methods(["pybullet", "mujoco"], 1)) == [
+        *("pybullet", "mujoco-euler", "mujoco-rk4")
+    ]
+    assert not set(names) & set(bench.chosen_methods(None, 1))
+    with pytest.raises(LagtopError, match=r"methods must be among .*engines, mujoco, exudyn"):
+        bench.chosen_methods(["bullet"], 1)
+
+
+def test_missing_engines_are_named(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(methods, "find_spec", lambda _: None)
+    result = lagtop("bench", "--methods", "lagtop,engines", "--n", 5, "--format", "json")
+    whole = json.loads(result.stdout)
+    assert whole["conclusions"][0] == "lagtop was compared with nothing."
+    assert "drake-rk3 (not applicable: needs drake: pip install drake)" in whole["conclusions"][1]
+    assert len(whole["rows"]) == 1 + len(engines(1))
