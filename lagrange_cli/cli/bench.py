@@ -58,7 +58,9 @@ class _ListingMethods(ExamplesFirst):
 @scene_options
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
-@click.option("--methods", type=NAMES, help="Only these, with commas between.  [default: all but engines]")
+@click.option(
+    "--methods", type=NAMES, help="These, with commas between.  [default: all but engines]"
+)
 @click.option(
     "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
 )
@@ -82,7 +84,8 @@ def command(
 
     Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
     timed on one thread.  Taylor's method needs heyoka (extra `bench`), and engines need themselves
-    (extra `engines`); a method whose package is missing says so.  A * marks the Pareto front: no other run is both faster and more accurate.
+    (extra `engines`); a method whose package is missing says so.  A * marks the Pareto front: no
+    other run is both faster and more accurate.
     """
     from ..bench.machine import use_one_thread
 

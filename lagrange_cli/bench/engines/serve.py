@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from collections.abc import Callable
+from functools import partial
 from typing import IO, Any
 
 import numpy as np
@@ -31,20 +32,21 @@ def serve(build: Build) -> None:
     os.dup2(2, 1)
     requests = sys.stdin.buffer
     order = json.loads(receive(requests))
-    simulate: list[Simulate] = []
+    simulates: list[Simulate] = []
 
     def prepare() -> bytes:
-        simulate.append(build(Body(*order["body"]), order["scheme"], order["setting"]))
+        simulates.append(build(Body(*order["body"]), order["scheme"], order["setting"]))
         return b""
 
-    if not _answer(answers, prepare):
-        return
-    while True:
+    def run(times: bytes) -> bytes:
+        return simulates[0](np.frombuffer(times)).tobytes()
+
+    go_on = _answer(answers, prepare)
+    while go_on:
         try:
-            times = np.frombuffer(receive(requests))
+            go_on = _answer(answers, partial(run, receive(requests)))
         except EOFError:
             return
-        _answer(answers, lambda: simulate[0](times).tobytes())  # noqa: B023
 
 
 def _answer(answers: IO[bytes], work: Callable[[], bytes]) -> bool:
