@@ -36,6 +36,8 @@ from .columns import ATTITUDE, NOTHING, Needs
 from .theta_series import Component, Frame, Polynomial
 
 _IN_ORDER = slice(None)
+_GREATEST = 340.0
+"""The square of its hyperbolic sine leaves room for what is multiplied with it."""
 
 
 class Angles(NamedTuple):
@@ -248,7 +250,11 @@ def _circular(x: Array, space: Workspace) -> Functions:
 
 
 def _hyperbolic(x: Array, space: Workspace) -> Functions:
-    """Return the hyperbolic functions of arguments, which are overwritten."""
+    """Return the hyperbolic functions of arguments, which are overwritten.
+
+    Arguments beyond the range of sinh^2 belong to a tilt below 1e-150, to which it is all one.
+    """
+    np.clip(x, -_GREATEST, _GREATEST, out=x)
     sinh = np.sinh(x, out=x)
     square = np.multiply(sinh, sinh, out=space.new())
     cosh = np.add(square, 1.0, out=space.new())

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from .samplers import ConstantSampler, SeparatrixSampler, ThetaSampler
 
 _NEGLIGIBLE = Decimal(2) ** -60
+_SIZE = 2**16
+"""The largest coefficient of a frame, or half of it."""
 
 
 class Attitude(NamedTuple, Generic[R]):
@@ -266,10 +268,17 @@ def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
     # sin^2 and sinh^2 are at most this where a step ends, half of `scale` from its middle
     greatest = ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
 
-    def component(c: Component) -> Component:
-        return Component(_trimmed(c.real, greatest), _trimmed(c.imag, greatest), c.even)
+    # X and Y may have any size in common: one that keeps the smallest and the largest in doubles
+    parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
+    size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE
 
-    return Frame(component(frame.x), component(frame.y), _trimmed(frame.rate, greatest))
+    def scaled(polynomial: Polynomial, size: Any) -> Polynomial:
+        return _trimmed([coefficient / size for coefficient in polynomial], greatest)
+
+    def component(c: Component) -> Component:
+        return Component(scaled(c.real, size), scaled(c.imag, size), c.even)
+
+    return Frame(component(frame.x), component(frame.y), scaled(frame.rate, size**4))
 
 
 def _trimmed(polynomial: Polynomial, greatest: Decimal) -> Polynomial:

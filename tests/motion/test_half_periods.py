@@ -158,3 +158,15 @@ def test_both_signs_of_time_are_mirrors_after_release_from_rest() -> None:
     forth, back = motion.angles(times), motion.angles(-times)
     assert np.abs(forth.phi + back.phi).max() <= EPS * np.abs(forth.phi).max()
     assert np.abs(forth.psi + back.psi).max() <= EPS * np.abs(forth.psi).max()
+
+
+@pytest.mark.parametrize("thetadot0", [5e-324, 1e-315, 1e-308, 1e-300, -5e-324])
+@pytest.mark.parametrize("r0", [0.0, 50.0])
+def test_the_slowest_departures_from_the_top(thetadot0: float, r0: float) -> None:
+    """The series has coefficients as small as exp(-374), and arguments as large as 374."""
+    scene = {"theta0_deg": 0, "thetadot0": thetadot0, "r0": r0}
+    motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
+    times = [x * float(motion.T_nutation) for x in (-0.5, 0.1, 0.24, 0.25, 0.26, 0.49, 0.5, 1.3)]
+    angles = np.stack(motion.angles(times), axis=-1)
+    worst = max(max(judge.angle_errors(t, tuple(x))) for t, x in zip(times, angles, strict=True))
+    assert worst <= 2.0
