@@ -102,9 +102,10 @@ class ArrayFunctions(Arrays):
 
 
 class Pairs(Arrays):
-    """The arithmetic of arrays of pairs of doubles, as far as it is needed: no functions."""
+    """The arithmetic of arrays of pairs of doubles, as far as it is needed: one function."""
 
     eps = 2.0**-104
+    pi = DoubleDouble(np.array([np.pi]), np.array([1.2246467991473532e-16]))
 
     @staticmethod
     def convert(value: float | Fraction) -> Any:
@@ -116,6 +117,11 @@ class Pairs(Arrays):
     def sqrt(x: Any) -> Any:
         """Return the square roots; of a plain number, a double."""
         return x.sqrt() if isinstance(x, DoubleDouble) else np.sqrt(float(x))
+
+    @staticmethod
+    def atan2(y: Any, x: Any) -> Any:
+        """Return the angles of the points (x, y), as good as doubles are."""
+        return DoubleDouble(np.arctan2(y.high, x.high))
 
     @staticmethod
     def where(condition: Any, yes: Any, no: Any) -> Any:

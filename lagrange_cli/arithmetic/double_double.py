@@ -155,6 +155,8 @@ class DoubleDouble:
         if not isinstance(other, DoubleDouble) and frexp(other)[0] == 0.5:
             return self.scaled(other)
         other = self._like(other)
+        if self.high.size < other.high.size:  # a constant
+            return other * self
         high, low = two_product(self.high, other.high)
         low += self.high * other.low + self.low * other.high
         return _renormalised(high, low)

@@ -17,6 +17,7 @@ from ..elliptic.carlson import carlson_rf
 from .theta_series import (
     Component,
     Frame,
+    Place,
     Polynomial,
     Series,
     ThetaConstants,
@@ -52,8 +53,13 @@ Spinor = Callable[[R], Attitude[R]]
 """The attitude as a function of time."""
 
 
-def theta_constants(motion: Nutating[R]) -> ThetaConstants:
-    """Return what the theta series need to know of a nutating top."""
+def theta_constants(motion: Nutating[R], offset: R, rises: int = 1) -> ThetaConstants:
+    """Return what the theta series need to know of a nutating top.
+
+    (1 + u2)/(1 + u1) and (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) are sn^2 of the parameters of X and
+    Y, with modulus k'; their complements are (u1 - u2)/(1 + u1) and
+    (u3 - 1)(u1 - u2)/((u3 - u1)(1 - u2)).
+    """
     ar, gaps, facts = motion.ar, motion.gaps, motion.facts
     with ar.working():
         squares = motion.K * motion.K * motion.k_prime * motion.k_prime
@@ -61,14 +67,17 @@ def theta_constants(motion: Nutating[R]) -> ThetaConstants:
             period=motion.T_nutation,
             quarter=motion.K,
             quarter_prime=motion.K_prime,
-            eta_plus=motion.eta_plus,
-            eta_minus=motion.eta_minus,
+            m=motion.m,
+            k=motion.k,
+            k_prime=motion.k_prime,
+            plus=Place(gaps.below_u2, gaps.u1_u2),
+            minus=Place(gaps.above_u1 * gaps.a_u3_u2, gaps.a_u3_above * gaps.u1_u2),
             x_size=ar.sqrt(gaps.below_u1 / 2),
             y_size=ar.sqrt(motion.k_prime * gaps.above_u2 / 2),
             sign_plus=facts.sign_plus,
             sign_minus=facts.sign_minus,
-            offset=periods_since_top(motion),
-            rises=_direction(motion),
+            offset=offset,
+            rises=rises,
             nutation=8 * squares * gaps.u1_u2 / (ar.pi * motion.T_nutation),
         )
 
@@ -99,7 +108,7 @@ def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
     """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     with ar.working():
-        constants = theta_constants(motion)
+        constants = theta_constants(motion, periods_since_top(motion), _direction(motion))
         terms = 4 + math.isqrt(int(ar.digits * math.log(10) / math.pi))  # nome <= exp(-pi)
         series = theta_series(ar, constants, terms)
 
@@ -202,7 +211,7 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
 
     ar: Any = motion.ar
     with ar.working():
-        c = theta_constants(motion)
+        c = theta_constants(motion, periods_since_top(motion), _direction(motion))
         series = theta_series(ar, c)
         nearest = ar.nint(c.offset * 2)
         offset = c.offset * 2 - nearest

@@ -16,7 +16,9 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..arithmetic.protocol import SeriesArithmetic, Value
+from ..arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
+from ..elliptic.complete import nome
+from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
 
 TERMS = 4
 """Enough for doubles."""
@@ -53,6 +55,13 @@ class Frame(NamedTuple):
     rate: Polynomial
 
 
+class Place(NamedTuple):
+    """A number eta from 0 to K', by sn^2(eta, k') and cn^2(eta, k') with any common factor."""
+
+    s2: Value
+    c2: Value
+
+
 class ThetaConstants(NamedTuple):
     """What the series need to know of a nutating top."""
 
@@ -61,16 +70,20 @@ class ThetaConstants(NamedTuple):
     """K."""
     quarter_prime: Value
     """K'; None where it is infinite (no torque)."""
-    eta_plus: Value
-    """2K y+/pi, the parameter of X."""
-    eta_minus: Value
-    """2K y-/pi, the parameter of Y."""
+    m: Value
+    """k^2."""
+    k: Value
+    k_prime: Value
+    plus: Place
+    """The parameter of X, 2K y+/pi."""
+    minus: Place
+    """The parameter of Y, 2K y-/pi."""
     x_size: Value
     """|X| at u1, which is cos(theta_min/2)."""
     y_size: Value
     """|Y| at u2, sin(theta_max/2), times sqrt(k') as theta3(x)/theta3(0) shrinks on the way."""
-    sign_plus: int
-    sign_minus: int
+    sign_plus: Value
+    sign_minus: Value
     offset: Value
     """Periods since the nearest passage of u1, at t = 0."""
     rises: int
@@ -94,17 +107,18 @@ class Series(NamedTuple):
 def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and c.quarter > c.quarter_prime
-    return (_hyperbolic_series if hyperbolic else _circular_series)(ar, c, terms)
+    return (hyperbolic_series if hyperbolic else circular_series)(ar, c, terms)
 
 
-def _circular_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int) -> Series:
+def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in q, which wind by +-pi over a period."""
-    zero = 0 * c.quarter
-    q = ar.exp(-ar.pi * c.quarter_prime / c.quarter) if c.quarter_prime is not None else zero
-    weights = _weights(q, terms)
-    y_plus, y_minus = (ar.pi * eta / (2 * c.quarter) for eta in (c.eta_plus, c.eta_minus))
-    x = _circular_components(ar, weights, y_plus, c.x_size, c.sign_plus)
-    y = _circular_components(ar, weights, y_minus, c.y_size, c.sign_minus)
+    weights = _weights(nome(ar, m=c.m, k_prime=c.k_prime), 2, terms)
+    plus, minus = (
+        hyperbolic_cosine_and_sine(ar, m=c.m, k_prime=c.k_prime, s2=place.s2, c2=place.c2)
+        for place in (c.plus, c.minus)
+    )
+    x = _circular_components(weights, plus, c.x_size, c.sign_plus)
+    y = _circular_components(weights, minus, c.y_size, c.sign_minus)
     quarter_turn = ar.pi / 2
     return Series(
         hyperbolic=False,
@@ -115,16 +129,20 @@ def _circular_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int) -
     )
 
 
-def _hyperbolic_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int) -> Series:
+def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in q'; Jacobi's transformation adds a linear exponent of its own."""
     ratio: Value = c.quarter / c.quarter_prime
-    q = ar.exp(-ar.pi * ratio)
-    v_plus, v_minus = (ar.pi * eta / (2 * c.quarter_prime) for eta in (c.eta_plus, c.eta_minus))
-    even = [(2 if n else 1) * _power(q, n * n) for n in range(terms)]
-    odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(q, terms)]
-    x = _hyperbolic_components(ar, even, odd, v_plus, c.sign_plus, c.x_size)
-    y = _hyperbolic_components(ar, even, odd, v_minus, c.sign_minus, c.y_size)
-    slope_x, slope_y = c.sign_plus * (v_plus - ar.pi / 2), c.sign_minus * (v_minus - ar.pi / 2)
+    mc = c.k_prime * c.k_prime
+    q = nome(ar, m=mc, k_prime=c.k)
+    plus, minus = (
+        cosine_and_sine(ar, m=mc, k_prime=c.k, s2=place.s2, c2=place.c2)
+        for place in (c.plus, c.minus)
+    )
+    even = [(2 if n else 1) * weight for n, weight in enumerate(_weights(q, 1, terms))]
+    odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(q, 2, terms)]
+    x = _hyperbolic_components(even, odd, plus, c.sign_plus, c.x_size)
+    y = _hyperbolic_components(even, odd, minus, c.sign_minus, c.y_size)
+    slope_x, slope_y = -c.sign_plus * ar.atan2(*plus), -c.sign_minus * ar.atan2(*minus)
     return Series(
         hyperbolic=True,
         frames=_frames(x, y, _rate(odd, -1, c.nutation / ratio)),
@@ -140,11 +158,12 @@ def _frames(x: Components, y: Components, rate: Polynomial) -> list[Frame]:
 
 
 def _circular_components(
-    ar: SeriesArithmetic[Any], weights: list[Value], y: Value, size: Value, sign: int
+    weights: list[Value], first: tuple[Value, Value], size: Value, sign: Value
 ) -> Components:
-    """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0."""
-    sinh = ar.sinh(y)
-    first = ar.sqrt(1 + sinh * sinh), sinh
+    """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0.
+
+    `first` are cosh y and sinh y.
+    """
     odd = _multiples(first, _doubled(*first, -1), -1, len(weights))
     cosh, sinh = ([w * x for w, x in zip(weights, part, strict=True)] for part in odd)
     unit = size / sum(cosh)
@@ -177,22 +196,24 @@ def _multiples(
     return cosines, sines
 
 
-def _weights(q: Value, terms: int) -> list[Value]:
-    """Return q^(n(n+1)), the weights of theta1 and theta2 over 2 q^(1/4)."""
-    return [_power(q, n * (n + 1)) for n in range(terms)]
+def _weights(q: Value, first: int, terms: int) -> list[Value]:
+    """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2."""
+    weights, power = [0 * q + 1], q if first == 1 else q * q
+    for _ in range(terms - 1):
+        weights.append(weights[-1] * power)
+        power = power * q * q
+    return weights
 
 
-def _power(q: Value, n: int) -> Value:
-    """Return q^n, which is 1 for n = 0 even where q = 0."""
-    return q**n if n else 0 * q + 1
-
-
-def _hyperbolic_components(  # noqa: PLR0917 - the parts of one formula
-    ar: SeriesArithmetic[Any], even: list[Value], odd: list[Value], v: Value, sign: int, size: Value
+def _hyperbolic_components(
+    even: list[Value], odd: list[Value], first: tuple[Value, Value], sign: Value, size: Value
 ) -> Components:
-    """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h."""
-    first = ar.cos(v), ar.sin(v)
-    step, none = _doubled(*first, 1), (1 + 0 * v, 0 * v)
+    """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h.
+
+    `first` are cos v and sin v.
+    """
+    zero = 0 * first[0]
+    step, none = _doubled(*first, 1), (1 + zero, zero)
     (cos_even, sin_even), (cos_odd, sin_odd) = (
         [_alternate([w * x for w, x in zip(weights, part, strict=True)]) for part in multiples]
         for weights, multiples in (
@@ -255,9 +276,12 @@ def evaluate(
     """
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
+    powers = [1 + 0 * S]
+    for _ in frame.x.real[1:]:
+        powers.append(powers[-1] * (S * S))
 
     def polar(c: Component, side: int) -> tuple[Value, Value]:
-        P, Q = (sum(p * _power(S * S, i) for i, p in enumerate(poly)) for poly in (c.real, c.imag))
+        P, Q = (sum(p * x for p, x in zip(poly, powers, strict=False)) for poly in (c.real, c.imag))
         real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
         return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
 
