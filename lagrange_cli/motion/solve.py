@@ -101,8 +101,9 @@ class Motion:
         return solve, (self.top,)
 
     def numbers(self) -> dict[str, float | None]:
-        """Return the numbers of the record by key, angles in degrees."""
-        return {name: getattr(self, name) for name in NUMBER_KEYS}
+        """Return the numbers of the record by key, angles in degrees; see `record`."""
+        record = self.record()
+        return {name: record[name] for name in NUMBER_KEYS}
 
     def record(
         self, *, radians: bool = False, keys: Collection[str] | None = None
