@@ -6,6 +6,7 @@ time exactly, however far away it is.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import frexp
 from typing import Any, NamedTuple
 
@@ -47,8 +48,8 @@ def triple(value: Any) -> Triple:
 
 def two_product(x: Array, factor: float | Array, space: Space = HEAP) -> tuple[Array, Array]:
     """Return x * factor and its rounding error, exactly (Dekker), in arrays of a workspace."""
-    scaled = factor * _SPLITTER
-    factor_high = scaled - (scaled - factor)
+    factor_high = factor * _SPLITTER
+    factor_high -= factor_high - factor
     factor_low = factor - factor_high
     one, other = space.new(), space.new()
     high: Array = np.multiply(x, _SPLITTER, out=one)
@@ -124,19 +125,27 @@ class DoubleDouble:
         """Return the numbers times a power of two, exactly."""
         return DoubleDouble(self.high * power, self.low * power)
 
+    def at(self, index: Any) -> DoubleDouble:
+        """Return some of the numbers, by an index of an array."""
+        return DoubleDouble(self.high[index], self.low[index])
+
+    @classmethod
+    def stacked(cls, rows: Sequence[DoubleDouble]) -> DoubleDouble:
+        """Return arrays as the rows of one."""
+        return cls(np.stack([x.high for x in rows]), np.stack([x.low for x in rows]))
+
     def _like(self, other: DoubleDouble | float) -> DoubleDouble:
         return (
             other
             if isinstance(other, DoubleDouble)
-            else DoubleDouble(np.full_like(self.high, other))
+            else DoubleDouble(np.asarray(other, dtype=np.float64))
         )
 
     def __add__(self, other: DoubleDouble | float) -> DoubleDouble:
         other = self._like(other)
-        high, error = two_sum(self.high, other.high)
-        low, rest = two_sum(self.low, other.low)
-        total = _renormalised(high, error + low)
-        return _renormalised(total.high, total.low + rest)
+        high, low = two_sum(self.high, other.high)
+        low = low + (self.low + other.low)
+        return _renormalised(high, low)
 
     def __neg__(self) -> DoubleDouble:
         return DoubleDouble(-self.high, -self.low)

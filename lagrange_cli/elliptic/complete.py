@@ -43,8 +43,9 @@ def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | in
     close = False
     while not close:
         product = mean * geometric
-        a, b = (a + b / p) / 2, (b + a * (product / p)) / 2
-        p = (p + product / p) / 2
+        quotient = product / p
+        a, b = (a + b / p) / 2, (b + a * quotient) / 2
+        p = (p + quotient) / 2
         close = not ar.anywhere(abs(mean - geometric) > tolerance * mean)
         mean, geometric = (mean + geometric) / 2, ar.sqrt(product)
     return (a * mean + b) / (mean + p)

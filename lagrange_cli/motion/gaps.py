@@ -166,23 +166,25 @@ def gaps_from_start(
     zero = 0 * u0
     around = start.psi_rate * start.sin
     energy, momentum = start.theta_rate * start.theta_rate + around * around, around * start.sin
-    c0 = (start.sin * start.theta_rate) * (start.sin * start.theta_rate)
+    along, b2 = start.sin * start.theta_rate, b * b
+    c0 = along * along
+    a_c0 = a * c0
     c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
-    c2 = 2 * a * u0 - energy - b * b
+    c2 = 2 * a * u0 - energy - b2
     separatrix = facts.regime == "separatrix"
     if separatrix or facts.upper_root == 3:
         D = a * above
     elif facts.steady:
         D = -c2
     else:
-        bound = energy + b * b + 2 * a
-        D = (find_root or largest_root)(ar, c2, a * c1, a * a * c0, bound)
+        bound = energy + b2 + 2 * a
+        D = (find_root or largest_root)(ar, c2, a * c1, a * a_c0, bound)
     if facts.steady:
         x1, x2 = zero, zero
     elif separatrix:
         x1, x2 = above, -c0 / (D * above)
     else:
-        x1, x2 = two_roots(ar, (c1 + a * c0 / D) / D, -c0 / D)
+        x1, x2 = two_roots(ar, (c1 + a_c0 / D) / D, -c0 / D)
     x1 = above if facts.upper_root == 1 else x1
     x2 = -below if facts.over_bottom else x2
     return Gaps(

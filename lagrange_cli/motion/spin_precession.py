@@ -10,6 +10,7 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import R, absolute
@@ -36,7 +37,7 @@ class SpinPrecession(Nutation[R]):
         if self.facts.free or self.facts.over_bottom:
             half_turn: R = self.facts.sign_plus * self.half_turn_rate
             return half_turn
-        return self._mean_over(gaps.below_u1, gaps.below_u2, gaps.beta_plus_b, gaps.beta_plus_b)
+        return self._mean(gaps.below_u1, gaps.below_u2, gaps.beta_plus_b, gaps.beta_plus_b)
 
     @quantity
     def _north(self) -> R:
@@ -45,7 +46,10 @@ class SpinPrecession(Nutation[R]):
         if self.facts.free or self.facts.upper_root == 1:
             half_turn: R = self.facts.sign_minus * self.half_turn_rate
             return half_turn
-        return self._mean_over(gaps.above_u1, gaps.above_u2, gaps.beta_minus_b, gaps.beta_minus_b)
+        return self._mean(gaps.above_u1, gaps.above_u2, gaps.beta_minus_b, gaps.beta_minus_b)
+
+    def _mean(self, from_u1: R, from_u2: R, at_u1: R, at_u2: R) -> R:
+        return mean_over(self.ar, self.k_prime, (from_u1, from_u2), (at_u1, at_u2))
 
     @property
     def _meets_a_pole(self) -> bool:
@@ -55,19 +59,13 @@ class SpinPrecession(Nutation[R]):
     def _whole_south(self) -> R:
         """The mean of (beta - b u)/(2 (1 + u))."""
         gaps = self.gaps
-        return self._mean_over(gaps.below_u1, gaps.below_u2, gaps.momentum_u1, gaps.momentum_u2)
+        return self._mean(gaps.below_u1, gaps.below_u2, gaps.momentum_u1, gaps.momentum_u2)
 
     @quantity
     def _whole_north(self) -> R:
         """The mean of (beta - b u)/(2 (1 - u))."""
         gaps = self.gaps
-        return self._mean_over(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
-
-    def _mean_over(self, from_u1: R, from_u2: R, at_u1: R, at_u2: R) -> R:
-        """Return half the mean of a quotient of numbers linear in u, by their values at u1, u2."""
-        mc = self.k_prime * self.k_prime
-        mean = period_mean(self.ar, self.k_prime, mc * from_u2 / from_u1, at_u1, mc * at_u2)
-        return mean / from_u1 / 2
+        return self._mean(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
 
     @key("Mean rates", "φ' mean", "spin", "rad/time", "(6,3)", cancels=True)
     def mean_spin_rate(self) -> R:
@@ -124,8 +122,7 @@ class SpinPrecession(Nutation[R]):
         """The precession rate (4,7) half a period after the start; None over a pole."""
         if self._half_over_pole:
             return None
-        from_u2 = self.gaps.u1_u * (self.gaps.a_u3_u2 / self.gaps.a_u3_u)
-        momentum = self.gaps.momentum_u2 - self.b * from_u2
+        momentum = self.gaps.momentum_u2 - self.b * self._half_above_u2
         return momentum / self._half[0] / self._half[1]
 
     @property
@@ -136,10 +133,15 @@ class SpinPrecession(Nutation[R]):
         return below or above
 
     @quantity
+    def _half_above_u2(self) -> R:
+        """How far the cosine of the tilt is above u2 half a period after the start."""
+        return self.gaps.u1_u * (self.gaps.a_u3_u2 / self.gaps.a_u3_u)
+
+    @quantity
     def _half(self) -> tuple[R, R]:
         """1 + u and 1 - u half a period after the start."""
         gaps = self.gaps
-        below = gaps.below_u2 + gaps.u1_u * (gaps.a_u3_u2 / gaps.a_u3_u)
+        below = gaps.below_u2 + self._half_above_u2
         above = gaps.above_u1 + gaps.u_u2 * (gaps.a_u3_u1 / gaps.a_u3_u)
         return below, above
 
@@ -152,6 +154,16 @@ class SpinPrecession(Nutation[R]):
         if facts.plane:
             return None
         return "looping" if self.b * gaps.momentum_u1 < 0 < self.b * gaps.momentum_u2 else "wavy"
+
+
+def mean_over(ar: Arithmetic[R], k_prime: R, distances: Sequence[R], values: Sequence[R]) -> R:
+    """Return half the mean of a quotient of numbers linear in u, by their values at u1 and u2.
+
+    The denominator is the distance from a pole; `values` are those of the numerator.
+    """
+    mc, from_u1 = k_prime * k_prime, distances[0]
+    p = distances[1] * mc / from_u1
+    return period_mean(ar, k_prime, p, values[0], values[1] * mc) / from_u1 / 2
 
 
 def period_of(ar: Arithmetic[R], rate: R) -> R | None:

@@ -62,13 +62,20 @@ def sweep(
         arrays = np.broadcast_arrays(*doubles)
     except ValueError as error:
         raise LagtopError(f"the inputs do not go together: {error}") from None
-    shape = arrays[0].shape
-    tops = TopArrays(*(x.ravel() for x in arrays))
-    blocks = [
-        records(tops.part(slice(first, first + BLOCK_ROWS)), chosen, radians=radians)
-        for first in range(0, max(tops.m.size, 1), BLOCK_ROWS)
-    ]
-    return {key: np.concatenate([b[key] for b in blocks]).reshape(shape) for key in chosen}
+    shape, size = arrays[0].shape, arrays[0].size
+    flat = [x if x.ndim == 1 else x.flat for x in arrays]  # of which a block is copied at most
+    found = empty_columns(chosen, size)
+    for first in range(0, max(size, 1), BLOCK_ROWS):
+        rows = slice(first, first + BLOCK_ROWS)
+        tops = TopArrays(*(x[rows] for x in flat))
+        records(tops, chosen, radians=radians, columns={key: x[rows] for key, x in found.items()})
+    return {key: column.reshape(shape) for key, column in found.items()}
+
+
+def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:
+    """Return columns for so many tops, to be filled."""
+    texts = {*_TEXT_KEYS, "error"}
+    return {key: np.empty(count, dtype=object if key in texts else np.float64) for key in keys}
 
 
 def _doubles(name: str, values: ArrayLike) -> Array:
@@ -79,7 +86,7 @@ def _doubles(name: str, values: ArrayLike) -> Array:
         array = np.asarray(values)
         if array.size and array.dtype.kind not in "iufO":
             raise TypeError
-        return array.astype(np.float64)
+        return array.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError):
         shown = repr(values)[:60]
         raise LagtopError(f"{name} must be real numbers, got {shown}", name) from None
@@ -99,13 +106,16 @@ def records(
     *,
     radians: bool = False,
     errors: Mapping[int, str] | None = None,
+    columns: dict[str, Column] | None = None,
 ) -> dict[str, Column]:
     """Return the columns of a block of tops; rows that have an error already stay empty.
 
-    Nothing depends on the `numpy.errstate` of the caller.
+    They are new, or those of `empty_columns` that are given.  Nothing depends on the
+    `numpy.errstate` of the caller.
     """
     with ARRAYS.working():
-        block = _Block(tops, keys, radians)
+        columns = empty_columns(keys, tops.m.size) if columns is None else columns
+        block = _Block(tops, columns, radians)
         left = np.ones(tops.m.shape, dtype=np.bool_)
         for row, error in (errors or {}).items():
             left[row], block.columns["error"][row] = False, error
@@ -118,26 +128,24 @@ def records(
         for row in range(tops.m.size) if block.requested else alone:
             keys_left = [*block.texts, *block.numbers] if left[row] else []
             block.solve(row, [*keys_left, *block.requested])
-        return {key: block.columns[key] for key in keys}
+        return columns
 
 
 class _Block:
     """The columns of a block of tops, while they are being filled."""
 
-    def __init__(self, tops: TopArrays, keys: Sequence[str], radians: bool) -> None:
+    def __init__(self, tops: TopArrays, columns: Mapping[str, Column], radians: bool) -> None:
         self.tops, self.radians = tops, radians
+        self.columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
         tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
         given = tops._asdict() | tilt
-        self.columns: dict[str, Column] = {"error": np.full(tops.m.size, None)}
-        self.texts = [key for key in keys if key in _TEXT_KEYS]
         known = motion_record.record_keys(radians=radians)
         others = {*given, *_TEXT_KEYS, "error"}
-        self.numbers = [key for key in keys if key in known and key not in others]
-        self.requested = [key for key in keys if key not in known and key not in others]
-        self.columns |= {key: x for key, x in given.items() if key in keys}
-        self.columns |= {key: np.full(tops.m.size, None) for key in self.texts}
-        numbers = (*self.numbers, *self.requested)
-        self.columns |= {key: np.full(tops.m.size, np.nan) for key in numbers}
+        self.texts = [key for key in columns if key in _TEXT_KEYS]
+        self.numbers = [key for key in columns if key in known and key not in others]
+        self.requested = [key for key in columns if key not in known and key not in others]
+        for key, column in self.columns.items():
+            column[:] = given.get(key, np.nan if column.dtype == np.float64 else None)
 
     def fill(self, rows: Mask, regime: Regime) -> None:
         """Fill the rows of one regime, all released from rest, by the formulas over doubles."""
@@ -179,24 +187,28 @@ class _Block:
 
     def fill_moving(self, left: Mask) -> Mask:
         """Fill rows that start with other rates as far as they can be trusted; return the rest."""
-        rows = np.flatnonzero(left & self.tops.moving())
-        if not rows.size:
+        if not left.any() or not (moving := left & self.tops.moving()).any():
             return left
-        motions = StartArrays(self.tops.part(rows))
-        trusted = motions.trusted
-        rows = rows[trusted]
-        regimes = np.where(self.tops.r0[rows] == 0, Regime.NO_SPIN.value, Regime.REGULAR.value)
-        for key, texts in (("regime", regimes), ("path", motions.paths()[trusted])):
-            if key in self.texts:
-                self.columns[key][rows] = texts
+        chosen: Any = slice(None) if moving.all() else np.flatnonzero(moving)
+        tops = self.tops.part(chosen)
+        motions = StartArrays(tops)
+        trusted = motions.trusted(self.numbers)
+        if not trusted.all():
+            moving[moving] = trusted
+            chosen = moving
+        fine = slice(None) if trusted.all() else trusted
+        if "regime" in self.texts:
+            plane = tops.r0 == 0
+            regimes = np.where(plane, Regime.NO_SPIN.value, Regime.REGULAR.value)
+            self.columns["regime"][chosen] = regimes[fine]
+        if "path" in self.texts:
+            self.columns["path"][chosen] = motions.paths()[fine]
         for key in self.numbers:
             value = motions.number(key.replace("_rad", "_deg"))
             if value is not None:
-                value = value[trusted]
-                self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
-        rest = left.copy()
-        rest[rows] = False
-        return rest
+                value = np.radians(value) if key.endswith("_rad") else value
+                self.columns[key][chosen] = value[fine]
+        return left & ~moving
 
     def solve(self, row: int, keys: Sequence[str]) -> None:
         """Fill some keys of one row by `solve`, unless it has an error."""

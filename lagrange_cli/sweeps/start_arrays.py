@@ -7,7 +7,9 @@ trusted, and solved by itself.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from fractions import Fraction
+from functools import cached_property
 from math import factorial
 from typing import Any
 
@@ -15,26 +17,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import ARRAYS, PAIRS
-from ..arithmetic.double_double import DoubleDouble, pair
+from ..arithmetic.blocks import polynomial
+from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..motion.gaps import Gaps, State, gaps_from_start
 from ..motion.kinds import Nutating
 from ..motion.record import CANCELLING
 from ..motion.regime import Facts, Regime
+from .mean_rates import MeanRates
 from .top_arrays import TopArrays
 
 _EPS = 2.0**-100
 """Relative error of a few operations on pairs."""
+_SETTLED = 2.0**-90
+"""Relative error at which the largest root is settled."""
 _GOOD = 2.0**-54
 """Relative error at which a gap is trusted; a rate, whose bound is wider, at eight times it."""
 _SURE = 2.0**-10
 """Relative error at which a sign is trusted."""
 _FACTS = Facts(regime=Regime.REGULAR, at_rest=False, steady=False, free=False, spins=True)
-_NEWTON_STEPS = 200
+_NEWTON_STEPS = 50
+_STEPS_IN_PAIRS = 4
+_MEANS = {
+    "mean_spin_rate": "spin",
+    "mean_precession_rate": "precession",
+    "T_spin": "spin",
+    "T_precession": "precession",
+}
+"""The keys of the mean rates, and which of them."""
 
 
 class StartArrays:
-    """Motions of many tops with a torque, off the poles; `trusted` marks those that are sure."""
+    """Motions of many tops with a torque, off the poles."""
 
     def __init__(self, tops: TopArrays) -> None:
         with PAIRS.working():  # what overflows or divides by zero is not trusted
@@ -44,31 +58,42 @@ class StartArrays:
             self.fine = Nutating(PAIRS, _FACTS, state, gaps)
             self.rough = Nutating(ARRAYS, _FACTS, _rounded(state), _rounded(gaps))
             self.errors = _ErrorBounds(state, gaps, root.error)
-            self.trusted: Mask = self.errors.small & self._rates_are_sure()
+
+    @cached_property
+    def means(self) -> MeanRates:
+        """Mean rates of the tops."""
+        return MeanRates(self.rough.r0, self.rough.k_prime, self.fine.gaps)
+
+    def trusted(self, keys: Collection[str]) -> Mask:
+        """Return which tops are sure, as far as some keys need it."""
+        with PAIRS.working():
+            if not {*_MEANS, "spin_rate_start"} & set(keys):
+                return self.errors.small
+            return self.errors.small & self._rates_are_sure()
 
     def number(self, key: str) -> Array | None:
         """Return the numbers of a key, an array over all tops; None where no top has one."""
         with PAIRS.working():
-            if key in {"T_spin", "T_precession"}:
-                mean = (
-                    self.fine.mean_spin_rate if key == "T_spin" else self.fine.mean_precession_rate
-                )
-                return np.asarray(2 * np.pi / abs(mean.high))
+            if key in Nutating.lacks:
+                return None
+            if key in _MEANS:
+                mean: Array = getattr(self.means, _MEANS[key])
+                return 2 * np.pi / abs(mean) if key.startswith("T_") else mean
             if key in CANCELLING and key != "u_quarter":
                 value: Any = getattr(self.fine, key)
                 return None if value is None else value.high
-            rough: Array | None = None if key in Nutating.lacks else getattr(self.rough, key)
+            rough: Array | None = getattr(self.rough, key)
             return rough
 
     def paths(self) -> NDArray[np.object_]:
         """Return the paths of the axis."""
-        b, gaps = self.fine.b, self.fine.gaps
-        looping = ((b * gaps.momentum_u1).high < 0) & ((b * gaps.momentum_u2).high > 0)
+        b, gaps = np.sign(self.rough.b), self.rough.gaps
+        looping = (b * gaps.momentum_u1 < 0) & (b * gaps.momentum_u2 > 0)
         return np.where(looping, "looping", "wavy").astype(object)
 
     def _rates_are_sure(self) -> Mask:
         """Return where the mean rates keep their digits, however their parts cancel."""
-        fine, rough = self.fine, self.rough
+        rough = self.rough
         mc, gaps, sizes = rough.k_prime * rough.k_prime, rough.gaps, self.errors.momenta
         noise = self.errors.worst + _EPS
 
@@ -81,17 +106,15 @@ class StartArrays:
 
         south = size_of_part(gaps.below_u1, gaps.below_u2)
         north = size_of_part(gaps.above_u1, gaps.above_u2)
-        sure = _is_sure(noise * (south + north), fine.mean_precession_rate)
-        sure &= _is_sure(noise * (south + north + abs(rough.r0)), fine.mean_spin_rate)
-        return sure & _is_sure(
-            _EPS * (abs(rough.r0) + abs(rough.state.psi_rate)), fine.spin_rate_start
-        )
+        sure = _is_sure(noise * (south + north), self.means.precession)
+        sure &= _is_sure(noise * (south + north + abs(rough.r0)), self.means.spin)
+        at_start: Any = self.fine.spin_rate_start
+        return sure & _is_sure(_EPS * (abs(rough.r0) + abs(rough.state.psi_rate)), at_start.high)
 
 
-def _is_sure(error: Array, value: DoubleDouble | None) -> Mask:
+def _is_sure(error: Array, value: Array) -> Mask:
     """Return where a value keeps the digits of a double."""
-    assert value is not None
-    sure: Mask = error < 8 * _GOOD * abs(value.high)
+    sure: Mask = error < 8 * _GOOD * abs(value)
     return sure
 
 
@@ -105,24 +128,45 @@ class _LargestRoot:
         self.error: Array = np.full_like(state.a.high, np.inf)
 
     def largest(self, ar: Any, c2: Any, c1: Any, c0: Any, bound: Any) -> DoubleDouble:
-        """Return the root of x^3 + c2 x^2 + c1 x + c0; the first steps in doubles, from above."""
-        b2, b1, b0, x = c2.high, c1.high, c0.high, bound.high
+        """Return the root of x^3 + c2 x^2 + c1 x + c0: Viete's, and Newton's method from there."""
+        b2, b1, b0 = c2.high, c1.high, c0.high
+        x = np.fmin(bound.high, _vieta(b2, b1, b0))
         for _ in range(_NEWTON_STEPS):
-            step = (((x + b2) * x + b1) * x + b0) / ((3 * x + 2 * b2) * x + b1)
-            x = np.where(step > 0, x - step, x)
-            if not (step > 1e-9 * x).any():
+            slope = (3 * x + 2 * b2) * x + b1
+            step = (((x + b2) * x + b1) * x + b0) / slope
+            x = np.where(slope > 0, x - step, x)
+            if not (abs(step) > 1e-9 * x).any():
                 break
         root = DoubleDouble(x)
-        for _ in range(4):
+        for _ in range(_STEPS_IN_PAIRS):
             value = ((root + c2) * root + c1) * root + c0
-            slope = (3 * root.high + 2 * b2) * root.high + b1
+            slope = (3 * x + 2 * b2) * x + b1
             step = value.high / slope
             root = root - DoubleDouble(step)
-        x = abs(root.high)
-        terms = ((x + abs(b2)) * x + abs(b1)) * x + abs(b0)
-        noise = _EPS * terms / abs(slope)
-        self.error = (noise + abs(step) * (abs(step) > noise)) / x
+            x = root.high
+            left = self._left(abs(step), abs(slope), (abs(b2), abs(b1), abs(b0)), x)
+            self.error = left / x
+            if not (self.error > _SETTLED).any():
+                break
         return root
+
+    @staticmethod
+    def _left(step: Array, slope: Array, sizes: tuple[Array, Array, Array], x: Array) -> Array:
+        """Return a bound of the error after a step: its noise, the slope's, and the curvature."""
+        b2, b1, b0 = sizes
+        noise = _EPS * (((x + b2) * x + b1) * x + b0)
+        steep = 2.0**-49 * ((3 * x + 2 * b2) * x + b1)
+        bound: Array = (noise + step * (steep + step * (3 * x + b2))) / slope
+        return bound
+
+
+def _vieta(b2: Array, b1: Array, b0: Array) -> Array:
+    """Return the largest root of x^3 + b2 x^2 + b1 x + b0, whose roots are real, roughly."""
+    square = (b2 * b2 - 3 * b1) / 9
+    radius = np.sqrt(square)
+    cosine = ((9 * b1 - 2 * b2 * b2) * b2 - 27 * b0) / (54 * square * radius)
+    root: Array = 2 * radius * np.cos(np.arccos(np.clip(cosine, -1, 1)) / 3) - b2 / 3
+    return root
 
 
 class _ErrorBounds:
@@ -181,13 +225,14 @@ def _state(tops: TopArrays) -> State[DoubleDouble]:
     )
     a, b = (m * g * s / A).scaled(2), C * r0 / A
     sine, cosine = _half_tilt(tops)
+    unused = DoubleDouble(np.full_like(r0.high, np.nan))  # by these formulas
     return State(
         a=a,
         b=b,
         r0=r0,
-        sleep=(b * b).scaled(0.5) - a,
-        spin_drift=r0 - b.scaled(0.5),
-        pole_drift=r0 - b,
+        sleep=unused,
+        spin_drift=unused,
+        pole_drift=unused,
         sin=(sine * cosine).scaled(2),
         cos=(cosine - sine) * (cosine + sine),
         sin_half=sine,
@@ -206,10 +251,14 @@ def _half_tilt(tops: TopArrays) -> tuple[DoubleDouble, DoubleDouble]:
 
 
 def _sine(x: DoubleDouble) -> DoubleDouble:
-    """Return the sine by its Taylor series, for |x| <= pi/4."""
+    """Return the sine by its Taylor series, for |x| <= pi/4; small terms need doubles only."""
     square = x * x
-    total = DoubleDouble(np.zeros_like(x.high))
-    for n in range(29, 0, -2):
-        high, low = pair(Fraction((-1) ** (n // 2), factorial(n)))
-        total = total * square + DoubleDouble(np.full_like(x.high, high), np.full_like(x.high, low))
+    total = DoubleDouble(polynomial([x.high for x in _SINE_TAIL], square.high))
+    for coefficient in reversed(_SINE):
+        total = total * square + coefficient
     return total * x
+
+
+_TERMS = [PAIRS.convert(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
+_SINE, _SINE_TAIL = _TERMS[:8], _TERMS[8:]
+"""Coefficients of the sine; from x^17 on they are below eps of the first."""

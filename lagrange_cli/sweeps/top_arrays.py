@@ -91,6 +91,8 @@ class TopArrays(NamedTuple):
         down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
         degrees = np.where(down, 180 - self.theta0_deg, self.theta0_deg)
         arc = DoubleDouble(degrees) * _DEGREE
+        if not in_radians.any():
+            return arc, down
         given = DoubleDouble(np.where(in_radians, self.theta0_rad, 0.0))
         other = DoubleDouble(np.full_like(given.high, 180.0)) * _DEGREE - given
         high = np.where(in_radians, np.where(down, other.high, given.high), arc.high)
