@@ -76,6 +76,13 @@ def test_series_of_the_paper_gain_with_every_term(r0: float) -> None:
     assert 0.1 < error(run(Top(r0=r0), "mean-rates", "double")) < 1
 
 
+def test_the_tilt_of_mean_rates_is_exact() -> None:
+    """Three terms of the series are enough, two leave 3e-11."""
+    times = np.linspace(0, 1, 300)
+    tilt = CLOSED_FORMS["mean-rates"].prepare(Top(), "double")(times)[0]
+    assert abs(np.asarray(tilt) - solve(Top()).angles(times).theta).max() < 1e-14
+
+
 @pytest.mark.parametrize("digits", [20, 30, 50])
 def test_digits_are_judged_with_more_of_them(digits: int) -> None:
     row = run(Top(), "lagtop-digits", digits)
