@@ -14,6 +14,7 @@ import click
 import pytest
 from errata import errata_table, figures_table
 from judge_tables import JUDGE_TABLES
+from published import published_table
 
 from lagrange_cli.cli.group import main
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
@@ -105,6 +106,7 @@ TABLES = [
     (errata_table, "tests"),
     (figures_table, "tests"),
     (requested_table, "lagrange_cli/motion"),
+    (published_table, "sample_inputs"),
     *((table, "lagrange_cli/judge") for table in JUDGE_TABLES),
 ]
 """Tables that are made, and the folders of the pages that show them."""

@@ -1,0 +1,266 @@
+"""Numbers that others have printed, judged: the table of sample_inputs/README.md is made from here.
+
+The exact values are those of `lagtop` in many digits; `exact_by_the_judge` has them from the proved
+enclosures of `ball_judge`, which share no formula with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import cache
+from typing import Any, NamedTuple
+
+import mpmath
+from ball_judge import Judge
+from conftest import ROOT
+
+from lagrange_cli import Motion, read_scene, solve
+from lagrange_cli.motion.digits import DigitTable
+
+Many = Any
+"""An mpf with many digits."""
+
+DIGITS, SHOWN = 60, 18
+STEP = Fraction(1, 10**18)
+"""Step of the central differences that give the rates; their error is of the size of its square."""
+TOP_OF_BRUELS, SIMO_WONG = "bruels-cardona-arnold", "simo-wong-1991"
+
+
+class State(NamedTuple):
+    """Angles at a time, unwrapped, and their rates."""
+
+    theta: Many
+    phi: Many
+    psi: Many
+    theta_rate: Many
+    phi_rate: Many
+    psi_rate: Many
+
+
+class Printed(NamedTuple):
+    """A number that somebody has printed."""
+
+    source: str
+    scene: str
+    quantity: str
+    """A key of the record, or one of QUANTITIES."""
+    text: str
+    t: str = ""
+
+
+def product(p: Sequence[Many], q: Sequence[Many]) -> tuple[Many, Many, Many, Many]:
+    """Return the product of two quaternions."""
+    (a, b, c, d), (w, x, y, z) = p, q
+    return (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+
+
+def quaternion(now: State) -> tuple[Many, Many, Many, Many]:
+    """Return the attitude in the frame of Bruels, Cardona and Arnold, 1 at the start.
+
+    Their body axis y is the figure axis, and lies along y of space; so ours, at a tilt of 90
+    degrees, is turned by 180 degrees about z of space and by -90 degrees about x of the body.
+    """
+    sin, cos = mpmath.sin(now.theta / 2), mpmath.cos(now.theta / 2)
+    plus, minus = (now.psi + now.phi) / 2, (now.psi - now.phi) / 2
+    ours = cos * mpmath.cos(plus), sin * mpmath.cos(minus), sin * mpmath.sin(minus)
+    h = mpmath.sqrt(0.5)
+    body = product((h, -h, 0, 0), (0, 0, 0, -1))
+    return product((0, 0, 0, 1), product((*ours, cos * mpmath.sin(plus)), body))
+
+
+def rotation(now: State) -> list[list[Many]]:
+    """Return the rotation matrix, from body to space, in the frame of `quaternion`."""
+    w, x, y, z = quaternion(now)
+    return [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+
+
+def omega_y(now: State) -> Many:
+    """Return the angular velocity about y of space, in the frame of `quaternion`."""
+    ours = now.theta_rate * mpmath.sin(now.psi)
+    ours -= now.phi_rate * mpmath.sin(now.theta) * mpmath.cos(now.psi)
+    return -ours  # space is turned by 180 degrees about z
+
+
+QUANTITIES: dict[str, Callable[[State], Many]] = {
+    "theta": lambda now: now.theta,
+    "phi": lambda now: now.phi,
+    "psi": lambda now: now.psi,
+    "omega_y": omega_y,
+    **{f"q{i}": lambda now, i=i: quaternion(now)[i] for i in range(4)},  # type: ignore[misc]
+    **{f"u{i}": lambda now, i=i: rotation(now)[i][1] - (i == 1) for i in range(3)},  # type: ignore[misc]
+    "Rot x": lambda now: mpmath.atan2(-rotation(now)[1][2], rotation(now)[2][2]),
+    "Rot y": lambda now: mpmath.asin(rotation(now)[0][2]),
+    "Rot z": lambda now: mpmath.atan2(-rotation(now)[0][1], rotation(now)[0][0]),
+}
+"""Functions of the state: our angles, and what others print of the top of Bruels and others.
+
+u is the displacement of the mass centre, Rot are Tait-Bryan angles about x, y and z in turn.
+"""
+
+
+def _printed(scene: str, source: str, t: str, quantities: dict[str, str]) -> list[Printed]:
+    """Return several numbers that one source has printed for one time."""
+    return [Printed(source, scene, name, text, t) for name, text in quantities.items()]
+
+
+def _omegas(t: str, values: dict[str, str]) -> list[Printed]:
+    """Return the angular velocities of a test of EXUDYN, by method."""
+    test = "EXUDYN explicitLieGroupIntegratorTest"
+    return [Printed(f"{test}, {x}", TOP_OF_BRUELS, "omega_y", y, t) for x, y in values.items()]
+
+
+PRINTED = [
+    *_omegas(
+        "2",
+        {
+            "RK44, step 1e-4": "-106.16380619750855",
+            "RK44, step 1e-5": "-106.163804141195",
+            "RK67, step 1e-3": "-106.16380495843258",
+            "RK67, step 1e-4": "-106.1638041430917",
+            "RK67, step 5e-5": "-106.16380414217615",
+            "RK67, step 2e-5": "-106.16380414311477",
+            "RK67, step 1e-5": "-106.16380414096614",
+            "ODE23, tolerance 1e-12": "-106.16380410174922",
+            "DOPRI5, tolerance 1e-12": "-106.16380413741084",
+            "DOPRI5, tolerance 1e-14": "-106.16380414306643",
+        },
+    ),
+    *_omegas(
+        "0.01",
+        {
+            "Lie group, in Python": "149.8473939540758",
+            "index 2, Euler parameters": "149.84738885863888",
+            "index 2, Euler angles": "149.85635042397638",
+            "RK67, 4000 steps, Euler angles": "149.84739395407394",
+            "RK44, 4000 steps, rotation vector": "149.89507599262697",
+        },
+    ),
+    *_printed(
+        *(TOP_OF_BRUELS, "EXUDYN heavyTop, RK4 in MATLAB", "0.2"),
+        {"q0": "-0.70828", "q1": "0.43878", "q2": "0.54573", "q3": "0.0894"},
+    ),
+    *_printed(
+        *(TOP_OF_BRUELS, "EXUDYN heavyTop, generalised alpha", "0.2"),
+        {"q0": "-0.70813", "q1": "0.43881", "q2": "0.54593", "q3": "0.089251"},
+    ),
+    *_printed(
+        *(TOP_OF_BRUELS, "EXUDYN heavyTop, its own", "0.2"),
+        {
+            **{"q0": "-0.70824157", "q1": "0.43878143", "q2": "0.54578152", "q3": "0.08937154"},
+            **{"Rot x": "29.86975964", "Rot y": "-0.7683481513", "Rot z": "-1.002841906"},
+        },
+    ),
+    *_printed(
+        *(TOP_OF_BRUELS, "Kynema dynamic_heavy_top, benchmark, step 2e-6", "2"),
+        {
+            "u0": "-0.150416985652933",
+            "u1": "-1.724164450779749",
+            "u2": "-0.673023460701136",
+            "q0": "0.122947275600560",
+            "q1": "-0.491079359219981",
+            "q2": "0.350430794926147",
+            "q3": "-0.787986857972906",
+        },
+    ),
+    *_printed(
+        *(TOP_OF_BRUELS, "OTTR test_heavy_top", "0.8"),
+        {"u0": "-0.42217802", "u1": "-0.09458264", "u2": "-0.04455460"},
+    ),
+    *_printed(
+        *(SIMO_WONG, "Taylor series in long double", "10"),
+        {
+            "theta": "0.0542200994026610601",
+            "phi": "495.809793424335",
+            "psi": "4.19619104074063746",
+        },
+    ),
+    Printed("Kinon and Betsch, steady spin", "kinon-betsch-cone", "mean_spin_rate", "135.6"),
+    Printed("Kinon and Betsch, its precession", "kinon-betsch-cone", "mean_precession_rate", "10"),
+    Printed("LS-DYNA manual, by g l/(r²ω/2)", "ls-dyna-disc", "mean_precession_rate", "1.60884"),
+    Printed("usual formula m g s/(C ω)", "usubamatov-2018", "mean_precession_rate", "2.9977"),
+]
+"""All numbers that are judged, as their sources have them."""
+
+
+@cache
+def motion(scene: str) -> Motion:
+    """Return the motion of a scene file, its numbers read as decimals."""
+    return solve(read_scene(str(ROOT / "sample_inputs" / f"{scene}.toml"), exact=True))
+
+
+@cache
+def _angles(scene: str, t: Fraction) -> list[Many]:
+    """Return the angles that lagtop gives at a time."""
+    row = DigitTable(motion(scene), radians=True).row(t, DIGITS)
+    return [mpmath.mpf(str(text)) for text in row[1:]]
+
+
+def exact(x: Printed) -> Many:
+    """Return the exact value of a printed number, by lagtop."""
+    with mpmath.workdps(DIGITS):
+        if not x.t:
+            return mpmath.mpf(str(motion(x.scene).digits(DIGITS, keys=[x.quantity])[x.quantity]))
+        t, step = Fraction(x.t), mpmath.mpf(STEP.numerator) / STEP.denominator
+        before, after = _angles(x.scene, t - STEP), _angles(x.scene, t + STEP)
+        rates = [(b - a) / (2 * step) for a, b in zip(before, after, strict=True)]
+        return _value(x, State(*_angles(x.scene, t), *rates))
+
+
+@cache
+def _judge(scene: str) -> Judge:
+    top = motion(scene).top
+    return Judge({key: getattr(top, key) for key in top.fields})
+
+
+def exact_by_the_judge(x: Printed) -> Many:
+    """Return the exact value of a printed number, by ball arithmetic."""
+    with mpmath.workdps(DIGITS):
+        if not x.t:
+            return _middle(_judge(x.scene).exact(x.quantity))
+        return _value(x, State(*(_middle(ball) for ball in _judge(x.scene).at(Fraction(x.t))[:6])))
+
+
+def _middle(ball: Any) -> Many:
+    """Return the middle of a ball of at least 25 digits."""
+    assert ball.rad() < 1e-25 * max(1, abs(float(ball)))
+    return mpmath.mpf(ball.mid().str(DIGITS, radius=False))
+
+
+def _value(x: Printed, now: State) -> Many:
+    """Return a quantity; angles of a rotation have the whole turns of the print."""
+    value = QUANTITIES[x.quantity](now)
+    if x.quantity.startswith("Rot"):
+        turn = 2 * mpmath.pi
+        value += turn * mpmath.nint((mpmath.mpf(x.text) - value) / turn)
+    return value
+
+
+def error(x: Printed) -> tuple[Many, bool]:
+    """Return what the print has too much, and whether it is right to its last digit."""
+    with mpmath.workdps(DIGITS):
+        off = mpmath.mpf(x.text) - exact(x)
+        unit = mpmath.mpf(10) ** -len(x.text.partition(".")[2])
+        return off, abs(off) <= unit / 2
+
+
+def published_table() -> list[str]:
+    """Return all printed numbers as a table in Markdown; those that are right say so."""
+    lines = ["| source | scene | quantity | printed | exact | error of the print |"]
+    lines.append("|---|---|---|---|---|---|")
+    for x in PRINTED:
+        off, right = error(x)
+        shown = "none to its last digit" if right else f"{float(off):.1e}"
+        what = f"{x.quantity}({x.t})" if x.t else f"`{x.quantity}`"
+        value = mpmath.nstr(exact(x), SHOWN, strip_zeros=False, min_fixed=-9, max_fixed=9)
+        lines.append(f"| {x.source} | {x.scene} | {what} | {x.text} | {value} | {shown} |")
+    return lines
