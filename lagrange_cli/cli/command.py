@@ -10,6 +10,7 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError
+from ..output.terminal import spelt, view_of
 
 if TYPE_CHECKING:
     from ..motion.quantity import Key
@@ -21,7 +22,7 @@ def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Contex
 
     def show(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
         if wanted and not ctx.resilient_parsing:
-            click.echo(text(ctx))
+            click.echo(spelt(text(ctx), view_of("-")))
             ctx.exit()
 
     return click.Option(

@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from ..errors import LagtopError
+from ..inputs.names import check_names
 from ..output.write import write_bytes
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look, require_matplotlib
@@ -130,7 +131,7 @@ def _scene_and_kinds(words: Sequence[str]) -> tuple[str | None, tuple[str, ...]]
     known = (*KINDS, SHEET)
     scenes = [word for word in words if word not in known]
     for word in scenes[1:] or [word for word in scenes if not re.search(r"[./]", word)]:
-        raise LagtopError(f"KIND must be among {' '.join(known)}, got {word!r}")
+        check_names("KIND", [word], known)
     kinds = [kind for word in words for kind in (ON_THE_SHEET if word == SHEET else [word])]
     chosen = tuple(dict.fromkeys(kind for kind in kinds if kind in KINDS))
     return scenes[0] if scenes else None, chosen or ON_THE_SHEET

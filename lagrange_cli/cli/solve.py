@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import AbsentError, LagtopError
+from ..errors import AbsentError
+from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_value
 from .command import ExamplesFirst, chain_layout, top_layout, write_keys
@@ -71,8 +72,7 @@ def command(
     if key is not None:
         exclude({"--get": key, "--format": fmt if given("fmt") else None})
         if key not in record_keys(radians=rad) and key not in all_keys(radians=rad):
-            names = " ".join(all_keys(radians=rad))
-            raise LagtopError(f"--get must be among {names}, got {key!r}")
+            check_names("get", [key], all_keys(radians=rad))
         keys = [key]
     motion = solved(scene, rad, digits is not None, options)
     if derivation:

@@ -11,9 +11,7 @@ from ..motion.regime import Regime
 from ..motion.solve import Motion
 from . import rotations
 from .rotations import within_half_turn
-from .seen import Seen
-
-ANGLES = ("theta", "phi", "psi")
+from .seen import ANGLES, Seen
 
 
 class Deviations:

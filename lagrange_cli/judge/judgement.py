@@ -14,8 +14,8 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
-from .deviations import ANGLES, Deviations
-from .seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
+from .deviations import Deviations
+from .seen import ANGLES, ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
 from .tally import Extremes, Fit, Kept, Passages
 
 LIMIT = 1e-3

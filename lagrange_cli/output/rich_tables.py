@@ -19,6 +19,7 @@ from rich.text import Text
 
 from ..arithmetic.text import value_text
 from .layouts import Layout, Line
+from .terminal import spelt
 
 if TYPE_CHECKING:
     from .findings import Findings
@@ -30,10 +31,6 @@ _TEXT_WIDTH = 100
 """The width of running text where no terminal says another."""
 
 _BOLD = re.compile("\x1b\\[[0-9;]*m")
-_ASCII = str.maketrans(
-    {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "⁴": "^4", "§": "sec. "}
-    | {"β": "beta", "δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta", "τ": "tau"}
-)
 
 
 class Column(NamedTuple):
@@ -75,7 +72,7 @@ def _cells(record: Mapping[str, Any], line: Line, angle: str, view: View) -> lis
         return []
     unit = angle if is_angle else line.unit
     cells = (line.symbol, line.name, value_text(value), unit, line.equation)
-    return [_spelt(cell, view) for cell in cells]
+    return [spelt(cell, view) for cell in cells]
 
 
 def _record(groups: Mapping[str, list[list[str]]]) -> Table:
@@ -114,8 +111,8 @@ def findings_table(findings: Findings, view: View) -> bytes:
     shown = [field for field in findings.fields if field.heading]
     columns = [
         Column(
-            _spelt(field.heading, view),
-            [_spelt(field.cell(getattr(row, field.key)), view) for row in findings.rows],
+            spelt(field.heading, view),
+            [spelt(field.cell(getattr(row, field.key)), view) for row in findings.rows],
             not field.is_text,
         )
         for field in shown
@@ -123,12 +120,12 @@ def findings_table(findings: Findings, view: View) -> bytes:
     keys = [column for column, field in zip(columns, shown, strict=True) if field.names_the_row]
     rest = [column for column in columns if column not in keys]
     heads = (_condition(name, text, view) for name, text in findings.conditions.items())
-    above = _spelt("\n".join(heads), view) + "\n\n"
+    above = spelt("\n".join(heads), view) + "\n\n"
     below = "".join(f"\n{_filled(line, view)}" for line in findings.conclusions)
     return (
         above.encode()
         + _encoded(_folded(keys, rest, view), view)
-        + f"{_spelt(below, view)}\n".encode()
+        + f"{spelt(below, view)}\n".encode()
     )
 
 
@@ -178,10 +175,6 @@ def _chunks(text: str, width: int) -> list[str]:
 def _width(text: str) -> int:
     """Return the width of what is drawn, without the codes for bold letters."""
     return max(cell_len(line) for line in _BOLD.sub("", text).splitlines())
-
-
-def _spelt(text: str, view: View) -> str:
-    return text if view.has_greek else text.translate(_ASCII)
 
 
 def _filled(text: str, view: View) -> str:

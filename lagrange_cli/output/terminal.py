@@ -50,6 +50,17 @@ def view_of(path: str) -> View:
     return View(get_terminal_size().columns, has_greek)
 
 
+_ASCII = str.maketrans(
+    {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "⁴": "^4", "§": "sec. "}
+    | {"β": "beta", "δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta", "τ": "tau"}
+)
+
+
+def spelt(text: str, view: View) -> str:
+    """Return a text with its Greek letters and powers spelt out where the encoding lacks them."""
+    return text if view.has_greek else text.translate(_ASCII)
+
+
 class Screen:
     """The terminal of the process, which output may share with a line of progress."""
 

@@ -14,6 +14,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from ..arithmetic.points import LogPoints
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
 from ..motion.record import NUMBER_KEYS
@@ -93,8 +94,7 @@ def key_map(
     Raises LagtopError for a key that is no number, for one input on both axes, for too many cells,
     and where a top of the grid cannot be.
     """
-    if key not in NUMBER_KEYS:
-        raise LagtopError(f"key must be among {' '.join(NUMBER_KEYS)}, got {key!r}", "key")
+    check_names("key", [key], NUMBER_KEYS)
     if x.name == y.name:
         raise LagtopError(f"x must be another input than y, got {x.name} twice", "x")
     cells = x.values.size * y.values.size

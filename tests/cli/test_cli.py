@@ -16,6 +16,7 @@ from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, errors, solve, sweep
 from lagrange_cli.cli.command import top_layout
+from lagrange_cli.cli.group import COMMANDS
 from lagrange_cli.motion.record import NUMBER_KEYS
 
 Solved = Callable[..., dict[str, Any]]
@@ -84,6 +85,13 @@ def test_table_in_ascii(lagtop: Lagtop) -> None:
     assert shown.isascii()
     assert "?" not in shown
     assert "theta max" in shown
+
+
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_help_in_ascii(lagtop: Lagtop, command: str) -> None:
+    shown = lagtop(*command.split(), "--help", charset="ascii").stdout
+    assert shown.isascii()
+    assert "?" not in shown
 
 
 def test_record_agrees_with_the_library(solved: Solved) -> None:

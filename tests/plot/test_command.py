@@ -34,7 +34,7 @@ def test_kinds_and_scene_in_any_order(lagtop: Lagtop, tmp_path: Path) -> None:
     ("line", "code", "message"),
     [
         ("", 2, "nothing to do: give -o FILE.png, --show or --animate FILE.gif"),
-        ("spere -o x.png", 2, "KIND must be among sphere angles"),
+        ("spere -o x.png", 2, "got 'spere' (did you mean 'sphere'?)"),
         ("nowhere.toml -o x.png", 65, "nowhere.toml: No such file"),
         ("-o x.jpg", 2, "-o must be a file that ends in .png or .svg or .pdf, got 'x.jpg'"),
         ("-o x.png --size 8", 2, "--size must be WIDTHxHEIGHT, each in [2, 50] inches, got '8'"),

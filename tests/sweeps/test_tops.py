@@ -31,7 +31,8 @@ def test_get_what_is_not_there(lagtop: Lagtop) -> None:
     assert absent.stderr == "Error: a top of the regime 'sleeping' has no T_nutation\n"
     unknown = lagtop("solve", "--get", "T")
     assert (unknown.exit_code, unknown.stdout) == (2, "")
-    assert unknown.stderr.startswith("Error: --get must be among m A C")
+    assert unknown.stderr.startswith("Error: --get must be among m, A, C")
+    assert lagtop("solve", "--get", "T_nut").stderr.endswith("(did you mean 'T_nutation'?)\n")
     assert lagtop("solve", "--get", "k", "--format", "csv").exit_code == 2
 
 
