@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from .judge.judgement import Judgement
     from .motion.regime import Regime
     from .motion.solve import Motion, solve
+    from .sweeps.angles import sweep_angles
     from .sweeps.records import sweep
 
 __version__ = "0.1.0"
@@ -24,6 +25,7 @@ __all__ = [
     "read_scene",
     "solve",
     "sweep",
+    "sweep_angles",
 ]
 
 _MODULES = {
@@ -36,6 +38,7 @@ _MODULES = {
     "read_scene": "inputs.scene_file",
     "solve": "motion.solve",
     "sweep": "sweeps.records",
+    "sweep_angles": "sweeps.angles",
 }
 """The module of each name, which is imported when the name is asked for."""
 

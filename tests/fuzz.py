@@ -7,7 +7,8 @@ Each scene is judged at twenty times: fifteen next to a whole, half or quarter n
 (the double and both its neighbours), five anywhere, from 1 to 1e14 periods on both sides of the
 start.  The report is the worst error of every kind, in units of `Judge.errors`; every key of
 `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
-10 eps.  What exceeds the bounds is listed with a command that shows it, and the exit code is 1.
+10 eps, and angles of all scenes at once (`sweep_angles`), up to 1e5 periods from the start.  What
+exceeds the bounds is listed with a command that shows it, and the exit code is 1.
 About 20 to 40 scenes a second and core.
 """
 
@@ -34,10 +35,13 @@ from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 from lagrange_cli.motion.table import rows
+from lagrange_cli.sweeps.angles import sweep_angles
 
 UNITS, HALF_ULP, SWEEP_EPS = 4.0, 0.5 + 1e-9, 10.0
 """The bounds: of an angle or a part of the quaternion, of a key of `solve`, of one of `sweep`."""
 NAMES = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi")
+NEAR = 5
+"""Decades of periods up to which the angles of many tops at once are judged."""
 COSINES = ("u1", "u2", "u_quarter")
 NEIGHBOURS, ELSEWHERE = 5, 5
 CHUNK, MOST_SHOWN = 50, 40
@@ -70,14 +74,14 @@ class Tally:
             self.worst[name] = max(self.worst.get(name, 0.0), error)
 
 
-def times_of(rng: random.Random, period: Fraction) -> list[float]:
+def times_of(rng: random.Random, period: Fraction, decades: int = 14) -> list[float]:
     """Return times next to quarters of a period, each with its neighbours, and others."""
     found = []
     for _ in range(NEIGHBOURS):
-        quarters = 4 * int(10 ** rng.uniform(0, 14)) + rng.choice([0, 1, 2, 2, 3])
+        quarters = 4 * int(10 ** rng.uniform(0, decades)) + rng.choice([0, 1, 2, 2, 3])
         t = rng.choice([-1, 1]) * float(period * quarters / 4)
         found += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
-    for power in (rng.uniform(-9, 1), 0, *(rng.uniform(0, 14) for _ in range(ELSEWHERE - 2))):
+    for power in (rng.uniform(-9, 1), 0, *(rng.uniform(0, decades) for _ in range(ELSEWHERE - 2))):
         found.append(float(period) * rng.choice([-1, 1]) * rng.random() * 10**power)
     return found
 
@@ -125,14 +129,40 @@ def judge_record(tally: Tally, judge: Judge, motion: Motion) -> None:
             tally.note("key", judge.ulps(key, value), HALF_ULP, show + f"  # {key} {value!r}")
 
 
-def judge_sweep(tally: Tally, judges: Sequence[tuple[Scene, Judge]]) -> None:
-    """Judge every number of a sweep of scenes."""
+def inputs_of(judges: Sequence[tuple[Scene, Judge]]) -> dict[str, list[float]]:
+    """Return scenes as inputs of many tops."""
     inputs = {
         key: [float(scene.get(key, np.nan)) for scene, _ in judges]
-        for key in ("m", "A", "C", "s", "g", "r0", "theta0_deg", "theta0_rad", "thetadot0")
+        for key in ("m", "A", "C", "s", "g", "r0", "theta0_deg", "theta0_rad")
     }
-    inputs["psidot0"] = [float(scene.get("psidot0", 0)) for scene, _ in judges]
-    inputs["thetadot0"] = [float(scene.get("thetadot0", 0)) for scene, _ in judges]
+    for key in ("thetadot0", "psidot0"):
+        inputs[key] = [float(scene.get(key, 0)) for scene, _ in judges]
+    return inputs
+
+
+def judge_many(tally: Tally, judges: Sequence[tuple[Scene, Judge]], rng: random.Random) -> None:
+    """Judge the angles of many tops at once."""
+    times = [times_of(rng, period_of(judge), NEAR) for _, judge in judges]
+    inputs: dict[str, Any] = inputs_of(judges)
+    found: dict[str, Any] = sweep_angles(times, **inputs)
+    for i, (scene, judge) in enumerate(judges):
+        if found["error"][i] is not None:
+            tally.counts["sweep_angles refused"] += 1
+            continue
+        show = f"sweep_angles of lagtop table {Top(**scene).options()} --t-min"
+        for j, t in enumerate(times[i]):
+            computed = tuple(float(found[name][i][j]) for name in ("theta", "phi", "psi"))
+            try:
+                errors = judge.angle_errors(t, computed)  # type: ignore[arg-type]
+            except Undecided:
+                tally.counts["undecided times"] += 1
+                continue
+            tally.note("many", max(errors), UNITS, f"{show} {t!r} --n 1")
+
+
+def judge_sweep(tally: Tally, judges: Sequence[tuple[Scene, Judge]]) -> None:
+    """Judge every number of a sweep of scenes."""
+    inputs = inputs_of(judges)
     columns = sweep(keys=[*NUMBER_KEYS, "error"], **inputs)  # type: ignore[arg-type]
     for i, (scene, judge) in enumerate(judges):
         if columns["error"][i] is not None:
@@ -183,6 +213,7 @@ def run_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
         judges.append((scene, judge))
     if with_sweep and judges:
         judge_sweep(tally, judges)
+        judge_many(tally, judges, random.Random(f"{seed} {kind} {first} many"))
     return kind, tally
 
 
@@ -200,10 +231,10 @@ def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, with_sweep: 
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    names = "theta    phi    psi   quat   dphi   dpsi    key  sweep"
+    names = "theta    phi    psi   quat   dphi   dpsi    key  sweep   many"
     yield f"{'kind':24} scenes  times  {names}  beyond"
     for kind, tally in tallies.items():
-        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "sweep")]
+        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "sweep", "many")]
         shown = " ".join(f"{error:6.3g}" for error in worst)
         beyond = len(tally.violations)
         yield f"{kind:24} {tally.scenes:6} {tally.times:6} {shown}  {beyond}"

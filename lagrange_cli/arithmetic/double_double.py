@@ -34,9 +34,9 @@ def pair(value: Any) -> Pair:
 class Triple(NamedTuple):
     """A number to three times the precision."""
 
-    high: float
-    middle: float
-    low: float
+    high: float | Array
+    middle: float | Array
+    low: float | Array
 
 
 def triple(value: Any) -> Triple:
@@ -68,13 +68,14 @@ def two_product(x: Array, factor: float | Array, space: Space = HEAP) -> tuple[A
 
 
 def reduce_phase(
-    t: Array, rate: Pair, offset: float = 0.0, space: Space = HEAP
+    t: Array, rate: Pair, offset: float | Array = 0.0, space: Space = HEAP
 ) -> tuple[Array, Array]:
     """Return the integer nearest to t * rate + offset, and t * rate less it, with all digits."""
     since, rest = two_product(t, rate.high, space)
     target = space.new()
     rest += np.multiply(t, rate.low, out=target)
-    step: Array = np.rint(np.add(since, offset, out=target) if offset else since, out=target)
+    shifted = np.add(since, offset, out=target) if np.any(offset) else since
+    step: Array = np.rint(shifted, out=target)
     since -= step
     since += rest
     space.free(rest)
@@ -140,6 +141,9 @@ class DoubleDouble:
             if isinstance(other, DoubleDouble)
             else DoubleDouble(np.asarray(other, dtype=np.float64))
         )
+
+    def __getitem__(self, rows: Any) -> DoubleDouble:
+        return DoubleDouble(self.high[rows], self.low[rows])
 
     def __add__(self, other: DoubleDouble | float) -> DoubleDouble:
         other = self._like(other)

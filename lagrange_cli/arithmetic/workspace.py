@@ -6,6 +6,7 @@ each of them cleared when it is first touched, and takes it back when an array i
 
 from __future__ import annotations
 
+from math import prod
 from typing import Protocol, Self
 
 import numpy as np
@@ -41,25 +42,25 @@ HEAP = Heap()
 
 
 class Workspace:
-    """Arrays of one size, lent by a stock that all blocks share.
+    """Arrays of one shape, lent by a stock that all blocks share.
 
     At the end of a `with` all of them go back, so none of them may be used after it.
     """
 
-    def __init__(self, size: int) -> None:
-        self.size = size
+    def __init__(self, *shape: int) -> None:
+        self.shape, self.size = shape, prod(shape)
         self._lent: list[Array] = []
 
     def new(self) -> Array:
         """Return an array whose content is arbitrary."""
         if self.size > BLOCK:
-            return np.empty(self.size)
+            return np.empty(self.shape)
         try:
             whole = _IDLE.pop()
         except IndexError:
             whole = np.empty(BLOCK)
         self._lent.append(whole)
-        return whole[: self.size]
+        return whole[: self.size].reshape(self.shape)
 
     def free(self, *arrays: Array | None) -> None:
         """Take back arrays of `new` that are not needed any more."""

@@ -26,7 +26,7 @@ from ..arithmetic.workspace import Workspace
 
 
 class Growth(NamedTuple):
-    """How an angle grows with time, beside its series."""
+    """How an angle grows with time, beside its series; of one top, or of many as columns."""
 
     rate: Pair
     """Mean rate of the angle."""
@@ -74,19 +74,19 @@ class Growth(NamedTuple):
         lost += lost_at_start
         lost += since * self.slope.low - self.start.low
         total += lost
-        if self.start.high:
+        if np.any(self.start.high):
             total[t == 0] = 0.0
         return total
 
     def _within(self, t: Array, since: Array, series: Array, space: Workspace) -> Array:
         """Add what the series lacks within a step."""
-        if self.start.high:
+        if np.any(self.start.high):
             series -= self.start.high
-        if self.slope.high:
+        if np.any(self.slope.high):
             ramp = np.multiply(since, self.slope.high, out=space.new())
             series += ramp
             space.free(ramp)
-        if self.start.high:
+        if np.any(self.start.high):
             series[t == 0] = 0.0
         return series
 

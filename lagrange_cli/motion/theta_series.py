@@ -89,7 +89,7 @@ class ThetaConstants(NamedTuple):
     rises: int
     """Sign of the nutation rate at t = 0; +1 where it is 0."""
     nutation: Value
-    """-du/dt near a passage of u1 is `nutation` times the phase x."""
+    """-du/dt near a passage of u1 is `nutation` times the phase x; None where it is not needed."""
 
 
 class Series(NamedTuple):
@@ -145,7 +145,7 @@ def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS
     slope_x, slope_y = -c.sign_plus * ar.atan2(*plus), -c.sign_minus * ar.atan2(*minus)
     return Series(
         hyperbolic=True,
-        frames=_frames(x, y, _rate(odd, -1, c.nutation / ratio)),
+        frames=_frames(x, y, _rate(odd, -1, c.nutation and c.nutation / ratio)),
         scale=ar.pi / 2 * ratio,
         spin_slope=slope_x - slope_y,
         precession_slope=slope_x + slope_y,
@@ -232,6 +232,8 @@ def _hyperbolic_components(
 
 def _rate(weights: list[Value], curvature: int, nutation: Value) -> Polynomial:
     """Return theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
+    if nutation is None:
+        return []
     terms = [0 * nutation] * (2 * len(weights))
     terms[1::2] = _alternate(weights)
     unit = nutation / sum(2 * n * term for n, term in enumerate(terms))

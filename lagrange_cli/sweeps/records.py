@@ -52,16 +52,7 @@ def sweep(
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
     chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
-    if unknown := set(inputs) - set(TopArrays._fields):
-        raise LagtopError(f"inputs must be among {' '.join(TopArrays._fields)}, got {min(unknown)}")
-    given = Top().inputs() | {"theta0_rad": np.nan}
-    if "theta0_rad" in inputs and "theta0_deg" not in inputs:
-        given["theta0_deg"] = np.nan
-    doubles = [_doubles(name, (given | inputs)[name]) for name in TopArrays._fields]
-    try:
-        arrays = np.broadcast_arrays(*doubles)
-    except ValueError as error:
-        raise LagtopError(f"the inputs do not go together: {error}") from None
+    arrays = together(inputs)
     shape, size = arrays[0].shape, arrays[0].size
     flat = [x if x.ndim == 1 else x.flat for x in arrays]  # of which a block is copied at most
     found = empty_columns(chosen, size)
@@ -70,6 +61,23 @@ def sweep(
         tops = TopArrays(*(x[rows] for x in flat))
         records(tops, chosen, radians=radians, columns={key: x[rows] for key, x in found.items()})
     return {key: column.reshape(shape) for key, column in found.items()}
+
+
+def together(inputs: Mapping[str, ArrayLike]) -> Sequence[Array]:
+    """Return inputs of `Top` as arrays of one shape, in the order of `TopArrays`.
+
+    Raises LagtopError for an unknown input, or for shapes that do not go together.
+    """
+    if unknown := set(inputs) - set(TopArrays._fields):
+        raise LagtopError(f"inputs must be among {' '.join(TopArrays._fields)}, got {min(unknown)}")
+    given = Top().inputs() | {"theta0_rad": np.nan}
+    if "theta0_rad" in inputs and "theta0_deg" not in inputs:
+        given["theta0_deg"] = np.nan
+    doubles = [_doubles(name, {**given, **inputs}[name]) for name in TopArrays._fields]
+    try:
+        return np.broadcast_arrays(*doubles)
+    except ValueError as error:
+        raise LagtopError(f"the inputs do not go together: {error}") from None
 
 
 def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:

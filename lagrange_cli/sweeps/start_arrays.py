@@ -52,7 +52,7 @@ class StartArrays:
 
     def __init__(self, tops: TopArrays) -> None:
         with PAIRS.working():  # what overflows or divides by zero is not trusted
-            state = _state(tops)
+            state = pair_state(tops)
             root = _LargestRoot(state)
             gaps = gaps_from_start(PAIRS, state, _FACTS, root.largest)
             self.fine = Nutating(PAIRS, _FACTS, state, gaps)
@@ -91,11 +91,16 @@ class StartArrays:
         looping = (b * gaps.momentum_u1 < 0) & (b * gaps.momentum_u2 > 0)
         return np.where(looping, "looping", "wavy").astype(object)
 
-    def _rates_are_sure(self) -> Mask:
-        """Return where the mean rates keep their digits, however their parts cancel."""
-        rough = self.rough
-        mc, gaps, sizes = rough.k_prime * rough.k_prime, rough.gaps, self.errors.momenta
-        noise = self.errors.worst + _EPS
+    @property
+    def noise(self) -> Array:
+        """Bound of the relative errors of the gaps, and of what is made of them."""
+        return self.errors.worst + _EPS
+
+    @cached_property
+    def precession_size(self) -> Array:
+        """Size of the mean precession rate if nothing in it cancelled."""
+        rough, sizes = self.rough, self.errors.momenta
+        mc, gaps = rough.k_prime * rough.k_prime, rough.gaps
 
         def size_of_part(from_u1: Array, from_u2: Array) -> Array:
             """Return the part of the rate if nothing in it cancelled: a mean <= 1/sqrt(p)."""
@@ -106,8 +111,13 @@ class StartArrays:
 
         south = size_of_part(gaps.below_u1, gaps.below_u2)
         north = size_of_part(gaps.above_u1, gaps.above_u2)
-        sure = _is_sure(noise * (south + north), self.means.precession)
-        sure &= _is_sure(noise * (south + north + abs(rough.r0)), self.means.spin)
+        return south + north
+
+    def _rates_are_sure(self) -> Mask:
+        """Return where the mean rates keep their digits, however their parts cancel."""
+        rough, noise, size = self.rough, self.noise, self.precession_size
+        sure = _is_sure(noise * size, self.means.precession)
+        sure &= _is_sure(noise * (size + abs(rough.r0)), self.means.spin)
         at_start: Any = self.fine.spin_rate_start
         return sure & _is_sure(_EPS * (abs(rough.r0) + abs(rough.state.psi_rate)), at_start.high)
 
@@ -219,7 +229,11 @@ def _rounded(pairs: Any) -> Any:
     return type(pairs)(*(x.high for x in pairs))
 
 
-def _state(tops: TopArrays) -> State[DoubleDouble]:
+def pair_state(tops: TopArrays) -> State[DoubleDouble]:
+    """Return constants and start of tops in pairs of doubles, as the cubic of any start needs them.
+
+    The differences from r0 and from b^2/2 are NaN.
+    """
     m, A, C, s, g, r0, theta_rate, psi_rate = (
         DoubleDouble(x) for x in (*tops[:6], tops.thetadot0, tops.psidot0)
     )

@@ -1,0 +1,106 @@
+"""Angles of many tops over time: as arrays where that can be trusted, else one by one."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.blocks import BLOCK, blocks
+from ..arithmetic.types import Array, Mask
+from ..arithmetic.workspace import Workspace
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..motion.regime import Regime
+from ..motion.samplers import times_of
+from ..motion.solve import solve
+from .angle_arrays import ArraySampler, array_sampler
+from .pair_motions import PairMotions, released, started
+from .records import BLOCK_ROWS, Column, together
+from .top_arrays import TopArrays
+
+_NAMES = ("theta", "phi", "psi")
+
+
+def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> dict[str, Column]:
+    """Return theta, phi and psi (radians) of many tops at the times t, and `error`.
+
+    Inputs are those of `Top`, numbers or arrays.  The times are a number or one list for all tops,
+    or a list for each of them, in the shape of the inputs together and one more dimension; that is
+    the shape of the angles, and the shape of the inputs that of `error`, which says what is wrong
+    with a top; its angles are NaN.  Angles are as exact as those of `Motion.angles`.  Raises
+    LagtopError for an unknown input, or for shapes that do not go together.
+    """
+    arrays = together(inputs)
+    tops, shape = TopArrays(*(x.ravel() for x in arrays)), arrays[0].shape
+    times = times_of(t)
+    if times.ndim > 1 and times.shape[:-1] != shape:
+        raise LagtopError(f"t must have the shape {(*shape, 'n')} or (n,), got {times.shape}", "t")
+    whole = times.shape if times.ndim > 1 else shape + times.shape
+    count = whole[-1] if times.ndim else 1
+    rows = times.reshape(-1, count) if count else np.empty((1, 0))
+    rows = np.broadcast_to(rows, (tops.m.size, count))
+    angles = np.full((len(_NAMES), tops.m.size, count), np.nan)
+    error = np.full(tops.m.size, None)
+    with ARRAYS.working():
+        for first in range(0, tops.m.size, BLOCK_ROWS):
+            some = slice(first, first + BLOCK_ROWS)
+            _fill(tops.part(some), _Wish(rows[some], wrap, angles[:, some]), error[some])
+    found: dict[str, Column] = {
+        name: values.reshape(whole) for name, values in zip(_NAMES, angles, strict=True)
+    }
+    return found | {"error": error.reshape(shape)}
+
+
+class _Wish(NamedTuple):
+    """The times of a block of tops, a row each, and where their angles go."""
+
+    t: Array
+    wrap: bool
+    angles: Array
+
+
+def _fill(tops: TopArrays, wish: _Wish, error: NDArray[np.object_]) -> None:
+    """Write the angles of a block of tops, and what is wrong with them."""
+    left = np.ones(tops.m.size, dtype=np.bool_)
+    at_rest = tops.regimes().get(Regime.REGULAR, ~left)
+    for make, chosen in ((released, at_rest), (started, tops.moving())):
+        index = np.flatnonzero(chosen)
+        if index.size:
+            trusted = _fill_arrays(make(tops.part(index)), index, wish)
+            left[index[trusted]] = False
+    for row in np.flatnonzero(left).tolist():
+        try:
+            motion = solve(Top(**tops.one(row)))
+            wish.angles[:, row] = motion.angles(wish.t[row], wrap=wish.wrap)
+        except LagtopError as refused:
+            error[row] = str(refused)
+
+
+def _fill_arrays(motions: PairMotions, index: NDArray[np.intp], wish: _Wish) -> Mask:
+    """Write the angles of the motions that can be trusted, in their rows; return which they are."""
+    farthest = np.abs(wish.t[index]).max(axis=1, initial=0.0)
+    trusted: Mask = farthest <= motions.reach()
+    for hyperbolic in (False, True):
+        some = np.flatnonzero(trusted & (motions.hyperbolic() == hyperbolic))
+        if some.size:
+            sampler = array_sampler(motions.part(some), hyperbolic=hyperbolic)
+            _sample(sampler, index[some], wish)
+    return trusted
+
+
+def _sample(sampler: ArraySampler, index: NDArray[np.intp], wish: _Wish) -> None:
+    """Write the angles of the tops of a sampler, as many samples at once as make a block."""
+    count = wish.t.shape[1]
+    step = max(1, BLOCK // max(count, 1))
+    for first in range(0, index.size, step):
+        rows, part = index[first : first + step], sampler.part(slice(first, first + step))
+        for columns in blocks(count):
+            times = wish.t[rows, columns]
+            with Workspace(*times.shape) as space:
+                at = part.attitude(times, space)
+                wish.angles[0, rows, columns] = at.theta()
+                wish.angles[1, rows, columns] = at.phi(wrap=wish.wrap)
+                wish.angles[2, rows, columns] = at.psi(wrap=wish.wrap)
