@@ -79,3 +79,16 @@ def _remedy(text: str) -> str:
     if any(dash in text for dash in "\u2212\u2013\u2014"):
         return " (write the minus sign as an ASCII hyphen, -)"
     return ""
+
+
+def csv_text(value: Any) -> str:
+    """Return a cell, in quotes where it has to be; what is neither text nor number as JSON."""
+    if type(value) is str:
+        return f'"{value.replace(_QUOTE, _QUOTE * 2)}"' if set(value) & _SPECIAL else value
+    if value is None or isinstance(value, float):
+        return value_text(value)
+    return csv_text(json_text(value))
+
+
+_QUOTE = '"'
+_SPECIAL = {_QUOTE, ",", "\n", "\r"}

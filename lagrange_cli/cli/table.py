@@ -75,7 +75,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 @jobs_option
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
-@output_options("csv", "json", "table")
+@output_options("csv", "json", "table", "parquet", "npy")
 def command(
     scene: str | None,
     rad: bool,
@@ -111,8 +111,7 @@ def command(
     exclude({name: True if path == "-" else None for name, path in stdin.items()})
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
-    if tops is not None and fmt == "table":
-        raise LagtopError("--format table shows one top: with --tops take csv or json")
+    _check_format(fmt, times, tops, digits)
     wish = Wish(
         _listed(times, tops, fmt) or partial(_grid, t_min=t_min, t_max=t_max, n=count, dt=dt),
         DEFAULT_COLUMNS if columns is None else columns,
@@ -127,6 +126,21 @@ def command(
         from ..sweeps.plan import shared_inputs
 
         _write_many(tops, shared_inputs(scene, by_key(options, radians=rad)), wish, fmt, output)
+
+
+def _check_format(fmt: str, times: str | None, tops: str | None, digits: int | None) -> None:
+    """Raise LagtopError for a format that cannot hold what is asked for."""
+    if tops is not None and fmt in {"table", "npy"}:
+        holds = "shows one top" if fmt == "table" else "holds numbers of one top"
+        raise LagtopError(f"--format {fmt} {holds}: with --tops take csv, json or parquet")
+    if digits is not None and fmt in {"npy", "parquet"}:
+        raise LagtopError(f"--format {fmt} holds doubles: with --digits take csv, json or table")
+    if times == "-" and fmt == "npy":
+        raise LagtopError("--format npy begins with the number of rows: give --times a file")
+    if fmt == "parquet":
+        from ..output.parquet import check_parquet
+
+        check_parquet()
 
 
 class Wish(NamedTuple):
@@ -150,7 +164,7 @@ def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion],
         return None
     from ..inputs.times_file import TimesFile
 
-    file = TimesFile(times)
+    file = TimesFile(times, counted=fmt == "npy")
     if tops is None and fmt != "table":
         return lambda _: file
     return partial(_same, file.listed(None if tops is not None else MAX_TABLE_ROWS + 1))
@@ -175,7 +189,7 @@ def _write_one(motion: Motion, wish: Wish, digits: int | None, fmt: str, output:
     header, blocks = rows(motion, times, wish.columns, **units)
     parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **units)
     long = LONG if digits is None else LONG_IN_DIGITS
-    write_table(header, with_progress(parts, times.count, long), fmt, output)
+    write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)
 
 
 def _write_many(tops: str, shared: Mapping[str, float], wish: Wish, fmt: str, output: str) -> None:

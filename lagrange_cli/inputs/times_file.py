@@ -21,12 +21,16 @@ class TimesFile(Points):
 
     count = 0
 
-    def __init__(self, path: str) -> None:
+    def __init__(self, path: str, *, counted: bool = False) -> None:
         """Open the file (standard input for `-`) and read its first block of lines.
+
+        Where the times are to be `counted`, the file is read twice; otherwise their count is 0.
 
         Blank lines and lines that begin with # are left out.  Raises LagtopError for a file that
         cannot be read, DataError for a line that is no time, here or while the rest is read.
         """
+        if counted:
+            self.count = sum(1 for _ in _read(path))
         times = _read(path)
         first = list(islice(times, POINTS_AT_ONCE))
         if not first:

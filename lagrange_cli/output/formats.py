@@ -1,4 +1,4 @@
-"""The formats of output, one object each: csv, json, ndjson, parquet and table.
+"""The formats of output, one object each: csv, json, ndjson, parquet, npy and table.
 
 A double has the same text in all of them (see `arithmetic.text`).  Rows are written by orjson,
 which is loaded together with numpy.  One record (`solve --format json`) and numbers of many digits
@@ -13,20 +13,15 @@ from io import BytesIO
 from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
-from ..arithmetic.text import json_text, value_text
+from ..arithmetic.text import csv_text, value_text
 from .terminal import View
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .findings import Findings
     from .layouts import Layout
+    from .row_texts import Columns
 
-QUOTE = '"'
-_SPECIAL = {QUOTE, ",", "\n", "\r"}
-
-Columns = Sequence["Array | Sequence[Any]"]
-"""The columns of a block: arrays of numbers, one or several columns each, where NaN stands for
-none; or lists of texts and JSON values."""
 Texts = Sequence[Sequence[str]]
 """A block of rows whose numbers are written out; an empty text stands for none."""
 
@@ -72,9 +67,14 @@ class Format:
         return text if number else self.opening(names) + text
 
     def write_table(
-        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array | Texts], view: View
+        self,
+        stream: BinaryIO,
+        names: Sequence[str],
+        blocks: Iterable[Array | Texts],
+        view: View,
+        count: int,
     ) -> None:
-        """Write blocks of rows, arrays or numbers written out."""
+        """Write `count` rows in blocks, arrays or numbers written out; 0 if nobody knows."""
         self.write_blocks(
             stream,
             names,
@@ -99,24 +99,9 @@ class Csv(Format):
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return a line per row."""
-        import numpy as np
+        from .row_texts import csv_lines
 
-        if not len(columns[0]):
-            return b""
-        if len(columns) == 1 and isinstance(columns[0], np.ndarray):
-            text = _array_lines(columns[0])
-            if len(names) > 1 or (b"\n\n" not in text and not text.startswith(b"\n")):
-                return text
-        cells = [
-            _array_lines(x).splitlines()
-            if isinstance(x, np.ndarray)
-            else [csv_text(y).encode() for y in x]
-            for x in columns
-        ]
-        lines = list(map(b",".join, zip(*cells, strict=True)))
-        if len(names) == 1:  # an empty line would be lost to its reader
-            lines = [line or b'""' for line in lines]
-        return b"\n".join(lines) + b"\n"
+        return csv_lines(columns, names)
 
     def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
         """Return a line per row."""
@@ -141,7 +126,9 @@ class Ndjson(Format):
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return a line per row."""
-        return b"".join(line + b"\n" for line in _objects(columns, names))
+        from .row_texts import json_objects
+
+        return json_objects(columns, names, b"\n", b"\n")
 
 
 class Json(Format):
@@ -157,7 +144,9 @@ class Json(Format):
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return the objects, with commas between."""
-        return b",\n".join(_objects(columns, names))
+        from .row_texts import json_objects
+
+        return json_objects(columns, names, b",\n")
 
     def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
         """Return the objects, with commas between."""
@@ -197,6 +186,29 @@ class Parquet(Format):
         return stream.getvalue()
 
 
+class Npy(Format):
+    """One structured array of NumPy: a field of doubles per column."""
+
+    name = "npy"
+
+    def write_table(
+        self,
+        stream: BinaryIO,
+        names: Sequence[str],
+        blocks: Iterable[Array | Texts],
+        view: View,
+        count: int,
+    ) -> None:
+        """Write a header that tells the number of rows, and the rows as they come."""
+        import numpy as np
+
+        row = np.dtype([(name, "<f8") for name in names])
+        header = {"descr": row.descr, "fortran_order": False, "shape": (count,)}
+        np.lib.format.write_array_header_1_0(stream, header)
+        for block in blocks:
+            stream.write(np.ascontiguousarray(block, dtype="<f8").tobytes())
+
+
 class DrawnTable(Format):
     """A table for the eye, drawn by rich when all of it is known."""
 
@@ -215,7 +227,12 @@ class DrawnTable(Format):
         return findings_table(findings, view)
 
     def write_table(
-        self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[Array | Texts], view: View
+        self,
+        stream: BinaryIO,
+        names: Sequence[str],
+        blocks: Iterable[Array | Texts],
+        view: View,
+        count: int,
     ) -> None:
         """Write a column per name and a line per row."""
         from .rich_tables import rows_table
@@ -227,44 +244,9 @@ class DrawnTable(Format):
 
 
 FORMATS: dict[str, Format] = {
-    fmt.name: fmt for fmt in (Csv(), Ndjson(), Json(), Parquet(), DrawnTable())
+    fmt.name: fmt for fmt in (Csv(), Ndjson(), Json(), Parquet(), Npy(), DrawnTable())
 }
 """The formats by name."""
-
-
-def csv_text(value: Any) -> str:
-    """Return a cell, in quotes where it has to be; what is neither text nor number as JSON."""
-    if type(value) is str:
-        return f'"{value.replace(QUOTE, QUOTE * 2)}"' if set(value) & _SPECIAL else value
-    if value is None or isinstance(value, float):
-        return value_text(value)
-    return csv_text(json_text(value))
-
-
-def _array_lines(rows: Array) -> bytes:
-    """Return an array of numbers, a line per row and nothing for NaN."""
-    import numpy as np
-    import orjson
-
-    text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
-    if b"n" in text:
-        text = text.replace(b"null", b"")
-    # Commas at the ends of rows become line ends in place: to look for `],[` takes twice as long.
-    view = np.frombuffer(text, dtype=np.uint8)
-    commas = np.flatnonzero(view == ord(","))
-    view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
-    view[-1] = ord("\n")
-    return bytes(view[1:])
-
-
-def _objects(columns: Columns, names: Sequence[str]) -> list[bytes]:
-    """Return the JSON object of every row."""
-    import numpy as np
-    import orjson
-
-    lists = (x.T.tolist() if isinstance(x, np.ndarray) else [x] for x in columns)
-    rows = zip(*chain.from_iterable(lists), strict=True)
-    return [orjson.dumps(dict(zip(names, row, strict=True))) for row in rows]
 
 
 def _object(members: Iterable[tuple[str, str]]) -> bytes:

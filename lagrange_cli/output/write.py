@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import value_text
 from .destination import opened
-from .formats import FORMATS, Columns, Texts
+from .formats import FORMATS, Texts
 from .terminal import view_of
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .findings import Findings
     from .layouts import Layout
+    from .row_texts import Columns
 
 MAX_TABLE_ROWS = 10_000
 """The most rows that are drawn: more of them are neither read nor quickly made."""
@@ -43,10 +44,15 @@ def write_record(
         stream.write(text)
 
 
-def write_table(names: Sequence[str], blocks: Iterable[Array | Texts], fmt: str, path: str) -> None:
-    """Write blocks of rows, which are arrays or lists of numbers written out."""
+def write_table(
+    names: Sequence[str], blocks: Iterable[Array | Texts], fmt: str, path: str, count: int = 0
+) -> None:
+    """Write `count` rows in blocks, which are arrays or lists of numbers written out.
+
+    Where nobody knows the count it is 0.
+    """
     with opened(path) as stream:
-        FORMATS[fmt].write_table(stream, names, blocks, view_of(path))
+        FORMATS[fmt].write_table(stream, names, blocks, view_of(path), count)
 
 
 def write_text_blocks(fmt: str, names: Sequence[str], blocks: Iterable[bytes], path: str) -> None:

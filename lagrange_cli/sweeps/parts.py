@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import SomeFailedError
 from ..inputs.block import Block
-from ..output.formats import Columns
+from ..output.row_texts import Columns
 from ..output.write import block_text
 from .records import Column, records
 from .top_arrays import TopArrays

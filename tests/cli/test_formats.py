@@ -1,0 +1,108 @@
+"""Formats of rows: one text per double everywhere, and files of numbers for NumPy and Arrow."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import orjson
+import pytest
+from conftest import Lagtop
+from pyarrow import parquet
+
+from lagrange_cli.arithmetic.text import csv_text
+from lagrange_cli.output.row_texts import csv_lines, json_objects
+
+NAMES = ["a", "text", 'b,"', "c", "more"]
+
+
+def rows_of(count: int) -> tuple[list[Any], list[list[Any]]]:
+    """Return the columns of a block, and its rows as Python values."""
+    rng = np.random.default_rng(count)
+    numbers = rng.normal(size=(count, 3)) * 10.0 ** rng.integers(-300, 300, (count, 3))
+    numbers[rng.random((count, 3)) < 0.2] = np.nan
+    numbers[:, 2] = -0.0
+    texts = [(None, "re]g,[ular", 'a "b"\n', "ü")[i] for i in rng.integers(0, 4, count)]
+    more = [(True, 1, 1.0, {"x": [1]}, "null")[i] for i in rng.integers(0, 5, count)]
+    columns = [numbers[:, :1], texts, numbers[:, 1:], more]
+    cells = [[None if math.isnan(x) else x for x in row] for row in numbers.tolist()]
+    rows = [[x[0], y, *x[1:], z] for x, y, z in zip(cells, texts, more, strict=True)]
+    return columns, rows
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 1 << 14])
+def test_blocks_are_what_each_row_gives_by_itself(count: int) -> None:
+    columns, rows = rows_of(count)
+    objects = [orjson.dumps(dict(zip(NAMES, row, strict=True))) for row in rows]
+    assert json_objects(columns, NAMES, b",\n") == b",\n".join(objects)
+    lines = "".join(",".join(map(csv_text, row)) + "\n" for row in rows)
+    assert csv_lines(columns, NAMES) == lines.encode()
+
+
+@pytest.mark.parametrize("width", [1, 2, 8, 9])
+def test_arrays_alone_are_what_each_row_gives_by_itself(width: int) -> None:
+    numbers = np.random.default_rng(width).normal(size=(50, width))
+    numbers[::7, 0] = np.nan
+    names = [f"x{i}" for i in range(width)]
+    rows = [[None if math.isnan(x) else x for x in row] for row in numbers.tolist()]
+    lines = [",".join(map(csv_text, row)) or '""' for row in rows]
+    assert csv_lines([numbers], names).decode().splitlines() == lines
+
+
+@pytest.mark.parametrize("options", ["--n 40000", "--columns theta --n 3", "--times FILE --rad"])
+@pytest.mark.parametrize("form", ["npy", "parquet"])
+def test_files_of_numbers_hold_the_doubles_of_csv(
+    form: str, options: str, tmp_path: Path, lagtop: Lagtop
+) -> None:
+    (tmp_path / "times").write_text("# seconds\n0\n0.25\n-3e5\n")
+    words = options.replace("FILE", str(tmp_path / "times")).split()
+    file = tmp_path / f"x.{form}"
+    assert lagtop("table", *words, "--format", form, "-o", file).exit_code == 0
+    header, *rows = csv.reader(io.StringIO(lagtop("table", *words).stdout))
+    if form == "npy":
+        array = np.load(file)
+        assert list(array.dtype.names) == header
+        found = array.tolist()
+    else:
+        table = parquet.read_table(file)
+        assert table.column_names == header
+        found = list(zip(*table.to_pydict().values(), strict=True))
+    assert found == [tuple(map(float, row)) for row in rows]
+
+
+@pytest.mark.parametrize("form", ["npy", "parquet"])
+def test_the_judge_reads_what_table_writes(form: str, tmp_path: Path, lagtop: Lagtop) -> None:
+    file = tmp_path / f"x.{form}"
+    lagtop("table", "--r0", "40", "--t-max", "9", "--format", form, "-o", file)
+    result = lagtop("compare", file, "--r0", "40", "--format", "json")
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout)["rows"]
+
+
+def test_parquet_holds_the_tables_of_tops(tmp_path: Path, lagtop: Lagtop) -> None:
+    file, tops = tmp_path / "x.parquet", "id,r0\na,5O\nb,50\n"
+    options = ("table", "--tops", "-", "--n", "2", "--format")
+    assert lagtop(*options, "parquet", "-o", file, input=tops).exit_code == 1
+    rows = json.loads(lagtop(*options, "json", input=tops).stdout)
+    assert parquet.read_table(file).to_pylist() == rows
+
+
+@pytest.mark.parametrize(
+    ("options", "error"),
+    [
+        ("--format npy --tops -", "--format npy holds numbers of one top"),
+        ("--format npy --digits 20", "--format npy holds doubles"),
+        ("--format parquet --digits 20", "--format parquet holds doubles"),
+        ("--format npy --times -", "--format npy begins with the number of rows"),
+    ],
+)
+def test_what_files_of_numbers_cannot_hold(options: str, error: str, lagtop: Lagtop) -> None:
+    result = lagtop("table", *options.split(), input="0\n1\n")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"Error: {error}")
+    assert result.stderr.count("\n") == 1
