@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -26,6 +26,7 @@ from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.sweeps.angles import sweep_angles
 from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records, sweep
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
@@ -151,6 +152,84 @@ def writing(t: Array) -> None:
     print(f"{'lagtop table, whole process':65} {process:8.1f} ns  {process / floor:6.2f} x that")
 
 
+def cpu_of(
+    works: Mapping[str, Callable[[], object]], count: int, rounds: int = 9
+) -> dict[str, float]:
+    """Return the least CPU time of each, in nanoseconds per one of `count`, in turns."""
+    best = dict.fromkeys(works, float("inf"))
+    for round_ in range(rounds + 1):
+        for name, work in works.items():
+            begun = time.process_time()
+            work()
+            if round_:
+                best[name] = min(best[name], time.process_time() - begun)
+    return {name: seconds / count * 1e9 for name, seconds in best.items()}
+
+
+def columns(t: Array) -> None:
+    """Compare single columns with all angles: theta <= 0.7, u <= 0.6, t and r <= 0.1."""
+    motion, three = solve(Top()), ["t", "theta", "phi", "psi"]
+    names = ["theta", "u", "t", "r", "thetadot", "psidot", "phidot", "axis_z", "psi", "energy"]
+    works: dict[str, Callable[[], object]] = {"t theta phi psi": partial(motion.table, t, three)}
+    works |= {name: partial(motion.table, t, [name]) for name in names}
+    costs = cpu_of(works, t.size)
+    print("\nColumns of Motion.table, CPU per sample")
+    for name, cost in costs.items():
+        print(f"{name:65} {cost:8.1f} ns  {cost / costs['t theta phi psi']:6.2f} x all angles")
+
+
+FRESH = """
+import sys, time
+import numpy as np
+from lagrange_cli import Top, solve
+sampler, n = solve(Top()).sampler(), int(sys.argv[1])
+t, costs = np.sort(np.random.default_rng(0).uniform(0, 100, n)), []
+sampler.angles(t[:2])
+for _ in range(7):
+    begun = time.process_time()
+    sampler.angles(t)
+    costs.append((time.process_time() - begun) / n * 1e9)
+print(costs[0], min(costs[1:]))
+"""
+
+
+def fresh() -> None:
+    """Compare few samples with many: of 1e4 each at most 1.5 times that of 1e6."""
+    costs = {}
+    for count in (10_000, 100_000, 1_000_000):
+        command = [sys.executable, "-c", FRESH, str(count)]
+        runs = [subprocess.run(command, capture_output=True, check=True).stdout for _ in range(5)]
+        costs[count] = [
+            min(part) for part in zip(*(map(float, x.split()) for x in runs), strict=True)
+        ]
+    many = costs[1_000_000][1]
+    print("\nSamples in a process of their own, CPU per sample: the first call, and later ones")
+    for count, pair in costs.items():
+        shown = "  ".join(f"{cost:8.1f} ns {cost / many:5.2f} x many" for cost in pair)
+        print(f"{count:<45} {shown}")
+
+
+def set_up(rng: np.random.Generator) -> None:
+    """Time what angles need of a motion: <= 2 ms for one, <= 20 us for each of many."""
+    works = {
+        name: partial(lambda top: solve(top).sampler(), Top(**start))
+        for name, start in STARTS.items()
+    }
+    print("\nSet-up of the angles, CPU per top")
+    for name, cost in cpu_of(works, 1).items():
+        print(f"{name:65} {cost / 1e6:8.2f} ms")
+    count, times = 10_000, np.linspace(0, 10, 100)
+    rest = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
+    moving = rest | {"psidot0": rng.uniform(-5, 5, count), "thetadot0": rng.uniform(-5, 5, count)}
+    many: dict[str, Callable[[], object]] = {}
+    for name, tops in (("released from rest", rest), ("general starts", moving)):
+        inputs: dict[str, Any] = tops
+        many[f"sweep_angles, {name}, a time"] = partial(sweep_angles, [1.0], **inputs)
+        many[f"sweep_angles, {name}, 100 times"] = partial(sweep_angles, times, **inputs)
+    for name, cost in cpu_of(many, count, 3).items():
+        print(f"{name:65} {cost / 1e3:8.2f} us")
+
+
 def main() -> None:
     rng = np.random.default_rng(0)
     t = np.sort(rng.uniform(0, 100, COUNT))
@@ -170,6 +249,9 @@ def main() -> None:
         rows[f"lagtop, {name}, wrapped"] = nanoseconds(partial(sampler.angles, t, wrap=True))
     for name, cost in rows.items():
         print(f"{name:55} {cost:8.1f} ns  {cost / least:6.2f} x floor")
+    columns(t)
+    fresh()
+    set_up(rng)
     functions(rng)
     sweeps(rng)
     writing(t)
