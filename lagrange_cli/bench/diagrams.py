@@ -11,6 +11,7 @@ from ..output.write import write_bytes
 from ..plot.style import figure_bytes
 from .battery import CONTRACT
 from .front import is_done
+from .series import Series, series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,12 +23,16 @@ LEAST_UNITS = 1e-2
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:
-    """Draw error on x and time on y, both as logarithms, a line for each method."""
+    """Draw error on x and time on y, both as logarithms, a line for each method, and the front."""
     figure, (axes,) = _figure(1)
     rows = [row for row in findings.rows if is_done(row)]
-    for i, name in enumerate(sorted({row.method for row in rows}, key=_order(rows))):
+    front = sorted((row.error_max, row.ns_min) for row in rows if row.front)
+    if front:
+        x, y = _drawable(front)
+        axes.step(x, y, where="post", color="0.8", lw=6, zorder=1, label="front")
+    for name, look in series(row.method for row in sorted(rows, key=_by_error)).items():
         points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
-        _line(axes, i, name, points)
+        _line(axes, name, look, points)
     axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
     axes.set_title(f"Error against run time\ntimes: {findings.conditions['times']}", fontsize=9)
     _save(figure, path)
@@ -37,10 +42,10 @@ def draw_long_spans(findings: Findings, path: str) -> None:
     """Draw error and time against the span."""
     figure, (above, below) = _figure(2)
     rows = [row for row in findings.rows if is_done(row)]
-    for i, name in enumerate(dict.fromkeys(row.method for row in rows)):
+    for name, look in series(row.method for row in rows).items():
         mine = [row for row in rows if row.method == name]
-        _line(above, i, name, [(row.periods, row.units_max) for row in mine])
-        _line(below, i, name, [(row.periods, row.ns_min) for row in mine])
+        _line(above, name, look, [(row.periods, row.units_max) for row in mine])
+        _line(below, name, look, [(row.periods, row.ns_min) for row in mine])
     above.set(xlabel="nutation periods", ylabel="greatest error (units)")
     below.set(xlabel="nutation periods", ylabel="time per sample (ns)")
     title = f"Error and time against the span\ntimes: {findings.conditions['times']}"
@@ -72,9 +77,9 @@ def draw_stability(findings: Findings, path: str) -> None:
     _save(figure, path)
 
 
-def _order(rows: Sequence[Any]) -> Any:
-    """Return the key that sorts methods by their least error."""
-    return lambda name: (min(row.error_max for row in rows if row.method == name), name)
+def _by_error(row: Any) -> float:
+    """Return the error by which methods are sorted within their family."""
+    return float(row.error_max)
 
 
 def _figure(panels: int) -> tuple[Figure, Any]:
@@ -88,14 +93,15 @@ def _figure(panels: int) -> tuple[Figure, Any]:
     return figure, axes
 
 
-def _line(axes: Axes, i: int, name: str, points: Sequence[tuple[float, float]]) -> None:
-    """Draw a line; our own is black and thicker."""
-    mine = name.startswith("lagtop")
-    color = "black" if mine else f"C{i % 10}"
-    style = "--" if name.endswith("euler") else "-"
-    x, y = ([max(value, LEAST_ERROR) for value in axis] for axis in zip(*points, strict=True))
-    marker = "os^Dv<>pP*X"[i % 11]
-    axes.plot(x, y, style, marker=marker, ms=5, color=color, lw=2 if mine else 1, label=name)
+def _drawable(points: Sequence[tuple[float, float]]) -> list[list[float]]:
+    """Return the x and the y of points, none so small that it is not drawn."""
+    return [[max(value, LEAST_ERROR) for value in axis] for axis in zip(*points, strict=True)]
+
+
+def _line(axes: Axes, name: str, look: Series, points: Sequence[tuple[float, float]]) -> None:
+    """Draw the line of a method."""
+    x, y = _drawable(points)
+    axes.plot(x, y, label=name, **look.look())
 
 
 def _save(figure: Figure, path: str) -> None:

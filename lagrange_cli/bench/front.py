@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..output.findings import Field, short
@@ -106,15 +106,16 @@ def conclusions(rows: Sequence[MethodRow], methods: Mapping[str, Method]) -> Ite
                 yield f"{OURS} was compared with nothing."
             elif not outside:
                 yield "Nothing from outside this package was compared."
-    yield from _not_compared(rows, done)
+    yield from not_compared(rows)
+    failed = sum(not is_done(row) for row in rows if row.method in done)
+    if failed:
+        yield f"Settings without a result: {failed} (see the remarks)."
 
 
-def _not_compared(rows: Sequence[MethodRow], done: Collection[str]) -> Iterator[str]:
-    """Yield the methods without any result, with their first reasons, and how many runs failed."""
+def not_compared(rows: Sequence[MethodRow]) -> Iterator[str]:
+    """Yield a line with the methods without any result, and their first reasons."""
+    done = {row.method for row in rows if is_done(row)}
     reasons = {row.method: row.remark for row in reversed(rows) if row.method not in done}
     if reasons:
         told = (f"{name} ({remark})" for name, remark in sorted(reasons.items()))
         yield f"Not compared: {', '.join(told)}."
-    failed = sum(not is_done(row) for row in rows if row.method in done)
-    if failed:
-        yield f"Settings without a result: {failed} (see the remarks)."

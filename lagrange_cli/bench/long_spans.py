@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings
-from .front import FIELDS, MethodRow, is_done, is_out
+from .front import FIELDS, MethodRow, is_done, is_out, not_compared
 from .method import Method, Steps
 from .work_precision import Task, conditions, measure, nutation_period, task
 
@@ -52,7 +52,7 @@ def _measure(work: Task, name: str, method: Method, before: list[MethodRow]) -> 
 
 
 def _conclusions(rows: list[MethodRow]) -> list[str]:
-    """Return how error and time grow over the spans that each method could do."""
+    """Return how error and time grow over the spans of each method, and what was not compared."""
     lines = []
     for name in dict.fromkeys(row.method for row in rows):
         done = [row for row in rows if row.method == name and is_done(row)]
@@ -63,4 +63,4 @@ def _conclusions(rows: list[MethodRow]) -> list[str]:
                 f"{last.units_max:.1e} over {last.periods:.0e}; time a sample "
                 f"{(last.ns_min or 0) / (first.ns_min or 1):.1f} times as long"
             )
-    return lines
+    return [*lines, *not_compared(rows)]

@@ -12,6 +12,7 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import LagtopError, Top, compare, solve
+from lagrange_cli.bench import long_spans
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench import work_precision as bench
 from lagrange_cli.bench.engines import process, wire
@@ -183,3 +184,14 @@ def test_missing_engines_are_named(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
     assert whole["conclusions"][0] == "lagtop was compared with nothing."
     assert "drake-rk3 (not applicable: needs drake: pip install drake)" in whole["conclusions"][1]
     assert len(whole["rows"]) == 1 + len(engines(1))
+
+
+def test_missing_engines_are_named_over_long_spans_too(
+    lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(methods, "find_spec", lambda _: None)
+    monkeypatch.setattr(long_spans, "SPANS", [1.3, 2.3])
+    words = ["--long", "--methods", "lagtop,pybullet", "--n", 5, "--format", "json"]
+    said = json.loads(lagtop("bench", *words).stdout)["conclusions"]
+    needs = "not applicable: needs pybullet: pip install pybullet"
+    assert said[-1] == f"Not compared: pybullet ({needs})."
