@@ -120,6 +120,16 @@ def test_table_that_is_made(table: Callable[[], list[str]], folder: str) -> None
     assert with_table(page, table()) == page
 
 
+@pytest.mark.parametrize("room", ["elliptic", "judge", "motion", "plot"])
+def test_the_readme_of_a_room_says_what_each_module_is_for(room: str) -> None:
+    folder = ROOT / "lagrange_cli" / room
+    page = (folder / "README.md").read_text()
+    modules = {path.name for path in folder.glob("*.py")} - {"__init__.py"}
+    named = set(re.findall(r"`(?:\w+/)?(\w+\.py)`", page))
+    assert len(modules) > 5
+    assert modules - named == set()
+
+
 def test_every_option_and_key_is_explained() -> None:
     text = "\n".join(path.read_text() for path in READMES)
     context = click.Context(main)

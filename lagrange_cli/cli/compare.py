@@ -35,7 +35,7 @@ LONG = 1_000_000
 
 
 def _write_names(formatter: click.HelpFormatter) -> None:
-    """Write the names of columns, of alignments and of keys."""
+    """Write the quantities of a trajectory, and the names of columns by which each is known."""
     from ..inputs.trajectory_columns import shown_quantities
 
     with formatter.section("Columns of a trajectory, by name"):
@@ -71,7 +71,7 @@ def _parse_steps(text: str) -> list[float]:
     type=FILE,
     metavar="TRAJECTORY...",
 )
-@click.option("--scene", type=FILE, metavar="FILE", help="Scene file; options win.")
+@click.option("--scene", type=FILE, metavar="FILE", help="Scene file; options win over it.")
 @input_options(NUMBER)
 @click.option(
     "--columns",
@@ -113,7 +113,12 @@ def _parse_steps(text: str) -> list[float]:
     help="Steps of the trajectories, with commas between, for the order of convergence.",
 )
 @click.option("--max-error", type=NUMBER, help="Exit with 1 beyond this error, in radians.")
-@click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
+@click.option(
+    "--plot",
+    type=FILE,
+    metavar="FILE",
+    help="Draw the error too, over time and over the step: FILE.svg or .png.",
+)
 @output_options("table", "csv", "json")
 @click.pass_context
 def command(

@@ -79,7 +79,9 @@ def _conclusions(session: Session, limit: float) -> Iterator[str]:
         yield f"{_name(judgement)}: {_sentence(judgement, limit)}"
     found = session.convergence
     if found is not None:
-        if not found.falls:
+        if not found.falls and all(x.verdict == FINE for x in session.judgements):
+            yield "The error does not fall with the step: the numbers may have been rounded."
+        elif not found.falls:
             yield "The error does not fall with the step: this is the motion of another top."
         elif found.order is None:
             yield "The errors are too small or too large to show an order of convergence."

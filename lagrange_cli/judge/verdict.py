@@ -15,7 +15,7 @@ FINE, DRIFTS, OFF, ANOTHER, LOST = (
 VERDICTS = {
     FINE: "the error stays below the limit, 1e-3 rad or --max-error",
     DRIFTS: "it starts right, and the error grows beyond the limit",
-    ANOTHER: "the error does not fall with the step, or a usual slip explains it",
+    ANOTHER: "it is beyond the limit and does not fall with the step, or a usual slip explains it",
     OFF: "the first row is beyond the limit already: another start, or other frames",
     LOST: "a row is not finite",
 }
@@ -24,11 +24,11 @@ VERDICTS = {
 
 def verdict(judgement: Judgement, limit: float, found: Convergence | None) -> str:
     """Return the word for a trajectory, alone or among others with other steps."""
-    word = FINE
-    if judgement.error_max is not None and judgement.error_max > limit:
-        word = DRIFTS
+    beyond = judgement.error_max is not None and judgement.error_max > limit
+    if judgement.lost_at is not None:
+        return LOST
     if judgement.error_start > limit:
-        word = OFF
-    elif judgement.explained_by or (found is not None and not found.falls):
-        word = ANOTHER
-    return LOST if judgement.lost_at is not None else word
+        return OFF
+    if judgement.explained_by or (beyond and found is not None and not found.falls):
+        return ANOTHER
+    return DRIFTS if beyond else FINE

@@ -320,6 +320,17 @@ def test_rounding_need_not_fall() -> None:
     assert {row.verdict for row in rows} == {"fine"}
 
 
+def test_numbers_with_six_decimals_are_not_another_top() -> None:
+    runs = [(T, np.round(STATES, 6)), (T, np.round(STATES, 6))]
+    rows = judged(TOP, runs, [1e-3, 1e-4])
+    assert {row.verdict for row in rows} == {"fine"}
+    assert rows[0].error_max is not None
+    assert 1e-7 < rows[0].error_max < 1e-4
+    found = convergence(rows)
+    assert found is not None
+    assert not found.falls
+
+
 def test_steps_finer_than_the_best_do_not_count() -> None:
     """Rounding grows with the number of steps: 1e-9 at the step of 1e-5."""
     runs = [

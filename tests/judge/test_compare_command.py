@@ -14,7 +14,7 @@ from conftest import Lagtop, assert_one_line
 from engines import Body, Run, rk4, semi_implicit_euler
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import Top
+from lagrange_cli import Top, solve
 from lagrange_cli.judge.judgement import KEYS
 from lagrange_cli.plot.error_curves import ErrorCurve, draw_errors
 
@@ -94,6 +94,14 @@ def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> 
         "The error does not fall with the step: this is the motion of another top." in result.stdout
     )
     assert "taken as about the mass centre (A + m s^2); with that undone" in result.stdout
+
+
+def test_steps_of_rounded_numbers(lagtop: Lagtop, tmp_path: Path) -> None:
+    q = solve(Top()).table(np.linspace(0, 2, 101), ["t", "quaternion"])
+    np.savetxt(tmp_path / "q", np.column_stack(list(q.values())), "%.6f", header=" ".join(q))
+    result = lagtop("compare", tmp_path / "q", tmp_path / "q", "--steps", "1e-2,5e-3")
+    assert "fine, at most" in result.stdout
+    assert "does not fall with the step: the numbers may have been rounded." in result.stdout
 
 
 def test_rows_that_are_not_finite(lagtop: Lagtop, right: Path) -> None:
