@@ -25,9 +25,9 @@ class BodyRates(NamedTuple):
 class EulerRates(NamedTuple):
     """The rates of tilt, spin and precession."""
 
-    theta: Array
-    phi: Array
-    psi: Array
+    thetadot: Array
+    phidot: Array
+    psidot: Array
 
 
 def body_rates(
@@ -66,7 +66,7 @@ def euler_rates(
             "theta",
         )
     precession = (x * sin + y * cos) / sine
-    return EulerRates(theta=x * cos - y * sin, phi=z - precession * np.cos(tilt), psi=precession)
+    return EulerRates(x * cos - y * sin, z - precession * np.cos(tilt), precession)
 
 
 def _together(**values: ArrayLike) -> list[Array]:

@@ -84,7 +84,7 @@ def test_rates_and_angular_velocity_give_each_other(motion: Motion) -> None:
     theta, phi, p, q, r, *rates = motion.table(TIMES, names, wrap=True).values()
     computed = euler_rates(theta, phi, p=p, q=q, r=r)
     assert np.abs(np.array(computed) - np.array(rates)).max() < 2e-14
-    back = body_rates(theta, phi, thetadot=computed.theta, phidot=computed.phi, psidot=computed.psi)
+    back = body_rates(theta, phi, **computed._asdict())
     assert np.abs(np.array(back) - np.array([p, q, r])).max() < 2e-14
 
 
