@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..errors import LagtopError
-from .text import parse_number
+from .text import is_decimal, parse_number
 
 
 class ExactComplex(NamedTuple):
@@ -37,13 +37,22 @@ def parse_complex(text: str) -> ExactComplex:
     Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
     """
     text = text.strip()
+    real, imag = _part_texts(text)
+    if looks_complex(text) and not (is_decimal(real) and is_decimal(imag)):
+        raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {text!r}")
+    return ExactComplex(parse_number(real), parse_number(imag))
+
+
+def looks_complex(text: str) -> bool:
+    """Return whether a text has a letter for the imaginary unit, right or wrong."""
+    return not set("ijIJ").isdisjoint(text)
+
+
+def _part_texts(text: str) -> tuple[str, str]:
+    """Return the texts of the real and of the imaginary part, as they stand."""
     if not text.endswith("i"):
-        return ExactComplex(parse_number(text))
+        return text, "0"
     signs = [i for i, sign in enumerate(text) if sign in "+-" and text[i - 1 : i] not in {"e", "E"}]
     split = signs[-1] if signs else 0
     imag = text[split:-1]
-    try:
-        real = parse_number(text[:split] or "0")
-        return ExactComplex(real, parse_number(f"{imag}1" if imag in {"", "+", "-"} else imag))
-    except LagtopError as error:
-        raise LagtopError(f"{error} (a complex number is written 0.3+0.7i)") from None
+    return text[:split] or "0", f"{imag}1" if imag in {"", "+", "-"} else imag

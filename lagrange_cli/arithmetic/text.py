@@ -58,17 +58,22 @@ def parse_number(text: str) -> Fraction:
     text = text.strip()
     if len(text) > _MOST_CHARACTERS:
         raise LagtopError(f"must have at most {_MOST_CHARACTERS} characters, got {len(text)}")
-    try:
-        nearest = float(text) if set(text) <= _DECIMAL else math.nan
-    except ValueError:
-        nearest = math.nan
-    if math.isnan(nearest):
+    if not is_decimal(text):
         raise LagtopError(f"must be a finite decimal number, got {text!r}{_remedy(text)}")
+    nearest = float(text)
     if math.isinf(nearest):
         raise LagtopError(f"must be at most 1.8e308 in size, got {text}")
     if nearest == 0 and set(text.lower().partition("e")[0]) & set("123456789"):
         raise LagtopError(f"must be 0 or at least 5e-324 in size, got {text}")
     return Fraction(text)
+
+
+def is_decimal(text: str) -> bool:
+    """Return whether a text is a decimal number, of any size."""
+    try:
+        return set(text) <= _DECIMAL and not math.isnan(float(text))
+    except ValueError:
+        return False
 
 
 def _remedy(text: str) -> str:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import click
 
-from ..arithmetic.text import parse_number
+from ..arithmetic.exact_complex import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import ETA
 from ..output.write import write_record, write_table
@@ -29,17 +29,12 @@ if TYPE_CHECKING:
     from ..elliptic.quadrature import Quadrature
 
 
-class Distance(NamedTuple):
-    """A number, or a multiple of i."""
-
-    size: Fraction
-    imaginary: bool
-
-
-def _parse_distance(text: str) -> Distance:
+def _parse_distance(text: str) -> ExactComplex:
     """Return 0.7 or, imaginary, 0.7i."""
-    text = text.strip()
-    return Distance(parse_number(text.removesuffix("i")), text.endswith("i"))
+    value = parse_complex(text)
+    if value.real and value.imag:
+        raise LagtopError(f"must be real, or imaginary as 0.7i, got {value}")
+    return value
 
 
 DISTANCE = Parsed("number", _parse_distance)
@@ -84,7 +79,7 @@ def command(
     delta: Fraction,
     delta_star: Fraction,
     p: Fraction | None,
-    q: Distance | None,
+    q: ExactComplex | None,
     gap_above: Fraction | None,
     gap_below: Fraction | None,
     quadratic: bool,
@@ -139,7 +134,7 @@ def command(
 def _quadrature(
     delta: Fraction,
     delta_star: Fraction,
-    middle: tuple[Fraction | None, Distance | None],
+    middle: tuple[Fraction | None, ExactComplex | None],
     gaps: tuple[Fraction | None, Fraction | None],
     g: Fraction,
 ) -> Quadrature:
@@ -153,11 +148,11 @@ def _quadrature(
             "give either --p and --q or one or both of --gap-above, --gap-below, or --quadratic"
         )
     if p is not None and q is not None:
-        if q.size < 0:
-            raise LagtopError(f"--q must be >= 0, got {float(q.size)}{'i' * q.imaginary}")
-        if q.imaginary and q.size:
-            return Quadrature(delta_star, delta, (p, p), g, q.size)
-        return Quadrature(delta_star, delta, (p - q.size, p + q.size), g)
+        if q.real < 0 or q.imag < 0:
+            raise LagtopError(f"--q must be >= 0, or imaginary as 0.7i, got {q}")
+        if q.imag:
+            return Quadrature(delta_star, delta, (p, p), g, q.imag)
+        return Quadrature(delta_star, delta, (p - q.real, p + q.real), g)
     for name, gap in {"--gap-above": above, "--gap-below": below}.items():
         if gap is not None and gap <= 0:
             raise LagtopError(f"{name} must be > 0 (the period is infinite at 0), got {float(gap)}")

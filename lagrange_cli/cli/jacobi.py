@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..arithmetic.exact_complex import ExactComplex, parse_complex
+from ..arithmetic.exact_complex import ExactComplex, looks_complex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import JACOBI
 from ..output.write import write_record, write_table
@@ -43,7 +43,7 @@ def _parse_multiple(text: str) -> Multiple:
 
 
 def _parse_argument(text: str) -> Multiple | ExactComplex:
-    return parse_complex(text) if text.strip().endswith("i") else _parse_multiple(text)
+    return parse_complex(text) if looks_complex(text) else _parse_multiple(text)
 
 
 def _parse_multiples(text: str) -> Multiples:
@@ -200,7 +200,7 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactCompl
     try:
         value = parse_complex(param)
     except LagtopError as error:
-        raise LagtopError(f"--param {error}; an imaginary one is written 0.7i") from None
+        raise LagtopError(f"--param {error}") from None
     return value, not value.real and param.strip().endswith("i")
 
 

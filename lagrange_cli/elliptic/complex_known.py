@@ -6,15 +6,22 @@ like.  K and K' are transcendental for algebraic k (Schneider 1937), so that no 
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.exact_complex import ExactComplex
 from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.protocol import Value
 from .any_modulus import Kind
 from .complete import complete_k
+from .modulus_input import ModulusInput
 
 if TYPE_CHECKING:
     from .complex_table import ComplexRequest
+
+
+_RIGHT = ModulusInput("modular_angle", Fraction(45))
+"""The modulus sin 45 degrees, of which K' = K."""
 
 
 class Known(NamedTuple):
@@ -22,11 +29,19 @@ class Known(NamedTuple):
 
     parts: frozenset[str]
     poles: frozenset[str]
+    turns: frozenset[str] = frozenset()
+    """Parts that are whole multiples of a quarter turn, of which rounding leaves a trace."""
 
     def names(self) -> set[str]:
         """Return all parts that may be 0 or not a number."""
         split = {f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")}
-        return split | self.parts
+        return split | self.parts | self.turns
+
+    def cleared(self, ar: ManyDigits, parts: dict[str, Value]) -> dict[str, Value]:
+        """Return all parts, those of no turn as 0: a trace is far smaller than a quarter turn."""
+        trace = ar.mpf(10) ** (-ar.dps // 2)
+        none = {name for name in self.turns & parts.keys() if abs(parts[name]) < trace}
+        return {name: 0 * part if name in none else part for name, part in parts.items()}
 
 
 def known_parts(u: ExactComplex, request: ComplexRequest, kind: Kind) -> Known:
@@ -55,7 +70,8 @@ def known_parts(u: ExactComplex, request: ComplexRequest, kind: Kind) -> Known:
         poles |= {"omega11", "pi11"}
     if _beyond(u, request):
         poles.add(am)
-    return Known(frozenset(zeros.split()), frozenset(poles))
+    turns = frozenset() if large else _turns(u, v, request.modulus)
+    return Known(frozenset(zeros.split()), frozenset(poles), turns)
 
 
 def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
@@ -69,6 +85,28 @@ def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
         parts += " im"
     names = (f" {family}{ij}_{part}" for ij in ("01", "00", "11") for part in parts.split())
     return "".join(names)
+
+
+def _turns(
+    u: ExactComplex, v: ExactComplex, modulus: ModulusInput | ExactComplex
+) -> frozenset[str]:
+    """Return the parts that are multiples of a quarter turn where u and v are on symmetric lines.
+
+    Omega(u, v) is Omega(v, u), but for the odd theta function and half turns; so it is real where u
+    is conj v or -conj v.  For K' = K (or K' = K - iK, of k = i) theta(iu) is theta(u), i theta(u)
+    of the odd one, times exp(pi u^2/4K^2).  On the diagonals conj u is iu or -iu; so Pi is real
+    where u and v are on one of them, and imaginary where they are on both.
+    """
+    if not (all(u) and all(v)):
+        return frozenset()
+    turns, straight = set(), u.real * v.real == u.imag * v.imag
+    if v in (ExactComplex(u.real, -u.imag), ExactComplex(-u.real, u.imag)):
+        turns = {"omega01_im", "omega00_im"}
+    on_diagonals = all(abs(z.real) == abs(z.imag) for z in (u, v))
+    even = {ExactComplex(Fraction(0), Fraction(1)): "01", _RIGHT: "00"}.get(modulus)
+    if even and on_diagonals:
+        turns |= {f"pi{ij}_{'im' if straight else 're'}" for ij in (even, "11")}
+    return frozenset(turns)
 
 
 def _beyond(u: ExactComplex, request: ComplexRequest) -> bool:

@@ -137,7 +137,7 @@ def complex_digit_rows(
             ar, functions = at_precision(context.dps)
             z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
             columns = _columns(ar, z, functions, request, known.poles)
-            return _parts(ar, columns, real=arguments.imag is None)
+            return known.cleared(ar, _parts(ar, columns, real=arguments.imag is None))
 
         return settled_texts(compute, digits, known.names())
 

@@ -40,6 +40,17 @@ def test_other_texts_are_refused(text: str) -> None:
         parse_complex(text)
 
 
+@pytest.mark.parametrize("option", ["--u", "--k", "--param"])
+@pytest.mark.parametrize("text", ["1+2j", "0.7i+0.3", "2Ki", "0.3 + 0.7i", "1+I", "0.3+infi"])
+def test_odd_spellings_are_told_the_right_one(option: str, text: str, lagtop: Lagtop) -> None:
+    """The line names all of the text, as it was typed, and the right spelling."""
+    given = {"--k": "0.8", "--u": "1", "--param": "0.3"} | {option: text}
+    result = lagtop("jacobi", "--pi", *(word for pair in given.items() for word in pair))
+    assert (result.exit_code, result.stdout) == (2, "")
+    line = f"Error: {option} must be a finite number, complex as 0.3+0.7i, got {text!r}\n"
+    assert result.stderr == line
+
+
 def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
     """Return the columns of a row with both parts, which may be numbers or texts."""
     return {
@@ -107,6 +118,54 @@ def test_poles_and_zeros(digits: str, lagtop: Lagtop) -> None:
     assert [row["zeta11_im"] is None for row in rows] == [True, False, False, False]
     assert [row["am_deg_re"] is None for row in rows] == [False, False, False, True]
     assert (rows[0]["sn_re"], rows[0]["pi01_im"], rows[3]["sn_re"]) == (0, 0, 0)
+
+
+def exact_third(tau: mpmath.mpc, K: mpmath.mpf, u: complex, v: complex) -> dict[str, mpmath.mpc]:
+    """Return Omega and Pi, but for half turns, of mpmath's theta functions."""
+    found = {}
+    for ij, n in (("01", 4), ("00", 3), ("11", 1)):
+
+        def theta(z: complex, order: int = 0, n: int = n) -> mpmath.mpc:
+            zeta, q = mpmath.pi * z / (2 * K), mpmath.exp(1j * mpmath.pi * tau)
+            return mpmath.jtheta(n, zeta, q, order) * (mpmath.pi / (2 * K)) ** order
+
+        found[f"omega{ij}"] = mpmath.log(theta(u - v) / theta(u + v)) / 2
+        found[f"pi{ij}"] = found[f"omega{ij}"] + u * theta(v, 1) / theta(v)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("modulus", "u", "v", "zeros"),
+    [
+        ("--k 0.8", "0.3+0.7i", "0.3-0.7i", "omega01_im omega00_im"),
+        ("--k 0.8", "0.3+0.7i", "-0.3+0.7i", "omega01_im omega00_im"),
+        ("--k 0.8i", "0.25-0.5i", "0.25+0.5i", "omega01_im omega00_im"),
+        ("--k 0.8", "5.5+1i", "5.5-1i", "omega00_im"),
+        ("--k i", "1+i", "0.25+0.25i", "pi01_im pi11_im"),
+        ("--k i", "1+i", "0.25-0.25i", "pi01_re pi11_re"),
+        ("--modular-angle 45", "1-i", "-0.25+0.25i", "pi00_im pi11_im"),
+        ("--modular-angle 45", "-0.5-0.5i", "0.25-0.25i", "pi00_re pi11_re"),
+        ("--modular-angle 45", "0.5+0.5i", "0.5-0.5i", "omega01_im omega00_im pi00_re pi11_re"),
+        ("--modular-angle 46", "1-i", "-0.25+0.25i", ""),
+    ],
+)
+def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lagtop) -> None:
+    """Parts that are 0 by a symmetry are printed as 0, and nothing else is."""
+    args = f"jacobi {modulus} --u={u} --omega --pi --param={v} --digits 9 --format json"
+    row = json.loads(lagtop(*args.split()).stdout)[0]
+    third = {name: row[name] for name in row if name[:2] in {"om", "pi"}}
+    assert {name for name in third if not third[name]} == set(zeros.split())
+    with mpmath.workdps(30):
+        name, value = modulus.split()
+        angle = mpmath.radians(float(value)) if name == "--modular-angle" else None
+        m = mpmath.sin(angle) ** 2 if angle else mpmath.re(complex(parse_complex(value)) ** 2)
+        m = mpmath.nint(m * 100) / 100 if angle is None else m
+        K, K_prime = mpmath.ellipk(m), mpmath.ellipk(1 - m)
+        exact = exact_third(1j * K_prime / K, K, *map(complex, map(parse_complex, (u, v))))
+        for name, z in exact.items():
+            difference = mpmath.mpc(third[f"{name}_re"], third[f"{name}_im"]) - z
+            turns = mpmath.nint(difference.imag / mpmath.pi)
+            assert abs(difference - 1j * mpmath.pi * turns) < 2e-8
 
 
 @pytest.mark.parametrize(
