@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from ..errors import LagtopError
+from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
 from .options import (
@@ -119,6 +120,7 @@ def command(
         wrap,
         jobs or 1,
         count or (None if dt or times else DEFAULT_ROWS),
+        tops is not None and (times is not None or t_max is not None),
     )
     if tops is None:
         _write_one(solved(scene, rad, digits is not None, options), wish, digits, fmt, output)
@@ -153,6 +155,17 @@ class Wish(NamedTuple):
     jobs: int
     rows_per_top: int | None
     """Their number, where the options tell it."""
+    same: bool
+    """Whether all tops have the same times."""
+
+    def same_times(self) -> Points | None:
+        """Return the times of all tops, if there are any that do not hang on the motion."""
+        from ..motion.solve import solve
+
+        try:
+            return self.times(solve(Top())) if self.same else None
+        except LagtopError:  # every row says so
+            return None
 
 
 def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion], Points] | None:
@@ -205,6 +218,7 @@ def _write_many(tops: str, shared: Mapping[str, float], wish: Wish, fmt: str, ou
         wrap=wish.wrap,
         fmt=fmt,
         rows_per_top=wish.rows_per_top,
+        same=wish.same_times(),
     )
     tally = Tally()
     texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))

@@ -42,16 +42,22 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> di
     count = whole[-1] if times.ndim else 1
     rows = times.reshape(-1, count) if count else np.empty((1, 0))
     rows = np.broadcast_to(rows, (tops.m.size, count))
-    angles = np.full((len(_NAMES), tops.m.size, count), np.nan)
-    error = np.full(tops.m.size, None)
-    with ARRAYS.working():
-        for first in range(0, tops.m.size, BLOCK_ROWS):
-            some = slice(first, first + BLOCK_ROWS)
-            _fill(tops.part(some), _Wish(rows[some], wrap, angles[:, some]), error[some])
+    angles, error = angles_of(tops, rows, wrap=wrap)
     found: dict[str, Column] = {
         name: values.reshape(whole) for name, values in zip(_NAMES, angles, strict=True)
     }
     return found | {"error": error.reshape(shape)}
+
+
+def angles_of(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:
+    """Return theta, phi and psi of each top at its row of times, and what is wrong with it."""
+    angles = np.full((len(_NAMES), *t.shape), np.nan)
+    error = np.full(tops.m.size, None)
+    with ARRAYS.working():
+        for first in range(0, tops.m.size, BLOCK_ROWS):
+            some = slice(first, first + BLOCK_ROWS)
+            _fill(tops.part(some), _Wish(t[some], wrap, angles[:, some]), error[some])
+    return angles, error
 
 
 class _Wish(NamedTuple):

@@ -14,14 +14,18 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.solve import Motion, solve
-from ..motion.table import headings, rows
+from ..motion.table import DEFAULT_COLUMNS, headings, rows
 from ..output.write import block_text
+from .angles import angles_of
 from .jobs import in_order
 from .parts import Part
+from .top_arrays import TopArrays
 
-_TOPS_AT_ONCE = 64
-_ROWS_PER_TASK = 10_000
+_TOPS_AT_ONCE = 1024
+_ROWS_PER_TASK = 50_000
 """Rows that are worth the way to another process."""
+_WORTH_ARRAYS = 16
+"""Tops that are sooner computed together, as arrays, than one by one."""
 
 
 class Tables(NamedTuple):
@@ -36,6 +40,8 @@ class Tables(NamedTuple):
     radians: bool
     wrap: bool
     fmt: str
+    same: Array | None = None
+    """The times of all tops, where these are few and do not hang on the motion."""
 
     @property
     def header(self) -> list[str]:
@@ -45,6 +51,10 @@ class Tables(NamedTuple):
 
     def parts(self, lines: Lines) -> Iterator[Part]:
         """Yield blocks of rows as text; a top that has no table has one row with its error."""
+        angles_alone = set(self.columns) <= set(DEFAULT_COLUMNS)
+        if self.same is not None and angles_alone and lines.size >= _WORTH_ARRAYS:
+            yield from self._angles(lines, self.same)
+            return
         for row in lines.rows():
             yield from self._table(row)
 
@@ -57,6 +67,22 @@ class Tables(NamedTuple):
         work = self.parts if jobs == 1 else self.listed
         return chain.from_iterable(in_order(work, lines, jobs))
 
+    def _angles(self, lines: Lines, times: Array) -> Iterator[Part]:
+        """Yield tables of angles, computed for all tops at once."""
+        inputs = lines.arrays(self.shared).inputs
+        tops = TopArrays(*(np.asarray(inputs[name]) for name in TopArrays._fields))
+        rows = np.broadcast_to(times, (tops.m.size, times.size))
+        angles, errors = angles_of(tops, rows, wrap=self.wrap)
+        if not self.radians:
+            np.degrees(angles, out=angles)
+        for i, row in enumerate(lines.rows()):
+            if error := row.error or errors[i]:
+                yield self._refused(row, error)
+                continue
+            found = dict(zip(DEFAULT_COLUMNS, (times, *angles[:, i]), strict=True))
+            block = np.stack([found[name] for name in self.columns], axis=1)
+            yield Part(0, self._text(row, block, None), 1, 0, "")
+
     def _table(self, row: TopRow) -> Iterator[Part]:
         try:
             if row.error:
@@ -66,12 +92,16 @@ class Tables(NamedTuple):
                 motion, self.times(motion), self.columns, radians=self.radians, wrap=self.wrap
             )
         except LagtopError as error:
-            reason = f"line {row.line}: {error}"
-            nothing = np.full((1, len(headings(self.columns))), np.nan)
-            yield Part(0, self._text(row, nothing, reason), 1, 1, reason)
+            yield self._refused(row, str(error))
             return
         for i, block in enumerate(blocks):
             yield Part(0, self._text(row, block, None), 0 if i else 1, 0, "")
+
+    def _refused(self, row: TopRow, error: str) -> Part:
+        """Return the one row of a top that has no table."""
+        reason = f"line {row.line}: {error}"
+        nothing = np.full((1, len(headings(self.columns))), np.nan)
+        return Part(0, self._text(row, nothing, reason), 1, 1, reason)
 
     def _text(self, row: TopRow, block: Array, error: str | None) -> bytes:
         carried = row.carried or [row.line]
@@ -89,12 +119,16 @@ def open_tables(
     wrap: bool,
     fmt: str,
     rows_per_top: int | None = None,
+    same: Points | None = None,
 ) -> tuple[Tables, Iterator[Lines]]:
     """Return the tables of the tops in a file, and its lines a few at a time.
 
-    They are fewer where a top has many rows, or nobody knows how many.  Raises LagtopError if the
-    file cannot be read.
+    They are fewer where a top has many rows, or nobody knows how many.  `same` are the times where
+    they are those of all tops.  Raises LagtopError if the file cannot be read.
     """
     at_once = 1 if not rows_per_top else min(max(_ROWS_PER_TASK // rows_per_top, 1), _TOPS_AT_ONCE)
     source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
-    return Tables(source, shared, columns, times, radians, wrap, fmt), lines
+    block = (
+        None if same is None or same.count > _ROWS_PER_TASK else np.concatenate([*same.blocks()])
+    )
+    return Tables(source, shared, columns, times, radians, wrap, fmt, block), lines

@@ -68,3 +68,29 @@ def test_tables_of_tops_as_json_with_the_line_where_nothing_is_carried(lagtop: L
 def test_what_does_not_go_with_tops(more: list[str], lagtop: Lagtop) -> None:
     result = lagtop("table", "--tops", "-", *more, input=TOPS)
     assert (result.exit_code, result.stdout) == (2, "")
+
+
+@pytest.mark.parametrize("rad", [[], ["--rad", "--wrap"]])
+@pytest.mark.parametrize("columns", ["t,theta,phi,psi", "psi,t"])
+def test_tables_of_many_tops_are_computed_together(
+    columns: str, rad: list[str], lagtop: Lagtop
+) -> None:
+    """As arrays from 16 tops on, where the times are the same; each is the table of one top."""
+    tilt = "theta0_rad" if rad else "theta0_deg"
+    tops = f"id,r0,{tilt},psidot0\n" + "".join(f"{i},{20 + i},{i % 3},{i % 2}\n" for i in range(40))
+    options = ["--columns", columns, "--t-max", "2", "--n", "5", *rad]
+    result = lagtop("table", "--tops", "-", *options, input=tops + "x,5O,1,0\n")
+    assert result.exit_code == 1
+    header, *rows = csv.reader(io.StringIO(result.stdout))
+    assert header[1:-1] == next(csv.reader(io.StringIO(lagtop("table", *options).stdout)))
+    assert [row[0] for row in rows] == [
+        *(str(i) for i in range(40) for _ in range(1 if i % 3 == 0 and i % 2 else 5)),
+        "x",
+    ]
+    assert rows[-1][-1].startswith("line 42: r0 must be")
+    for i in (1, 2, 6, 38):
+        more = ["--r0", 20 + i, "--theta0", i % 3, "--psidot0", i % 2]
+        alone = list(csv.reader(io.StringIO(lagtop("table", *options, *more).stdout)))[1:]
+        together = [row[1:-1] for row in rows if row[0] == str(i)]
+        for one, other in zip(together, alone, strict=True):
+            assert [float(x) for x in one] == pytest.approx([float(x) for x in other], rel=1e-14)
