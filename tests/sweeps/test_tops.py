@@ -75,7 +75,7 @@ def test_what_does_not_go_with_tops(more: list[str], lagtop: Lagtop) -> None:
 def test_tables_of_many_tops_are_computed_together(
     columns: str, rad: list[str], lagtop: Lagtop
 ) -> None:
-    """As arrays from 16 tops on, where the times are the same; each is the table of one top."""
+    """Arrays serve from 16 tops on, where the times are the same; each is the table of one top."""
     tilt = "theta0_rad" if rad else "theta0_deg"
     tops = f"id,r0,{tilt},psidot0\n" + "".join(f"{i},{20 + i},{i % 3},{i % 2}\n" for i in range(40))
     options = ["--columns", columns, "--t-max", "2", "--n", "5", *rad]
