@@ -39,7 +39,7 @@ class Decimals:
     """The arithmetic of decimals with so many digits; its exponents have no bounds in practice."""
 
     is_array = False
-    nan = Decimal("NaN")
+    nan, inf = Decimal("NaN"), Decimal("Infinity")
 
     def __init__(self, digits: int = 40) -> None:
         self.digits = digits

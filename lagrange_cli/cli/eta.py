@@ -104,7 +104,6 @@ def command(
     infinity, as for Lagrange's top, and under --quadratic both are.
     """
     from ..elliptic.eta import record
-    from ..elliptic.eta_table import digit_rows, header, rows
 
     times = listed("tau", single, grid)
     if quadratic:
@@ -121,6 +120,8 @@ def command(
             raise LagtopError("--chain needs --tau or --tau-range")
         write_record(record(quadrature, digits, c3), fmt, output, lambda: ETA)
         return
+    from ..elliptic.eta_table import digit_rows, header, rows
+
     unit = ("rad" if rad else "deg") if chain else ""
     if digits is None:
         parts = with_progress(rows(quadrature, times, c3, unit), times.count, 3_000_000)

@@ -132,7 +132,6 @@ def command(
     imaginary, columns end in _re and _im, and imaginary parts go up to 2^50 periods too.  Omega and
     Pi are continuous between the lines of zeros of theta; am is empty beyond its branch points.
     """
-    from ..elliptic.function_table import Request
     from ..elliptic.modulus_input import ModulusInput, constants_record
 
     beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
@@ -174,6 +173,8 @@ def command(
             raise LagtopError(f"--{families[0]} needs --u or --u-range")
         write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
         return
+    from ..elliptic.function_table import Request
+
     part = parameter.imag if imaginary else parameter.real
     request = Request(modulus, families, part, imaginary, rad, in_quarters)
     _write_rows(arguments, request, digits, fmt, output)
@@ -181,11 +182,11 @@ def command(
 
 def _arguments(single: list[Multiple], grid: Multiples | None) -> tuple[Points | None, bool]:
     """Return the arguments, if any, and whether they are factors of K."""
-    from ..inputs.multiples import listed_multiples
-
     exclude({"--u": single or None, "--u-range": grid})
     if not (single or grid):
         return None, False
+    from ..inputs.multiples import listed_multiples
+
     return grid or listed_multiples(tuple(single))
 
 

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import agm
-from .jacobi import jacobi
 from .modulus import Modulus
 from .proved_digits import settled_or_rounded
 from .quadrature import Quadrature
@@ -273,6 +272,8 @@ def eta_and_rate(
     (3.2.12) after a halving of the argument: both distances keep their digits.  Of a complex pair
     of roots it is m'' (sn v dn v)^2 : m' cn^2 v of the modulus kappa.
     """
+    from .jacobi import jacobi  # not for the constants
+
     _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, band))
     if band.pair:
         up, down = abs(ar.sqrt(c.m2) * sn * dn), abs(ar.sqrt(c.m1) * cn)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.blocks import in_arithmetic
-from ..arithmetic.double_double import Pair, sqrt_pair, two_product, two_sum
-from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
 from .complete import complete_e, complete_k, nome
+
+if TYPE_CHECKING:  # NumPy is loaded for arrays only
+    from ..arithmetic.double_double import Pair
+    from ..arithmetic.protocol import FunctionArithmetic, Value
 
 _INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 
@@ -56,7 +56,12 @@ def modulus(
     if len(named) != 1:
         raise LagtopError(f"exactly one of {', '.join(names)} must be given, got {len(named)}")
     name, value = named[0]
-    value = np.asarray(value, dtype=float) if ar.is_array else ar.convert(value)
+    if ar.is_array:
+        import numpy as np
+
+        value = np.asarray(value, dtype=float)
+    else:
+        value = ar.convert(value)
     most = ar.pi / 2 if name == "angle" else 1
     inside = (value >= 0) & ((value < 1) if name == "q" else (value <= most))
     if not ar.everywhere(inside):
@@ -83,6 +88,10 @@ def constants(ar: FunctionArithmetic, modulus: Modulus) -> Constants:
 
 def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
     """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
+    import numpy as np
+
+    from ..arithmetic.double_double import Pair, sqrt_pair, two_product, two_sum
+
     a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
     a_low += rest / 2
     b, b_low = sqrt_pair(np.asarray(k_prime), np.asarray(rest))
@@ -111,6 +120,10 @@ def _from_k_prime(ar: FunctionArithmetic, k_prime: Value) -> Modulus:
 def _from_m(ar: FunctionArithmetic, m: Value) -> Modulus:
     if not ar.is_array:
         return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
+    import numpy as np
+
+    from ..arithmetic.double_double import sqrt_pair, two_sum
+
     return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(np.ones_like(m), -m)))
 
 
@@ -140,6 +153,10 @@ def _complement(ar: FunctionArithmetic, k: Value) -> tuple[Value, Value]:
     """Return sqrt(1 - k^2) and what rounding takes from it."""
     if not ar.is_array:
         return ar.sqrt((1 - k) * (1 + k)), 0 * k
+    import numpy as np
+
+    from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
+
     square, error = two_product(k, k)
     difference, rest = two_sum(np.ones_like(k), -square)
     return sqrt_pair(*two_sum(difference, rest - error))

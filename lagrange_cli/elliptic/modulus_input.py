@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.double_double import pair
-from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.protocol import Value
+from ..arithmetic.decimals import decimals
 from ..errors import LagtopError
 from .modulus import Modulus, constants, modulus
-from .proved_digits import settled_or_rounded
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import FunctionArithmetic, Value
+
+_DIGITS = 50
+"""Digits of constants that are rounded to doubles; 34 would do."""
 
 
 class ModulusInput(NamedTuple):
@@ -41,10 +44,13 @@ class ModulusInput(NamedTuple):
         zeros = {"k", "nome", "modular_angle_deg", "modular_angle_rad"} if k_vanishes else set()
         return zeros | ({"k_prime", "nome_prime"} if complement_vanishes else set())
 
-    def in_digits(self, ar: ManyDigits) -> Modulus:
-        """Return the modulus in an mpmath context.  Raises LagtopError where it is out of range."""
+    def in_digits(self, ar: FunctionArithmetic) -> Modulus:
+        """Return the modulus in an mpmath context or, of k or k', in decimals.
+
+        Raises LagtopError where it is out of range.
+        """
         self.check()
-        value = ar.convert(self.value)
+        value: Any = ar.convert(self.value)
         if self.name == "nome":
             return modulus(ar, q=value)
         if self.name != "modular_angle":
@@ -58,6 +64,9 @@ class ModulusInput(NamedTuple):
 
         Raises LagtopError where it is out of range, or k' is too small for a double.
         """
+        from ..arithmetic.double_double import pair
+        from ..arithmetic.many_digits import ManyDigits
+
         exact = self.in_digits(ManyDigits())
         rounded = Modulus(float(exact.k), *pair(exact.k_prime))
         if exact.k_prime > 0 and not rounded.k_prime:
@@ -67,8 +76,8 @@ class ModulusInput(NamedTuple):
         return rounded
 
 
-def constants_in(ar: ManyDigits, modulus_input: ModulusInput) -> dict[str, Value]:
-    """Return the record of a modulus in an mpmath context; None for what is infinite."""
+def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[str, Value]:
+    """Return the record of a modulus in the digits of an arithmetic; None for what is infinite."""
     exact = modulus_input.in_digits(ar)
     K, K_prime, E, E_prime, q = constants(ar, exact)
     other = constants(ar, Modulus(exact.k_prime, exact.k)).q
@@ -80,8 +89,8 @@ def constants_in(ar: ManyDigits, modulus_input: ModulusInput) -> dict[str, Value
         f"modular_angle_{unit}": angle,
         "nome": q,
         "nome_prime": other,
-        "K": None if ar.isinf(K) else K,
-        "K_prime": None if ar.isinf(K_prime) else K_prime,
+        "K": None if K == ar.inf else K,
+        "K_prime": None if K_prime == ar.inf else K_prime,
         "E": E,
         "E_prime": E_prime,
     }
@@ -89,5 +98,12 @@ def constants_in(ar: ManyDigits, modulus_input: ModulusInput) -> dict[str, Value
 
 def constants_record(modulus_input: ModulusInput, digits: int | None = None) -> dict[str, Any]:
     """Return the record, each number the nearest double or to so many significant digits."""
+    if digits is None and modulus_input.name in {"k", "k_prime"}:  # without mpmath
+        ar: Any = decimals(_DIGITS)
+        with ar.working():
+            exact = constants_in(ar, modulus_input)
+        return {name: None if x is None else float(x) for name, x in exact.items()}
+    from .proved_digits import settled_or_rounded
+
     zeros = modulus_input.zeros()
     return settled_or_rounded(lambda ar: constants_in(ar, modulus_input), digits, zeros)

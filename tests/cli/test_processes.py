@@ -39,6 +39,10 @@ def loaded(*args: str) -> set[str]:
         ("sweep --help", set()),
         ("compare --help", set()),
         ("sweep --r0 1:2:3", {"numpy", "orjson"}),
+        ("jacobi --k 0.8 --format json", set()),
+        ("jacobi --k-prime 1e-9", {"rich"}),
+        ("jacobi --nome 0.1 --format csv", {"mpmath"}),
+        ("eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json", {"mpmath"}),
     ],
 )
 def test_nothing_is_loaded_that_is_not_needed(line: str, allowed: set[str]) -> None:
