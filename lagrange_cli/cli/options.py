@@ -12,15 +12,13 @@ import click
 from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..inputs.top import Top, build_top
-from ..motion.solve import Motion, solve
 from ..output.terminal import one_line
-from ..output.write import write_findings
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from ..arithmetic.points import Points
+    from ..motion.solve import Motion
     from ..output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
@@ -83,6 +81,9 @@ def solved(
     scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
 ) -> Motion:
     """Return the motion of the top in a scene file, if any, and in the options, which win."""
+    from ..inputs.top import build_top  # not for commands without a top
+    from ..motion.solve import solve
+
     given: dict[str, Number] = dict(by_key(options, radians=rad))
     if scene is None:
         top = build_top(given, exact=exact)
@@ -126,6 +127,8 @@ def given(name: str) -> bool:
 
 def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
     """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
+    from ..output.write import write_findings
+
     findings = write_findings(find, fmt, output)
     if fmt == "csv":
         for name, text in findings.conditions.items():
@@ -160,6 +163,7 @@ _SCENE_OPTIONS = [
 
 def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[type-arg]
     """Add the options for the inputs of a top, with their defaults, and --rad."""
+    from ..inputs.top import Top  # not for commands without a top
 
     defaults = Top().inputs()
 
