@@ -17,6 +17,8 @@ from .seen import Conventions, Quantities
 
 Watch = Callable[[Iterable[Quantities]], Iterable[Quantities]]
 """Passes blocks on, and may show how many rows have passed."""
+_OF_THE_FILE = {"t", "angle_rates"}
+"""Arguments that a file gives, so that an error about them is one of its data."""
 
 
 class Request(NamedTuple):
@@ -62,9 +64,9 @@ def _hearing(motion: Motion, path: str, request: Request, watch: Watch) -> tuple
         except DataError:
             raise
         except LagtopError as error:
-            if error.key not in {None, "t"}:
+            if error.key not in {None, *_OF_THE_FILE}:
                 raise
-            kind = DataError if error.key == "t" else LagtopError
+            kind = DataError if error.key in _OF_THE_FILE else LagtopError
             raise kind(f"{shown_path(path)}: {error}") from None
     named = replace(hearing.judgement, file=path)
     return hearing._replace(judgement=named), given

@@ -101,7 +101,10 @@ Said = Mapping[str, tuple[str, str | None]]
 
 
 def see(given: Quantities, conventions: Conventions, said: Said) -> Seen:
-    """Return what quantities show.  What names say wins over the conventions."""
+    """Return what quantities show.  What names say wins over the conventions.
+
+    Raises LagtopError for rates of the angles alone: without an attitude they say nothing.
+    """
     reader = _Reader(given, conventions, said)
     seen = Seen(given["t"][:, 0], **reader.attitude())
     return replace(seen, **reader.rates(seen))
@@ -156,11 +159,19 @@ class _Reader:
         return {"axis": rotations.directed(axis), "norm": np.linalg.norm(axis, axis=1) - 1.0}
 
     def rates(self, seen: Seen) -> dict[str, Any]:
-        """Return the angular velocity, in the frame that it is given in."""
+        """Return the angular velocity, in the frame that it is given in.
+
+        Raises LagtopError for rates of the angles without any attitude.
+        """
         if "rates" in self.given:
             frame = self.convention("rates", self.conventions.rates)
             return {f"{frame}_rates": self.given["rates"]}
-        if "angle_rates" not in self.given or seen.quaternion is None:
+        if "angle_rates" not in self.given:
+            return {}
+        if seen.quaternion is None and seen.axis is None and not seen.angles:
+            wanted = "an attitude or a part of it, such as theta, phi and psi"
+            raise LagtopError(f"angle_rates must come with {wanted}, got none", "angle_rates")
+        if seen.quaternion is None:
             return {}
         psi = rotations.angles_of(seen.quaternion)["psi"]
         nutation, spin, precession = (self.given["angle_rates"][:, i] for i in range(3))

@@ -507,6 +507,7 @@ def test_rows_that_are_kept_are_spread_evenly(block: int) -> None:
     [
         ({}, "compare must be given an attitude"),
         ({"quaternion": Q[:5]}, r"quaternion must be real numbers of shape \(201, 4\)"),
+        ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
         ({"theta": ["1"] * 201}, r"theta must be real numbers of shape \(201, 1\), got \['1'"),
         ({"theta": T > 1}, r"theta must be real numbers .* got bool of shape \(201,\)"),
         ({"theta": 1j * T}, r"theta must be real numbers .* got complex128 of shape"),

@@ -167,6 +167,7 @@ def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("a.csv").write_text("t,theta\n0,30\n")
     Path("b.csv").write_text("t,theta\n0,x\n")
     Path("c.csv").write_text("t,theta\n1e99,30\n")
+    Path("e.csv").write_text("t,thetadot,phidot,psidot\n0,0,50,0\n")
     Path("d.csv").write_text("t,q0,q1,q2,q3\n0,0.5,0.5,0.5,0.5\n")
 
 
@@ -188,6 +189,7 @@ def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["b.csv"], 65, "b.csv, line 2, column 2: theta must be a number, got 'x'"),
         (["c.csv"], 65, "c.csv: t must be finite and within 2^50 periods"),
         (["d.csv"], 2, "d.csv: the first row does not prove the order of the quaternion"),
+        (["e.csv"], 65, "e.csv: angle_rates must come with an attitude or a part of it"),
         (["a.csv", "--theta0", "200"], 2, "theta0_deg must be in [0, 180]"),
     ],
 )
