@@ -171,10 +171,10 @@ def fast_remark(
     exceeds the elementary rate, relative to that.
     """
     parts = round(excess * 1e6)
-    mean = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}"
+    where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
         f"pseudo-regular precession: nods by {nodding:.3g} {'rad' if radians else 'deg'} in "
-        f"{period:.3g} time; its mean is {mean} mgs/(C r0) = {elementary:.3g} rad/time"
+        f"{period:.3g} time; its mean is {where} mgs/(C r0) = {elementary:.3g} rad/time"
     )
 
 
