@@ -26,7 +26,7 @@ from .options import (
 from .progress import with_progress
 
 if TYPE_CHECKING:
-    from ..judge.files import Session
+    from ..judge.files import Comparison
     from ..judge.seen import Quantities
     from ..output.findings import Findings
 
@@ -163,10 +163,10 @@ def command(
     motion = solved(scene, rad, False, options)
 
     def find() -> Findings:
-        session = compare_files(motion, trajectories, request, _watched)
+        comparison = compare_files(motion, trajectories, request, _watched)
         if plot:
-            _draw(session, limit, plot)
-        return report(motion, session, request)
+            _draw(comparison, limit, plot)
+        return report(motion, comparison, request)
 
     if failed(write_report(find, fmt, output), limit):
         ctx.exit(1)
@@ -176,16 +176,16 @@ def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:
     return with_progress(blocks, 0, LONG, size=lambda block: len(block["t"]))
 
 
-def _draw(session: Session, limit: float | None, path: str) -> None:
+def _draw(comparison: Comparison, limit: float | None, path: str) -> None:
     from ..judge.judgement import LIMIT
     from ..output.write import write_bytes
     from ..plot.error_curves import ErrorCurve, draw_errors
 
-    found = session.convergence
-    compared = found.errors if found else [None] * len(session.judgements)
+    found = comparison.convergence
+    compared = found.errors if found else [None] * len(comparison.judgements)
     curves = [
         ErrorCurve(str(x.file), x.t, x.error, x.step, error)
-        for x, error in zip(session.judgements, compared, strict=True)
+        for x, error in zip(comparison.judgements, compared, strict=True)
         if x.t is not None and x.error is not None
     ]
     write_bytes(path, partial(draw_errors, curves, limit or LIMIT, path))

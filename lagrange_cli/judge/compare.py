@@ -16,7 +16,7 @@ from ..motion.samplers import times_of
 from ..motion.solve import Motion, solve
 from .alignment import alignment
 from .convergence import Convergence, check_steps, convergence
-from .judgement import LIMIT, Given, Hearing, Judgement, judge
+from .judgement import LIMIT, Given, JudgedRun, Judgement, judge
 from .seen import Conventions, Quantities
 from .slips import explanation
 from .verdict import verdict
@@ -112,7 +112,7 @@ def _shown(array: ArrayLike) -> str:
 
 def settled(
     motion: Motion,
-    cases: Sequence[tuple[Hearing, Given]],
+    cases: Sequence[tuple[JudgedRun, Given]],
     limit: float | None = None,
     steps: Sequence[float] | None = None,
 ) -> tuple[list[Judgement], Convergence | None]:
@@ -122,7 +122,7 @@ def settled(
     the step: there the top is the right one.  Raises LagtopError for bad steps.
     """
     limit = LIMIT if limit is None else limit
-    judgements = [hearing.judgement for hearing, _ in cases]
+    judgements = [run.judgement for run, _ in cases]
     found = None
     if steps is not None:
         check_steps(steps, len(cases))
@@ -137,11 +137,11 @@ def settled(
 
 
 def _slip(
-    motion: Motion, hearing: Hearing, given: Given, limit: float, found: Convergence | None
+    motion: Motion, run: JudgedRun, given: Given, limit: float, found: Convergence | None
 ) -> dict[str, Any]:
     """Return the keys of the slip that explains a trajectory, if it needs to be explained."""
-    error = hearing.judgement.error_max
+    error = run.judgement.error_max
     if error is None or (error <= limit if found is None else found.falls):
         return {}
-    best = explanation(motion, hearing, given)
+    best = explanation(motion, run, given)
     return {} if best is None else {"explained_by": best.name, "explained_error": best.error}

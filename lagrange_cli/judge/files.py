@@ -12,7 +12,7 @@ from ..motion.solve import Motion
 from .alignment import Alignment
 from .compare import settled
 from .convergence import Convergence, check_steps
-from .judgement import Given, Hearing, Judgement, judge
+from .judgement import Given, JudgedRun, Judgement, judge
 from .seen import Conventions, Quantities
 
 Watch = Callable[[Iterable[Quantities]], Iterable[Quantities]]
@@ -32,7 +32,7 @@ class Request(NamedTuple):
     steps: Sequence[float] | None = None
 
 
-class Session(NamedTuple):
+class Comparison(NamedTuple):
     """Trajectories that have been judged together."""
 
     judgements: Sequence[Judgement]
@@ -41,7 +41,7 @@ class Session(NamedTuple):
 
 def compare_files(
     motion: Motion, paths: Sequence[str], request: Request, watch: Watch = iter
-) -> Session:
+) -> Comparison:
     """Return the judgements of the trajectories in files, and how they converge.
 
     Raises LagtopError for a bad request or a file that cannot be read, DataError for a bad one.
@@ -50,17 +50,17 @@ def compare_files(
         raise LagtopError("standard input can be read once, got - twice")
     if request.steps is not None:
         check_steps(request.steps, len(paths))
-    cases = [_hearing(motion, path, request, watch) for path in paths]
+    cases = [_judged(motion, path, request, watch) for path in paths]
     judgements, found = settled(motion, cases, request.limit, request.steps)
-    return Session(judgements, found)
+    return Comparison(judgements, found)
 
 
-def _hearing(motion: Motion, path: str, request: Request, watch: Watch) -> tuple[Hearing, Given]:
+def _judged(motion: Motion, path: str, request: Request, watch: Watch) -> tuple[JudgedRun, Given]:
     with open_trajectory(path, request.columns) as trajectory:
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
         given = Given(watch(_blocks(trajectory)), said, request.conventions, request.align)
         try:
-            hearing = judge(motion, given)
+            run = judge(motion, given)
         except DataError:
             raise
         except LagtopError as error:
@@ -68,8 +68,8 @@ def _hearing(motion: Motion, path: str, request: Request, watch: Watch) -> tuple
                 raise
             kind = DataError if error.key in _OF_THE_FILE else LagtopError
             raise kind(f"{shown_path(path)}: {error}") from None
-    named = replace(hearing.judgement, file=path)
-    return hearing._replace(judgement=named), given
+    named = replace(run.judgement, file=path)
+    return run._replace(judgement=named), given
 
 
 def _blocks(trajectory: Trajectory) -> Iterator[Quantities]:

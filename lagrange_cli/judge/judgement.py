@@ -107,7 +107,7 @@ KEYS: dict[str, str] = {
 """The keys of a record with their meanings."""
 
 
-class Hearing(NamedTuple):
+class JudgedRun(NamedTuple):
     """A trajectory that has been gone through."""
 
     judgement: Judgement
@@ -133,7 +133,7 @@ class Given(NamedTuple):
         return seen if self.change is None else self.change(seen)
 
 
-def judge(motion: Motion, given: Given) -> Hearing:
+def judge(motion: Motion, given: Given) -> JudgedRun:
     """Return what a trajectory is like, but for its verdict.
 
     Raises LagtopError for one without rows, and where nothing tells the order of a quaternion.
@@ -148,7 +148,7 @@ def judge(motion: Motion, given: Given) -> Hearing:
             tally.add(block)
         if tally is None:
             raise LagtopError("t must have at least one row")
-        return Hearing(tally.judgement(), tally.kept_rows(), tally.given.conventions)
+        return JudgedRun(tally.judgement(), tally.kept_rows(), tally.given.conventions)
 
 
 def errors_of(motion: Motion, given: Given) -> Array:

@@ -9,7 +9,7 @@ from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
 from ..output.terminal import one_line
 from .convergence import LEAST_ORDER
-from .files import Request, Session
+from .files import Comparison, Request
 from .judgement import KEYS, LIMIT, Judgement
 from .verdict import ANOTHER, DRIFTS, FINE, LOST, OFF
 
@@ -45,12 +45,16 @@ FIELDS = [
 ]
 
 
-def report(motion: Motion, session: Session, request: Request) -> Findings:
+def report(motion: Motion, comparison: Comparison, request: Request) -> Findings:
     """Return the report on trajectories."""
-    shown = {key for key in _SHOWN if any(getattr(x, key) is not None for x in session.judgements)}
+    shown = {
+        key for key in _SHOWN if any(getattr(x, key) is not None for x in comparison.judgements)
+    }
     fields = [field if field.key in shown else field._replace(heading="") for field in FIELDS]
-    conclusions = list(_conclusions(session, LIMIT if request.limit is None else request.limit))
-    return Findings(_conditions(motion, session, request), fields, session.judgements, conclusions)
+    conclusions = list(_conclusions(comparison, LIMIT if request.limit is None else request.limit))
+    return Findings(
+        _conditions(motion, comparison, request), fields, comparison.judgements, conclusions
+    )
 
 
 def failed(findings: Findings, limit: float | None) -> bool:
@@ -61,25 +65,25 @@ def failed(findings: Findings, limit: float | None) -> bool:
     )
 
 
-def _conditions(motion: Motion, session: Session, request: Request) -> dict[str, str]:
-    period = session.judgements[0].period
+def _conditions(motion: Motion, comparison: Comparison, request: Request) -> dict[str, str]:
+    period = comparison.judgements[0].period
     conditions = {
         "scene": motion.top.options(),
         "regime": f"{motion.regime}, period {period}",
         "errors": f"radians, greatest of all rows; fine up to {request.limit or LIMIT:g}",
         "drift": "growth of the difference per period, by a fitted line",
     }
-    if orders := {x.quaternion_order for x in session.judgements if x.quaternion_order}:
+    if orders := {x.quaternion_order for x in comparison.judgements if x.quaternion_order}:
         conditions["quaternion"] = f"{' or '.join(sorted(orders))}, as the first row proves"
     return conditions
 
 
-def _conclusions(session: Session, limit: float) -> Iterator[str]:
-    for judgement in session.judgements:
+def _conclusions(comparison: Comparison, limit: float) -> Iterator[str]:
+    for judgement in comparison.judgements:
         yield f"{_name(judgement)}: {_sentence(judgement, limit)}"
-    found = session.convergence
+    found = comparison.convergence
     if found is not None:
-        if not found.falls and all(x.verdict == FINE for x in session.judgements):
+        if not found.falls and all(x.verdict == FINE for x in comparison.judgements):
             yield "The error does not fall with the step: the numbers may have been rounded."
         elif not found.falls:
             yield "The error does not fall with the step: this is the motion of another top."
@@ -89,7 +93,7 @@ def _conclusions(session: Session, limit: float) -> Iterator[str]:
             yield "The error depends on the step, but shows no order: give runs of one method."
         else:
             yield f"The error falls with the step to the power of {found.order:.2f}."
-    yield from _explanations(session.judgements)
+    yield from _explanations(comparison.judgements)
 
 
 def _name(judgement: Judgement) -> str:

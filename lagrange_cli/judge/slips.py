@@ -19,7 +19,7 @@ from ..inputs.top import Top
 from ..motion.solve import Motion, solve
 from . import rotations
 from .alignment import Alignment
-from .judgement import Given, Hearing, errors_of
+from .judgement import Given, JudgedRun, errors_of
 from .rotations import HALF_TURN_X, HALF_TURN_Z
 from .seen import Seen
 
@@ -54,19 +54,19 @@ class Explanation(NamedTuple):
     """Greatest error that is left."""
 
 
-def explanation(motion: Motion, hearing: Hearing, given: Given) -> Explanation | None:
+def explanation(motion: Motion, run: JudgedRun, given: Given) -> Explanation | None:
     """Return the slip that leaves the least error in the rows that were kept, if it explains them.
 
     Rows that are lost do not count.
     """
-    kept = given._replace(blocks=[hearing.kept], conventions=hearing.conventions)
+    kept = given._replace(blocks=[run.kept], conventions=run.conventions)
     left = [
         Explanation(slip.name, error)
         for slip in [*SLIPS, *_slips_of_rates(motion.top)]
         if (error := _error_without(slip, motion, kept)) is not None
     ]
     best = min(left, key=lambda x: x.error, default=None)
-    error = hearing.judgement.error_max
+    error = run.judgement.error_max
     return best if best and error and best.error <= EXPLAINS * error else None
 
 
