@@ -71,13 +71,3 @@ class Nutation(Moduli[R]):
             gaps.a_u3_u1 * gaps.above_u2,
         )
         return size * integral
-
-    @quantity
-    def eta_plus(self) -> R:
-        """The distance of X from its zero at the bottom: F of sn^2 = (1 + u2)/(1 + u1)."""
-        from ..elliptic.carlson import carlson_rf
-
-        gaps = self.gaps
-        middle = gaps.u1_u2 * (gaps.a_below_u3 / gaps.a_u3_u2)
-        integral: R = carlson_rf(self.ar, gaps.u1_u2, middle, gaps.below_u1)
-        return self.ar.sqrt(gaps.below_u2) * integral
