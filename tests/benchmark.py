@@ -1,14 +1,16 @@
-"""`python tests/benchmark.py`: costs as ratios, all in one run on one thread.
+"""`python tests/benchmark.py`: costs as ratios, all in one run; `... sweeps text`: some sections.
 
 Peers: the floor sin + cos + 3 arctan2, scipy.special's ellipj + 2 elliprj, heyoka's dense output.
 """
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 import tempfile
 import time
+import tracemalloc
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -26,7 +28,9 @@ from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
+from lagrange_cli.output.write import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
+from lagrange_cli.sweeps.parts import runs_of
 from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records, sweep
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
@@ -73,27 +77,112 @@ def integrals(record: dict[str, Column]) -> None:
 
 
 def sweeps(rng: np.random.Generator) -> None:
-    """Time the records of many tops; contract: at most 1.5 of the integrals."""
-    count = COUNT // 4
-    inputs = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
-    record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"])
-    tops = TopArrays(*(np.broadcast_to(inputs.get(x, given), (count,)) for x, given in TOP.items()))
-    blocks = [tops.part(slice(i, i + BLOCK_ROWS)) for i in range(0, count, BLOCK_ROWS)]
+    """Compare records of many tops with the integrals: from rest <= 1.25, general starts <= 3."""
+    count = COUNT // 8
+    rest = {"r0": rng.uniform(-100, 100, count), "theta0_deg": rng.uniform(1, 179, count)}
+    record = sweep(r0=rest["r0"], theta0_deg=rest["theta0_deg"])
+    moving = rest | {"psidot0": rng.uniform(-5, 5, count)}
+    nodding = moving | {"thetadot0": rng.uniform(-5, 5, count)}
 
-    def solved(keys: Sequence[str]) -> None:
-        for block in blocks:
-            records(block, keys)
+    def solved(inputs: Mapping[str, Array], keys: Sequence[str]) -> Callable[[], object]:
+        given = {x: np.broadcast_to(inputs.get(x, value), (count,)) for x, value in TOP.items()}
+        blocks = [
+            TopArrays(**given).part(slice(i, i + BLOCK_ROWS)) for i in range(0, count, BLOCK_ROWS)
+        ]
+        return lambda: [records(block, keys) for block in blocks]
 
-    least = nanoseconds(lambda: integrals(record), count)
-    rows = {"scipy.special, ellipkm1 + ellipkinc + ellipeinc + 2 elliprj": least}
-    for keys in (record_keys(), ["mean_precession_rate", "T_nutation"], ["T_nutation"]):
-        name = "all keys" if len(keys) > 2 else " ".join(keys)
-        rows[f"lagtop, {name}"] = nanoseconds(partial(solved, keys), count)
-    moving: dict[str, Any] = inputs | {"psidot0": rng.uniform(-5, 5, count)}
-    rows["lagtop, general starts"] = nanoseconds(lambda: sweep(**moving), count)
-    print("\nA sweep, per top")
-    for name, cost in rows.items():
-        print(f"{name:65} {cost:8.1f} ns  {cost / least:6.2f} x scipy")
+    some, everything = ["mean_precession_rate", "T_nutation"], record_keys()
+    costs = cpu_of(
+        {
+            "scipy.special, ellipkm1 + ellipkinc + ellipeinc + 2 elliprj": lambda: integrals(
+                record
+            ),
+            "released from rest, all keys (<= 1.25)": solved(rest, everything),
+            "released from rest, mean precession and T": solved(rest, some),
+            "released from rest, T": solved(rest, ["T_nutation"]),
+            "psidot0, all keys (<= 3)": solved(moving, everything),
+            "psidot0 and thetadot0, all keys (<= 3)": solved(nodding, everything),
+            "psidot0, T": solved(moving, ["T_nutation"]),
+        },
+        count,
+    )
+    shown("A sweep, CPU per top", costs, "scipy")
+    print("\nMemory of sweep() over that of its result (<= 2.5)")
+    for name, keys in (("all keys", everything), ("two keys", some)):
+        tracemalloc.start()
+        found = sweep(r0=rest["r0"], theta0_deg=rest["theta0_deg"], keys=keys)
+        peak = tracemalloc.get_traced_memory()[1] / sum(x.nbytes for x in found.values())
+        tracemalloc.stop()
+        print(f"{f'{count} tops, {name}':65} {peak:8.2f}")
+
+
+def shown(title: str, costs: Mapping[str, float], peer: str) -> None:
+    """Print costs in nanoseconds, and their ratios to the first."""
+    print(f"\n{title}")
+    least = next(iter(costs.values()))
+    for name, cost in costs.items():
+        print(f"{name:65} {cost:8.1f} ns  {cost / least:6.2f} x {peer}")
+
+
+def text(rng: np.random.Generator) -> None:
+    """Compare the text of rows with orjson's of their numbers: CSV <= 2, ndjson <= 5."""
+    inputs = {name: rng.uniform(10, 170, BLOCK_ROWS) for name in ("r0", "theta0_deg")}
+    keys = record_keys()[:-1]
+    record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"], keys=keys)
+    numbers = [key for key in keys if record[key].dtype == np.float64]
+    tables = {"a sweep, all keys": keys, "four numbers": numbers[-4:], "one number": numbers[-1:]}
+    for title, names in tables.items():
+        columns = runs_of([record[name] for name in names])
+        only = np.stack([record[name] for name in names if name in numbers], axis=1)
+        works: dict[str, Callable[[], object]] = {
+            "orjson.dumps, flat": partial(
+                orjson.dumps, only.ravel(), option=orjson.OPT_SERIALIZE_NUMPY
+            )
+        }
+        for fmt in ("csv", "ndjson", "json"):
+            works[fmt] = partial(block_text, columns, names, fmt)
+        shown(f"Text of {title}, CPU per row", cpu_of(works, BLOCK_ROWS, 30), "orjson")
+
+
+def start_up() -> None:
+    """Compare `jacobi --k 0.8` with importing click and rich: <= 1.3."""
+    commands = {
+        "importing click and what a table needs of rich": [
+            "-c",
+            "import click, rich.console, rich.table",
+        ],
+        "lagtop jacobi --k 0.8 (<= 1.3)": ["-m", "lagrange_cli", "jacobi", "--k", "0.8"],
+        "lagtop jacobi --k 0.8 --format json": (
+            "-m lagrange_cli jacobi --k 0.8 --format json".split()
+        ),
+    }
+    best = dict.fromkeys(commands, float("inf"))
+    for _ in range(15):
+        for name, command in commands.items():
+            begun = resource.getrusage(resource.RUSAGE_CHILDREN)
+            subprocess.run([sys.executable, *command], check=True, stdout=subprocess.DEVNULL)
+            ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+            cost = ended.ru_utime + ended.ru_stime - begun.ru_utime - begun.ru_stime
+            best[name] = min(best[name], cost * 1e9)
+    shown("Start-up, CPU of a process", best, "that")
+
+
+def jobs() -> None:
+    """Compare two processes with one for a million tops with all keys: >= 1.5 times as fast."""
+    costs = {}
+    with tempfile.NamedTemporaryFile(dir="/dev/shm") as file:
+        command = [sys.executable, "-m", "lagrange_cli", "sweep", "--r0", "10:200:1e6"]
+        for count in ("1", "2"):
+            whole = [*command, "-o", file.name, "--jobs", count]
+            seconds = []
+            for _ in range(3):
+                begun = time.perf_counter()
+                subprocess.run(whole, check=True)
+                seconds.append(time.perf_counter() - begun)
+            costs[count] = min(seconds)
+    print("\nA million tops with all keys as CSV, seconds")
+    for count, cost in costs.items():
+        print(f"{f'--jobs {count}':65} {cost:8.2f} s   {costs['1'] / cost:6.2f} times as fast")
 
 
 def functions(rng: np.random.Generator) -> None:
@@ -230,10 +319,8 @@ def set_up(rng: np.random.Generator) -> None:
         print(f"{name:65} {cost / 1e3:8.2f} us")
 
 
-def main() -> None:
-    rng = np.random.default_rng(0)
-    t = np.sort(rng.uniform(0, 100, COUNT))
-    t[0] = 0.0
+def angles(t: Array) -> None:
+    """Compare the angles of a motion with the floor and with others."""
     by_legendre = CLOSED_FORMS["scipy.special"].prepare(Top(), "double")
     by_taylor = integrators(60)["Taylor-euler"].prepare(Top(), 1e-16)
     least = nanoseconds(lambda: floor(t))
@@ -249,12 +336,27 @@ def main() -> None:
         rows[f"lagtop, {name}, wrapped"] = nanoseconds(partial(sampler.angles, t, wrap=True))
     for name, cost in rows.items():
         print(f"{name:55} {cost:8.1f} ns  {cost / least:6.2f} x floor")
-    columns(t)
-    fresh()
-    set_up(rng)
-    functions(rng)
-    sweeps(rng)
-    writing(t)
+
+
+def main() -> None:
+    """Run the sections that are named, or all."""
+    rng = np.random.default_rng(0)
+    t = np.sort(rng.uniform(0, 100, COUNT))
+    t[0] = 0.0
+    sections: dict[str, Callable[[], object]] = {
+        "angles": partial(angles, t),
+        "columns": partial(columns, t),
+        "fresh": fresh,
+        "set_up": partial(set_up, rng),
+        "functions": partial(functions, rng),
+        "sweeps": partial(sweeps, rng),
+        "text": partial(text, rng),
+        "writing": partial(writing, t),
+        "start_up": start_up,
+        "jobs": jobs,
+    }
+    for name in sys.argv[1:] or sections:
+        sections[name]()
 
 
 if __name__ == "__main__":

@@ -26,10 +26,12 @@ def csv_lines(columns: Columns, names: Sequence[str]) -> bytes:
     """Return a line of CSV per row, with nothing for NaN."""
     if not len(columns[0]):
         return b""
-    if len(columns) == 1 and len(names) <= _FEW and isinstance(columns[0], np.ndarray):
-        text = _array_lines(columns[0])
-        if len(names) > 1 or not (text[:1] == b"\n" or b"\n\n" in text):
-            return text
+    first = columns[0]
+    if len(columns) == 1 and len(names) <= _FEW and isinstance(first, np.ndarray):
+        if len(names) > 1:
+            return _array_lines(first)
+        if np.isfinite(first).all():
+            return _one_column(first)
     lines: list[bytes] = []
     for few in _slices(columns, names):
         lines += map(b",".join, zip(*map(_cells, few), strict=True))
@@ -44,14 +46,18 @@ def _array_lines(rows: Array) -> bytes:
     text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
     if b"n" in text:
         text = text.replace(b"null", b"")
-    if rows.shape[1] == 1:
-        return bytes(text[1:-1].replace(b",", b"\n")) + b"\n"
     # Commas at the ends of rows become line ends in place: to look for `],[` takes twice as long.
     view = np.frombuffer(text, dtype=np.uint8)
     commas = np.flatnonzero(view == ord(","))
     view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
     view[-1] = ord("\n")
     return bytes(view[1:])
+
+
+def _one_column(numbers: Array) -> bytes:
+    """Return finite numbers, each on a line."""
+    text = orjson.dumps(numbers.ravel(), option=orjson.OPT_SERIALIZE_NUMPY)
+    return text[1:-1].replace(b",", b"\n") + b"\n"
 
 
 def _slices(columns: Columns, names: Sequence[str]) -> Iterator[Columns]:

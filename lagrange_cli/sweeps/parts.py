@@ -62,7 +62,7 @@ class Sweep(NamedTuple):
             columns["error"][row] = error
         rows = slice(errors[0][0] if errors and self.until_error else given.size)
         carried = [column[rows] for column in given.carried]
-        computed = _runs([columns[key][rows] for key in self.keys])
+        computed = runs_of([columns[key][rows] for key in self.keys])
         text = block_text([*carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
 
@@ -71,7 +71,7 @@ def _filled(values: Any, count: int) -> Any:
     return np.broadcast_to(np.float64(np.nan if values is None else values), (count,))
 
 
-def _runs(columns: Iterable[Column]) -> Columns:
+def runs_of(columns: Iterable[Column]) -> Columns:
     """Return neighbouring columns of numbers as one array of rows, and texts as lists."""
     runs: list[Any] = []
     numbers: list[Column] = []
