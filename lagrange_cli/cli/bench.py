@@ -84,8 +84,9 @@ def command(
 
     Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
     timed on one thread.  Taylor's method needs heyoka (extra `bench`), and engines need themselves
-    (extra `engines`); a method whose package is missing says so.  A * marks the Pareto front: no
-    other run is both faster and more accurate.
+    (extra `engines`); a method whose package is missing says so.  The setting of an engine is steps
+    per nutation period, or a tolerance.  A * marks the Pareto front: no other run is both faster
+    and more accurate.
     """
     from ..bench.machine import use_one_thread
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Lagtop
+from conftest import ROOT, Lagtop
 
 from lagrange_cli import LagtopError, Top, compare, solve
 from lagrange_cli.bench import long_spans
@@ -175,6 +176,12 @@ def test_groups_stand_for_their_methods() -> None:
     assert not set(names) & set(bench.chosen_methods(None, 1))
     with pytest.raises(LagtopError, match=r"methods must be among .*engines, mujoco, exudyn"):
         bench.chosen_methods(["bullet"], 1)
+
+
+def test_the_extra_installs_every_engine() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    wanted = project["optional-dependencies"]["engines"]
+    assert {text.partition(">")[0] for text in wanted} == set(FAMILIES)
 
 
 def test_missing_engines_are_named(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ import textwrap
 import threading
 import time
 import weakref
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -85,8 +86,14 @@ def engine_sample(module: str, scheme: str, top: Top, setting: Any, limit: float
     return lambda t: quaternion_angles(attitudes(t).T)
 
 
-def engine_attitudes(module: str, scheme: str, top: Top, setting: Any, limit: float) -> Any:
-    """Return what gives the quaternions (w, x, y, z; a row for each time) of an engine."""
+def engine_attitudes(
+    module: str, scheme: str, top: Top, setting: Any, limit: float
+) -> Callable[[Array], Array]:
+    """Return what gives the quaternions (w, x, y, z; a row for each time) of an engine.
+
+    Raises NotApplicableError and FailedError as `engine_sample` does; what is returned raises them
+    too, for times before the start and for a run that goes wrong.
+    """
     period = solve(top).T_nutation
     body, clock = scaled_body(top, float(period or 1))
     process = EngineProcess(module)
