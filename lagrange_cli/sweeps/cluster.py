@@ -7,12 +7,12 @@ import pickle
 import pkgutil
 import signal
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import closing, contextmanager, suppress
-from itertools import chain, repeat
+from itertools import islice
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import __version__
 from ..errors import LagtopError, UnavailableError
@@ -26,6 +26,10 @@ PATIENCE = 8.0
 """Seconds to wait for a scheduler that does not answer, or for a first or another worker."""
 
 _BETWEEN_LOOKS = 1.0
+_SECONDS_PER_TASK = 1.0
+"""Work that is worth the way to a worker and back."""
+MOST_PARTS_PER_TASK = 16
+"""Parts that a task may send back, some 30 MB with all keys."""
 
 
 @contextmanager
@@ -133,49 +137,65 @@ def _answer(ask: Callable[[], Any]) -> Any:
 
 
 class _Call:
-    """A part that is computed by being unpickled.
+    """Some parts that are computed by being unpickled.
 
     A worker is sent `pickle.loads` and these bytes: one that joined later and has no lagtop, or
     another version, fails in the task, where an error is reported, and not in reading the message,
     where it would die.
     """
 
-    def __init__(self, sweep: Sweep, block: NumberedBlock) -> None:
-        self.content = pickle.dumps((sweep, block))
+    def __init__(self, sweep: Sweep, blocks: Sequence[NumberedBlock]) -> None:
+        self.content = pickle.dumps((sweep, blocks))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return compute, (__version__, self.content)
 
 
-def compute(version: str, content: bytes) -> Part:
-    """Compute a part on a worker.  Raises UnavailableError for a sweep of another version."""
+class Computed(NamedTuple):
+    """What a task has made, and how long it took."""
+
+    parts: Sequence[Part]
+    seconds: float
+
+    def next_size(self) -> int:
+        """Return how many parts the next task should have, to take about a second."""
+        size = len(self.parts) * _SECONDS_PER_TASK / max(self.seconds, 1e-3)
+        return max(1, min(int(size), MOST_PARTS_PER_TASK))
+
+
+def compute(version: str, content: bytes) -> Computed:
+    """Compute parts on a worker.  Raises UnavailableError for a sweep of another version."""
     if version != __version__:
         raise UnavailableError(f"a worker of the cluster has lagtop {__version__}, not {version}")
-    sweep, block = pickle.loads(content)
-    part: Part = sweep.part(block)
-    return part
+    begun = monotonic()
+    sweep, blocks = pickle.loads(content)
+    parts = [sweep.part(block) for block in blocks]
+    return Computed(parts, monotonic() - begun)
 
 
 def _gathered(client: Client, sweep: Sweep, blocks: Iterable[NumberedBlock]) -> Iterator[Part]:
-    """Yield the parts in their order; a part of a lost worker is computed by another one.
+    """Yield the parts in their order; those of a lost worker are computed by another one.
 
-    A few parts per worker are under way at a time, so that memory does not grow with their number.
+    A few tasks per worker are under way at a time, so that memory does not grow with their number.
+    The first have a part each; how long they took says how many the next have.
     """
-    most = 4 * max(sum(_threads(client).values()), 4)
-    waiting: deque[Future[Part]] = deque()
-    for block in chain(blocks, repeat(None)):
-        if block is not None:
-            waiting.append(
-                client.submit(pickle.loads, pickle.dumps(_Call(sweep, block)), pure=False)
-            )
+    most = 2 * max(sum(_threads(client).values()), 4)
+    waiting: deque[Future[Computed]] = deque()
+    left, size = iter(blocks), 1
+    while True:
+        if few := list(islice(left, size)):
+            call = pickle.dumps(_Call(sweep, few))
+            waiting.append(client.submit(pickle.loads, call, pure=False))
         elif not waiting:
             return
-        if block is None or len(waiting) >= most:
-            yield _result(client, waiting.popleft())
+        if not few or len(waiting) >= most:
+            done = _result(client, waiting.popleft())
+            yield from done.parts
+            size = done.next_size()
 
 
-def _result(client: Client, future: Future[Part]) -> Part:
-    """Wait for a part.  Raises UnavailableError as soon as nothing is left to wait for."""
+def _result(client: Client, future: Future[Computed]) -> Computed:
+    """Wait for some parts.  Raises UnavailableError as soon as nothing is left to wait for."""
     from distributed import KilledWorker, wait
 
     seen = monotonic()  # when there was a worker last

@@ -19,7 +19,8 @@ from conftest import LAGTOP, process
 from distributed import Client, LocalCluster
 
 from lagrange_cli.errors import UnavailableError
-from lagrange_cli.sweeps.cluster import compute
+from lagrange_cli.sweeps.cluster import Computed, compute
+from lagrange_cli.sweeps.parts import Part
 
 pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itself does
 
@@ -233,3 +234,11 @@ def test_no_cluster() -> None:
     assert (result.returncode, result.stdout) == (2, b"")
     assert result.stderr.startswith(b"Error: --dask must be local or a scheduler, got nowhere")
     assert result.stderr.count(b"\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("count", "seconds", "next_count"), [(1, 0.02, 16), (1, 0.25, 4), (4, 1.0, 4), (4, 30.0, 1)]
+)
+def test_a_task_has_about_a_second_of_work(count: int, seconds: float, next_count: int) -> None:
+    parts = [Part(number, b"", 4096, 0, "") for number in range(count)]
+    assert Computed(parts, seconds).next_size() == next_count
