@@ -6,6 +6,7 @@ import json
 import tomllib
 from collections.abc import Callable
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,7 @@ def build(body, scheme, setting):
         raise RuntimeError("no such thing\\nand more")
     print("engines are talkative", flush=True)
     def simulate(times):
+        open("ENGINE_LOG.TXT", "w").write(os.getcwd())
         if scheme == "crashes":
             os.abort()
         if scheme == "hangs":
@@ -135,7 +137,11 @@ def fake(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, float
 
 
 @pytest.mark.slow
-def test_engines_that_go_wrong(fake: Callable[[str, float], Any]) -> None:
+def test_engines_that_go_wrong(
+    fake: Callable[[str, float], Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A crash harms nobody, and neither do prints and files."""
+    monkeypatch.chdir(tmp_path)
     times = np.linspace(0, 1, 3)
     assert np.array(fake("talks", 20.0)(times)).tolist() == [[0.0] * 3] * 3
     with pytest.raises(FailedError, match=r"^RuntimeError: no such thing$"):
@@ -144,6 +150,7 @@ def test_engines_that_go_wrong(fake: Callable[[str, float], Any]) -> None:
         fake("crashes", 20.0)(times)
     with pytest.raises(FailedError, match=r"^took more than 0.2 s$"):
         fake("hangs", 0.2)(times)
+    assert [path.name for path in tmp_path.iterdir()] == ["fakes"]
 
 
 def test_bodies_that_cannot_be_built() -> None:

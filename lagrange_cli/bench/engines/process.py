@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import textwrap
 import threading
 import time
@@ -32,18 +33,24 @@ _ROOT = Path(__file__).parents[3]
 
 
 class EngineProcess:
-    """A process that runs one module of this folder; it ends with this object."""
+    """A process that runs one module of this folder; it ends with this object.
+
+    What the engine writes, such as a log, goes to a directory that ends with it.
+    """
 
     def __init__(self, module: str) -> None:
-        paths = [str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+        known = filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))
+        paths = [str(_ROOT), *map(os.path.abspath, known)]
+        folder = tempfile.TemporaryDirectory(prefix="lagtop-")
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-W", "ignore", "-m", f"{__package__}.{module}"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            cwd=folder.name,
             env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
         )
-        weakref.finalize(self, _stop, self._process)
+        weakref.finalize(self, _stop, self._process, folder)
 
     def ask(self, payload: bytes, seconds: float) -> bytes:
         """Return the answer to a message.
@@ -69,11 +76,12 @@ class EngineProcess:
             clock.cancel()
 
 
-def _stop(process: subprocess.Popen[bytes]) -> None:
+def _stop(process: subprocess.Popen[bytes], folder: tempfile.TemporaryDirectory[str]) -> None:
     """End the process and free what it holds."""
     process.kill()
     with process:
         pass
+    folder.cleanup()
 
 
 def engine_sample(module: str, scheme: str, top: Top, setting: Any, limit: float = 5.0) -> Sample:
