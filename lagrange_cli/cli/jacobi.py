@@ -145,8 +145,9 @@ def command(
     families = tuple(name for name, wanted in flags.items() if wanted)
     parameter, imaginary = _parameter(param, families)
     if beyond or not is_real(single, parameter):
-        exclude({"complex numbers or such a modulus": True, "--phi": amplitudes or fan})
-        exclude({"complex numbers or such a modulus": True, "--series": terms})
+        for name, wanted in (("--phi", amplitudes or fan), ("--series", terms)):
+            if wanted:
+                raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
         points = complex_points(single, grid)
         if points is None and families:
             raise LagtopError(f"--{families[0]} needs --u or --u-range")

@@ -36,7 +36,9 @@ def complex_points(
     exclude({"--u": single or None, "--u-range": grid})
     multiples = [grid] if grid else [u for u in single if not isinstance(u, ExactComplex)]
     if any(u.in_quarters for u in multiples):
-        raise LagtopError("--u must be without K beside complex numbers and such a modulus")
+        raise LagtopError(
+            "--u must be without K beside complex numbers, and where --k is not in [0, 1]"
+        )
     if grid:
         return ComplexPoints(grid.factors)
     if not single:

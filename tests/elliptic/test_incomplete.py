@@ -156,10 +156,10 @@ def test_far_amplitudes_with_digits(lagtop: Lagtop) -> None:
         ("--k 0.8 --phi 1 --u 3", "--phi and --u exclude each other"),
         ("--k 0.8 --phi 1 --zeta", "--phi and --zeta exclude each other"),
         ("--k 0.8 --phi 1 --series 3", "--phi and --series exclude each other"),
-        ("--k 0.8 --phi 1 --param 3", "--phi and --param exclude each other"),
+        ("--k 0.8 --phi 1 --param 3", "--param needs --omega or --pi"),
         ("--k 0.8 --phi 1 --phi-range 0:1:2", "--phi and --phi-range exclude each other"),
         ("--k 0.8 --phi 1e30", "--phi must be within 2^50 periods = 2.03e+17 of 0, got 1e+30"),
-        ("--k 1.1 --phi 1", "--k must be in [0, 1], got 1.1"),
+        ("--k 1.1 --phi 1", "--phi needs a real --u, and a --k in [0, 1]"),
         ("--k 0.8 --phi x", "--phi must be a finite decimal number, got 'x'"),
     ],
 )
