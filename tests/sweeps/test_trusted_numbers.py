@@ -9,6 +9,7 @@ import random
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 from ball_judge import EPS, Judge
 from conftest import Lagtop
@@ -18,6 +19,7 @@ from scenes import UNIT
 from lagrange_cli import Top
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.sweeps.records import sweep
+from lagrange_cli.sweeps.top_arrays import TopArrays
 
 COSINES = {"u1", "u2", "u_quarter"}
 UNITS = "--m 1 --A 1 --C 1 --s 1 --g 1"
@@ -113,3 +115,16 @@ def test_every_key_is_within_ten_eps(kind: str) -> None:
             else:
                 error = judge.relative(key, value, allowed(key, judge, scene))
                 assert error <= 10 or judge.ulps(key, value) <= 1, (key, error, scene)
+
+
+@pytest.mark.parametrize("body", [(1.0, 1.0, 1.0, 1.0, 1.0), (2.0, 3.0, 0.5, 4.0, 9.81)])
+def test_tops_at_the_threshold_of_sleeping_go_one_by_one(body: tuple[float, ...]) -> None:
+    """Where (C r0)^2 = 4 A m g s nearly, lambda - 1 has lost its digits."""
+    m, A, C, s, g = body
+    threshold = 2 * math.sqrt(A * m * g * s) / C
+    r0 = threshold * np.array([0.9, 1 - 1e-15, 1.0, 1 + 1e-15, 1.1, -1.0])
+    inputs = {"m": m, "A": A, "C": C, "s": s, "g": g, "theta0_deg": 10.0, "thetadot0": 0.0}
+    given = inputs | {"psidot0": 0.0, "theta0_rad": np.nan, "r0": r0}
+    tops = TopArrays(*np.broadcast_arrays(*(np.asarray(given[x]) for x in TopArrays._fields)))
+    together = np.logical_or.reduce(list(tops.regimes().values()))
+    assert together.tolist() == [True, False, False, False, True, False]
