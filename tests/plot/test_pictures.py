@@ -311,3 +311,5 @@ def test_a_narrow_path_is_magnified() -> None:
     assert theta[0] == pytest.approx(30)
     assert theta.max() == pytest.approx(scene.theta_max_deg, abs=1e-12)
     assert psi[-1] == pytest.approx(np.degrees(scene.angles(2 * T).psi), rel=1e-12)
+    start = [float(np.asarray(x)[0]) for x in inset.lines[1].get_data()]
+    assert start == [psi[0], theta[0]]
