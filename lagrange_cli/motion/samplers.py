@@ -132,6 +132,8 @@ class ThetaSampler(Sampler):
 
     def _spinor(self, argument: Array, even: int, needs: Needs, space: Workspace) -> Spinor:
         """Return X and Y; the first arguments, so many, are about the first turning point."""
+        if self.hyperbolic and self.scale > 2 * _GREATEST:  # beyond, the tilt is below 1e-140
+            np.clip(argument, -_GREATEST, _GREATEST, out=argument)
         functions = (_hyperbolic if self.hyperbolic else _circular)(argument, space)
         rows = slice(even), slice(even, None)
         frames = [
@@ -250,11 +252,7 @@ def _circular(x: Array, space: Workspace) -> Functions:
 
 
 def _hyperbolic(x: Array, space: Workspace) -> Functions:
-    """Return the hyperbolic functions of arguments, which are overwritten.
-
-    Arguments beyond the range of sinh^2 belong to a tilt below 1e-150, to which it is all one.
-    """
-    np.clip(x, -_GREATEST, _GREATEST, out=x)
+    """Return the hyperbolic functions of arguments, which are overwritten."""
     sinh = np.sinh(x, out=x)
     square = np.multiply(sinh, sinh, out=space.new())
     cosh = np.add(square, 1.0, out=space.new())
