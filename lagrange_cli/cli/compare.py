@@ -26,8 +26,8 @@ from .options import (
 from .progress import with_progress
 
 if TYPE_CHECKING:
+    from ..inputs.seen import Quantities
     from ..judge.files import Comparison
-    from ..judge.seen import Quantities
     from ..output.findings import Findings
 
 LONG = 1_000_000
@@ -43,7 +43,7 @@ def _write_names(formatter: click.HelpFormatter) -> None:
 
 
 def _parse_sequence(text: str) -> str:
-    from ..judge.seen import euler_sequence
+    from ..inputs.seen import euler_sequence
 
     return euler_sequence(text)
 
@@ -148,10 +148,10 @@ def command(
     The verdict is one of fine, drifts, another top, off from the start and lost.  The exit code is
     1 where a trajectory is lost or beyond --max-error.
     """
+    from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.files import Request, compare_files
     from ..judge.report import failed, report
-    from ..judge.seen import Conventions
     from ..plot.style import check_plot
 
     if max_error is not None and not max_error > 0:

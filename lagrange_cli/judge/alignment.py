@@ -11,9 +11,9 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs import rotations
+from ..inputs.seen import Seen
 from ..motion.solve import Motion
-from . import rotations
-from .seen import Seen
 
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 WORDS = {

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.seen import Conventions, Quantities
 from ..inputs.top import Top
 from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.samplers import times_of
@@ -17,7 +18,6 @@ from ..motion.solve import Motion, solve
 from .alignment import alignment
 from .convergence import Convergence, check_steps, convergence
 from .judgement import LIMIT, Given, JudgedRun, Judgement, judge
-from .seen import Conventions, Quantities
 from .slips import explanation
 from .verdict import verdict
 

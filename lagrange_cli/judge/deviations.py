@@ -7,11 +7,11 @@ import math
 import numpy as np
 
 from ..arithmetic.types import Array
+from ..inputs import rotations
+from ..inputs.rotations import within_half_turn
+from ..inputs.seen import ANGLES, Seen
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from . import rotations
-from .rotations import within_half_turn
-from .seen import ANGLES, Seen
 
 
 class Deviations:

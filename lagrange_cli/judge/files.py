@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..errors import DataError, LagtopError
+from ..inputs.seen import Conventions, Quantities
 from ..inputs.trajectory import Trajectory, open_trajectory, shown_path
 from ..motion.solve import Motion
 from .alignment import Alignment
 from .compare import settled
 from .convergence import Convergence, check_steps
 from .judgement import Given, JudgedRun, Judgement, judge
-from .seen import Conventions, Quantities
 
 Watch = Callable[[Iterable[Quantities]], Iterable[Quantities]]
 """Passes blocks on, and may show how many rows have passed."""

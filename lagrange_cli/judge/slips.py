@@ -15,13 +15,13 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs import rotations
+from ..inputs.rotations import HALF_TURN_X, HALF_TURN_Z
+from ..inputs.seen import Seen
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
-from . import rotations
 from .alignment import Alignment
 from .judgement import Given, JudgedRun, errors_of
-from .rotations import HALF_TURN_X, HALF_TURN_Z
-from .seen import Seen
 
 EXPLAINS = 0.1
 """The part of the error that may be left where a slip explains it."""

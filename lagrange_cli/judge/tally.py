@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
-from .seen import rows_of
+from ..inputs.seen import rows_of
 
 MOST_KEPT = 4096
 

@@ -11,11 +11,11 @@ from engines import Array, Body, dop853, rk4, semi_implicit_euler
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Judgement, LagtopError, Top, compare, solve
+from lagrange_cli.inputs.seen import Conventions
 from lagrange_cli.judge.alignment import Alignment
 from lagrange_cli.judge.compare import settled
 from lagrange_cli.judge.convergence import convergence
 from lagrange_cli.judge.judgement import Given, judge
-from lagrange_cli.judge.seen import Conventions
 from lagrange_cli.judge.tally import MOST_KEPT, Kept
 from lagrange_cli.judge.verdict import VERDICTS
 
