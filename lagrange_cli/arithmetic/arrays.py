@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .double_double import DoubleDouble, pair
+from .double_double import DoubleDouble
+from .sums_of_doubles import pair
 from .types import Array
 
 

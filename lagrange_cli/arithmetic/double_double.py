@@ -8,42 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import frexp
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from .sums_of_doubles import Pair, Triple
 from .types import Array, Mask
 from .workspace import HEAP, Space
 
 _SPLITTER = 2.0**27 + 1
-
-
-class Pair(NamedTuple):
-    """A number, or an array of numbers, to twice the precision."""
-
-    high: float | Array
-    low: float | Array
-
-
-def pair(value: Any) -> Pair:
-    """Return a many-digit number, or a fraction, as two doubles."""
-    high = float(value)
-    return Pair(high, float(value - type(value)(high)))
-
-
-class Triple(NamedTuple):
-    """A number to three times the precision."""
-
-    high: float | Array
-    middle: float | Array
-    low: float | Array
-
-
-def triple(value: Any) -> Triple:
-    """Return a many-digit number as three doubles."""
-    high, middle = pair(value)
-    kind = type(value)
-    return Triple(float(high), float(middle), float(value - kind(high) - kind(middle)))
 
 
 def two_product(x: Array, factor: float | Array, space: Space = HEAP) -> tuple[Array, Array]:

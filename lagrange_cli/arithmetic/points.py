@@ -85,7 +85,8 @@ class EvenPoints(Points):
         """
         import numpy as np
 
-        from .double_double import pair, two_product, two_sum
+        from .double_double import two_product, two_sum
+        from .sums_of_doubles import pair
 
         start, step = pair(self.start), pair(self.step)
         i = index.astype(np.float64)

@@ -57,7 +57,8 @@ def rows(quadrature: Quadrature, times: Points, c3: Fraction, unit: str = "") ->
     """
     import numpy as np
 
-    from ..arithmetic.double_double import pair, reduce_phase
+    from ..arithmetic.double_double import reduce_phase
+    from ..arithmetic.sums_of_doubles import pair
 
     quadrature.check_doubles()
     exact = ManyDigits()

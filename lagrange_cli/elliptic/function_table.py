@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.correct_rounding import TooFewDigitsError
-from ..arithmetic.double_double import pair, two_product
+from ..arithmetic.double_double import two_product
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.sums_of_doubles import pair
 from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import jacobi, jacobi_at

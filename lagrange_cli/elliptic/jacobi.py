@@ -14,8 +14,9 @@ import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks, in_arithmetic, polynomial
-from ..arithmetic.double_double import Pair, reduce_phase
+from ..arithmetic.double_double import reduce_phase
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.sums_of_doubles import Pair
 from ..arithmetic.types import Array
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods

@@ -9,8 +9,8 @@ from ..errors import LagtopError
 from .complete import complete_e, complete_k, nome
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
-    from ..arithmetic.double_double import Pair
     from ..arithmetic.protocol import FunctionArithmetic, Value
+    from ..arithmetic.sums_of_doubles import Pair
 
 _INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 
@@ -90,7 +90,8 @@ def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
     """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
     import numpy as np
 
-    from ..arithmetic.double_double import Pair, sqrt_pair, two_product, two_sum
+    from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
+    from ..arithmetic.sums_of_doubles import Pair
 
     a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
     a_low += rest / 2

@@ -64,8 +64,8 @@ class ModulusInput(NamedTuple):
 
         Raises LagtopError where it is out of range, or k' is too small for a double.
         """
-        from ..arithmetic.double_double import pair
         from ..arithmetic.many_digits import ManyDigits
+        from ..arithmetic.sums_of_doubles import pair
 
         exact = self.in_digits(ManyDigits())
         rounded = Modulus(float(exact.k), *pair(exact.k_prime))

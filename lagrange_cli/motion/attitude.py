@@ -10,17 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import (
-    Pair,
-    Triple,
-    fraction_of_product,
-    pair,
-    triple,
-    two_product,
-    two_sum,
-)
+from ..arithmetic.double_double import fraction_of_product, two_product, two_sum
 from ..arithmetic.numbers import R
 from ..arithmetic.protocol import Arithmetic
+from ..arithmetic.sums_of_doubles import Pair, Triple, pair, triple
 from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
 

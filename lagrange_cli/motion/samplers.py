@@ -26,8 +26,9 @@ from numpy.typing import ArrayLike
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks
-from ..arithmetic.double_double import Pair, reduce_phase
+from ..arithmetic.double_double import reduce_phase
 from ..arithmetic.points import MAX_TIME
+from ..arithmetic.sums_of_doubles import Pair
 from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
 from ..errors import LagtopError

@@ -205,7 +205,7 @@ def _swing(motion: Separatrix[Any]) -> Swing[Any]:
 
 def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     """Return the sampler of a nutating top."""
-    from ..arithmetic.double_double import pair
+    from ..arithmetic.sums_of_doubles import pair
     from .attitude import growths
     from .samplers import ThetaSampler
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import PAIRS
-from ..arithmetic.double_double import DoubleDouble, Pair, Triple, reduce_phase
+from ..arithmetic.double_double import DoubleDouble, reduce_phase
+from ..arithmetic.sums_of_doubles import Pair, Triple
 from ..arithmetic.types import Array, Mask
 from ..arithmetic.workspace import Workspace
 from ..elliptic.carlson import carlson_rf

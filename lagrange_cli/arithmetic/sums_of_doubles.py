@@ -1,0 +1,39 @@
+"""Numbers of many digits held as sums of two or three doubles, for arrays to be computed with.
+
+They are made without NumPy; `double_double` computes with them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from .types import Array
+
+
+class Pair(NamedTuple):
+    """A number, or an array of numbers, to twice the precision."""
+
+    high: float | Array
+    low: float | Array
+
+
+def pair(value: Any) -> Pair:
+    """Return a many-digit number, or a fraction, as two doubles."""
+    high = float(value)
+    return Pair(high, float(value - type(value)(high)))
+
+
+class Triple(NamedTuple):
+    """A number to three times the precision."""
+
+    high: float | Array
+    middle: float | Array
+    low: float | Array
+
+
+def triple(value: Any) -> Triple:
+    """Return a many-digit number as three doubles."""
+    high, middle = pair(value)
+    kind = type(value)
+    return Triple(float(high), float(middle), float(value - kind(high) - kind(middle)))
