@@ -18,6 +18,7 @@ FLOORS = [
     {"bench"},
     {"judge"},
     {"plot"},
+    {"fits"},
     {"sweeps"},
     {"motion"},
     {"elliptic", "inputs", "output"},
@@ -49,7 +50,7 @@ def imported_modules(path: Path) -> Iterator[list[str]]:
 
 def test_the_package_has_these_rooms_and_no_others() -> None:
     assert {path.name for path in PACKAGE.iterdir() if path.name != "__pycache__"} == {
-        *("cli", "bench", "judge", "plot", "sweeps", "motion"),
+        *("cli", "bench", "judge", "plot", "fits", "sweeps", "motion"),
         *("elliptic", "inputs", "output", "arithmetic"),
         *("errors.py", "__init__.py", "__main__.py", "py.typed"),
         *("LICENSE", "CHANGES.md"),

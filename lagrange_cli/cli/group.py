@@ -14,7 +14,10 @@ from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interru
 from .command import ExamplesFirst
 from .options import complain
 
-COMMANDS = ["solve", "table", "sweep", "compare", "plot", "jacobi", "eta", "bench", "stability"]
+COMMANDS = [
+    *("solve", "table", "sweep", "find", "compare", "plot"),
+    *("jacobi", "eta", "bench", "stability"),
+]
 
 
 class LagtopGroup(ExamplesFirst, click.Group):

@@ -45,6 +45,45 @@ def parse_values(text: str) -> Points:
     return ListedPoints([parse_number(part) for part in text.split(",")])
 
 
+class Span(NamedTuple):
+    """The values that an unknown input may have: from one end to the other."""
+
+    first: Fraction
+    last: Fraction
+    logarithmic: bool = False
+    """Whether it is cut into equal ratios, not into equal steps."""
+
+    def points(self, count: int) -> Points:
+        """Return so many points of it, the ends among them."""
+        if self.logarithmic:
+            return LogPoints(self.first, self.last, count)
+        return EvenPoints(self.first, (self.last - self.first) / (count - 1), count)
+
+    def __str__(self) -> str:
+        return f"{float(self.first):g} to {float(self.last):g}"
+
+
+def parse_span(text: str) -> Span:
+    """Return the values of `from:to` or `log:from:to`: a range without its count.
+
+    Raises LagtopError for anything else, and where the second end is not the larger one.
+    """
+    logarithmic, ends = text.startswith("log:"), text.removeprefix("log:").split(":")
+    if len(ends) != 2:
+        raise LagtopError(f"must be a number or a range [log:]from:to, got {text[:60]!r}")
+    first, last = map(parse_number, ends)
+    if not first < last:
+        raise LagtopError(f"must be a range whose first end is the smaller one, got {text[:60]!r}")
+    if logarithmic and not first * last > 0:
+        raise LagtopError(f"must have two ends of one sign, not 0, in a log: range, got {text!r}")
+    return Span(first, last, logarithmic)
+
+
+def parse_number_or_span(text: str) -> Fraction | Span:
+    """Return a number, or the values of a range `[log:]from:to`.  Raises LagtopError."""
+    return parse_span(text) if ":" in text else parse_number(text)
+
+
 class Product(NamedTuple):
     """All combinations of the values of several inputs; the last input varies fastest."""
 

@@ -1,0 +1,147 @@
+"""The command `lagtop find`: inputs for wanted numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import LagtopError
+from .command import ExamplesFirst, write_keys
+from .options import COUNT, NAMES, Parsed, by_key, complain, exclude, input_options, output_options
+from .progress import with_progress
+
+if TYPE_CHECKING:
+    from ..motion.solve import Motion
+
+
+def _parse_input(text: str) -> Any:
+    from ..inputs.ranges import parse_number_or_span
+
+    return parse_number_or_span(text)
+
+
+@click.command(
+    "find",
+    cls=ExamplesFirst,
+    shows=write_keys,
+    examples="""
+        lagtop find --r0 10:200 T_precession=2
+        lagtop find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43
+        lagtop find --psidot0 -20:20 mean_precession_rate=6 path=looping 'theta_max_deg<120'
+        lagtop find sample_inputs/hanging-top.toml --r0 log:1:40 T_nutation=0.25 --scan 1e4
+        lagtop find --from theta_min=30 theta_max=60 T_nutation=0.4 mean_precession_rate=5
+    """,
+)
+@click.argument("words", nargs=-1, metavar="[SCENE.toml] CONDITION...")
+@input_options(Parsed("number or from:to", _parse_input))
+@click.option(
+    "--scan",
+    type=COUNT,
+    metavar="N",
+    help="Values of each unknown in the scan.  [default: 1000, 60 or 20 of 1, 2 or 3 unknowns]",
+)
+@click.option(
+    "--from",
+    "seen",
+    is_flag=True,
+    help="The conditions are theta_min, theta_max, T_nutation and mean_precession_rate, and may be "
+    "mean_spin_rate: they tell a and b in closed form.",
+)
+@click.option("--keys", type=NAMES, help="Print only these keys, with commas between.")
+@output_options("csv", "ndjson", "json")
+def command(
+    words: tuple[str, ...],
+    rad: bool,
+    scan: int | None,
+    seen: bool,
+    keys: list[str] | None,
+    fmt: str,
+    output: str,
+    **options: Any,
+) -> None:
+    """Tops whose records have wanted numbers.
+
+    An input that is a range from:to (or log:from:to) is unknown, up to three of them; there are as
+    many conditions KEY=NUMBER.  regime=WORD, path=WORD and bounds such as KEY<NUMBER leave out what
+    does not keep them; an angle may leave out its unit.
+
+    With one unknown all solutions are found that the scan brackets, each to its last bit.  With
+    several, those to which its best points lead.  The exit code is 1 where there is none.
+
+    With --from inputs of the body, and a scene, may be given too; what these numbers cannot tell of
+    it is 1, or such that C = A.  The tops start at their least tilt.
+    """
+    from ..inputs.names import check_names
+    from ..motion.record import all_keys, record_keys
+
+    exclude({"--from": seen or None, "--scan": scan})
+    chosen = record_keys(radians=rad)
+    if keys is not None:
+        chosen = check_names("keys", keys, all_keys(radians=rad))
+    scenes = [word for word in words if word.endswith(".toml")]
+    conditions = [word for word in words if word not in scenes]
+    if len(scenes) > 1:
+        raise LagtopError(f"find takes one scene, got {' '.join(scenes)}")
+    inputs = by_key(options, radians=rad)
+    if seen:
+        motions = _inverted(scenes, conditions, inputs, rad)
+    else:
+        motions = _found(scenes, conditions, inputs, scan, rad)
+    _write(motions, chosen, rad, fmt, output)
+
+
+def _found(
+    scenes: list[str],
+    conditions: list[str],
+    inputs: dict[str, Any],
+    count: int | None,
+    radians: bool,
+) -> list[Motion]:
+    from ..fits.conditions import read_conditions
+    from ..fits.find import look
+    from ..fits.search import Search
+    from ..sweeps.plan import shared_inputs
+
+    fixed = {name: x for name, x in inputs.items() if isinstance(x, Fraction)}
+    spans = {name: x for name, x in inputs.items() if name not in fixed}
+    wanted = read_conditions(conditions, radians=radians)
+    shared = shared_inputs(scenes[0] if scenes else None, fixed, varying=spans)
+    known = {name: x for name, x in shared.items() if name not in spans}
+    found = look(Search(known, spans, wanted, radians).check(), count, _watched)
+    complain(f"{len(found.motions)} found; {found.looked}")
+    return found.motions
+
+
+def _watched(blocks: Iterable[Any]) -> Iterator[Any]:
+    listed = list(blocks)
+    total = sum(block.size for block in listed)
+    return with_progress(listed, total, 1_000_000, size=lambda block: block.size, label="tops")
+
+
+def _inverted(
+    scenes: list[str], conditions: list[str], inputs: dict[str, Any], radians: bool
+) -> list[Motion]:
+    from ..fits.body import INPUTS
+    from ..fits.invert import invert
+
+    given = {name: float(x) for name, x in inputs.items() if isinstance(x, Fraction)}
+    if wrong := [name for name in inputs if name not in INPUTS or name not in given]:
+        raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got {wrong[0]}")
+    if scenes:
+        from ..inputs.scene_file import SceneFile
+
+        of_scene = {x: float(y) for x, y in SceneFile(scenes[0]).inputs.items() if x in INPUTS}
+        given = of_scene | given
+    return invert(conditions, radians=radians, known=given)
+
+
+def _write(motions: list[Motion], keys: list[str], radians: bool, fmt: str, output: str) -> None:
+    """Write the records as `lagtop sweep` does, a row for each motion."""
+    from ..output.write import block_text, write_text_blocks
+
+    records = [motion.record_in_range(radians=radians, keys=keys)[0] for motion in motions]
+    columns = [[record[key] for record in records] for key in keys]
+    write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)

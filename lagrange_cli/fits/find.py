@@ -1,0 +1,131 @@
+"""`find`: the tops of which some numbers of the record have wanted values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.numbers import Number
+from ..errors import AbsentError, LagtopError
+from ..inputs.ranges import Span, parse_span
+from ..inputs.top import Top
+from ..motion.solve import Motion, solve
+from .conditions import read_conditions
+from .roots import roots
+from .search import Scan, Search, Watch, scan
+from .several import solutions
+
+
+class Found(NamedTuple):
+    """The tops that were found, and how they were looked for."""
+
+    motions: list[Motion]
+    looked: str
+    """One sentence on the scan."""
+
+
+def find(
+    conditions: Sequence[str], *, count: int | None = None, radians: bool = False, **inputs: Any
+) -> list[Motion]:
+    """Return the motions that keep all conditions, such as `find(["T_precession=2"], r0="10:200")`.
+
+    An input is a number, or a text `[log:]from:to` where it is unknown; there are up to three
+    unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER leave out
+    what does not keep them.  What a scan of `count` values of each unknown brackets is found; each
+    unknown is right to its last bit.  The list may be empty.  Raises LagtopError.
+    """
+    spans = {name: parse_span(x) for name, x in inputs.items() if isinstance(x, str)}
+    fixed = {name: x for name, x in inputs.items() if name not in spans}
+    search = Search(
+        _completed(fixed, spans), spans, read_conditions(conditions, radians=radians), radians
+    )
+    try:
+        return look(search.check(), count).motions
+    except AbsentError:
+        return []
+
+
+def _completed(fixed: Mapping[str, Number], spans: Mapping[str, Span]) -> dict[str, float]:
+    """Return known inputs over those of the worked example, without what is unknown."""
+    start = {name: float(span.first) for name, span in spans.items()}
+    given = Top(**({"theta0_deg": 30.0} | dict(fixed) | start)).as_dict()
+    return {name: float(x) for name, x in given.items() if x is not None and name not in spans}
+
+
+def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found:
+    """Return the tops that keep the conditions.
+
+    Raises AbsentError, which says how near the scan came, where there is none.
+    """
+    grid = scan(search, count, watch)
+    if len(search.spans) == 1:
+        points = [[x] for x in _roots(search, grid)]
+    else:
+        points = solutions(search, grid)
+    motions, broken = [], None
+    for point in points:
+        motion = solve(search.top(point))
+        record = motion.record_in_range(radians=search.radians, keys=search.conditions.keys)[0]
+        fault = search.conditions.broken_by(record)
+        broken = broken or fault
+        if fault is None:
+            motions.append(motion)
+    looked = _looked(search, grid)
+    if not motions:
+        raise AbsentError(f"no top found: {_why(search, grid, len(points), broken)}; {looked}")
+    return Found(motions, looked)
+
+
+def _roots(search: Search, grid: Scan) -> list[float]:
+    wanted = float(search.wanted[0])
+    return roots(
+        lambda x: float(search.numbers([x])[0]) - wanted,
+        grid.values[:, 0],
+        grid.numbers[:, 0] - wanted,
+    )
+
+
+def _looked(search: Search, grid: Scan) -> str:
+    """Return how fine the scan was, and what that means."""
+    ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
+    each = "" if len(grid.shape) == 1 else " each"
+    caution = "what lies closer together may be missed"
+    if len(grid.shape) > 1:
+        caution = "found is what its best points led to"
+    return f"scanned {ranges} at {grid.shape[0]} values{each}: {caution}"
+
+
+def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
+    """Return why nothing was found: what is nearest, or what is broken by all solutions."""
+    if broken is not None:
+        return f"of {count} with {_wanted(search)} none has {broken}"
+    known = np.isfinite(grid.numbers).all(axis=1)
+    if not known.any():
+        return f"no top of the scan has {_wanted(search)}{_error(search, grid)}"
+    size = np.maximum(np.abs(search.wanted), np.ptp(grid.numbers[known], axis=0))
+    off = np.abs(grid.numbers - search.wanted) / np.where(size > 0, size, 1.0)
+    nearest = int(np.nanargmin(np.where(known, np.linalg.norm(off, axis=1), np.nan)))
+    reached = ", ".join(
+        f"{key} = {value:.6g}"
+        for key, value in zip(search.conditions.numbers, grid.numbers[nearest], strict=True)
+    )
+    where = ", ".join(
+        f"{name} = {value:.6g}"
+        for name, value in zip(search.spans, grid.values[nearest], strict=True)
+    )
+    return f"nearest to {_wanted(search)} is {reached} at {where}"
+
+
+def _error(search: Search, grid: Scan) -> str:
+    """Return what is wrong with the first top of a scan, if anything is."""
+    try:
+        solve(search.top(grid.values[0]))
+    except LagtopError as error:
+        return f" ({error})"
+    return ""
+
+
+def _wanted(search: Search) -> str:
+    return ", ".join(f"{key}={value:g}" for key, value in search.conditions.numbers.items())

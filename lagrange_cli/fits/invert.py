@@ -1,0 +1,60 @@
+"""`find --from`: a top by the turning points, the period and the mean precession of its motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from ..errors import AbsentError, LagtopError
+from ..inputs.top import Top
+from ..motion.record import unit_name
+from ..motion.solve import Motion, solve
+from .body import completed, told_of
+from .conditions import read_conditions
+from .turning_points import Nutation, top_of, with_mean_rate
+
+_SEEN = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
+_SPIN = "mean_spin_rate"
+
+
+def invert(
+    seen: Sequence[str], *, radians: bool = False, known: Mapping[str, float] | None = None
+) -> list[Motion]:
+    """Return the motions with these numbers, which start at their least tilt.
+
+    `seen` are KEY=NUMBER of theta_min, theta_max, T_nutation and mean_precession_rate, and may be
+    mean_spin_rate; `known` are inputs of the body.  They tell a and b in closed form but for one
+    root, and with the spin C/A; what is not told of the body is 1, or such that C = A.  Raises
+    LagtopError, AbsentError where no top moves so.
+    """
+    numbers = _numbers(seen, radians)
+    unit = 1.0 if radians else math.pi / 180
+    least, greatest, period, rate = (numbers[unit_name(key, radians=radians)] for key in _SEEN)
+    nutation = Nutation(least * unit, greatest * unit, period).checked()
+    found = with_mean_rate(nutation, rate)
+    if not found:
+        raise AbsentError(
+            f"no top nods between these tilts in this time and precesses by {rate:g} on average"
+        )
+    tops = [top_of(nutation, one, numbers.get(_SPIN)) for one in found]
+    return [solve(_of_body(top, known or {}, _SPIN in numbers)) for top in tops]
+
+
+def _numbers(seen: Sequence[str], radians: bool) -> Mapping[str, float]:
+    """Return the numbers by key.  Raises LagtopError for a wrong set of them."""
+    conditions = read_conditions(seen, radians=radians)
+    needed = {unit_name(key, radians=radians) for key in _SEEN}
+    given = set(conditions.numbers)
+    if conditions.words or conditions.bounds or not needed <= given <= needed | {_SPIN}:
+        wanted = "=.. ".join([*_SEEN, ""]).replace("_deg", "")
+        shown = " ".join(seen)[:100] or "nothing"
+        raise LagtopError(f"from must have {wanted}and may have {_SPIN}=.., got {shown}", "from")
+    return conditions.numbers
+
+
+def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
+    """Return a top that moves so and has the inputs of the body that are known."""
+    a, b, r0 = 2 * float(top.g), float(top.C) * float(top.r0), float(top.r0)
+    numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
+    inputs = completed(numbers, known, told_of(numbers, known))
+    return top.replace(**inputs)

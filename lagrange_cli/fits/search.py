@@ -1,0 +1,113 @@
+"""What a search is over: the unknown inputs and their ranges, and what is asked of the record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.ranges import Product, Span
+from ..inputs.top import Top, overridden
+from ..motion.solve import solve
+from ..sweeps.records import BLOCK_ROWS, sweep
+from .conditions import Conditions
+
+COUNTS = {1: 1000, 2: 60, 3: 20}
+"""Values of each unknown in a scan, by the number of unknowns."""
+MOST_TOPS = 10_000_000
+
+Watch = Callable[[Iterable[Any]], Iterable[Any]]
+"""Passes blocks of tops on, and may show how many have passed."""
+
+
+class Search(NamedTuple):
+    """Unknown inputs, the inputs that are known, and what is wanted."""
+
+    fixed: Mapping[str, float]
+    spans: Mapping[str, Span]
+    conditions: Conditions
+    radians: bool = False
+
+    @property
+    def wanted(self) -> Array:
+        """The numbers that the record shall have."""
+        return np.array(list(self.conditions.numbers.values()))
+
+    @property
+    def ends(self) -> Array:
+        """The first and the last value of each unknown, as two rows."""
+        spans = self.spans.values()
+        return np.array([[float(x.first) for x in spans], [float(x.last) for x in spans]])
+
+    def inputs(self, values: Sequence[Any]) -> dict[str, Any]:
+        """Return the inputs of `Top` with these values of the unknowns."""
+        return overridden(dict(self.fixed), dict(zip(self.spans, values, strict=True)))
+
+    def top(self, values: Sequence[float]) -> Top:
+        """Return the top with these values of the unknowns.  Raises LagtopError."""
+        return Top(**{key: float(value) for key, value in self.inputs(values).items()})
+
+    def numbers(self, values: Sequence[float]) -> Array:
+        """Return the numbers that have a wanted value, each the nearest double; NaN for none."""
+        try:
+            motion = solve(self.top(values))
+            record = motion.record(radians=self.radians, keys=list(self.conditions.numbers))
+        except LagtopError:
+            return np.full(len(self.conditions.numbers), np.nan)
+        found = (record[key] for key in self.conditions.numbers)
+        return np.array([np.nan if x is None else x for x in found])
+
+    def swept(self, values: Array) -> Array:
+        """Return those numbers of many tops by `sweep`, a row for each row of values."""
+        keys = list(self.conditions.numbers)
+        found = sweep(keys=keys, radians=self.radians, **self.inputs(list(values.T)))
+        return np.stack([np.asarray(found[key], dtype=np.float64) for key in keys], axis=-1)
+
+    def check(self) -> Search:
+        """Return the search.  Raises LagtopError where it cannot have single solutions."""
+        unknown, numbers = len(self.spans), len(self.conditions.numbers)
+        if not 1 <= unknown <= max(COUNTS):
+            raise LagtopError(
+                f"find needs 1 to {max(COUNTS)} unknown inputs, each a range from:to such as "
+                f"--r0 10:200, got {unknown}"
+            )
+        if numbers != unknown:
+            raise LagtopError(
+                f"find needs as many conditions KEY=NUMBER as unknown inputs, got {numbers} for "
+                f"{unknown}: {', '.join(self.spans)}"
+            )
+        return self
+
+
+class Scan(NamedTuple):
+    """Tops on a grid of the unknowns."""
+
+    shape: tuple[int, ...]
+    values: Array
+    """The unknowns of each top, shape (tops, unknowns); the last unknown varies fastest."""
+    numbers: Array
+    """What the numbers that are wanted are there, in the same shape; NaN for none."""
+
+
+def scan(search: Search, count: int | None, watch: Watch = iter) -> Scan:
+    """Compute the tops on a grid of so many values of each unknown.
+
+    Raises LagtopError for a count that is too small, or too large together.
+    """
+    each = COUNTS[len(search.spans)] if count is None else count
+    if each < 3 or each ** len(search.spans) > MOST_TOPS:
+        raise LagtopError(
+            f"scan must be 3 or more values of each unknown, and at most 1e7 tops, got {each}",
+            "scan",
+        )
+    grid = Product({name: span.points(each) for name, span in search.spans.items()})
+    values, numbers = [], []
+    for block in watch([*grid.blocks(BLOCK_ROWS)]):
+        at = np.stack(list(block.values().values())[::-1], axis=-1)
+        values.append(at)
+        numbers.append(search.swept(at))
+    shape = (each,) * len(search.spans)
+    return Scan(shape, np.concatenate(values), np.concatenate(numbers))

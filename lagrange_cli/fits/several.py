@@ -1,0 +1,99 @@
+"""Several numbers of the record that shall have wanted values, by several inputs.
+
+Newton's method, within the ranges, from the best points of the scan; found is what these lead to.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from .search import Scan, Search
+from .slopes import number_slopes
+
+_MOST_STARTS = 16
+_NEWTON_STEPS = 6
+_APART = 1e-9
+"""Solutions that differ by less, over the range, are one."""
+_BITS = 4.0
+"""How many last bits of the unknowns, and of the number itself, a number may be off."""
+
+
+def solutions(search: Search, grid: Scan) -> list[list[float]]:
+    """Return the values of the unknowns where all numbers are as wanted."""
+    found: list[Array] = []
+    width = search.ends[1] - search.ends[0]
+    for start in _starts(search, grid):
+        point = _settled(search, _descended(search, grid, start))
+        if point is not None and all(
+            np.max(np.abs(point - other) / width) > _APART for other in found
+        ):
+            found.append(point)
+    return sorted(point.tolist() for point in found)
+
+
+def _sizes(search: Search, grid: Scan) -> Array:
+    """Return what each number is measured by: how much it varies in the scan."""
+    spread = np.nanstd(np.where(np.isfinite(grid.numbers), grid.numbers, np.nan), axis=0)
+    return np.where(spread > 0, spread, np.maximum(np.abs(search.wanted), 1e-300))
+
+
+def _starts(search: Search, grid: Scan) -> list[Array]:
+    """Return the points of the grid that are nearer than all their neighbours, the best first."""
+    off = (grid.numbers - search.wanted) / _sizes(search, grid)
+    size = np.linalg.norm(off, axis=1)
+    size = np.where(np.isfinite(size), size, np.inf).reshape(grid.shape)
+    best = np.isfinite(size)
+    for axis in range(size.ndim):
+        for shift in (1, -1):
+            beside = np.roll(size, shift, axis)
+            edge = [slice(None)] * size.ndim
+            edge[axis] = slice(0, 1) if shift == 1 else slice(-1, None)
+            beside[tuple(edge)] = np.inf
+            best &= size <= beside
+    rows = np.flatnonzero(best.ravel())
+    order = np.argsort(size.ravel()[rows], kind="stable")[:_MOST_STARTS]
+    return [grid.values[row] for row in rows[order]]
+
+
+def _descended(search: Search, grid: Scan, start: Array) -> Array:
+    """Return where the least squares of what is missing lead to from a point."""
+    from scipy.optimize import least_squares
+
+    sizes, (low, high) = _sizes(search, grid), search.ends
+    width = high - low
+
+    def missing(x: Array) -> Array:
+        off = (search.swept(low + width * x[np.newaxis])[0] - search.wanted) / sizes
+        return np.where(np.isfinite(off), off, 1e6)
+
+    def slopes(x: Array) -> Array:
+        scaled: Array = number_slopes(search, low + width * x) * width / sizes[:, np.newaxis]
+        return scaled
+
+    inside = np.clip((start - low) / width, 1e-9, 1 - 1e-9)
+    tight = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "max_nfev": 60}
+    ended = least_squares(missing, inside, slopes, bounds=(0, 1), **tight)
+    return np.asarray(low + width * ended.x)
+
+
+def _settled(search: Search, point: Array) -> Array | None:
+    """Return a point that Newton's method with the numbers of `solve` brings to its last bits.
+
+    None where it is no solution: where the numbers are off by more than roundings explain.
+    """
+    best, least = None, np.inf
+    for _ in range(_NEWTON_STEPS):
+        slopes = number_slopes(search, point)
+        off = search.numbers(point.tolist()) - search.wanted
+        if not (np.isfinite(off).all() and np.isfinite(slopes).all()):
+            break
+        rounding = np.abs(slopes) @ np.spacing(np.abs(point)) + np.spacing(np.abs(search.wanted))
+        size = float(np.max(np.abs(off) / rounding))
+        if size < least:
+            best, least = point, size
+        if size == 0:
+            break
+        step = np.linalg.lstsq(slopes, -off, rcond=None)[0]
+        point = np.clip(point + step, *search.ends)
+    return best if least <= _BITS else None

@@ -1,0 +1,218 @@
+"""`find`: the inputs for wanted numbers, judged by Chrapan's formulas in mpmath."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import random
+from typing import Any
+
+import numpy as np
+import oracle
+import pytest
+from conftest import Lagtop, assert_one_line
+from scipy.integrate import solve_ivp
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.fits.body import INPUTS, completed, told_of
+from lagrange_cli.fits.find import find
+from lagrange_cli.fits.invert import invert
+
+
+@pytest.mark.parametrize(
+    ("key", "wanted", "found"),
+    [("T_precession", 2.0, 1), ("T_nutation", 0.45, 2), ("theta_max_deg", 90.0, 1)],
+)
+def test_an_unknown_is_right_to_its_last_bit(key: str, wanted: float, found: int) -> None:
+    motions = find([f"{key}={wanted}"], r0="10:200")
+    assert len(motions) == found
+    for motion in motions:
+        r0 = float(motion.top.r0)
+        near = [r0, math.nextafter(r0, 0), math.nextafter(r0, math.inf)]
+        off = [abs(oracle.constants(oracle.Scene(r0=x), 30)[key] - wanted) for x in near]
+        # half an ulp of the number is all that a comparison of doubles can see
+        assert off[0] <= min(off) + math.ulp(wanted) / 2
+
+
+def test_a_pair_of_roots_between_two_points_is_found() -> None:
+    least = min(find(["T_nutation=0.4525"], r0="10:200"), key=lambda x: float(x.top.r0))
+    assert len(find(["T_nutation=0.4525"], r0="10:200", count=7)) == 2
+    assert 30 < float(least.top.r0) < 40
+
+
+def test_a_leap_is_no_root() -> None:
+    """The mean spin leaps by a turn per period where the axis starts to pass round a pole."""
+    rates = [solve(Top(psidot0=x)).mean_spin_rate for x in (-11.98, -11.97)]
+    assert all(math.isfinite(rate) for rate in rates)
+    found = find(["mean_spin_rate=46"], psidot0="-40:40")
+    assert all(abs(motion.mean_spin_rate - 46) < 1e-12 for motion in found)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "unknowns"),
+    [
+        (["T_precession=0.8", "T_nutation=0.43"], {"r0": "10:200", "theta0_deg": "5:150"}),
+        (
+            ["mean_precession_rate=7", "T_nutation=0.5", "theta_max_deg=70"],
+            {"r0": "30:70", "A": "3e4:6e4", "theta0_deg": "10:50"},
+        ),
+    ],
+)
+def test_several_unknowns(conditions: list[str], unknowns: dict[str, Any]) -> None:
+    motions = find(conditions, **unknowns)
+    assert motions
+    for motion in motions:
+        inputs = {name: float(getattr(motion.top, name)) for name in oracle.Scene._fields}
+        numbers = oracle.constants(oracle.Scene(**inputs), 30)
+        for condition in conditions:
+            key, _, wanted = condition.partition("=")
+            assert float(numbers[key]) == pytest.approx(float(wanted), rel=5e-15)
+
+
+def test_filters_and_bounds() -> None:
+    both = find(["T_nutation=0.45"], r0="10:60")
+    assert [x.theta_max_deg < 100 for x in both] == [False, True]
+    assert find(["T_nutation=0.45", "theta_max<100"], r0="10:60") == both[1:]
+    assert find(["T_nutation=0.45", "theta_max_deg>=100"], r0="10:60") == both[:1]
+    assert find(["T_nutation=0.45", "path=looping"], r0="10:60") == []
+    assert find(["T_nutation=0.45", "regime=regular"], r0="10:60") == both
+
+
+@pytest.mark.parametrize(
+    ("conditions", "unknowns", "message"),
+    [
+        (["T_nutation=0.4"], {}, "find needs 1 to 3 unknown inputs"),
+        ([], {"r0": "1:2"}, "find needs as many conditions"),
+        (["T_nutation~3"], {"r0": "1:2"}, "a condition must be KEY=VALUE"),
+        (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),
+        (["T_nutation=nan"], {"r0": "1:2"}, "the value of T_nutation must be a finite"),
+        (["T_nut=3"], {"r0": "1:2"}, "did you mean .T_nutation"),
+        (["T_nutation=1"], {"r0": "2:1"}, "must be a range whose first end is the smaller one"),
+        (["T_nutation=1"], {"r0": "log:-1:1"}, "must have two ends of one sign"),
+        (["T_nutation=1"], {"mass": "1:2"}, "mass"),
+    ],
+)
+def test_bad_searches(conditions: list[str], unknowns: dict[str, Any], message: str) -> None:
+    with pytest.raises((LagtopError, TypeError), match=message):
+        find(conditions, **unknowns)
+
+
+def test_the_command_writes_records(lagtop: Lagtop) -> None:
+    options = ("find", "--r0", "10:60", "T_nutation=0.45")
+    rows = list(csv.DictReader(io.StringIO(lagtop(*options).stdout)))
+    objects = json.loads(lagtop(*options, "--format", "json").stdout)
+    assert [float(row["r0"]) for row in rows] == [x["r0"] for x in objects]
+    assert [x["T_nutation"] for x in objects] == [0.45, 0.45]
+    assert list(rows[0]) == [*solve(Top()).record()]
+    assert "at 1000 values" in lagtop(*options).stderr
+    finer = lagtop(*options, "--scan", "5000", "--keys", "r0")
+    assert "at 5000 values" in finer.stderr
+    found = map(float, finer.stdout.split()[1:])
+    assert list(found) == pytest.approx([x["r0"] for x in objects], rel=1e-14)  # ties of a few bits
+
+
+def test_where_there_is_none_the_nearest_is_named(lagtop: Lagtop) -> None:
+    result = lagtop("find", "--r0", "10:60", "T_nutation=0.46")
+    assert_one_line(result, 1, "no top found: nearest to T_nutation=0.46 is T_nutation = 0.452509")
+    result = lagtop("find", "--A", "1:2", "T_nutation=1")
+    assert_one_line(result, 1, "no top found: no top of the scan has T_nutation=1 (C must be <= 2")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        ("--r0 200:10 T_nutation=1", 2, "--r0 must be a range whose first end"),
+        ("--r0 1:2 T_nutation=1 --scan 2", 2, "--scan must be 3 or more values"),
+        ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
+        ("a.toml b.toml", 2, "find takes one scene"),
+        ("--from theta_min=3", 2, "--from must have theta_min=.. theta_max=.."),
+        ("--from --r0 1:2", 2, "--from goes with numbers for"),
+        ("--from --scan 9", 2, "--from and --scan exclude each other"),
+    ],
+)
+def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
+    assert_one_line(lagtop("find", *words.split()), code, message)
+
+
+def seen_of(scene: oracle.Scene) -> tuple[list[str], float, float]:
+    """Return what is seen of a top released from rest, and its a and b, by mpmath."""
+    numbers = oracle.constants(scene, 30)
+    names = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
+    seen = [f"{name}={float(numbers[name])!r}" for name in names]
+    return seen, float(numbers["a"]), float(numbers["b"])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_turning_points_give_a_and_b(seed: int) -> None:
+    rng = random.Random(seed)
+    r0 = rng.choice((-1, 1)) * rng.uniform(5, 120)
+    seen, a, b = seen_of(oracle.Scene(r0=r0, theta0_deg=rng.uniform(10, 150)))
+    found = invert(seen)
+    best = min(found, key=lambda x: abs(x.a - a) + abs(x.b - b))
+    # the worst of 300 such tops was off by 6e-13: a small nutation says little about k
+    assert best.a == pytest.approx(a, rel=1e-11)
+    assert best.b == pytest.approx(b, rel=1e-11)
+
+
+def test_turning_points_of_a_top_that_started_moving() -> None:
+    """Judged by Euler's equations in theta and psi, integrated by scipy."""
+    a, b, theta, psi_rate = 200.0, -15.0, 0.7, 4.0
+    momentum = psi_rate * math.sin(theta) ** 2 + b * math.cos(theta)
+
+    def precession(u: float) -> float:
+        return (momentum - b * u) / (1 - u * u)
+
+    def slope(_: float, state: np.ndarray) -> list[float]:
+        u, sine = math.cos(state[0]), math.sin(state[0])
+        rate = precession(u)
+        return [state[1], a / 2 * sine + rate * rate * u * sine - b * rate * sine, rate]
+
+    def turns(_: float, state: np.ndarray) -> float:
+        return float(state[1])
+
+    run = solve_ivp(slope, (0, 3), [theta, 0, 0], "DOP853", rtol=1e-12, atol=1e-12, events=turns)
+    times, states = run.t_events[0], run.y_events[0]
+    start = 0 if times[0] > 1e-9 else 1
+    period = times[start + 2] - times[start]
+    tilts = sorted(np.degrees(states[start : start + 2, 0]))
+    rate = (states[start + 2, 2] - states[start, 2]) / period
+    seen = [f"theta_min={tilts[0]}", f"theta_max={tilts[1]}", f"T_nutation={period}"]
+    found = invert([*seen, f"mean_precession_rate={rate}"])
+    assert min(abs(x.a - a) + abs(x.b - b) for x in found) < 1e-7
+
+
+def test_the_spin_gives_the_moments() -> None:
+    numbers = oracle.constants(oracle.Scene(), 30)
+    seen, _, _ = seen_of(oracle.Scene())
+    known = {"m": 1587.0, "g": 981.0, "s": 4.0}
+    (motion,) = invert([*seen, f"mean_spin_rate={float(numbers['mean_spin_rate'])!r}"], known=known)
+    assert float(motion.top.A) == pytest.approx(39032, rel=1e-11)
+    assert float(motion.top.C) == pytest.approx(17458, rel=1e-11)
+    assert float(motion.top.r0) == pytest.approx(50, rel=1e-11)
+
+
+@pytest.mark.parametrize("known", [(), ("g",), ("m", "g", "A"), ("C",), ("C", "A"), INPUTS])
+@pytest.mark.parametrize("spins", [False, True])
+def test_the_body_that_is_made_moves_as_seen(known: tuple[str, ...], spins: bool) -> None:
+    true = {"m": 1.587, "A": 3.9e-3, "C": 1.7e-3, "s": 0.04, "g": 9.81, "r0": -50.0}
+    a = 2 * true["m"] * true["g"] * true["s"] / true["A"]
+    b = true["C"] * true["r0"] / true["A"]
+    given = {name: true[name] for name in known}
+    seen = {"a": a, "b": b} | ({"r0": true["r0"]} if spins and "r0" not in known else {})
+    told = told_of(seen, given)
+    body = completed(seen, given, told)
+    assert body["C"] <= 2 * body["A"]
+    assert 2 * body["m"] * body["g"] * body["s"] / body["A"] == pytest.approx(a, rel=1e-13)
+    assert body["C"] * body["r0"] / body["A"] == pytest.approx(b, rel=1e-13)
+    for product in told:
+        value = math.prod(true[name] ** float(n) for name, n in product.powers.items())
+        assert product.value == pytest.approx(value, rel=1e-13)
+
+
+def test_what_cannot_be_told_apart_is_named() -> None:
+    names = [x.name for x in told_of({"a": 100.0, "b": 20.0}, {"g": 9.81, "A": 0.004})]
+    assert names == ["C*r0", "m*s"]
+    names = [x.name for x in told_of({"a": 100.0, "b": 20.0, "r0": 50.0}, {"g": 9.81, "m": 1.5})]
+    assert names == ["C/A", "r0", "s/A"]
