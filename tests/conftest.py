@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import compileall
 import json
 import signal
 import subprocess
@@ -19,6 +20,13 @@ ROOT = Path(__file__).parent.parent
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]
 
 Lagtop = Callable[..., Result]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile the package, as pip does: else each command under test compiles it for itself."""
+    if not hasattr(config, "workerinput"):  # once, not in each worker of pytest-xdist
+        compileall.compile_dir(ROOT / "lagrange_cli", quiet=1)
+
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts jobs with `&` so; commands under test would inherit it and outlive a Ctrl-C.

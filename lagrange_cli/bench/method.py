@@ -54,11 +54,13 @@ class Method(NamedTuple):
 
     def check_package(self) -> None:
         """Raise NotApplicableError where the package is missing."""
+        if missing := self.missing_package():
+            raise NotApplicableError(f"needs {missing}: pip install {missing}")
+
+    def missing_package(self) -> str:
+        """Return the name to install it by where its package is missing, or an empty text."""
         name = self.package.partition(".")[0]
-        if name and find_spec(name) is None:
-            raise NotApplicableError(
-                f"needs {self.engine or name}: pip install {self.engine or name}"
-            )
+        return (self.engine or name) if name and find_spec(name) is None else ""
 
     def mark(self) -> str | None:
         """Return the engine and its version, which mark its rows; None for other methods."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, UnavailableError
 from ..inputs.names import check_names
 from ..motion.regime import Regime
 from ..motion.solve import Motion
@@ -86,14 +86,19 @@ def groups() -> dict[str, list[str]]:
 def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
     """Return the methods with these names, of methods or groups of them, or the usual ones.
 
-    Raises LagtopError for an unknown one.
+    Raises LagtopError for an unknown one, and UnavailableError where none of them is installed.
     """
     if names is None:
         return usual_methods(limit)
     known, several = all_methods(limit), groups()
     check_names("methods", names, [*known, *(x for x in several if x not in known)])
     single = dict.fromkeys(x for name in names for x in several.get(name, [name]))
-    return {name: known[name] for name in single}
+    chosen = {name: known[name] for name in single}
+    missing = [method.missing_package() for method in chosen.values()]
+    if all(missing):
+        packages = " ".join(dict.fromkeys(missing))
+        raise UnavailableError(f"none of these methods is installed: pip install {packages}")
+    return chosen
 
 
 def task(

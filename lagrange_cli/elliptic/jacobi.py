@@ -21,7 +21,7 @@ from ..arithmetic.types import Array
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
 from .periods import Periods, whole_and_rest
-from .theta import theta
+from .theta import series_for, theta_at
 
 _LARGEST_ARGUMENT = 350.0
 """Greatest argument of sinh; beyond, for k' = 0 alone, cn and dn are exponentials."""
@@ -202,8 +202,9 @@ def _in_many_digits(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacob
 def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus) -> Jacobi:
     """Return the functions at x = u/2K by quotients of theta functions, for 0 < k < 1."""
     halves, zero = x.turns, ar.convert(0)
-    sine, cosine, delta, below = (theta(ar, ij, x.rest, modulus) for ij in ("11", "10", "00", "01"))
-    at_2, at_3, at_4 = (theta(ar, ij, zero, modulus) for ij in ("10", "00", "01"))
+    series, here, start = series_for(ar, modulus), Periods(zero, x.rest), Periods(zero, zero)
+    sine, cosine, delta, below = (theta_at(ar, ij, here, series) for ij in ("11", "10", "00", "01"))
+    at_2, at_3, at_4 = (theta_at(ar, ij, start, series) for ij in ("10", "00", "01"))
     sn, cn, dn = (
         at_3 / at_2 * sine / below,
         at_4 / at_2 * cosine / below,

@@ -93,7 +93,8 @@ def _conclusions(comparison: Comparison, limit: float) -> Iterator[str]:
             yield "The error depends on the step, but shows no order: give runs of one method."
         else:
             yield f"The error falls with the step to the power of {found.order:.2f}."
-    yield from _explanations(comparison.judgements)
+    if found is None or not found.falls:
+        yield from _explanations(comparison.judgements)
 
 
 def _name(judgement: Judgement) -> str:
@@ -132,5 +133,5 @@ def _explanations(judgements: Sequence[Judgement]) -> Iterator[str]:
             f"What explains it best: {best.explained_by}; with that undone {_name(best)} is at "
             f"most {best.explained_error:.1e} rad off."
         )
-    elif any(x.verdict in {ANOTHER, OFF} for x in judgements):
+    elif any(x.verdict in {ANOTHER, DRIFTS, OFF} for x in judgements):
         yield "None of the usual slips explains it."

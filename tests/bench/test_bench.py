@@ -67,6 +67,7 @@ def test_other_starts(name: str, start: dict[str, float]) -> None:
     assert error(run(Top(**start), name, METHODS[name].settings[-1])) < 1e-10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("r0", [50, -50])
 def test_series_of_the_paper_gain_with_every_term(r0: float) -> None:
     errors = [error(run(Top(r0=r0), "theta-series", terms)) for terms in (1, 2, 3, 6, 12)]
@@ -289,6 +290,7 @@ def test_long_view_stops_a_method_that_has_failed(
     assert "1.3" not in shown.split("method")[0]
 
 
+@pytest.mark.slow
 def test_samples_are_taken_in_one_thread_and_scipy_stays_out_of_solve() -> None:
     code = (
         "import os, sys\nfrom click.testing import CliRunner\n"

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ROOT, Lagtop
+from conftest import ROOT, Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, compare, solve
 from lagrange_cli.bench import long_spans
@@ -198,6 +198,12 @@ def test_missing_engines_are_named(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
     assert whole["conclusions"][0] == "lagtop was compared with nothing."
     assert "drake-rk3 (not applicable: needs drake: pip install drake)" in whole["conclusions"][1]
     assert len(whole["rows"]) == 1 + len(engines(1))
+
+
+def test_only_missing_engines_are_an_error(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(methods, "find_spec", lambda _: None)
+    result = lagtop("bench", "--methods", "drake,pybullet")
+    assert_one_line(result, 69, "none of these methods is installed: pip install drake pybullet\n")
 
 
 def test_missing_engines_are_named_over_long_spans_too(

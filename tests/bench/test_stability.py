@@ -192,6 +192,7 @@ def test_a_key_wrong_by_1e_15_is_seen(key: str, monkeypatch: pytest.MonkeyPatch)
     assert case.worst_key == key
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["a", "u_quarter", "amplitude_deg"])
 def test_a_missing_or_a_needless_key_is_seen(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     bend(monkeypatch, key, lambda _: None)

@@ -54,6 +54,7 @@ def test_arrays_alone_are_what_each_row_gives_by_itself(width: int) -> None:
     assert csv_lines([numbers], names).decode().splitlines() == lines
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", ["--n 40000", "--columns theta --n 3", "--times FILE --rad"])
 @pytest.mark.parametrize("form", ["npy", "parquet"])
 def test_files_of_numbers_hold_the_doubles_of_csv(

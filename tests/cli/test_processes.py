@@ -100,6 +100,7 @@ def test_closed_output(command: str, unbuffered: str) -> None:
     assert result.stderr.count(b"\n") == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_reader_that_is_gone_before_the_first_byte(unbuffered: str) -> None:
     for command in ("solve --format json", "table", "sweep"):
@@ -108,6 +109,7 @@ def test_a_reader_that_is_gone_before_the_first_byte(unbuffered: str) -> None:
         assert (result.stdout, result.stderr) in [(b"141\n", b""), (b"0\n", b"")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_file_that_may_not_grow(unbuffered: str, tmp_path: Path) -> None:
     target = tmp_path / "out.csv"

@@ -74,6 +74,7 @@ def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name: str, tmp_path
     assert list(tmp_path.iterdir()) == [target]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "message"),
     [
@@ -223,6 +224,7 @@ def test_control_characters_of_data_do_not_reach_the_terminal_but_pass_as_data()
     assert "\x9b31m".encode() in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("digits", [10, 900_000])
 def test_lines_of_errors_are_bounded(digits: int, tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"

@@ -146,6 +146,7 @@ def test_constants(k: complex) -> None:
             assert abs(mpmath.mpmathify(ours) - theirs) < 1e-45 * (1 + abs(theirs))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("k", [0.4 + 0j, 0.95 + 0j, 0.8j, 1.5 + 0j])
 @pytest.mark.parametrize("v", [0.2 + 0.7j, 0.3 - 0.4j])
 def test_the_branch_has_no_jumps_between_lines_of_zeros(k: complex, v: complex) -> None:

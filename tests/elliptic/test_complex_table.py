@@ -91,6 +91,7 @@ def test_constants(lagtop: Lagtop) -> None:
     assert "Re K'" in lagtop("jacobi", "--k", "0.8i").stdout
 
 
+@pytest.mark.slow
 def test_digits_are_right(lagtop: Lagtop) -> None:
     """All of those printed, of sn, against mpmath."""
     rng = random.Random("digits")
@@ -134,6 +135,7 @@ def exact_third(tau: mpmath.mpc, K: mpmath.mpf, u: complex, v: complex) -> dict[
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("modulus", "u", "v", "zeros"),
     [

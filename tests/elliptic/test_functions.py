@@ -198,6 +198,7 @@ def test_complex_arguments_above_zeros_and_halves(k: float, real: float) -> None
         assert abs(zeta_there * 2 * ar.ellipk(m) - ar.pi * slope / value) < 1e-36 * size
 
 
+@pytest.mark.slow
 def test_omega_on_arrays() -> None:
     """Real and imaginary parameters, both families of moduli in one array, against many digits."""
     ar = ManyDigits(40)
@@ -331,6 +332,7 @@ def test_poles_are_empty(lagtop: Lagtop) -> None:
         assert json.loads(shown.stdout)[0]["zeta11"] is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("u", ["1e25", "1e50", "1e300"])
 def test_digits_of_far_arguments(u: str, lagtop: Lagtop) -> None:
     """The precision grows with the argument; two that are too low could agree on a wrong number."""

@@ -93,6 +93,7 @@ def random_amplitude(rng: random.Random, quarter: float) -> float:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degrees", [False, True])
 def test_integrals(degrees: bool) -> None:
     """Worst seen in 20 000: F 0.9, E 2.3 units of eps (max(1, |f|) + |phi f'|)."""

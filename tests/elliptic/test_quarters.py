@@ -116,6 +116,7 @@ def exact_values(judge: Judge, factor: Fraction) -> dict[str, tuple[Any, float]]
     return {name: (value, abs(slopes.get(name, 0.0))) for name, value in exact.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_any_multiple(seed: int) -> None:
     """Worst seen in 22 000 values: 2.2 units (theta), 1.2 (am, sn, cn, dn)."""

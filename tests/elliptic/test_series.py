@@ -76,6 +76,7 @@ def test_as_many_terms_as_are_needed(k: str) -> None:
         assert bound(terms_needed(bound, ar.mpf("1e-300"))) <= 1e-300
 
 
+@pytest.mark.slow
 def test_table_and_counts(lagtop: Lagtop) -> None:
     """Errors that doubles can hold are errors of the series, however small."""
     args = "jacobi --k 0.5 --u 0.7 --series 100 --format json".split()

@@ -472,6 +472,7 @@ def test_times_may_go_backwards() -> None:
 # Streams.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [1, 7, 100])
 def test_blocks_make_no_difference(rows: int) -> None:
     """The fit adds up other sums: it agrees to 1e-9 of itself."""

@@ -62,6 +62,7 @@ def test_keys_that_cancel(scene: dict[str, float], key: str, value: float) -> No
     assert_nearest(scene)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("thetadot0", [1e20, 1e26, 1e28, 1e34, -1e28, 1e60])
 def test_mean_precession_of_a_top_that_whirls(thetadot0: float) -> None:
     """The leading term is 1/thetadot0^2 here, and the next smaller by a factor of thetadot0^2."""

@@ -160,6 +160,7 @@ def test_both_signs_of_time_are_mirrors_after_release_from_rest() -> None:
     assert np.abs(forth.psi + back.psi).max() <= EPS * np.abs(forth.psi).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("thetadot0", [5e-324, 1e-315, 1e-308, 1e-300, -5e-324])
 @pytest.mark.parametrize("r0", [0.0, 50.0])
 def test_the_slowest_departures_from_the_top(thetadot0: float, r0: float) -> None:

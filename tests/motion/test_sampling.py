@@ -28,6 +28,7 @@ STARTS: dict[str, dict[str, float]] = {
 T = np.linspace(-3, 40, 40_000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", STARTS, ids=str)
 def test_a_column_is_the_same_whatever_stands_beside_it(start: str) -> None:
     motion = solve(Top(**STARTS[start]))

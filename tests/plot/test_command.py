@@ -21,6 +21,7 @@ def test_the_help_lists_the_kinds(lagtop: Lagtop) -> None:
         assert re.sub(r"\s+", " ", line) in re.sub(r"\s+", " ", text)
 
 
+@pytest.mark.slow
 def test_kinds_and_scene_in_any_order(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = str(ROOT / "sample_inputs" / "looping-top.toml")
     files = [tmp_path / "a.svg", tmp_path / "b.svg"]

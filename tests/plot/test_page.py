@@ -176,6 +176,7 @@ def test_files_are_the_same_every_time(kinds: list[str], fmt: str, start: bytes)
     assert not re.search(rb"20\d\d-\d\d|CreationDate|matplotlib v", first)
 
 
+@pytest.mark.slow
 def test_letters_shrink_with_the_page_and_fit_it() -> None:
     page = Page(solve(Top()), ["sphere", "phase"], PlotRequest(), LIGHT, (7.35, 2.5))
     assert page.lettering() == pytest.approx(0.5)

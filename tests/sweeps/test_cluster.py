@@ -191,6 +191,7 @@ def test_a_cluster_without_workers() -> None:
         assert_lost(result, b"the cluster has no worker")
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_not_there() -> None:
     result = process("sweep", "--dask", "tcp://127.0.0.1:9", check=False)
     assert_lost(result, b"no scheduler answers at tcp://127.0.0.1:9")
@@ -229,6 +230,7 @@ def test_what_is_lost_while_it_computes(number: int, who: str, tmp_path: Path) -
             assert stderr.count(b"\n") == 1
 
 
+@pytest.mark.slow
 def test_no_cluster() -> None:
     result = process("sweep", "--dask", "nowhere", check=False)
     assert (result.returncode, result.stdout) == (2, b"")

@@ -197,6 +197,7 @@ def test_two_runs_at_once(tmp_path: Path, lagtop: Lagtop) -> None:
     assert {path.name[0] for path in (tmp_path / "out").iterdir()} == {"p", "s"}
 
 
+@pytest.mark.slow
 def test_of_two_sweeps_at_once_one_is_refused(tmp_path: Path) -> None:
     """Many times, since it is the claim that they race for."""
     for i in range(8):

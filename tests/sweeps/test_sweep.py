@@ -553,6 +553,7 @@ def test_remarks_of_fast_tops_are_those_of_solve(radians: bool) -> None:
     assert told == 7 * 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keys", [["r0", "T_nutation"], None])
 def test_memory_of_a_sweep_is_little_more_than_its_result(keys: list[str] | None) -> None:
     """Measured 1.3 and 1.4 times the result: inputs that are one number for all take no room."""

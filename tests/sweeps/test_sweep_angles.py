@@ -44,6 +44,7 @@ def top_of(inputs: dict[str, Any], i: int) -> Top:
     return Top(**{name: float(values[i]) for name, values in inputs.items()})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_hard_scenes_against_balls(kind: str) -> None:
     """Worst of 720 other scenes: 3.7 units, without spin."""
