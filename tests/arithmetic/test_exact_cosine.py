@@ -86,7 +86,7 @@ def test_no_polynomial_of_lower_degree_vanishes(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("degrees", [7, 11, 31, 53, 97, 136, 161, Fraction(1, 3), Fraction(45, 4)])
+@pytest.mark.parametrize("degrees", [7, 53, 136, Fraction(1, 3), Fraction(45, 4)])
 def test_multiple_angles_are_identities(degrees: Fraction | int) -> None:
     """T_n(cos x) = cos(n x), rational where n x is a multiple of 60 or 90 degrees."""
     rational: dict[Fraction | int, Fraction | int] = {

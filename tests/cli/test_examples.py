@@ -25,8 +25,9 @@ SHORTER = {
     "lagtop stability": "lagtop stability --samples 1 --strata fast",
     " --strata separatrix,thresholds --samples 50": "",
     " --thorough": "",
-    "--t-max 100 --n 1e5": "--t-max 1 --n 1e3",
+    "--t-max 100 --n 1e5": "--t-max 1 --n 30",
     "--n 1e6": "--n 1e4",
+    "--animate top.gif": "--animate top.gif --dpi 30",
     "--methods lagtop,engines --n 1000": "--methods lagtop,mujoco --n 3",
 }
 """What a test has no time for: minutes of measurement.  Later options win over these."""

@@ -194,11 +194,10 @@ def test_memory_does_not_grow_with_the_rows(command: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("form", ["csv", "json", "npy"])
 def test_memory_does_not_grow_with_the_rows_of_a_trajectory(form: str, tmp_path: Path) -> None:
     used, path = [], tmp_path / "trajectory.npy"
-    for count in ("1e5", "1e6"):
+    for count in ("1e5", "5e5" if form == "json" else "1e6"):  # rows of json are slow to read
         how = ["--t-max", "10", "--n", count, "--columns", "t,theta", "-o", str(path)]
         process("table", *how, "--format", "json" if form == "json" else "csv")
         if form == "npy":

@@ -86,8 +86,8 @@ LONG = [
     "table --n 300 --digits 30 -o /dev/null",
     "sweep --r0 1:9:100000 --keys K -o /dev/null",
     "jacobi --k 0.5 --u-range 0:1:100000 --format csv -o /dev/null",
-    "jacobi --k 0.5 --u-range 0:1:100 --digits 50 -o /dev/null",
-    f"{ETA} --tau-range 0:3:100 --digits 50 -o /dev/null",
+    "jacobi --k 0.5 --u-range 0:1:40 --digits 50 -o /dev/null",
+    f"{ETA} --tau-range 0:3:30 --digits 50 -o /dev/null",
     "table --tops {tops} --n 100 -o /dev/null",
 ]
 

@@ -77,7 +77,7 @@ def errors(name: str, value: float, u: float) -> list[float]:
 def test_jacobi() -> None:
     """Worst seen in 20 000: 1.23 units."""
     rng = random.Random("sn")
-    for _, (name, value) in zip(range(500), moduli(rng), strict=False):
+    for _, (name, value) in zip(range(150), moduli(rng), strict=False):
         K = float(complete_k(ARRAYS, modulus(ARRAYS, **{name: value}).k_prime))
         assert max(errors(name, value, arguments(rng, K))) <= 1.25
 

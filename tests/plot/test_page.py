@@ -47,9 +47,9 @@ def png(page: Page, dpi: float) -> Array:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("path", "look"), [*((path, LIGHT) for path in SAMPLES), (SAMPLES[0], DARK)]
+    ("path", "look"), [*((path, LIGHT) for path in SAMPLES[1::4]), (SAMPLES[0], DARK)]
 )
-def test_every_kind_of_every_sample(path: Path, look: Look) -> None:
+def test_every_kind_has_ink(path: Path, look: Look) -> None:
     """A smoke test: warnings are errors, those of missing glyphs and of failed layouts too.
 
     Each of the six panels has ink on paper.
@@ -140,7 +140,7 @@ def test_pictures_at_the_corners_of_the_range_of_sizes(kinds: Sequence[str]) -> 
     """At the fewest pixels per inch allowed; the fullest page as SVG and PDF too."""
     scene = solve(Top(r0=101.0, theta0_deg=0.5))
     corners = [(2.0, 2.0), (2.0, 50.0), (50.0, 2.0)]
-    for size in corners[: min(len(kinds), 3)]:  # a page of several has less room for each
+    for size in corners[: 3 if len(kinds) == len(KINDS) else 1]:  # its panels have least room
         page = Page(scene, kinds, PlotRequest(x=X, y=Y), LIGHT, size)
         least = max(20.0, 72 * LEAST_LETTERS / (POINTS * page.lettering()))
         assert png(page, least * (1 + 1e-12)).size > 0

@@ -57,8 +57,7 @@ def same(compute: Callable[[], Any]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("inputs", [EXTREME, MOVING], ids=["from rest", "moving"])
-@pytest.mark.parametrize("radians", [False, True])
+@pytest.mark.parametrize(("inputs", "radians"), [(EXTREME, True), (MOVING, False)])
 def test_sweep(inputs: dict[str, Any], radians: bool) -> None:
     same(lambda: sweep(radians=radians, **inputs).values())
 
