@@ -9,10 +9,10 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
+from .completion import METHOD_NAMES
 from .options import (
     COUNT,
     FILE,
-    NAMES,
     NUMBER,
     exclude,
     output_options,
@@ -59,7 +59,7 @@ class _ListingMethods(ExamplesFirst):
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
 @click.option(
-    "--methods", type=NAMES, help="These, with commas between.  [default: all but engines]"
+    "--methods", type=METHOD_NAMES, help="These, with commas between.  [default: all but engines]"
 )
 @click.option(
     "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."

@@ -147,6 +147,8 @@ def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> st
     """
     names = [name for param in params for name in param.opts if name.startswith("--")]
     options = {name[2:].replace("-", "_"): name for name in names}
+    if "theta0" in options:  # the one input whose key has a unit
+        options |= dict.fromkeys(("theta0_deg", "theta0_rad"), options["theta0"])
     said, got, value = str(error).partition(", got ")
     if error.key in options and re.match(rf"{error.key}\b", said):
         said = options[error.key] + said.removeprefix(error.key)

@@ -10,7 +10,8 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_keys
-from .options import COUNT, NAMES, Parsed, by_key, complain, exclude, input_options, output_options
+from .completion import KEY_NAMES
+from .options import COUNT, Parsed, by_key, complain, exclude, input_options, output_options
 from .progress import with_progress
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def _parse_input(text: str) -> Any:
     help="The conditions are theta_min, theta_max, T_nutation and mean_precession_rate, and may be "
     "mean_spin_rate: they tell a and b in closed form.",
 )
-@click.option("--keys", type=NAMES, help="Print only these keys, with commas between.")
+@click.option("--keys", type=KEY_NAMES, help="Print only these keys, with commas between.")
 @output_options("csv", "ndjson", "json")
 def command(
     words: tuple[str, ...],

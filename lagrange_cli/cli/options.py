@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from fractions import Fraction
@@ -12,7 +13,7 @@ import click
 from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
-from ..output.terminal import one_line
+from ..output.terminal import has_colours, one_line
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ..output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
+_COLOURS = {"Error": "red", "Warning": "yellow"}
 
 F = TypeVar("F", bound=Callable[..., Any])
 V = TypeVar("V")
@@ -137,9 +139,16 @@ def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Finding
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, if there is one that takes it, safe for any terminal."""
+    """Write one line to standard error, if there is one that takes it, safe for any terminal.
+
+    A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
+    """
+    line = one_line(line)
+    word, colon, rest = line.partition(":")
+    if word in _COLOURS and sys.stderr is not None and has_colours(sys.stderr):
+        line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
-        click.echo(one_line(line), err=True)
+        click.echo(line, err=True)
 
 
 FILE = FileName()

@@ -17,7 +17,8 @@ from ..output.write import write_bytes
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look, require_matplotlib
 from .command import ExamplesFirst
-from .options import FILE, NUMBER, scene_options, solved
+from .completion import PICTURES
+from .options import FILE, NUMBER, input_options, solved
 from .progress import with_progress
 
 FORMATS = ("png", "svg", "pdf")
@@ -43,8 +44,8 @@ Needs matplotlib: pip install 'lagtop[plot]'.
         lagtop plot --r0 30 --animate top.gif
     """,
 )
-@scene_options
-@click.argument("kinds", nargs=-1, metavar="[KIND]...")
+@click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml] [KIND]...")
+@input_options(NUMBER)
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: some nutation periods]")
 @click.option(
     "--key", default="mean_precession_rate", show_default=True, help="Key of the record for `map`."
@@ -73,9 +74,8 @@ Needs matplotlib: pip install 'lagtop[plot]'.
     help="FILE.png, .svg or .pdf, replaced when all is written.",
 )
 def command(
-    scene: str | None,
+    words: tuple[str, ...],
     rad: bool,
-    kinds: tuple[str, ...],
     t_max: Fraction | None,
     key: str,
     x: str | None,
@@ -92,7 +92,7 @@ def command(
     """Write, film and show the pictures that the options ask for."""
     if not (output or show or animate):
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
-    path, chosen = _scene_and_kinds([word for word in (scene, *kinds) if word is not None])
+    scene, chosen = _scene_and_kinds(words)
     written = _format_of(fmt, output)
     inches = _inches(size)
     require_matplotlib()
@@ -102,7 +102,7 @@ def command(
     from ..plot.page import Page, page_bytes, show_page
     from ..plot.request import PlotRequest
 
-    motion = solved(path, rad, False, options)
+    motion = solved(scene, rad, False, options)
     request = PlotRequest(
         t_max=checked_span(motion, t_max),
         radians=rad,

@@ -9,8 +9,9 @@ import click
 from ..errors import AbsentError
 from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
-from ..output.write import write_record, write_value
+from ..output.write import write_record, write_values
 from .command import ExamplesFirst, chain_layout, top_layout, write_keys
+from .completion import KEY_NAMES
 from .options import (
     MOST_RECORD_DIGITS,
     complain,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
         lagtop solve --r0 -20 --theta0 120 --format json | jq .T_nutation
         lagtop solve --theta0 60 --psidot0 -3 --digits 50
         period=$(lagtop solve --r0 80 --get T_nutation)
+        lagtop solve --r0 80 --get theta_min_deg,theta_max_deg
         lagtop solve --theta0 60 --get psi_period_deg
         lagtop solve --theta0 60 --derivation
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
@@ -49,7 +51,11 @@ if TYPE_CHECKING:
     help="The steps of the paper's worked example, section 8, for a top released from rest.",
 )
 @click.option(
-    "--get", "key", metavar="KEY", help="Print one value of the record, bare; the keys stand below."
+    "--get",
+    "keys",
+    type=KEY_NAMES,
+    metavar="KEY,...",
+    help="Print values of the record, bare, one per line; the keys stand below.",
 )
 @output_options("table", "json", "csv")
 def command(
@@ -57,7 +63,7 @@ def command(
     rad: bool,
     digits: int | None,
     derivation: bool,
-    key: str | None,
+    keys: list[str] | None,
     fmt: str,
     output: str,
     **options: Any,
@@ -67,32 +73,35 @@ def command(
     Every number is the double nearest to its exact value, or has --digits right digits.  JSON and
     CSV hold the same keys; what a regime does not have is null or empty.
     """
-    exclude({"--get": key, "--derivation": derivation or None})
-    keys = None
-    if key is not None:
-        exclude({"--get": key, "--format": fmt if given("fmt") else None})
-        if key not in record_keys(radians=rad) and key not in all_keys(radians=rad):
-            check_names("get", [key], all_keys(radians=rad))
-        keys = [key]
+    exclude({"--get": keys, "--derivation": derivation or None})
+    if keys is not None:
+        exclude({"--get": keys, "--format": fmt if given("fmt") else None})
+        known = record_keys(radians=rad)
+        check_names("get", keys, known if set(keys) <= {*known} else all_keys(radians=rad))
     motion = solved(scene, rad, digits is not None, options)
-    if derivation:
-        keys = _steps(motion, rad)
+    chosen = _steps(motion, rad) if derivation else keys
     if digits:
-        record = motion.digits(digits, radians=rad, keys=keys)
-    elif keys:
-        record = motion.record(radians=rad, keys=keys)
+        record = motion.digits(digits, radians=rad, keys=chosen)
+    elif chosen:
+        record = motion.record(radians=rad, keys=chosen)
     else:
         record, beyond = motion.record_in_range(radians=rad)
         if beyond:
             complain("Warning: " + "; ".join(map(str, beyond)))
-    if derivation and keys:
-        record = {name: record[name] for name in keys}
-    if key is None:
-        write_record(record, fmt, output, chain_layout if derivation else top_layout)
-        return
+    if keys is not None:
+        write_values([_number(motion, record, key) for key in keys], output)
+    elif derivation:
+        steps = {name: record[name] for name in chosen or ()}
+        write_record(steps, fmt, output, chain_layout)
+    else:
+        write_record(record, fmt, output, top_layout)
+
+
+def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:
+    """Return a value of the record.  Raises AbsentError where the regime has none."""
     if record[key] is None:
         raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
-    write_value(record[key], output)
+    return record[key]
 
 
 def _steps(motion: Motion, radians: bool) -> list[str]:

@@ -8,10 +8,10 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
+from .completion import STRATUM_NAMES
 from .options import (
     COUNT,
     FILE,
-    NAMES,
     exclude,
     jobs_option,
     output_options,
@@ -52,7 +52,7 @@ class _ListingStrata(ExamplesFirst):
 @click.option(
     "--seed", type=COUNT, default=str(SEED), show_default=True, help="Seed of the random scenes."
 )
-@click.option("--strata", type=NAMES, help="Only these, with commas between.")
+@click.option("--strata", type=STRATUM_NAMES, help="Only these, with commas between.")
 @jobs_option
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")

@@ -10,9 +10,9 @@ import click
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
+from .completion import KEY_NAMES
 from .options import (
     FILE,
-    NAMES,
     Parsed,
     by_key,
     exclude,
@@ -57,7 +57,9 @@ def _parse_shard(text: str) -> tuple[int, int]:
 )
 @click.argument("files", nargs=-1, type=FILE, metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
 @input_options(Parsed("range", _parse_values))
-@click.option("--keys", type=NAMES, help="Compute and print only these keys, with commas between.")
+@click.option(
+    "--keys", type=KEY_NAMES, help="Compute and print only these keys, with commas between."
+)
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
 @click.option(
     "--shard", type=Parsed("I/N", _parse_shard), help="Only every N-th part, from the I-th on."

@@ -13,11 +13,11 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
+from .completion import COLUMN_NAMES
 from .options import (
     COUNT,
     FILE,
     MOST_TABLE_DIGITS,
-    NAMES,
     NUMBER,
     by_key,
     digits_option,
@@ -63,7 +63,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 )
 @click.option(
     "--columns",
-    type=NAMES,
+    type=COLUMN_NAMES,
     help="Names of columns, which stand below, with commas between; parts such as quaternion_w "
     "are columns too.  [default: t,theta,phi,psi]",
 )

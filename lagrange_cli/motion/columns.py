@@ -93,12 +93,17 @@ def name_of(part: Part) -> str:
     return part.heading.removesuffix("_*")
 
 
+def column_names() -> list[str]:
+    """Return the names of all columns, of groups first."""
+    return [*COLUMNS, *_SINGLE]
+
+
 def chosen_columns(names: Sequence[str]) -> list[Part]:
     """Return the columns of some names, groups expanded.
 
     Raises LagtopError for a name that is unknown or comes twice.
     """
-    check_names("columns", names, [*COLUMNS, *_SINGLE])
+    check_names("columns", names, column_names())
     chosen = [
         part
         for name in names

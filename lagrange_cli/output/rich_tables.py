@@ -30,7 +30,11 @@ _GAP = 3
 _TEXT_WIDTH = 100
 """The width of running text where no terminal says another."""
 
-_BOLD = re.compile("\x1b\\[[0-9;]*m")
+_CODES = re.compile("\x1b\\[[0-9;]*m")
+_HEADING, _GIVEN, _FOUND, _WARNING = "bold", "cyan", "green", "yellow"
+"""How a terminal shows headings, inputs, results and warnings."""
+INPUTS = "Inputs"
+"""The group of a record that holds what is given."""
 
 
 class Column(NamedTuple):
@@ -61,8 +65,9 @@ def record_table(record: Mapping[str, Any], layout: Layout, view: View) -> bytes
     text = _drawn(_record(groups), view)
     if view.width and _width(text) > view.width:
         text = _drawn(_narrow_record(groups, view.width), view)
-    remark = f"\n{_filled(record['remark'], view)}\n" if record.get("remark") else ""
-    return _encoded(text, view) + remark.encode()
+    if remark := record.get("remark"):
+        text += f"\n{_coloured(_filled(remark, view), view)}\n"
+    return _encoded(text, view)
 
 
 def _cells(record: Mapping[str, Any], line: Line, angle: str, view: View) -> list[str]:
@@ -81,8 +86,10 @@ def _record(groups: Mapping[str, list[list[str]]]) -> Table:
     table = _empty((heading, heading == "Value") for heading in headings)
     for group, lines in groups.items():
         symbols, names, *rest = ("\n".join(cells) for cells in zip(*lines, strict=True))
-        name_cell = Text.assemble((f"{group}\n", "bold"), names)
-        table.add_row(f"\n{symbols}", name_cell, *(f"\n{cells}" for cells in rest))
+        values, *rest = rest
+        name_cell = Text.assemble((f"{group}\n", _HEADING), names)
+        value_cell = Text(f"\n{values}", _style(group))
+        table.add_row(f"\n{symbols}", name_cell, value_cell, *(f"\n{cells}" for cells in rest))
     return table
 
 
@@ -93,10 +100,16 @@ def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
     room = max(width - sum(max(used, len("Equation")) for used in beside) - 3 * _GAP, 12)
     table = _empty((heading, False) for heading in ("Symbol", "Name, value", "Unit", "Equation"))
     for group, lines in groups.items():
-        table.add_row("", Text(group, "bold"), "", "")
+        table.add_row("", Text(group, _HEADING), "", "")
         for symbol, name, value, unit, equation in lines:
-            table.add_row(symbol, "\n".join([name, *_chunks(value, room)]), unit, equation)
+            digits = "".join(f"\n{chunk}" for chunk in _chunks(value, room))
+            table.add_row(symbol, Text.assemble(name, (digits, _style(group))), unit, equation)
     return table
+
+
+def _style(group: str) -> str:
+    """Return how the values of a group of a record are shown."""
+    return _GIVEN if group == INPUTS else _FOUND
 
 
 def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) -> bytes:
@@ -173,8 +186,8 @@ def _chunks(text: str, width: int) -> list[str]:
 
 
 def _width(text: str) -> int:
-    """Return the width of what is drawn, without the codes for bold letters."""
-    return max(cell_len(line) for line in _BOLD.sub("", text).splitlines())
+    """Return the width of what is drawn, without the codes for letters."""
+    return max(cell_len(line) for line in _CODES.sub("", text).splitlines())
 
 
 def _filled(text: str, view: View) -> str:
@@ -188,12 +201,19 @@ def _condition(name: str, text: str, view: View) -> str:
     return fill(f"{name:11}{text}", width, subsequent_indent=" " * 11, break_on_hyphens=False)
 
 
-def _drawn(table: Table, view: View) -> str:
-    """Return the table at its natural width; bold only on a terminal."""
+def _coloured(text: str, view: View) -> str:
+    """Return a warning in its colour, where there are colours."""
+    return _drawn(Text(text, _WARNING), view).rstrip("\n") if view.has_colours else text
+
+
+def _drawn(table: Table | Text, view: View) -> str:
+    """Return what rich draws at its natural width; bold and coloured only where that is shown."""
     file = io.StringIO()
     Console(
         file=file,
-        force_terminal=view.width is not None,
+        color_system="standard" if view.has_colours else None,
+        force_terminal=view.has_colours,
+        no_color=False,
         width=10_000,
         highlight=False,
         markup=False,

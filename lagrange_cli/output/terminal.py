@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from typing import TYPE_CHECKING
 
 from ..arithmetic.values import Values
+
+if TYPE_CHECKING:
+    from typing import TextIO
 
 MOST_CHARACTERS = 1000
 """The length of a line that is still read."""
@@ -33,6 +38,8 @@ class View(Values):
     """Columns of the terminal; None where the output goes elsewhere and may be as wide as it is."""
     has_greek: bool = True
     """Whether the encoding has every letter that we write."""
+    has_colours: bool = False
+    """Whether letters may be bold or coloured."""
 
 
 def view_of(path: str) -> View:
@@ -47,7 +54,16 @@ def view_of(path: str) -> View:
         return View(None, has_greek)
     from shutil import get_terminal_size
 
-    return View(get_terminal_size().columns, has_greek)
+    return View(get_terminal_size().columns, has_greek, has_colours(sys.stdout))
+
+
+def has_colours(stream: TextIO) -> bool:
+    """Return whether a stream is a terminal that shows colours, and the user wants them.
+
+    The variable NO_COLOR (https://no-color.org) says that he does not.
+    """
+    unwanted = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return stream.isatty() and not unwanted
 
 
 _ASCII = str.maketrans(

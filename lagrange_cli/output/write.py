@@ -23,10 +23,10 @@ MAX_TABLE_ROWS = 10_000
 """The most rows that are drawn: more of them are neither read nor quickly made."""
 
 
-def write_value(value: Any, path: str) -> None:
-    """Write one value, bare."""
+def write_values(values: Iterable[Any], path: str) -> None:
+    """Write values, bare, one per line."""
     with opened(path) as stream:
-        stream.write(f"{value_text(value)}\n".encode())
+        stream.write("".join(f"{value_text(value)}\n" for value in values).encode())
 
 
 def write_bytes(path: str, make: Callable[[], bytes]) -> None:

@@ -11,7 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.shell_completion import ShellComplete
 from conftest import LAGTOP, process
+
+from lagrange_cli.cli.group import main
 
 HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotlib", "orjson"}
 
@@ -283,10 +286,27 @@ def test_any_locale_shows_all_digits(locale: dict[str, str], tmp_path: Path) -> 
     assert swept.stdout.decode().splitlines()[1].startswith("\u03d1,")
 
 
-def test_completion() -> None:
-    environment = os.environ | {
-        "_LAGTOP_COMPLETE": "bash_complete",
-        "COMP_WORDS": "lagtop so",
-        "COMP_CWORD": "1",
-    }
-    assert b"solve" in process(env=environment).stdout
+@pytest.mark.parametrize(
+    ("line", "completed"),
+    [
+        ("so", ["solve"]),
+        ("solve --get T_nut", ["T_nutation"]),
+        ("sweep --keys r0,mean_s", ["r0,mean_spin_rate"]),
+        ("table --columns t,quat", ["t,quaternion", *(f"t,quaternion_{x}" for x in "wxyz")]),
+        ("bench --methods lagtop,muj", [f"lagtop,mujoco{x}" for x in ("-euler", "-rk4", "")]),
+        ("stability --strata fas", ["fast"]),
+        ("plot sph", ["sphere"]),
+        ("plot scene", ["scene"]),
+    ],
+)
+def test_completion(line: str, completed: list[str]) -> None:
+    """What is offered, as a word or, for `scene`, as the beginning of a file."""
+    words = line.split()
+    items = ShellComplete(main, {}, "lagtop", "_X").get_completions(words[:-1], words[-1])
+    assert [item.value for item in items] == completed
+    assert {item.type for item in items} == {"file" if line == "plot scene" else "plain"}
+
+
+def test_bash_is_answered() -> None:
+    asked = {"_LAGTOP_COMPLETE": "bash_complete", "COMP_WORDS": "lagtop so", "COMP_CWORD": "1"}
+    assert b"solve" in process(env=os.environ | asked).stdout

@@ -15,6 +15,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from lagrange_cli import Top, solve
+from lagrange_cli.cli.command import top_layout
 from lagrange_cli.output.findings import Field, Findings
 from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.output.terminal import View, view_of
@@ -137,8 +139,31 @@ def test_tables_fit_the_terminal_and_lose_no_digit(line: str, columns: int) -> N
     assert [number for number in numbers if number not in together] == []
 
 
+@pytest.mark.parametrize("setting", [{}, {"NO_COLOR": "1"}, {"TERM": "dumb"}])
+def test_colours_mean_something_and_can_be_left_out(
+    setting: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Inputs are cyan, results green, warnings yellow; without colours there are no codes."""
+    for name in ("NO_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in setting.items():
+        monkeypatch.setenv(name, value)
+    with monkeypatch.context() as patch:
+        patch.setattr("lagrange_cli.output.terminal.sys.stdout.isatty", lambda: True)
+        view = view_of("-")
+    record = solve(Top(theta0_deg=0)).record()
+    for width in (view.width, 40):
+        text = FORMATS["table"].record(record, top_layout, view.replace(width=width)).decode()
+        if setting:
+            assert "\x1b" not in text
+            continue
+        assert re.search(r"\x1b\[36m *\n?39032.0\x1b", text)
+        assert re.search(r"\x1b\[32m *\n?sleeping\x1b", text)
+        assert "\x1b[33m" + record["remark"][:20] in text
+
+
 @pytest.mark.slow
-def test_a_wide_terminal_changes_nothing_but_bold_letters() -> None:
+def test_a_wide_terminal_changes_nothing_but_letters() -> None:
     for line in ("solve", "table --n 3 --columns t,axis --format table"):
         command = [sys.executable, "-m", "lagrange_cli", *line.split()]
         piped = subprocess.run(command, capture_output=True, check=True).stdout.decode()

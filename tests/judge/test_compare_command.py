@@ -194,7 +194,7 @@ def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["c.csv"], 65, "c.csv: t must be finite and within 2^50 periods"),
         (["d.csv"], 2, "d.csv: the first row does not prove the order of the quaternion"),
         (["e.csv"], 65, "e.csv: angle_rates must come with an attitude or a part of it"),
-        (["a.csv", "--theta0", "200"], 2, "theta0_deg must be in [0, 180]"),
+        (["a.csv", "--theta0", "200"], 2, "--theta0 must be in [0, 180]"),
     ],
 )
 @pytest.mark.usefixtures("small_files")

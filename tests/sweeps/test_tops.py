@@ -34,6 +34,18 @@ def test_get_what_is_not_there(lagtop: Lagtop) -> None:
     assert unknown.stderr.startswith("Error: --get must be among m, A, C")
     assert lagtop("solve", "--get", "T_nut").stderr.endswith("(did you mean 'T_nutation'?)\n")
     assert lagtop("solve", "--get", "k", "--format", "csv").exit_code == 2
+    assert lagtop("solve", "--get", "a,k,a").stderr == (
+        "Error: --get must name each one once, got 'a' twice\n"
+    )
+
+
+def test_several_values(lagtop: Lagtop) -> None:
+    record = solve(Top(r0=40)).record()
+    keys = ["path", "T_nutation", "Lz"]
+    lines = lagtop("solve", "--r0", "40", "--get", ",".join(keys)).stdout.splitlines()
+    assert lines == [record["path"], str(record["T_nutation"]), str(solve(Top(r0=40)).Lz)]
+    absent = lagtop("solve", "--theta0", "0", "--get", "a,T_nutation")
+    assert (absent.exit_code, absent.stdout) == (1, "")
 
 
 TOPS = "id,r0,theta0_deg\na,50,30\nb,5O,30\nc,-20,180\n"
