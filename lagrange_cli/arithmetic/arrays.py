@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any
@@ -69,6 +70,11 @@ class Arrays:
     def everywhere(condition: Any) -> bool:
         """Return whether a condition holds for every element."""
         return bool(np.all(condition))
+
+    @staticmethod
+    def widened(x: Any, remainder: Callable[[], Any]) -> Any:
+        """Return x: what an iteration leaves out is below the last bit."""
+        return x
 
 
 class ArrayFunctions(Arrays):

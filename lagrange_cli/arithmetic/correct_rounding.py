@@ -91,10 +91,10 @@ def _rounded(value: Decimal, previous: Decimal, rounding: Callable[[Decimal], T]
     return None
 
 
-def nearest_double(name: str) -> Callable[[Decimal], float]:
+def nearest_double(name: str) -> Callable[[Decimal | Fraction], float]:
     """Return the rounding of a number to doubles.  It raises OutOfRangeError beyond them."""
 
-    def rounding(value: Decimal) -> float:
+    def rounding(value: Decimal | Fraction) -> float:
         nearest = float(value)
         if not abs(nearest) < _INFINITE:
             raise OutOfRangeError(

@@ -7,6 +7,7 @@ A record computed in them and rounded once is right to the last bit, and nothing
 from __future__ import annotations
 
 import decimal
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from decimal import Decimal
 from fractions import Fraction
@@ -130,6 +131,11 @@ class Decimals:
         return bool(condition)
 
     everywhere = anywhere
+
+    @staticmethod
+    def widened(x: Decimal, remainder: Callable[[], Decimal]) -> Decimal:
+        """Return x: what an iteration leaves out is below the last digit."""
+        return x
 
     def _alternating(self, term: Decimal, ratio: Decimal, n: int) -> Decimal:
         """Return a sum of terms, each ratio/((n + 1)(n + 2)) times the one before."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from fractions import Fraction
 from typing import Any
@@ -35,6 +36,11 @@ class Doubles:
     def where(condition: Any, yes: float, no: float) -> float:
         """Return one of two numbers."""
         return yes if condition else no
+
+    @staticmethod
+    def widened(x: float, remainder: Callable[[], float]) -> float:
+        """Return x: what an iteration leaves out is below the last bit."""
+        return x
 
 
 DOUBLES = Doubles()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
@@ -37,3 +38,8 @@ class ManyDigits(MPContext):  # type: ignore[misc]
         return bool(condition)
 
     everywhere = anywhere
+
+    @staticmethod
+    def widened(x: Any, remainder: Callable[[], Any]) -> Any:
+        """Return x: what an iteration leaves out is below the last digit."""
+        return x

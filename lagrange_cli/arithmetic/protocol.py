@@ -6,6 +6,7 @@ arrays of doubles, arrays of pairs of doubles, or whatever else behaves like the
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any, Protocol, Self
@@ -81,6 +82,12 @@ class Arithmetic(Protocol[R]):
 
     def everywhere(self, condition: Any, /) -> bool:
         """Return whether a condition holds for every element of an array."""
+
+    def widened(self, x: R, remainder: Callable[[], R], /) -> R:
+        """Return x with all that is at most a remainder away from it, in an arithmetic of balls.
+
+        In any other it is x, and the remainder, which an iteration left out, is not computed.
+        """
 
 
 class SeriesArithmetic(Arithmetic[R], Protocol[R]):
@@ -197,3 +204,6 @@ class FunctionArithmetic(Protocol):
 
     def everywhere(self, condition: Any, /) -> bool:
         """Return whether a condition holds for every element of an array."""
+
+    def widened(self, x: Any, remainder: Callable[[], Any], /) -> Any:
+        """Return x, with all that is at most a remainder away from it in an arithmetic of balls."""

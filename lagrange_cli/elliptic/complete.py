@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.blocks import in_arithmetic
-from ..arithmetic.numbers import R, root_of_epsilon
+from ..arithmetic.numbers import R, absolute, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
@@ -16,11 +16,17 @@ if TYPE_CHECKING:
 
 @in_arithmetic
 def agm(ar: Arithmetic[R], a: R | int, b: R) -> R:
-    """Return the arithmetic-geometric mean of a > 0 and b > 0 (DLMF 19.8.1)."""
+    """Return the arithmetic-geometric mean M of a > 0 and b > 0 (DLMF 19.8.1).
+
+    What the last step leaves out: sqrt(a b) <= M <= (a + b)/2 (DLMF 19.8.4 and 19.8.5), and the
+    ends of that are (sqrt a - sqrt b)^2/2 = (a - b)^2/(2 (sqrt a + sqrt b)^2) apart, which is at
+    most (a - b)^2/(2 (a + b)).
+    """
     tolerance = ar.sqrt(ar.eps)
     while ar.anywhere(abs(a - b) > tolerance * a):
         a, b = (a + b) / 2, ar.sqrt(a * b)
-    return (a + b) / 2
+    total, apart = a + b, a - b
+    return ar.widened(total / 2, lambda: apart * apart / (2 * total))
 
 
 @in_arithmetic
@@ -36,6 +42,12 @@ def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | in
     k' and p are positive, a and b are not negative.  Bulirsch's complete integral cel(k', p, a, b)
     is K times this mean (DLMF 19.2.11), so
     E = K period_mean(k', 1, 1, k'^2)  and  R_J(0, k'^2, 1, p) = 3 K period_mean(k', p, 0, 1).
+
+    What the last step leaves out: each step is Bartky's transformation (Bulirsch 1969), and keeps
+    the mean of R = (a m^2 c^2 + b p s^2)/(m^2 c^2 + p^2 s^2), c = cos x, s = sin x, over a quarter
+    turn of x with the weight M/sqrt(m^2 c^2 + g^2 s^2), where M is the agm of m and g.  Since g and
+    m enclose both M and the root, the weight is between g/m and m/g, so that the mean of R with the
+    weight 1, (a m + b)/(m + p), is wrong by at most (m/g - 1) (|a| m + |b|)/(m + p).
     """
     tolerance = ar.sqrt(ar.eps)
     mean, geometric, p = k_prime * 0 + 1, k_prime, ar.sqrt(p)
@@ -48,7 +60,12 @@ def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | in
         p = (p + quotient) / 2
         close = not ar.anywhere(abs(mean - geometric) > tolerance * mean)
         mean, geometric = (mean + geometric) / 2, ar.sqrt(product)
-    return (a * mean + b) / (mean + p)
+
+    def remainder() -> R:
+        size = absolute(a * mean) + absolute(b + 0 * mean)
+        return absolute(mean - geometric) / geometric * size / (mean + p)
+
+    return ar.widened((a * mean + b) / (mean + p), remainder)
 
 
 @in_arithmetic
@@ -64,6 +81,12 @@ def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     The exponential would lose log(1/q) digits where q is small.  Instead: along the AGM of (1, k')
     the nome is squared at each step, until the series q = e + 2 e^5 + 15 e^9 ... (DLMF 19.5.5) is
     short.
+
+    What the series leaves out is at most (2 e)^21.  With e = k^(1/2)(q^4)/2 and dq/dm = q/(m
+    theta4(q)^4) (DLMF 20.9.2, 22.2) it solves e dq/de = q/theta4(q^4)^4.  The powers of 1/theta4 =
+    (1 + q)(1 + q^2).../(1 - q)(1 - q^2)... have no negative coefficients, so that a comparison of
+    powers of e on both sides gives none to q(e), one after the other.  As q(1/2) = 1, the terms
+    from e^21 on, at e = 1/2, are at most 1 together, and at a smaller e at most (2 e)^21.
     """
     eps: Any = ar.eps  # a number that can be hashed
     tolerance: R = 2 * root_of_epsilon(eps, 20910, 20)
@@ -78,6 +101,7 @@ def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     e = c / (2 * (a + b))
     e4 = (e * e) * (e * e)
     q = e * (1 + e4 * (2 + e4 * (15 + e4 * (150 + e4 * 1707))))
+    q = ar.widened(q, lambda: 2 * e * (16 * e4) * (16 * e4) * (16 * e4) * (16 * e4) * (16 * e4))
     for far in reversed(squarings):
         q = ar.where(far, ar.sqrt(q), q)
     return q

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from decimal import Decimal
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import R, absolute
 from ..arithmetic.values import Over, Values
@@ -103,9 +103,13 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
     )
 
 
-def gaps_of(ar: Arithmetic[R], facts: Facts, state: State[R]) -> Gaps[R]:
-    """Return the gaps of any top."""
-    return gaps_from_rest(ar, state) if released(facts) else gaps_from_start(ar, state, facts)
+def gaps_of(
+    ar: Arithmetic[R], facts: Facts, state: State[R], find_root: Callable[..., R] | None = None
+) -> Gaps[R]:
+    """Return the gaps of any top; `find_root` may replace `largest_root`."""
+    if released(facts):
+        return gaps_from_rest(ar, state)
+    return gaps_from_start(ar, state, facts, find_root)
 
 
 def released(facts: Facts) -> bool:
@@ -192,13 +196,13 @@ def gaps_from_start(
         u_u2=-x2,
         u1_u2=x1 - x2,
         below_u1=below + x1,
-        below_u2=below + x2,
-        above_u1=above - x1,
+        below_u2=zero if facts.over_bottom else below + x2,
+        above_u1=zero if separatrix or facts.upper_root == 1 else above - x1,
         above_u2=above - x2,
         a_u3_u=D,
-        a_u3_u1=D - a * x1,
+        a_u3_u1=zero if separatrix else D - a * x1,
         a_u3_u2=D - a * x2,
-        a_u3_above=D - a * above,
+        a_u3_above=zero if separatrix or facts.upper_root == 3 else D - a * above,
         a_below_u3=D + a * below,
         momentum_u1=zero
         if facts.cusp or facts.upper_root == 1 or separatrix
@@ -234,7 +238,7 @@ def largest_root(ar: Arithmetic[R], c2: R, c1: R, c0: R, bound: R) -> R:
         x = following
 
 
-def are_told_apart(facts: Facts, gaps: Gaps[Decimal]) -> bool:
+def are_told_apart(facts: Facts, gaps: Gaps[Any]) -> bool:
     """Return whether every gap that is not exactly 0 has come out positive."""
     touches = facts.regime == "separatrix"
     zeros = {

@@ -25,13 +25,18 @@ class Nutating(SpinPrecession[R]):
 
     lacks: frozenset[str] = frozenset()
 
-    def remark(self: Nutating[Decimal], *, radians: bool = False) -> str | None:
+    def remark(self, *, radians: bool = False) -> str | None:
         """Return what there is to say of a fast top, with its nutation in degrees or `radians`."""
         if not self.facts.fast:
             return None
-        numbers = (self.nodding, self.T_nutation, self.elementary_rate, self.excess)
+        numbers: Any = self.fast_numbers
         nodding, *others = map(float, numbers)
         return fast_remark(nodding if radians else math.degrees(nodding), *others, radians=radians)
+
+    @property
+    def fast_numbers(self) -> tuple[R, R, R, R]:
+        """What is said of a fast top, see `fast_remark`; angles in radians."""
+        return self.nodding, self.T_nutation, self.elementary_rate, self.excess
 
     @quantity
     def nodding(self) -> R:
@@ -51,7 +56,7 @@ class Nutating(SpinPrecession[R]):
         """How far the mean precession (7,3) exceeds the elementary rate, relative to that."""
         return self.mean_precession_rate / self.elementary_rate - 1
 
-    def spinor(self: Nutating[Decimal]) -> Spinor[Decimal]:
+    def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
         from .series_constants import nutating_spinor
 
@@ -124,7 +129,7 @@ class Constant(Moduli[R]):
         """One turn at the precession rate (section 8)."""
         return period_of(self.ar, self.mean_precession_rate)
 
-    def spinor(self: Constant[Decimal]) -> Spinor[Decimal]:
+    def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
         from .series_constants import constant_spinor
 
@@ -205,7 +210,7 @@ class Separatrix(SpinPrecession[R]):
         """The complete integral of the second kind, which is 1."""
         return self.m
 
-    def spinor(self: Separatrix[Decimal]) -> Spinor[Decimal]:
+    def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
         from .series_constants import separatrix_spinor
 

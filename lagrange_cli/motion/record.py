@@ -9,8 +9,7 @@ from .quantity import Key, keys_of
 from .spin_precession import SpinPrecession
 
 if TYPE_CHECKING:
-    from decimal import Decimal
-
+    from .certified import Certified
     from .kinds import Kind
     from .regime import Exact
     from .solve import Motion
@@ -68,7 +67,7 @@ def requested_keys() -> dict[str, Key]:
     return REQUESTED
 
 
-def source_of(name: str, kind: Kind[Decimal], exact: Exact) -> Any:
+def source_of(name: str, kind: Kind[Any], exact: Exact) -> Any:
     """Return the object that computes a number: a kind, or what stands on it for those on request.
 
     Such objects are made anew for each number; what they share is computed by the kind.
@@ -93,7 +92,7 @@ def record_keys(*, radians: bool = False) -> list[str]:
 
 
 def record_of(
-    motion: Motion,
+    motion: Motion | Certified,
     inputs: Mapping[str, Any],
     number: Callable[[str, bool], Any],
     *,
@@ -114,5 +113,5 @@ def record_of(
     if "path" in wanted:
         values["path"] = motion.path
     if "remark" in wanted:
-        values["remark"] = motion.settled_kind(8).remark(radians=radians)
+        values["remark"] = motion.remark_in(radians=radians)
     return {name: values[name] for name in names if name in wanted}

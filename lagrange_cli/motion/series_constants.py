@@ -11,7 +11,7 @@ from collections.abc import Callable
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
-from ..arithmetic.numbers import R
+from ..arithmetic.numbers import R, absolute
 from ..arithmetic.points import MAX_PERIODS
 from ..elliptic.carlson import carlson_rf
 from .theta_series import (
@@ -104,7 +104,7 @@ def _direction(motion: Nutating[R] | Separatrix[R]) -> int:
     return -1 if motion.state.theta_rate < 0 else 1
 
 
-def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
+def nutating_spinor(motion: Nutating[R]) -> Spinor[R]:
     """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     with ar.working():
@@ -112,7 +112,7 @@ def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
         terms = 4 + math.isqrt(int(ar.digits * math.log(10) / math.pi))  # nome <= exp(-pi)
         series = theta_series(ar, constants, terms)
 
-    def position(t: Decimal) -> tuple[Decimal, Decimal, Decimal, Decimal, Decimal]:
+    def position(t: R) -> tuple[R, R, R, R, R]:
         passed = (t / constants.period + constants.offset) * 2
         step = ar.nint(passed)
         phase = passed - step
@@ -122,9 +122,9 @@ def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
     with ar.working():
         _, x_start, _, y_start, since_first = position(0 * motion.K)
         rates = motion.mean_spin_rate, motion.mean_precession_rate
-        rate_size = max(map(abs, rates)) + 4 / constants.period
+        rate_size = abs(rates[0]) + abs(rates[1]) + 4 / constants.period
 
-    def spinor(t: Decimal) -> Attitude[Decimal]:
+    def spinor(t: R) -> Attitude[R]:
         with ar.working():
             x, arg_x, y, arg_y, phase = position(t)
             within, size = phase - since_first, 8 + abs(t) * rate_size
@@ -138,31 +138,31 @@ def nutating_spinor(motion: Nutating[Decimal]) -> Spinor[Decimal]:
     return spinor
 
 
-def _half_turns(ar: Any, angle: Decimal) -> Decimal:
+def _half_turns(ar: Any, angle: R) -> R:
     """Return the nearest number of half turns: in a plane an angle only leaps, at the poles."""
-    turned: Decimal = ar.pi * ar.nint(angle / ar.pi)
+    turned: R = ar.pi * ar.nint(angle / ar.pi)
     return turned
 
 
-def constant_spinor(motion: Constant[Decimal]) -> Spinor[Decimal]:
+def constant_spinor(motion: Constant[R]) -> Spinor[R]:
     """Return the attitude of a constant tilt and constant rates."""
     state = motion.state
 
-    def spinor(t: Decimal) -> Attitude[Decimal]:
+    def spinor(t: R) -> Attitude[R]:
         with motion.ar.working():
             phi, psi = motion.mean_spin_rate * t, state.psi_rate * t
-            return Attitude(state.cos_half, state.sin_half, phi, psi, abs(phi) + abs(psi))
+            return Attitude(state.cos_half, state.sin_half, phi, psi, absolute(phi) + absolute(psi))
 
     return spinor
 
 
-def separatrix_spinor(motion: Separatrix[Decimal]) -> Spinor[Decimal]:
+def separatrix_spinor(motion: Separatrix[R]) -> Spinor[R]:
     """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
     ar: Any = motion.ar
     with ar.working():
         swing = _swing(motion)
 
-    def spinor(t: Decimal) -> Attitude[Decimal]:
+    def spinor(t: R) -> Attitude[R]:
         with ar.working():
             h = motion.argument_rate * t + swing.offset
             sinh, cosh = ar.sinh(h), ar.cosh(h)

@@ -75,7 +75,11 @@ class Motion:
     @property
     def remark(self) -> str | None:
         """One line on what is special about the motion, or None."""
-        return self._settled_kind.remark()
+        return self.remark_in()
+
+    def remark_in(self, *, radians: bool = False) -> str | None:
+        """Return the remark, with angles in degrees or `radians`."""
+        return self._settled_kind.remark(radians=radians)
 
     def __getattr__(self, name: str) -> Any:
         """Return a number by its key, a float, or None where the motion has none."""

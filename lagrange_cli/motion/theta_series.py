@@ -106,13 +106,14 @@ class Series(NamedTuple):
 
 def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in the smaller nome."""
-    hyperbolic = c.quarter_prime is not None and c.quarter > c.quarter_prime
+    # either is right next to K = K', where balls may leave the question open
+    hyperbolic = c.quarter_prime is not None and (c.quarter > c.quarter_prime) is True
     return (hyperbolic_series if hyperbolic else circular_series)(ar, c, terms)
 
 
 def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in q, which wind by +-pi over a period."""
-    weights = _weights(nome(ar, m=c.m, k_prime=c.k_prime), 2, terms)
+    weights = _weights(ar, nome(ar, m=c.m, k_prime=c.k_prime), 2, terms)
     plus, minus = (
         hyperbolic_cosine_and_sine(ar, m=c.m, k_prime=c.k_prime, s2=place.s2, c2=place.c2)
         for place in (c.plus, c.minus)
@@ -138,8 +139,8 @@ def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS
         cosine_and_sine(ar, m=mc, k_prime=c.k, s2=place.s2, c2=place.c2)
         for place in (c.plus, c.minus)
     )
-    even = [(2 if n else 1) * weight for n, weight in enumerate(_weights(q, 1, terms))]
-    odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(q, 2, terms)]
+    even = [(2 if n else 1) * weight for n, weight in enumerate(_weights(ar, q, 1, terms))]
+    odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(ar, q, 2, terms)]
     x = _hyperbolic_components(even, odd, plus, c.sign_plus, c.x_size)
     y = _hyperbolic_components(even, odd, minus, c.sign_minus, c.y_size)
     slope_x, slope_y = -c.sign_plus * ar.atan2(*plus), -c.sign_minus * ar.atan2(*minus)
@@ -196,13 +197,22 @@ def _multiples(
     return cosines, sines
 
 
-def _weights(q: Value, first: int, terms: int) -> list[Value]:
-    """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2."""
+def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Value]:
+    """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2.
+
+    What the series leave out, of N terms in a nome q <= 1/20, is added to the first two weights,
+    which multiply constants: |y| <= log(1/q)/2 in circular series, and |z| <= 3 log(1/q)/8 in
+    hyperbolic ones, as no phase is beyond 3/4.  |sin jx| <= j |sin x|, sinh jx <= j e^((j-1) x)
+    sinh x and cosh jx <= e^((j-1) x) cosh x for x >= 0, so that a term, over the constant that the
+    weight multiplies, is at most 2 (2n+1)^2 q^(n(n-1)); from n = 1 on each of these is less than
+    half of the one before, and all from n = N are at most 4 (2N+1)^2 times the last weight.
+    """
     weights, power = [0 * q + 1], q if first == 1 else q * q
     for _ in range(terms - 1):
         weights.append(weights[-1] * power)
         power = power * q * q
-    return weights
+    last, factor = weights[-1], 4 * (2 * terms + 1) * (2 * terms + 1)
+    return [ar.widened(weight, lambda: factor * last) for weight in weights[:2]] + weights[2:]
 
 
 def _hyperbolic_components(

@@ -1,18 +1,13 @@
-"""The formulas over other arithmetics, none of which they know: dual numbers, balls, and more."""
+"""The formulas over other arithmetics, none of which they know: dual numbers, pairs, and more."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-from ball_judge import Judge
-from ball_numbers import Ball, Balls
-from balls.scene import Undecided
 from dual_numbers import Dual, Duals
 from scenes import EPS, UNIT
 
@@ -102,54 +97,6 @@ def test_dual_numbers_give_derivatives(scene: str, name: str) -> None:
             slope = (getattr(ahead, key) - getattr(behind, key)) / (2 * Decimal(1) / 10**20)
             size = max(1, abs(slope), abs(dual.value))
             assert abs(dual.rate - slope) <= Decimal("1e-25") * size, key
-
-
-def interval_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, bound: Ball) -> Ball:
-    """Return a ball that holds the largest root: Newton's method, then one interval step."""
-
-    def cubic(x: Ball) -> Ball:
-        return ((x + c2) * x + c1) * x + c0
-
-    x = Ball(bound.ball.mid())
-    for _ in range(400):
-        step = cubic(x) / ((3 * x + 2 * c2) * x + c1)
-        x = Ball((x - step).ball.mid())
-        if abs(step.ball.mid()) <= abs(x.ball.mid()) * ar.eps.ball:
-            break
-    around = Ball(x.ball * (1 + type(x.ball)(0, 1) * ar.eps.ball * 2**20))
-    better = x - cubic(x) / ((3 * around + 2 * c2) * around + c1)
-    if not around.ball.contains(better.ball):
-        raise Undecided("the largest root")
-    return better
-
-
-def balls_of(top: Top, bits: int) -> dict[str, Any]:
-    """Return the numbers of a record as balls."""
-    ar, exact = Balls(bits, 3 * bits // 4), exact_of(top)
-    with ar.working():
-        begin = state(ar, exact)
-        at_rest = exact.facts.at_rest
-        road: Callable[..., Any] = partial(gaps_of, ar, exact.facts)
-        if not at_rest:
-            road = partial(gaps_from_start, ar, facts=exact.facts, find_root=interval_root)
-        motion = kind_of(exact.facts)(ar, exact.facts, begin, road(begin))
-        return {key: getattr(motion, key) for key in NUMBER_KEYS if key not in motion.lacks}
-
-
-@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_balls_hold_the_values_of_the_judge(scene: dict[str, float]) -> None:
-    """Loops stop at 2^-450, far within the 90 bits to which the judge knows its balls."""
-    top, bits = Top(**scene), 600
-    judge, computed = Judge(top.as_dict()), balls_of(top, bits)
-    for key, ball in computed.items():
-        exact = judge.record.get(key)
-        if ball is None:
-            assert exact is None, key
-            continue
-        with Balls(bits, bits).working():
-            assert exact is not None, key
-            assert ball.ball.rad() < (abs(exact) + 1) * 2.0**-300, key
-            assert ball.ball.overlaps(exact), key
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
