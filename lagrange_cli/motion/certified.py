@@ -22,7 +22,7 @@ from ..inputs.top import Top
 from .gaps import are_told_apart, gaps_of, state
 from .kinds import Kind, Nutating, fast_remark, kind_of
 from .rational_keys import known_fraction
-from .record import record_of, source_of
+from .record import record_of, source_of, unit_name
 from .regime import Exact, Regime, exact
 
 S = TypeVar("S")
@@ -171,8 +171,8 @@ class Certified:
             return None if found is None else found.value
 
         def number(name: str, radians: bool) -> Any:
-            shown = f"{name.removesuffix('_deg')}_rad" if radians else name
-            return note(shown, self.number(name, digits, radians=radians))
+            found = self.number(name, digits, radians=radians)
+            return note(unit_name(name, radians=radians), found)
 
         inputs = {name: note(name, x) for name, x in self._inputs(digits, radians=radians).items()}
         record = record_of(self, inputs, number, radians=radians, keys=keys)

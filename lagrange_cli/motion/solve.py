@@ -137,7 +137,9 @@ class Motion:
                 beyond.append(error)
                 return None
 
-        inputs = self.top.inputs(radians=radians)
+        with decimals(40).working():
+            given = self.top.inputs(radians=radians, ar=decimals(40))
+        inputs = {name: float(x) if isinstance(x, Decimal) else x for name, x in given.items()}
         return record_of(self, inputs, number, radians=radians, keys=keys), beyond
 
     def digits(

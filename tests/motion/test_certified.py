@@ -86,11 +86,11 @@ def test_radians_and_inputs_have_radii() -> None:
     assert record["m_radius"] == "0.0"
     assert list(record)[-1] == "precession_rate_half_radius"
     rounded = certified(Top(m=Fraction("1587.25"))).record(4)
-    assert (rounded["m"], rounded["m_radius"]) == ("1587.0", "0.25")
+    assert (rounded["m"], rounded["m_radius"]) == ("1587.0", "0.26")
     some = certified(Top()).record(keys=["T_nutation", "regime"])
     assert list(some) == ["regime", "T_nutation", "T_nutation_radius"]
 
 
 def test_a_number_beyond_doubles_is_said() -> None:
-    with pytest.raises(LagtopError, match="within 1.8e308"):
+    with pytest.raises(LagtopError, match=r"within 1\.8e308"):
         certified(Top(m=1e100, s=1e100, g=1e100, A=1e-80, C=1e-80)).record()
