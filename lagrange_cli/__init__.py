@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from .judge.judgement import Judgement
     from .motion.regime import Regime
     from .motion.solve import Motion, solve
+    from .plot.browser.document import view
     from .sweeps.angles import sweep_angles
     from .sweeps.records import sweep
 
@@ -26,6 +27,7 @@ __all__ = [
     "solve",
     "sweep",
     "sweep_angles",
+    "view",
 ]
 
 _MODULES = {
@@ -39,6 +41,7 @@ _MODULES = {
     "solve": "motion.solve",
     "sweep": "sweeps.records",
     "sweep_angles": "sweeps.angles",
+    "view": "plot.browser.document",
 }
 """The module of each name, which is imported when the name is asked for."""
 

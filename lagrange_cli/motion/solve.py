@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
+    from .notebook import Document
     from .samplers import Angles, Sampler
 
 T = TypeVar("T")
@@ -251,12 +252,18 @@ class Motion:
 
     def _repr_html_(self) -> str:
         """Return the record as a table for a notebook."""
-        rows = "".join(
-            f"<tr><th>{name}</th><td>{value}</td></tr>"
-            for name, value in self.record().items()
-            if value is not None
-        )
-        return f"<table>{rows}</table>"
+        from .notebook import record_table
+
+        return record_table(self)
+
+    def view(self) -> Document:
+        """Return a page on which the top turns, for a notebook or, with `save`, for a browser.
+
+        Raises LagtopError for inputs that are beyond what the page computes with.
+        """
+        from .. import view  # the face of the package: pictures are drawn by a room above this one
+
+        return view(self)
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Return tilt, spin and precession (radians) at the times t, in the shape of t.

@@ -1,0 +1,40 @@
+"""What a notebook shows of a motion: its record as a table, and documents in a frame."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .record import KEYS
+
+if TYPE_CHECKING:
+    from .solve import Motion
+
+
+class Document(str):
+    """A document of HTML, a text; a notebook shows it in a frame."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        """Return the document in a frame of its own."""
+        style = "width: 100%; height: 720px; border: 0"
+        return f'<iframe style="{style}" srcdoc="{escape(self)}"></iframe>'
+
+    def save(self, path: str | Path) -> None:
+        """Write the document to a file.  Raises OSError."""
+        Path(path).write_text(self, encoding="utf-8")
+
+
+def record_table(motion: Motion) -> str:
+    """Return the record of a motion as a table of HTML: symbol, meaning, value and unit."""
+    record = motion.record()
+    rows = "".join(
+        f'<tr title="{name}"><td>{KEYS[name].symbol}</td><td style="text-align: left">'
+        f"{escape(KEYS[name].meaning or name)}</td><td>{escape(str(value))}</td>"
+        f'<td style="text-align: left">{escape(KEYS[name].unit)}</td></tr>'
+        for name, value in record.items()
+        if value is not None
+    )
+    return f"<table><caption>{escape(str(motion.regime))}</caption>{rows}</table>"

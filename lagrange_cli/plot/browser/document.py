@@ -1,0 +1,64 @@
+"""The page of one top, as a document of HTML that needs no network and no other file."""
+
+from __future__ import annotations
+
+import json
+import re
+
+from ...errors import LagtopError
+from ...inputs.top import Top
+from ...motion.notebook import Document
+from ...motion.solve import Motion, solve
+from ..style import DARK, LIGHT, Look
+from .joined import joined_script, text_of
+
+_TRACES = {LIGHT: "#31688e", DARK: "#35b779"}
+"""The colour of the path of the axis on each paper, of viridis as in the other pictures."""
+
+LARGEST, LEAST_TILT = 1e30, 1e-12
+"""Sizes of inputs, and the least tilt (degrees) from the vertical, that the page computes with."""
+
+
+def view(motion: Motion) -> Document:
+    """Return the page for the browser: the top in space, its curves and its record, to be turned.
+
+    The inputs are rounded to doubles, as sliders need them.  Raises LagtopError for inputs that
+    are beyond what the page computes with.
+    """
+    parts = {
+        "style": _filled(text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
+        "scene": json.dumps(page_scene(motion)),
+        "script": joined_script(),
+    }
+    return Document(_filled(text_of("index.html"), parts))
+
+
+def page_scene(motion: Motion) -> dict[str, float]:
+    """Return the inputs of the page as doubles, the tilt in degrees.
+
+    Raises LagtopError for inputs that are beyond what the page computes with.
+    """
+    scene = {name: float(value) for name, value in motion.top.inputs().items()}
+    for name, value in scene.items():
+        if abs(value) > LARGEST or (name in {"m", "A", "C"} and value < 1 / LARGEST):
+            raise LagtopError(f"{name} must be from 1e-30 to 1e30 for a page, got {value}", name)
+    tilt = scene["theta0_deg"]
+    if 0 < min(tilt, 180 - tilt) < LEAST_TILT:
+        raise LagtopError(
+            f"theta0_deg must be 0, 180 or 1e-12 from both for a page, got {tilt}", "theta0_deg"
+        )
+    solve(Top(**scene))  # a tilt in radians may round to the vertical, where nothing precesses
+    return scene
+
+
+def _colours(look: Look) -> str:
+    """Return the colours of a look as variables of the style sheet."""
+    blue, red, green = look.lines
+    names = {"paper": look.paper, "ink": look.ink, "quiet": look.quiet, "faint": look.faint}
+    names |= {"blue": blue, "red": red, "green": green, "trace": _TRACES[look]}
+    return " ".join(f"--{name}: {colour};" for name, colour in names.items())
+
+
+def _filled(text: str, parts: dict[str, str]) -> str:
+    """Return a text with its {{names}} filled in."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda name: parts[name[1]], text)

@@ -1,0 +1,89 @@
+// The cubic f(u) = u'^2 (4,9), its roots, and the top as a point that runs between two of them.
+
+import { dot, prepared, stroke, write } from "./look.js";
+import { tickText, ticksBetween } from "./ticks.js";
+
+const MARGIN = { left: 14, right: 14, top: 12, bottom: 32 };
+
+/** f(u) from its product form; without torque it is a parabola. */
+function cubicOf({ start, record, gaps }) {
+  const lead = record.u3 === null ? null : +start.a;
+  const parabola = gaps.aU3FromStart ? -gaps.aU3FromStart : 0;
+  return (u) => (u - record.u1) * (u - record.u2) * (
+    lead === null ? parabola : lead * (u - record.u3));
+}
+
+/** The range of u to show: the band of the motion, and u3 where it is near. */
+function windowOf({ u1, u2, u3 }) {
+  const band = u1 - u2;
+  const near = u3 !== null && u3 - u1 <= Math.max(4 * band, band ? 0 : 2);
+  const width = (near ? u3 : u1) - u2 || 0.4;
+  return { low: u2 - 0.5 * width, high: u2 + 1.5 * width, near };
+}
+
+/** Draw the cubic, and the top at the tilt of now. */
+export function drawCubic(canvas, look, motion, theta) {
+  const { context, width, height } = prepared(canvas);
+  if (motion.facts.vertical) {
+    write(context, "the axis is vertical: nothing nods", [width / 2, height / 2], look.quiet);
+    return;
+  }
+  const f = cubicOf(motion);
+  const { low, high, near } = windowOf(motion.record);
+  const us = [...Array(241).keys()].map((i) => low + (high - low) * i / 240);
+  const { u1, u2, u3 } = motion.record;
+  const inside = us.filter((u) => u >= u2 && u <= (near ? u3 : u1)).map((u) => Math.abs(f(u)));
+  const most = 1.35 * (Math.max(0, ...inside) || Math.max(...us.map((u) => Math.abs(f(u)))) || 1);
+  const place = {
+    x: (u) => MARGIN.left + (u - low) / (high - low) * (width - MARGIN.left - MARGIN.right),
+    y: (v) => MARGIN.top + (most - v) / (2 * most) * (height - MARGIN.top - MARGIN.bottom),
+  };
+  drawField(context, look, place, { low, high, u1, u2, width, height });
+  context.save();
+  context.beginPath();
+  context.rect(0, MARGIN.top, width, height - MARGIN.top - MARGIN.bottom);
+  context.clip();
+  stroke(context, us.map((u) => [place.x(u), place.y(f(u))]), { colour: look.blue, width: 1.8 });
+  context.restore();
+  drawRoots(context, look, place, motion.record, near, width);
+  const now = Math.min(Math.max(Math.cos(theta), u2), u1);
+  dot(context, [place.x(now), place.y(Math.max(f(now), 0))], 4.5, look.trace, look.paper);
+}
+
+/** Draw the band of the motion, the axis f = 0 and the poles u = 1 and u = -1. */
+function drawField(context, look, place, { low, high, u1, u2, width, height }) {
+  const floor = height - MARGIN.bottom;
+  context.fillStyle = look.faint;
+  context.fillRect(place.x(u2), MARGIN.top, place.x(u1) - place.x(u2), floor - MARGIN.top);
+  stroke(context, [[place.x(low), place.y(0)], [place.x(high), place.y(0)]], {
+    colour: look.quiet,
+  });
+  for (const pole of [-1, 1].filter((u) => u >= low && u <= high)) {
+    stroke(context, [[place.x(pole), MARGIN.top], [place.x(pole), floor]], {
+      colour: look.quiet, dash: [4, 3],
+    });
+  }
+  const ticks = ticksBetween(low, high, width / 70);
+  const step = ticks.length > 1 ? ticks[1] - ticks[0] : high - low;
+  for (const u of ticks) {
+    write(context, tickText(u, step), [place.x(u), floor + 10], look.ink, { size: 11 });
+  }
+  write(context, "u = cos ϑ", [width - MARGIN.right, height - 8], look.quiet, {
+    size: 11, align: "right",
+  });
+}
+
+function drawRoots(context, look, place, { u1, u2, u3 }, near, width) {
+  const double = u1 - u2 < 1e-12;
+  const roots = double
+    ? [["u₁ = u₂", u1, 0, 14]] : [["u₂", u2, -13, -11], ["u₁", u1, 13, -11]];
+  if (near) roots.push(["u₃", u3, 13, 13]);
+  else if (u3 !== null) {
+    write(context, `u₃ = ${tickText(u3, 1e-4 * Math.abs(u3))} →`,
+      [width - MARGIN.right, MARGIN.top + 8], look.red, { size: 12, align: "right" });
+  }
+  for (const [name, u, right, down] of roots) {
+    dot(context, [place.x(u), place.y(0)], 4, look.red);
+    write(context, name, [place.x(u) + right, place.y(0) + down], look.red, { size: 13 });
+  }
+}

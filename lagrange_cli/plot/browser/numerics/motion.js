@@ -1,0 +1,129 @@
+// The motion of one top: periods, tilts and mean rates.  Equation numbers are those of the paper.
+
+import { checkRoots, gapsOf } from "./gaps.js";
+import { completeK, periodMean } from "./integrals.js";
+import { PI, pair } from "./pair.js";
+import { factsOf } from "./regime.js";
+import { checkScene, startOf } from "./scene.js";
+import { constantSampler, nutatingSampler, separatrixSampler } from "./samplers.js";
+import { offsetOf } from "./series.js";
+
+/** The motion of a scene: its record, and `angles(t)`.  Raises RangeError for a bad input. */
+export function motionOf(scene) {
+  checkScene(scene);
+  const start = startOf(scene);
+  const facts = factsOf(start);
+  const gaps = gapsOf(start, facts);
+  checkRoots(facts, gaps);
+  const motion = { scene, start, facts, gaps, ...moduliOf(start, facts, gaps) };
+  Object.assign(motion, ratesOf(motion));
+  motion.record = recordOf(motion);
+  motion.angles = samplerOf(motion);
+  return motion;
+}
+
+function samplerOf(motion) {
+  const { facts } = motion;
+  if (facts.vertical || facts.steady) return constantSampler(motion);
+  return facts.separatrix ? separatrixSampler(motion) : nutatingSampler(motion);
+}
+
+/** Moduli (4,19), (4,21), quarter periods and the period of the nutation (5,1). */
+function moduliOf(start, facts, gaps) {
+  if (facts.vertical) return {};
+  const argumentRate = gaps.aU3FromU2.sqrt().over(2);  // dw/dt (4,30)
+  const m = facts.steady ? pair(0) : start.a.times(gaps.band).over(gaps.aU3FromU2);
+  const kPrime = facts.steady ? pair(1) : gaps.aU3FromU1.over(gaps.aU3FromU2).sqrt();
+  const k = m.sqrt();
+  if (facts.separatrix) return { argumentRate, m, k, kPrime, KPrime: completeK(1) };
+  const K = completeK(kPrime);
+  const offset = facts.steady ? null : offsetOf(start, gaps, kPrime, K);
+  return {
+    argumentRate, m, k, kPrime, K, offset,
+    KPrime: +k > 0 ? completeK(k) : null,
+    period: argumentRate > 0 ? K.times(2).over(argumentRate) : null,
+  };
+}
+
+/** Mean rates of spin (6,3) and precession (7,3); those of a constant tilt. */
+function ratesOf(motion) {
+  const { start, facts } = motion;
+  if (facts.vertical) return { spinRate: start.r0, precessionRate: pair(0) };
+  if (facts.steady) {
+    const spinRate = start.r0.minus(start.psiRate.times(start.cos));  // (4,8)
+    return { spinRate, precessionRate: start.psiRate };
+  }
+  if (facts.separatrix) return {};
+  return nutatingRates(motion, PI.over(motion.period));
+}
+
+function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
+  // south and north are the means of (beta - b u)/(2 (1 + u)) and (beta - b u)/(2 (1 - u)): the
+  // precession rate is their sum (4,7), the spin rate r0 + south - north (4,8)
+  const mean = (fromU1, fromU2, atU1, atU2) => {
+    const mc = kPrime.squared();
+    const p = fromU2.times(mc).over(fromU1);
+    return periodMean(kPrime, p, atU1, atU2.times(mc)).over(fromU1).over(2);
+  };
+  const poleRate = (pole, sign, fromU1, fromU2, beta) => (
+    facts.free || pole ? halfTurn.times(sign) : mean(fromU1, fromU2, beta, beta));
+  const overTop = facts.upperRoot === 1;
+  const { belowU1, belowU2, aboveU1, aboveU2, momentumU1, momentumU2 } = gaps;
+  let spinRate;
+  if (facts.atRest) spinRate = start.spinDrift.plus(start.r0 < 0 ? halfTurn.negative() : halfTurn);
+  else if (facts.drifts) spinRate = start.spinDrift;
+  if (facts.free || overTop || facts.overBottom) {
+    const south = poleRate(facts.overBottom, facts.signPlus, belowU1, belowU2, gaps.betaPlusB);
+    const north = poleRate(overTop, facts.signMinus, aboveU1, aboveU2, gaps.betaMinusB);
+    spinRate ??= start.poleDrift.plus(south).minus(north);
+    return { spinRate, precessionRate: south.plus(north) };
+  }
+  const south = mean(belowU1, belowU2, momentumU1, momentumU2);
+  const north = mean(aboveU1, aboveU2, momentumU1, momentumU2);
+  spinRate ??= start.r0.plus(south).minus(north);
+  return { spinRate, precessionRate: south.plus(north) };
+}
+
+/** Path of the figure axis, by where the precession stands still: at u1, within, or nowhere. */
+function pathOf({ facts, gaps, start }) {
+  if (facts.vertical || facts.steady) return null;
+  if (facts.cusp || (facts.atRest && facts.spins)) return "cusped";
+  if (facts.overBottom && !facts.spins) return null;
+  const loops = start.b * gaps.momentumU1 < 0 && start.b * gaps.momentumU2 > 0;
+  return loops ? "looping" : "wavy";
+}
+
+function degreesOf(above, below) {
+  return 2 * Math.atan2(Math.sqrt(above), Math.sqrt(below)) * 180 / Math.PI;
+}
+
+/** The numbers of the scene, as doubles, under the keys of `lagtop solve`. */
+function recordOf(motion) {
+  const { start, facts, gaps } = motion;
+  const number = (x) => (x === undefined || x === null ? null : +x);
+  const turn = (rate) => (+rate ? 2 * Math.PI / Math.abs(rate) : null);
+  const u2 = +gaps.aboveU2 < +gaps.belowU2
+    ? pair(1).minus(gaps.aboveU2) : gaps.belowU2.minus(1);
+  const nome = motion.K && motion.KPrime ? Math.exp(-Math.PI * motion.KPrime / motion.K) : null;
+  return {
+    regime: facts.regime,
+    a: +start.a,
+    b: +start.b,
+    u1: +start.cos.plus(gaps.u1FromStart),
+    u2: +u2,
+    u3: facts.free || facts.vertical ? null : +gaps.aU3Above.over(start.a).plus(1),
+    k: number(motion.k),
+    k_prime: number(motion.kPrime),
+    nome: facts.vertical ? null : facts.separatrix ? 1 : nome ?? 0,
+    K: number(motion.K),
+    K_prime: number(motion.KPrime),
+    T_nutation: number(motion.period),
+    T_spin: turn(motion.spinRate),
+    T_precession: facts.vertical ? null : turn(motion.precessionRate),
+    theta_min_deg: degreesOf(gaps.aboveU1, gaps.belowU1),
+    theta_max_deg: degreesOf(gaps.aboveU2, gaps.belowU2),
+    mean_spin_rate: number(motion.spinRate),
+    mean_precession_rate: facts.vertical ? null : number(motion.precessionRate),
+    path: pathOf(motion),
+  };
+}

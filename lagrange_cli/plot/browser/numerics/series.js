@@ -1,0 +1,152 @@
+// The attitude as theta series about a turning point, in doubles.
+//
+// X = cos(theta/2) exp(i (psi + phi)/2) goes as theta2(x - i s+ y+) and
+// Y = sin(theta/2) exp(i (psi - phi)/2) as theta1(x - i s- y-), with x = pi t/T counted from a
+// passage of u1.  While K <= K' the series run in the nome q; beyond, Jacobi's imaginary
+// transformation gives series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi): four
+// terms are enough for doubles.  See `lagrange_cli/motion/theta_series.py`.
+
+import { firstKind } from "./integrals.js";
+import { pair } from "./pair.js";
+
+const TERMS = 4;
+const indices = [...Array(TERMS).keys()];
+
+/**
+ * The series about u1 and about u2, each with X and Y as sums of cosines and sines of multiples of
+ * the argument z, which grows by `scale` per half period; and how far they wind per half period.
+ */
+export function thetaSeries(motion) {
+  const { gaps, m, kPrime, K, KPrime, facts } = motion;
+  const mc = kPrime.squared();
+  // the parameters of X and Y: eta with sn^2(eta, k') : cn^2(eta, k') as these, and K' - eta
+  const plus = place(gaps.belowU2, gaps.band, m, KPrime);
+  const minus = place(
+    gaps.aboveU1.times(gaps.aU3FromU2), gaps.aU3Above.times(gaps.band), m, KPrime);
+  const sizeX = Math.sqrt(gaps.belowU1 / 2);
+  const sizeY = Math.sqrt(kPrime * gaps.aboveU2 / 2);
+  const sizes = [[plus, sizeX, facts.signPlus], [minus, sizeY, facts.signMinus]];
+  if (KPrime !== null && K > KPrime) return hyperbolicSeries(sizes, K, KPrime);
+  const nome = KPrime === null ? 0 : Math.exp(-Math.PI * KPrime / K);
+  return circularSeries(sizes, K, nome);
+}
+
+function place(s2, c2, m, KPrime) {
+  const eta = firstKind(s2, c2, m);
+  return { eta, rest: KPrime === null ? null : KPrime.minus(eta), s2, c2 };
+}
+
+/** Series in q (2,2), (2,3), which wind by half a turn, up or down, per period. */
+function circularSeries(sizes, K, nome) {
+  const weights = indices.map((n) => nome ** (n * (n + 1)));
+  const components = sizes.map(([{ eta }, size, sign]) => {
+    const y = Math.PI / 2 * eta.over(K);
+    const cosh = indices.map((n) => weights[n] * Math.cosh((2 * n + 1) * y));
+    const sinh = indices.map((n) => weights[n] * Math.sinh((2 * n + 1) * y));
+    const unit = size / total(cosh);
+    return [
+      component(1, unit, cosh, sign, sinh),                        // theta2
+      component(1, unit, alternate(sinh), sign, alternate(cosh)),  // theta1
+    ];
+  });
+  const [slopeX, slopeY] = sizes.map((size) => -size[2] * Math.PI / 2);
+  return series(components, false, Math.PI / 2, slopeX, slopeY);
+}
+
+/** Series in q' after Jacobi's transformation, whose exponent is linear in the time. */
+function hyperbolicSeries(sizes, K, KPrime) {
+  const nome = Math.exp(-Math.PI * K / KPrime);
+  const slopes = [];
+  const components = sizes.map(([{ eta, rest }, size, sign]) => {
+    const angle = Math.PI / 2 * eta.over(KPrime);
+    const complement = Math.PI / 2 * rest.over(KPrime);
+    const [cos, sin] = multiples(Math.sin(complement), Math.sin(angle));
+    const even = indices.map((n) => (n ? 2 : 1) * nome ** (n * n));
+    const odd = indices.map((n) => 2 * nome ** (n * (n + 1) + 0.25));
+    const cosEven = alternate(even.map((weight, n) => weight * cos[2 * n]));
+    const sinEven = alternate(even.map((weight, n) => weight * sin[2 * n]));
+    const cosOdd = alternate(odd.map((weight, n) => weight * cos[2 * n + 1]));
+    const sinOdd = alternate(odd.map((weight, n) => weight * sin[2 * n + 1]));
+    const unit = size / total(cosEven);
+    slopes.push(-sign * complement);
+    return [
+      component(0, unit, cosEven, -sign, sinEven),  // theta4
+      component(1, unit, sinOdd, sign, cosOdd),     // theta1
+    ];
+  });
+  return series(components, true, Math.PI / 2 * K.over(KPrime), ...slopes);
+}
+
+/** Cosines and sines of 0, 1, 2 ... times an angle; all keep the digits of its cosine and sine. */
+function multiples(cosine, sine) {
+  const [cos, sin] = [[1], [0]];
+  for (let n = 1; n < 2 * TERMS; n += 1) {
+    cos.push(cos[n - 1] * cosine - sin[n - 1] * sine);
+    sin.push(sin[n - 1] * cosine + cos[n - 1] * sine);
+  }
+  return [cos, sin];
+}
+
+/** The real part sum re_n cos((2n + first) z), the imaginary part sum im_n sin((2n + first) z). */
+function component(first, unit, real, sign, imaginary) {
+  return {
+    first,
+    real: real.map((x) => unit * x),
+    imaginary: imaginary.map((x) => sign * unit * x),
+  };
+}
+
+/** Half a period turns theta2 into theta1 and back. */
+function series([x, y], hyperbolic, scale, slopeX, slopeY) {
+  return {
+    hyperbolic,
+    scale: +scale,
+    frames: [{ x: x[0], y: y[1] }, { x: x[1], y: y[0] }],
+    spinSlope: slopeX - slopeY,
+    precessionSlope: slopeX + slopeY,
+  };
+}
+
+function alternate(terms) {
+  return terms.map((term, n) => (n % 2 ? -term : term));
+}
+
+function total(terms) {
+  return terms.reduce((x, y) => x + y, 0);
+}
+
+/** Size and argument of X and of Y at a phase from -1/2 to 1/2 half periods about a frame. */
+export function evaluate({ hyperbolic, scale, frames }, frame, phase, rises) {
+  const z = phase * scale;
+  const [sin, cos] = hyperbolic ? [Math.sinh(z), Math.cosh(z)] : [Math.sin(z), Math.cos(z)];
+  const twice = hyperbolic ? 2 + 4 * sin * sin : 2 - 4 * sin * sin;  // 2 cos 2z
+  const { x, y } = frames[frame];
+  return { x: polar(x, sin, cos, twice, -rises), y: polar(y, sin, cos, twice, rises) };
+}
+
+/** Size and argument of one component; on a pole, where it is 0, the argument just beside. */
+function polar({ first, real, imaginary }, sin, cos, twice, side) {
+  // the first two cosines and sines; the others by cos(n + 2) = 2 cos 2z cos n - cos(n - 2)
+  let [c, cBefore] = first ? [cos, cos] : [1, twice / 2];
+  let [s, sBefore] = first ? [sin, -sin] : [0, -2 * sin * cos];
+  let [re, im] = [0, 0];
+  for (let n = 0; n < TERMS; n += 1) {
+    re += real[n] * c;
+    im += imaginary[n] * s;
+    [c, cBefore] = [twice * c - cBefore, c];
+    [s, sBefore] = [twice * s - sBefore, s];
+  }
+  const direction = re || im ? im : side * imaginary[0];
+  return { size: Math.hypot(re, im), argument: Math.atan2(direction, re) };
+}
+
+/** Half periods from the nearest passage of u1 to t = 0, with the sign of the nutation rate. */
+export function offsetOf(start, gaps, kPrime, K) {
+  if (!(gaps.u1FromStart > 0)) return pair(0);
+  if (!(gaps.startFromU2 > 0)) return pair(1);
+  // sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)) (4,22)
+  const w = firstKind(
+    gaps.u1FromStart.times(gaps.aU3FromU2), gaps.aU3FromU1.times(gaps.startFromU2),
+    kPrime.squared());
+  return w.over(K).times(start.thetaRate < 0 ? -1 : 1);
+}

@@ -1,0 +1,91 @@
+// The inputs: a slider and a number field for each.
+
+import { INPUTS } from "../numerics/scene.js";
+
+/** The range of a slider about a value. */
+function rangeOf(name, scene) {
+  const x = scene[name];
+  switch (name) {
+    case "theta0_deg": return [0, 180];
+    case "C": return [0.02 * scene.A, 2 * scene.A];
+    case "A": return [scene.C / 2, Math.max(3 * x, scene.C)];
+    case "m": return [0.05 * x, 3 * x];
+    case "s": case "g": return [0, 3 * x || 1];
+    case "r0": return spread(x, 2.5 * Math.sqrt(Math.max(fall(scene), 1e-30)) * scene.A / scene.C);
+    default: return spread(x, Math.sqrt(fall(scene)) || 1);
+  }
+}
+
+/** 2mgs/A, whose root is the rate at which the top falls. */
+function fall({ m, g, s, A }) {
+  return 2 * m * g * s / A;
+}
+
+function spread(x, usual) {
+  const half = Math.max(1.5 * Math.abs(x), usual);
+  return [-half, half];
+}
+
+/** Build the controls in a list; `changed(name, value)` is called for each change. */
+export class Inputs {
+  constructor(list, changed) {
+    this.fields = {};
+    for (const [name, input] of Object.entries(INPUTS)) {
+      const row = document.createElement("div");
+      row.className = "input";
+      const label = document.createElement("label");
+      label.htmlFor = `field-${name}`;
+      label.innerHTML = `<b>${input.symbol}</b> <span>${input.meaning}</span>`;
+      const field = document.createElement("input");
+      Object.assign(field, { id: `field-${name}`, type: "text", inputMode: "decimal" });
+      const slider = document.createElement("input");
+      Object.assign(slider, { id: `slider-${name}`, type: "range", step: "any" });
+      slider.setAttribute("aria-label", `${name}: ${input.meaning}`);
+      row.append(label, field, slider);
+      list.append(row);
+      field.addEventListener("change", () => changed(name, numberOf(field.value), field.value));
+      slider.addEventListener("input", () => changed(name, rounded(slider), slider.value));
+      slider.addEventListener("change", () => this.rescale(this.scene));
+      this.fields[name] = { field, slider };
+    }
+  }
+
+  /** Show the values of a scene; the ranges of the sliders stay until `rescale`. */
+  show(scene) {
+    this.scene = scene;
+    for (const [name, { field, slider }] of Object.entries(this.fields)) {
+      field.value = String(scene[name]);
+      slider.value = String(scene[name]);
+      slider.setAttribute("aria-valuetext", String(scene[name]));
+    }
+  }
+
+  /** Give each slider a range about its value. */
+  rescale(scene) {
+    for (const [name, { slider }] of Object.entries(this.fields)) {
+      const [low, high] = rangeOf(name, scene);
+      [slider.min, slider.max] = [String(low), String(high)];
+    }
+    this.show(scene);
+  }
+
+  /** Mark the input that an error names, or none. */
+  mark(message) {
+    for (const [name, { field }] of Object.entries(this.fields)) {
+      field.setAttribute("aria-invalid", String(message.startsWith(`${name} `)));
+    }
+  }
+}
+
+/** The number that a text stands for, or NaN. */
+export function numberOf(text) {
+  return text.trim() === "" ? NaN : Number(text.replace("−", "-").replace(",", "."));
+}
+
+/** A slider's value with the digits that its steps tell apart; 0 and the ends are met exactly. */
+function rounded(slider) {
+  const [value, low, high] = [slider.value, slider.min, slider.max].map(Number);
+  const step = 10 ** Math.floor(Math.log10((high - low) / 300));
+  if (value <= low + step / 2 || value >= high - step / 2) return value;
+  return Number((Math.round(value / step) * step).toPrecision(12));
+}

@@ -1,0 +1,216 @@
+// The page: one scene, its motion, and all that shows it.
+
+import { Camera } from "../drawing/camera.js";
+import { curvesAt, windowOf } from "../drawing/curves.js";
+import { drawCubic } from "../drawing/cubic.js";
+import { readLook } from "../drawing/look.js";
+import { drawPlots } from "../drawing/plots.js";
+import { drawSpace } from "../drawing/space.js";
+import { motionOf } from "../numerics/motion.js";
+import { Clock } from "./clock.js";
+import { EXAMPLES } from "./examples.js";
+import { followHands } from "./gestures.js";
+import { Inputs } from "./inputs.js";
+import { linkOf, readLink, showLink } from "./link.js";
+import { showRecord } from "./record.js";
+import { wordsOf } from "./words.js";
+
+const FRAME = 1 / 60;  // seconds
+const FAST = 0.8;      // radians of spin per frame that the eye cannot follow
+
+class Page {
+  constructor(elements) {
+    this.at = elements;
+    this.given = JSON.parse(elements.given.textContent);
+    this.camera = new Camera();
+    this.shown = {};
+    this.look = readLook();
+    this.clock = new Clock(elements, () => this.stale());
+    this.inputs = new Inputs(elements.inputs, (name, x, text) => this.change(name, x, text));
+    this.offerExamples();
+    this.listen();
+    this.start();
+  }
+
+  /** Begin with the scene of the address, if it carries one, else with the one that was given. */
+  start() {
+    let linked = {};
+    let complaint = "";
+    try {
+      linked = readLink(location.hash);
+      motionOf({ ...this.given, ...linked });
+    } catch (error) {
+      linked = {};
+      complaint = `The link was not understood: ${error.message}`;
+    }
+    const { t = 0, ...inputs } = linked;
+    this.show({ ...this.given, ...inputs }, true);
+    this.clock.set(t);
+    this.complain(complaint);
+    this.clock.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    requestAnimationFrame((now) => this.frame(now, now));
+  }
+
+  offerExamples() {
+    const all = { "This scene": this.given, ...EXAMPLES };
+    this.at.examples.append(...Object.keys(all).map((name) => new Option(name)));
+    this.at.examples.addEventListener("change", () => {
+      this.camera.reset();
+      this.show(all[this.at.examples.value], true);
+      this.clock.set(0);
+    });
+  }
+
+  listen() {
+    const { space, plots, periods, waves, copy, theme } = this.at;
+    followHands(space, this.camera, () => this.stale());
+    for (const box of document.querySelectorAll("[data-shows]")) {
+      const note = () => { this.shown[box.dataset.shows] = box.checked; };
+      note();
+      box.addEventListener("change", () => { note(); this.stale(); });
+    }
+    periods.addEventListener("change", () => this.recurve());
+    waves.addEventListener("change", () => this.recurve());
+    copy.addEventListener("click", () => this.copyLink());
+    theme.addEventListener("click", () => this.changeTheme());
+    const scrub = (event) => {
+      if (event.buttons) this.clock.set(this.field.timeAt(event.offsetX));
+    };
+    plots.addEventListener("pointerdown", scrub);
+    plots.addEventListener("pointermove", scrub);
+    new ResizeObserver(() => { this.curves = null; this.stale(); }).observe(document.body);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.relook());
+    document.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** Keys that hold wherever no control takes them. */
+  key(event) {
+    if (event.target.closest("input, select, button") || event.ctrlKey || event.metaKey) return;
+    const keys = {
+      " ": () => this.clock.play(!this.clock.playing),
+      ArrowLeft: () => this.clock.step(-1, event.shiftKey),
+      ArrowRight: () => this.clock.step(1, event.shiftKey),
+      Home: () => this.clock.set(0),
+    };
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  }
+
+  /** Change one input; a value that cannot be leaves the scene as it was, and is said. */
+  change(name, x, text) {
+    const scene = { ...this.scene, [name]: x };
+    const rescaled = Number(this.inputs.fields[name].slider.max) < x
+      || Number(this.inputs.fields[name].slider.min) > x;
+    try {
+      this.show(scene, rescaled, false);
+      this.complain("");
+    } catch (error) {
+      this.complain(Number.isNaN(x) ? `${name} must be a number, got ${text}` : error.message);
+    }
+  }
+
+  /** Show another scene; `anew` sets the ranges of the sliders, and the usual speed. */
+  show(scene, anew, freshSpeed = anew) {
+    this.motion = motionOf(scene);
+    this.scene = scene;
+    if (anew) this.inputs.rescale(scene);
+    else this.inputs.show(scene);
+    const [title, text] = wordsOf(this.motion);
+    if (this.at.title.textContent !== title) this.at.title.textContent = title;
+    this.at.words.textContent = text;
+    showRecord(this.at.record, this.motion.record);
+    this.recurve();
+    this.clock.adapt(windowOf(this.motion, 1), freshSpeed);
+    this.complain("");
+  }
+
+  complain(message) {
+    this.at.error.textContent = message;
+    this.inputs.mark(message);
+  }
+
+  recurve() {
+    this.curves = null;
+    this.stale();
+  }
+
+  /** Something has changed: draw with the next frame. */
+  stale() {
+    this.fresh = false;
+  }
+
+  relook() {
+    this.look = readLook();
+    this.recurve();
+  }
+
+  changeTheme() {
+    const root = document.documentElement;
+    const dark = root.dataset.theme
+      ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    root.dataset.theme = dark ? "light" : "dark";
+    this.relook();
+  }
+
+  async copyLink() {
+    showLink(this.scene, this.clock.t);
+    const link = location.href.split("#")[0] + linkOf(this.scene, this.clock.t);
+    try {
+      await navigator.clipboard.writeText(link);
+      this.at.copied.textContent = "copied";
+    } catch {
+      this.at.copied.textContent = "it is in the address bar";
+    }
+  }
+
+  frame(now, last) {
+    const moved = this.clock.pass(Math.min((now - last) / 1000, 0.1));
+    if (moved || !this.fresh) this.draw();
+    requestAnimationFrame((next) => this.frame(next, now));
+  }
+
+  draw() {
+    this.fresh = true;
+    const { motion, clock } = this;
+    const span = windowOf(motion, Number(this.at.periods.value));
+    const { curves } = this;
+    if (!curves || clock.t < curves.from || clock.t >= curves.from + curves.span) {
+      this.curves = curvesAt(motion, span, clock.t);
+      this.field = drawPlots(this.at.plots, this.look, this.curves, this.at.waves.checked);
+      this.report();
+    }
+    const angles = motion.angles(clock.t);
+    this.drawNow(angles);
+    if (!clock.playing) this.report(angles);
+  }
+
+  drawNow(angles) {
+    const { motion, clock, field, curves, look } = this;
+    const blurred = clock.playing && Math.abs(motion.start.r0) * clock.speed * FRAME > FAST;
+    drawSpace(this.at.space, this.camera, look, {
+      motion, curves, t: clock.t, angles, blurred, shown: this.shown,
+    });
+    drawCubic(this.at.cubic, look, motion, angles.theta);
+    const part = (clock.t - curves.from) / curves.span;
+    const x = field.left + part * (field.right - field.left);
+    this.at.cursor.style.transform = `translateX(${x}px)`;
+    this.at.now.textContent = ["theta", "phiWithin", "psiWithin"]
+      .map((name, i) => `${"ϑφψ"[i]} = ${(angles[name] * 180 / Math.PI).toFixed(2)}°`)
+      .join("   ").replace(/-/g, "−");
+  }
+
+  /** Say what is to be seen to those who do not see it, and put the scene into the address. */
+  report(angles = this.motion.angles(this.clock.t)) {
+    const said = (angles.theta * 180 / Math.PI).toFixed(1);
+    this.at.space.setAttribute("aria-label",
+      `The top in space at t = ${Number(this.clock.t.toPrecision(5))}, tilted by ${said} degrees. `
+      + `${this.at.title.textContent}. Drag or press arrows to turn it.`);
+    clearTimeout(this.linking);
+    this.linking = setTimeout(() => showLink(this.scene, this.clock.t), 300);
+  }
+}
+
+const elements = Object.fromEntries(
+  [...document.querySelectorAll("[id]")].map((element) => [element.id, element]));
+window.lagtop = { motionOf, page: new Page(elements) };

@@ -1,0 +1,96 @@
+"""A headless browser for the tests of the page, and the questions they ask of it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Values = dict[str, Any]
+
+
+class Browser:
+    """A headless Chromium with one page."""
+
+    def __init__(self, driver: Any) -> None:
+        self.driver = driver
+
+    def open(
+        self, path: Path, fragment: str = "", *, width: int = 1280, dark: bool = False
+    ) -> None:
+        """Open a page anew, paused, on a screen of this width."""
+        phone = width < 500
+        screen = {"width": width, "height": 844 if phone else 800, "mobile": phone}
+        self.command("Emulation.setDeviceMetricsOverride", screen | {"deviceScaleFactor": 1})
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        still = {"name": "prefers-reduced-motion", "value": "reduce"}
+        self.command("Emulation.setEmulatedMedia", {"features": [scheme, still]})
+        self.driver.get("about:blank")
+        self.driver.get(path.as_uri() + fragment)
+        self.settle()
+
+    def command(self, name: str, values: Values) -> Any:
+        """Run a command of the browser's protocol."""
+        return self.driver.execute_cdp_cmd(name, values)
+
+    def ask(self, script: str, *values: Any) -> Any:
+        """Return what a script returns; `page` is the page, `at` its elements by id."""
+        names = """const { page, motionOf } = window.lagtop;
+            const at = new Proxy({}, { get: (_, id) => document.getElementById(id) });"""
+        return self.driver.execute_script(names + script, *values)
+
+    def settle(self) -> None:
+        """Wait for two frames."""
+        self.driver.execute_async_script(
+            "requestAnimationFrame(() => requestAnimationFrame(() => arguments[0]()))"
+        )
+
+    def press(self, keys: str, element: str | None = None) -> None:
+        """Send keys, on an element or on the page."""
+        target = self.driver.find_element("id", element) if element else None
+        (target or self.driver.find_element("tag name", "body")).send_keys(keys)
+        self.settle()
+
+    def picture(self) -> bytes:
+        """Return what is to be seen, as PNG."""
+        return base64.b64decode(self.driver.get_screenshot_as_base64())
+
+    def complaints(self) -> list[str]:
+        """Return what the console has to complain of since the last time."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def requests(self) -> list[str]:
+        """Return the addresses that have been asked for since the last time."""
+        events = [json.loads(entry["message"])["message"] for entry in self._events()]
+        sent = [event for event in events if event["method"] == "Network.requestWillBeSent"]
+        return [event["params"]["request"]["url"] for event in sent]
+
+    def _events(self) -> list[Values]:
+        events: list[Values] = self.driver.get_log("performance")
+        return events
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Start a browser, or skip the test with the reason why there is none."""
+    webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
+    programs = [shutil.which(name) for name in ("chromium", "chromedriver")]
+    if not all(programs):
+        pytest.skip("no chromium and chromedriver (apt-get install chromium chromium-driver)")
+    options = webdriver.ChromeOptions()
+    options.binary_location = programs[0]
+    for word in ("headless=new", "no-sandbox", "disable-gpu", "disable-dev-shm-usage"):
+        options.add_argument(f"--{word}")
+    options.add_argument("--hide-scrollbars")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(programs[1]))
+    try:
+        yield Browser(driver)
+    finally:
+        driver.quit()

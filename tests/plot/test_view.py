@@ -1,0 +1,131 @@
+"""The page of `lagtop view` as a document, the command, and what notebooks show."""
+
+from __future__ import annotations
+
+import re
+import webbrowser
+from html import unescape
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, Lagtop, assert_one_line
+
+from lagrange_cli import LagtopError, Top, solve, view
+from lagrange_cli.plot.browser.joined import joined_script
+
+FOLDER = ROOT / "lagrange_cli" / "plot" / "browser"
+SCRIPTS = sorted(FOLDER.rglob("*.js"))
+
+
+def test_the_page_is_one_small_file_that_needs_no_other() -> None:
+    page = view(solve(Top(r0=33.25)))
+    assert len(page.encode()) < 300_000
+    assert '"r0": 33.25' in page
+    assert "{{" not in page
+    assert not re.search(r"https?://|<script src|<link rel=.stylesheet|@import|fetch\(", page)
+
+
+def test_every_module_is_in_the_page_once_and_after_those_it_needs() -> None:
+    script = joined_script()
+    names = [path.relative_to(FOLDER).as_posix() for path in SCRIPTS]
+    for name in names:
+        assert script.count(f'modules["{name}"] = (') == 1
+    assert "import {" not in script
+    for line in re.finditer(r'^const \{.*\} = modules\["(.*)"\];', script, re.MULTILINE):
+        assert f'modules["{line[1]}"] = (' in script[: line.start()]
+
+
+def test_modules_of_the_page_are_small() -> None:
+    for path in SCRIPTS:
+        lines = path.read_text().splitlines()
+        assert len(lines) <= 300, path.name
+        assert max(map(len, lines)) <= 100, path.name
+        assert lines[0].startswith("// "), path.name
+
+
+def test_numbers_do_not_draw() -> None:
+    for path in (FOLDER / "numerics").glob("*.js"):
+        assert not re.search(r"document|window|\.\./", path.read_text()), path.name
+
+
+def test_the_command_writes_the_page(lagtop: Lagtop, tmp_path: Path) -> None:
+    target = tmp_path / "top.html"
+    scene = ROOT / "sample_inputs" / "looping-top.toml"
+    result = lagtop("view", scene, "--r0", 40, "-o", target)
+    assert (result.exit_code, result.output) == (0, "")
+    assert target.read_text() == view(solve(Top(r0=40, psidot0=-4)))
+    assert lagtop("view", "--r0", 40, "-o", "-").stdout.startswith("<!DOCTYPE html>")
+
+
+def test_the_command_opens_the_page(
+    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+
+    def note(url: str) -> bool:
+        opened.append(url)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", note)
+    target = tmp_path / "top.html"
+    assert lagtop("view", "--open", "-o", target).exit_code == 0
+    assert opened == [target.as_uri()]
+    assert lagtop("view", "--open").exit_code == 0
+    written = Path(opened[1].removeprefix("file://"))
+    assert written.read_text().startswith("<!DOCTYPE html>")
+    written.unlink()
+    written.parent.rmdir()
+    monkeypatch.setattr(webbrowser, "open", lambda url: False)
+    assert_one_line(
+        lagtop("view", "--open", "-o", target), 2, f"--open found no browser; the page is {target}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "message"),
+    [
+        ("", 2, "nothing to do: give -o FILE.html or --open"),
+        ("--open -o -", 2, "a page on standard output is not to open"),
+        ("nowhere.toml -o x.html", 65, "nowhere.toml: No such file"),
+        ("--r0 1e40 -o x.html", 2, "--r0 must be from 1e-30 to 1e30 for a page, got 1e+40"),
+        ("--m 1e-40 -o x.html", 2, "--m must be from 1e-30 to 1e30 for a page, got 1e-40"),
+        ("--theta0 1e-14 -o x.html", 2, "theta0_deg must be 0, 180 or 1e-12 from both for a page"),
+        ("-o no/where.html", 74, "cannot write no/where.html: No such file"),
+    ],
+)
+def test_bad_input(  # noqa: PLR0917
+    lagtop: Lagtop,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    line: str,
+    code: int,
+    message: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert_one_line(lagtop("view", *line.split()), code, message)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_tilt_that_rounds_to_the_vertical_does_not_precess() -> None:
+    with pytest.raises(LagtopError, match="psidot0 must be 0 where the axis is vertical"):
+        view(solve(Top(theta0_rad=3.141592653589793, psidot0=1)))
+
+
+def test_a_notebook_shows_the_page_in_a_frame() -> None:
+    motion = solve(Top(r0=20))
+    page = motion.view()
+    assert page == view(motion)
+    frame = page._repr_html_()
+    inside = re.fullmatch(r'<iframe style="[^"]*" srcdoc="([^"]*)"></iframe>', frame)
+    assert inside
+    assert unescape(inside[1]) == page
+
+
+def test_a_notebook_shows_the_record_with_symbols_and_units() -> None:
+    motion = solve(Top())
+    shown = motion._repr_html_()
+    rows = re.findall(r'<tr title="(\w+)">', shown)
+    assert rows == [key for key, value in motion.record().items() if value is not None]
+    assert f"<td>{motion.T_nutation}</td>" in shown
+    assert "<td>φ&#x27; mean</td>" in shown or "<td>φ' mean</td>" in shown
+    assert "rad/time" in shown
