@@ -17,7 +17,7 @@ from .options import FILE, scene_options, solved
     cls=ExamplesFirst,
     examples="""
         lagtop view -o top.html
-        lagtop view sample_inputs/looping-top.toml --open
+        lagtop view sample_inputs/looping-top.toml -o loops.html --open
         lagtop view --r0 60 --theta0 0 -o sleeping.html
     """,
 )

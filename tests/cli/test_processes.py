@@ -35,6 +35,7 @@ def loaded(*args: str) -> set[str]:
         ("--help", set()),
         ("table --help", set()),
         ("plot --help", set()),
+        ("view -o -", set()),
         ("solve", {"rich"}),
         ("table", {"numpy", "orjson"}),
         ("table --r0 0 --format json", {"numpy", "orjson"}),

@@ -151,6 +151,7 @@ WITHOUT_WHAT_WINDOWS_LACKS = """if True:
         "jacobi --k 0.5 --u 1",
         "eta --delta 0.5 --delta-star -0.5 --p 2 --q 1 --g 1 --tau 1",
         "plot -o top.png",
+        "view -o top.html",
         "bench --n 3 --t-max 1 --methods lagtop,theta-series",
     ],
 )
@@ -195,6 +196,7 @@ HOSTILE = "a\x1b[31m\x9b\x7f\u202e\u2066\u200b\udcff.csv"
         "jacobi --k 0.5 --u 1 --pi --param {}",
         "jacobi {}",
         "plot {}",
+        "view {}",
         "plot -o {}",
         "bench --methods {}",
         "stability --strata {}",
