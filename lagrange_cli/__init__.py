@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .errors import LagtopError
-    from .inputs.scene_file import read_scene
+    from .errors import LagtopError, MixedBodyWarning
+    from .inputs.given import read_scene
     from .inputs.top import Top
     from .judge.compare import compare
     from .judge.judgement import Judgement
@@ -18,6 +18,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Judgement",
     "LagtopError",
+    "MixedBodyWarning",
     "Motion",
     "Regime",
     "Top",
@@ -33,11 +34,12 @@ __all__ = [
 _MODULES = {
     "Judgement": "judge.judgement",
     "LagtopError": "errors",
+    "MixedBodyWarning": "errors",
     "Motion": "motion.solve",
     "Regime": "motion.regime",
     "Top": "inputs.top",
     "compare": "judge.compare",
-    "read_scene": "inputs.scene_file",
+    "read_scene": "inputs.given",
     "solve": "motion.solve",
     "sweep": "sweeps.records",
     "sweep_angles": "sweeps.angles",

@@ -60,6 +60,10 @@ class OutOfRangeWarning(UserWarning):
     """Some numbers of a record are beyond the range of doubles, and None in it."""
 
 
+class MixedBodyWarning(UserWarning):
+    """Some of m, A, C, s and g were given; the others are those of the worked example."""
+
+
 class NothingToDrawError(LagtopError):
     """A picture was asked for that the motion does not have."""
 

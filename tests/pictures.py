@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.inputs.scene_file import SceneFile
-from lagrange_cli.inputs.top import build_top
+from lagrange_cli.inputs.given import read_scene
 from lagrange_cli.plot.page import Page, draw_page
 from lagrange_cli.plot.request import PlotRequest
 from lagrange_cli.plot.style import LIGHT, styled
@@ -33,7 +32,7 @@ REGIMES: dict[str, dict[str, float]] = {
 
 def sample_motion(path: Path) -> Motion:
     """Return the motion of a scene file."""
-    return solve(build_top(SceneFile(str(path)).inputs))
+    return solve(read_scene(str(path)))
 
 
 def regime_motion(name: str) -> Motion:

@@ -146,7 +146,7 @@ class Cosine(Values):
         while True:
             ar = decimals(digits)
             with ar.working():
-                value = _value([ar.convert(x / size) for x in coefficients], self._value(ar))
+                value = _value([ar.convert(x / size) for x in coefficients], self.value(ar))
                 if abs(value) > 1000 * ar.eps:
                     return 1 if value > 0 else -1
             digits *= 2
@@ -156,7 +156,8 @@ class Cosine(Values):
             float(self.radians or 0) if self.degrees is None else math.radians(float(self.degrees))
         )
 
-    def _value(self, ar: Decimals) -> Decimal:
+    def value(self, ar: Decimals) -> Decimal:
+        """Return the value in decimals."""
         if self.degrees is None:
             return ar.cos(ar.convert(self.radians or 0))
         return ar.sin(ar.convert(90 - self.degrees) * ar.pi / 180)

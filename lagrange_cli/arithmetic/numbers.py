@@ -15,8 +15,19 @@ if TYPE_CHECKING:
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
 
+_NOT_REAL = (bool, str, bytes, bytearray, complex)
+
 R = TypeVar("R", bound="Real")
 """The numbers of the arithmetic in use."""
+
+
+def is_real(value: object) -> bool:
+    """Return whether a value is neither a truth value, a text, complex, masked, nor an array."""
+    dtype = getattr(value, "dtype", None)
+    if dtype is None:
+        return not isinstance(value, _NOT_REAL)
+    is_scalar = not getattr(value, "ndim", 0) and not hasattr(value, "mask")
+    return is_scalar and getattr(dtype, "kind", None) in {"i", "u", "f"}
 
 
 def absolute(x: R) -> R:

@@ -11,7 +11,16 @@ import click
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_keys
 from .completion import KEY_NAMES
-from .options import COUNT, Parsed, by_key, complain, exclude, input_options, output_options
+from .options import (
+    COUNT,
+    Parsed,
+    by_key,
+    complain,
+    exclude,
+    input_options,
+    output_options,
+    say_missing,
+)
 from .progress import with_progress
 
 if TYPE_CHECKING:
@@ -104,12 +113,15 @@ def _found(
     from ..fits.conditions import read_conditions
     from ..fits.find import look
     from ..fits.search import Search
+    from ..inputs.given import gather
     from ..sweeps.plan import shared_inputs
 
     fixed = {name: x for name, x in inputs.items() if isinstance(x, Fraction)}
     spans = {name: x for name, x in inputs.items() if name not in fixed}
     wanted = read_conditions(conditions, radians=radians)
-    shared = shared_inputs(scenes[0] if scenes else None, fixed, varying=spans)
+    given = gather(fixed, scenes[0] if scenes else None, varying=spans)
+    shared = shared_inputs(given, varying=spans)
+    say_missing(given)
     known = {name: x for name, x in shared.items() if name not in spans}
     found = look(Search(known, spans, wanted, radians).check(), count, _watched)
     complain(f"{len(found.motions)} found; {found.looked}")
@@ -127,15 +139,12 @@ def _inverted(
 ) -> list[Motion]:
     from ..fits.body import INPUTS
     from ..fits.invert import invert
+    from ..inputs.given import gather
 
-    given = {name: float(x) for name, x in inputs.items() if isinstance(x, Fraction)}
-    if wrong := [name for name in inputs if name not in INPUTS or name not in given]:
+    if wrong := [x for x in inputs if x not in INPUTS or not isinstance(inputs[x], Fraction)]:
         raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got {wrong[0]}")
-    if scenes:
-        from ..inputs.scene_file import SceneFile
-
-        of_scene = {x: float(y) for x, y in SceneFile(scenes[0]).inputs.items() if x in INPUTS}
-        given = of_scene | given
+    found = gather(inputs, scenes[0] if scenes else None).inputs
+    given = {name: float(x) for name, x in found.items() if name in INPUTS}
     return invert(conditions, radians=radians, known=given)
 
 

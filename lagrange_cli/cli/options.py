@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..output.terminal import has_colours, one_line
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from ..arithmetic.points import Points
+    from ..inputs.given import Given
     from ..motion.solve import Motion
     from ..output.findings import Findings
 
@@ -79,21 +79,36 @@ def _split_names(text: str) -> list[str]:
     return split_names(text)
 
 
-def solved(
-    scene: str | None, rad: bool, exact: bool, options: dict[str, Fraction | None]
-) -> Motion:
+def solved(scene: str | None, rad: bool, exact: bool, options: Mapping[str, Any]) -> Motion:
     """Return the motion of the top in a scene file, if any, and in the options, which win."""
-    from ..inputs.top import build_top  # not for commands without a top
+    return motion_of(inputs_of(scene, rad, options), exact)
+
+
+def inputs_of(scene: str | None, rad: bool, options: Mapping[str, Any]) -> Given:
+    """Return the inputs of a scene file, if any, and of the options, which win."""
+    from ..inputs.given import gather  # not for commands without a top
+
+    return gather(by_key(options, radians=rad), scene)
+
+
+def say_missing(found: Given) -> None:
+    """Name the inputs of the body that are those of the worked example, where others are given."""
+    if found.missing:
+        from ..inputs import mixed_body
+
+        words = mixed_body.options(found.missing, units=found.system is not None)
+        complain(f"Warning: {mixed_body.remark(found.missing, words)}")
+
+
+def motion_of(found: Given, exact: bool) -> Motion:
+    """Return the motion of the top of some inputs.
+
+    A line each names inputs of the worked example among others, and a body that cannot be built.
+    """
     from ..motion.solve import solve
 
-    given: dict[str, Number] = dict(by_key(options, radians=rad))
-    if scene is None:
-        top = build_top(given, exact=exact)
-    else:
-        from ..inputs.scene_file import read_scene
-
-        top = read_scene(scene, given, exact=exact)
-    motion = solve(top)
+    motion = solve(found.top(exact=exact))
+    say_missing(found)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
@@ -101,8 +116,12 @@ def solved(
 
 def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
     """Return the options on the command line by the keys of the inputs."""
-    unit = "theta0_rad" if radians else "theta0_deg"
-    return {unit if name == "theta0" else name: x for name, x in options.items() if x is not None}
+    tilt = "theta0_rad" if radians else "theta0_deg"
+    return {
+        tilt if name == "theta0" and not hasattr(x, "unit") else name: x
+        for name, x in options.items()
+        if x is not None
+    }
 
 
 def exclude(options: dict[str, Any]) -> None:
@@ -160,10 +179,12 @@ NAMES = Parsed("names", _split_names)
 _SCENE_OPTIONS = [
     ("--m", "Mass."),
     ("--A", "Equatorial moment of inertia about the pivot."),
+    ("--A-cm", "That moment about the mass centre, in place of --A: A = A_cm + m s^2."),
     ("--C", "Polar moment of inertia, at most 2A."),
     ("--s", "Distance from the pivot to the centre of mass."),
     ("--g", "Gravity."),
     ("--r0", "Total rate about the figure axis, phi' + psi' cos(theta)."),
+    ("--phidot0", "Rate of the spin angle phi at the start, in place of --r0."),
     ("--theta0", "Tilt of the axis from the upward vertical, 0 to 180 degrees."),
     ("--thetadot0", "Nutation rate at the start."),
     ("--psidot0", "Precession rate at the start."),
@@ -180,10 +201,11 @@ def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[ty
         command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
             command
         )
-        for name, text in reversed(_SCENE_OPTIONS):
-            default = defaults.get(f"{name[2:]}_deg", defaults.get(name[2:]))
-            shown = f"{text}  [default: {default:g}]"
-            command = click.option(name, name[2:], type=kind, help=shown)(command)
+        for option, text in reversed(_SCENE_OPTIONS):
+            name = option[2:].replace("-", "_")
+            default = defaults.get(f"{name}_deg", defaults.get(name))
+            shown = text if default is None else f"{text}  [default: {default:g}]"
+            command = click.option(option, name, type=kind, help=shown)(command)
         return command
 
     return decorate

@@ -19,6 +19,7 @@ from .options import (
     input_options,
     jobs_option,
     output_options,
+    say_missing,
 )
 from .progress import with_count, with_progress
 
@@ -127,6 +128,7 @@ def command(
         until_error=fail_fast and to_stdout,
         described=folder is not None,
     )
+    say_missing(todo.given)
     tally = Tally(fail_fast=fail_fast)
     blocks = shard_of(todo.blocks, shard)
     parts_folder = None

@@ -24,6 +24,7 @@ from .options import (
     exclude,
     jobs_option,
     output_options,
+    say_missing,
     scene_options,
     solved,
 )
@@ -125,9 +126,7 @@ def command(
     if tops is None:
         _write_one(solved(scene, rad, digits is not None, options), wish, digits, fmt, output)
     else:
-        from ..sweeps.plan import shared_inputs
-
-        _write_many(tops, shared_inputs(scene, by_key(options, radians=rad)), wish, fmt, output)
+        _write_many(tops, scene, by_key(options, radians=rad), wish, fmt, output)
 
 
 def _check_format(fmt: str, times: str | None, tops: str | None, digits: int | None) -> None:
@@ -205,13 +204,21 @@ def _write_one(motion: Motion, wish: Wish, digits: int | None, fmt: str, output:
     write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)
 
 
-def _write_many(tops: str, shared: Mapping[str, float], wish: Wish, fmt: str, output: str) -> None:
+def _write_many(
+    tops: str,
+    scene: str | None,
+    options: Mapping[str, Any],
+    wish: Wish,
+    fmt: str,
+    output: str,
+) -> None:
     from ..sweeps.parts import Tally
     from ..sweeps.tables import open_tables
 
-    tables, lines = open_tables(
+    tables, lines, given = open_tables(
         tops,
-        shared,
+        scene,
+        options,
         wish.columns,
         wish.times,
         radians=wish.radians,
@@ -220,6 +227,7 @@ def _write_many(tops: str, shared: Mapping[str, float], wish: Wish, fmt: str, ou
         rows_per_top=wish.rows_per_top,
         same=wish.same_times(),
     )
+    say_missing(given)
     tally = Tally()
     texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))
     write_text_blocks(fmt, tables.header, with_count(texts, "blocks"), output)

@@ -4,33 +4,20 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
 from fractions import Fraction
+from typing import Any
 
-from ..arithmetic.numbers import Number
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError, SceneError
 from .names import suggestion
-from .top import Top, build_top, overridden
+from .top import INPUTS
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
 """Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
-KEYS = Top.fields
-
-
-def read_scene(path: str, given: Mapping[str, Number] | None = None, *, exact: bool = False) -> Top:
-    """Return the top of a scene file; `given` inputs take the place of those of the file.
-
-    Numbers are rounded to doubles, or kept as `exact` decimals.  Raises SceneError, or LagtopError
-    for an input that was given.
-    """
-    given = given or {}
-    file = SceneFile(path)
-    try:
-        return build_top(overridden(file.inputs, given), exact=exact)
-    except LagtopError as error:
-        raise error if error.key in given else file.error(error) from None
+TILT = "theta0"
+"""The key of a tilt that has a unit of its own."""
+KEYS = (*INPUTS, TILT)
 
 
 class SceneFile:
@@ -53,15 +40,36 @@ class SceneFile:
             raise SceneError(f"{path}: not a TOML file: {error}") from None
         self.inputs = {key: self._number(key, value) for key, value in table.items()}
 
-    def _number(self, key: str, value: object) -> Fraction:
+    def _number(self, key: str, value: object) -> Any:
         if key not in KEYS:
             wrong = f"unknown key {key[:60]!r}{suggestion(key, KEYS)} (known: {', '.join(KEYS)})"
             raise self.error(LagtopError(wrong, key))
+        if isinstance(value, str) and not isinstance(value, _NoNumber):
+            return self._quantity(key, value)
         if isinstance(value, int) and not isinstance(value, bool):
-            return Fraction(value)
+            value = Fraction(value)
         if not isinstance(value, Fraction):
             shown = repr(value)[:60]
             raise self.error(LagtopError(f"{key} must be a finite number, got {shown}", key))
+        if key == TILT:
+            wrong = f"{key} must have a unit, as '30 deg', or be called {key}_deg or {key}_rad"
+            raise self.error(LagtopError(wrong, key))
+        return value
+
+    def _quantity(self, key: str, text: str) -> Any:
+        """Return what a text says, a number in a unit."""
+        from .quantity_text import Quantity, parse_quantity
+
+        try:
+            value = parse_quantity(text, parse_number)
+        except LagtopError as error:
+            raise self.error(LagtopError(f"{key} {error}", key)) from None
+        if not isinstance(value, Quantity):
+            wrong = f"{key} must have a unit between quotes, or be a number without, got {text!r}"
+            raise self.error(LagtopError(wrong[:200], key))
+        if key.startswith(f"{TILT}_"):
+            wrong = f"{key} must be called {TILT} where it has a unit of its own, got {text!r}"
+            raise self.error(LagtopError(wrong[:200], key))
         return value
 
     def error(self, error: LagtopError) -> SceneError:
@@ -80,9 +88,15 @@ def _check_dots(text: str) -> None:
             raise ValueError(f"line {number} has more than {_MOST_DOTS} dots")
 
 
-def _parsed(text: str) -> Fraction | str:
+class _NoNumber(str):
+    """What TOML takes for a number and lagtop does not, such as nan."""
+
+    __slots__ = ()
+
+
+def _parsed(text: str) -> Fraction | _NoNumber:
     """Return a number as a fraction, or as its text where it is none."""
     try:
         return parse_number(text.replace("_", ""))
     except LagtopError:
-        return text
+        return _NoNumber(text)

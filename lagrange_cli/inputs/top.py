@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from ..arithmetic.decimals import own_context, pi_to
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.numbers import Number, R
+from ..arithmetic.numbers import Number, R, is_real
 from ..arithmetic.values import Over, Values
 from ..errors import LagtopError
 
@@ -19,14 +19,22 @@ if TYPE_CHECKING:
 
 N = TypeVar("N")
 
+_EPS = Fraction(1, 1 << 52)
 _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _PI = Fraction(pi_to(60))
-_NOT_REAL = (bool, str, bytes, bytearray, complex)
 _SHOWN = 60
 _DIGITS_SHOWN = own_context(50, [])
 """A context of our own, so that no message depends on the one of the caller."""
+
+
+BODY = {"m": 1587.0, "A": 39032.0, "C": 17458.0, "s": 4.0, "g": 981.0}
+"""The body of the worked example of Chrapan (1952), section 8, in CGS."""
+EXAMPLE = {**BODY, "r0": 50.0, "thetadot0": 0.0, "psidot0": 0.0}
+"""What stands where nothing is given, and a tilt of 30 degrees."""
+_SAME = {"A_cm": "A", "phidot0": "r0"} | dict.fromkeys(("theta0_deg", "theta0_rad"), "theta0")
+"""What an input is that may be given in several ways."""
 
 
 class Tilt(Values, Over[R]):
@@ -45,18 +53,22 @@ class Tilt(Values, Over[R]):
 class Top(Values):
     """A heavy symmetric top with a fixed point, and its state at t = 0 (phi = psi = 0 there).
 
-    Any consistent units will do; the defaults are the worked example of Chrapan (1952), section 8,
-    in CGS.  Each input is a real number: int, float, Fraction, Decimal or a scalar of NumPy.
+    Any consistent units will do; an input that is not given is that of the worked example of
+    Chrapan (1952), section 8, in CGS.  A MixedBodyWarning names such inputs where others of m, A,
+    C, s and g are given.  Each is a real number: int, float, Fraction, Decimal or a NumPy scalar.
 
     m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
+    A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
     s, g        distance from the pivot to the centre of mass, and gravity, >= 0
     r0          spin: the angular velocity about the figure axis, which is constant (any sign)
+    phidot0     in place of r0: the rate of the angle phi, r0 = phidot0 + psidot0 cos(theta0)
     theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
     theta0_rad  or the same in radians, 0 to pi; not both
     thetadot0   nutation rate at t = 0
     psidot0     precession rate at t = 0
 
-    Raises LagtopError for a body or a start that cannot be.
+    What A_cm and phidot0 stand for is rounded once.  Raises LagtopError for a body or a start that
+    cannot be.
     """
 
     m: Number
@@ -74,27 +86,39 @@ class Top(Values):
     def __init__(
         self,
         *,
-        m: Number = 1587.0,
-        A: Number = 39032.0,
-        C: Number = 17458.0,
-        s: Number = 4.0,
-        g: Number = 981.0,
-        r0: Number = 50.0,
+        m: Number | None = None,
+        A: Number | None = None,
+        C: Number | None = None,
+        s: Number | None = None,
+        g: Number | None = None,
+        r0: Number | None = None,
         theta0_deg: Number | None = None,
-        thetadot0: Number = 0.0,
-        psidot0: Number = 0.0,
+        thetadot0: Number | None = None,
+        psidot0: Number | None = None,
         theta0_rad: Number | None = None,
+        A_cm: Number | None = None,
+        phidot0: Number | None = None,
     ) -> None:
+        values = m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad, A_cm, phidot0
+        given = {
+            name: _finite(name, value)
+            for name, value in zip(INPUTS, values, strict=True)
+            if value is not None
+        }
+        one_of_each(given)
+        missing = from_example(given)
+        if A_cm is not None or phidot0 is not None:
+            from .measured import as_solved  # for few tops only
+
+            given = as_solved(given)
         if theta0_deg is None and theta0_rad is None:
-            theta0_deg = 30.0
-        values = m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad
-        super().__init__(
-            *(
-                None if value is None and name.startswith("theta0_") else _finite(name, value)
-                for name, value in zip(self.fields, values, strict=True)
-            )
-        )
+            given["theta0_deg"] = 30.0
+        super().__init__(*({**EXAMPLE, **given}.get(name) for name in self.fields))
         _check_ranges(self)
+        if missing:
+            from .mixed_body import warn_of  # for few tops only
+
+            warn_of(missing, stacklevel=3)
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Top], tuple[dict[str, Any]]]:
         """Return the inputs for copies and pickles, which go through the guards again."""
@@ -103,7 +127,8 @@ class Top(Values):
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
 
-        A tilt in either unit takes the place of the one there is.  Raises LagtopError.
+        A tilt in either unit takes the place of the one there is, A_cm that of A, phidot0 that of
+        r0.  Raises LagtopError.
         """
         present = {name: value for name, value in self.as_dict().items() if value is not None}
         return type(self)(**overridden(present, changes))
@@ -150,12 +175,15 @@ class Top(Values):
         return -1 if self.theta0_deg == 180 else 0
 
     def caveat(self) -> str | None:
-        """Return a line on a body that can be computed but not built, or None."""
+        """Return a line on a body that can be computed but not built, or None.
+
+        A disc whose A is right but for its rounding can be built.
+        """
         offset = Fraction(self.m) * Fraction(self.s) ** 2
-        limit = 2 * (Fraction(self.A) - offset)
-        if limit <= 0:
+        limit, rounding = 2 * (Fraction(self.A) - offset), Fraction(self.A) * _EPS
+        if limit + rounding <= 0:
             bound = f"A > m s^2, got {float(self.A)}"
-        elif self.C > limit:
+        elif self.C > limit + rounding:
             bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
         else:
             return None
@@ -174,6 +202,10 @@ class Top(Values):
         return " ".join(words)
 
 
+INPUTS = (*Top.fields, "A_cm", "phidot0")
+"""The keys that a top can be given by: its own inputs, and those that stand for A and r0."""
+
+
 def _top_of(inputs: dict[str, Any]) -> Top:
     return Top(**inputs)
 
@@ -189,7 +221,7 @@ def _finite(name: str, value: Any) -> Number:
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) > _LARGEST:
         raise LagtopError(f"{name} must be within 1e100 in size, got {_shown(value)}", name)
     try:
-        if not _is_real(value):
+        if not is_real(value):
             raise TypeError
         nearest = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -198,15 +230,6 @@ def _finite(name: str, value: Any) -> Number:
     if not math.isfinite(nearest):
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
     return nearest
-
-
-def _is_real(value: object) -> bool:
-    """Return whether a value is neither a truth value, a text, complex, masked, nor an array."""
-    dtype = getattr(value, "dtype", None)
-    if dtype is None:
-        return not isinstance(value, _NOT_REAL)
-    is_scalar = not getattr(value, "ndim", 0) and not hasattr(value, "mask")
-    return is_scalar and getattr(dtype, "kind", None) in {"i", "u", "f"}
 
 
 def _check_ranges(top: Top) -> None:
@@ -220,8 +243,6 @@ def _check_ranges(top: Top) -> None:
     _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
     twice = 2 * Fraction(top.A)
     _require(twice >= top.C, "C", f"<= 2 A = {_shown(twice)}", top.C, "no rigid body has more")
-    if top.theta0_deg is not None and top.theta0_rad is not None:
-        raise LagtopError("theta0_deg and theta0_rad are both given: leave one out", "theta0_rad")
     for name, most, shown in (("theta0_deg", 180, "180"), ("theta0_rad", _PI, "pi")):
         tilt = getattr(top, name)
         if tilt is not None:
@@ -248,23 +269,27 @@ def _shown(value: Number) -> str:
 def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
     """Return inputs by key, with those given in the place of others.
 
-    A tilt takes the place of one in either unit.
+    A tilt takes the place of one in either unit, A_cm that of A, and phidot0 that of r0.
     """
-    tilted = any(key.startswith("theta0_") for key in given)
-    kept = {x: y for x, y in inputs.items() if not (tilted and x.startswith("theta0_"))}
+    taken = {_SAME.get(key, key) for key in given}
+    kept = {key: x for key, x in inputs.items() if _SAME.get(key, key) not in taken}
     return kept | dict(given)
 
 
-def build_top(inputs: Mapping[str, Number], *, exact: bool = False) -> Top:
-    """Return the top of inputs by key, which are rounded to doubles or kept `exact`.
+def one_of_each(given: Iterable[str]) -> None:
+    """Raise LagtopError where an input is given in two ways."""
+    keys = set(given)
+    for key, other in (("A_cm", "A"), ("phidot0", "r0"), ("theta0_rad", "theta0_deg")):
+        if {key, other} <= keys:
+            raise LagtopError(f"{key} and {other} are both given: leave one out", key)
 
-    Raises LagtopError.
+
+def from_example(given: Mapping[str, Any]) -> list[str]:
+    """Return the inputs of the body that are not given, where others of them are.
+
+    What is given as 0 fits in any units: no gravity, or a centre of mass in the pivot.
     """
-    return Top(**{key: value if exact else _nearest(key, value) for key, value in inputs.items()})
-
-
-def _nearest(key: str, value: Number) -> float:
-    try:
-        return float(value)
-    except OverflowError:
-        raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None
+    own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
+    if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
+        return []
+    return [name for name in BODY if name not in own]

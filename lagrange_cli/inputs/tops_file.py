@@ -19,9 +19,7 @@ from typing import Any, NamedTuple
 from ..arithmetic.text import json_text, parse_number
 from ..errors import DataError, LagtopError
 from .block import InputArrays
-from .top import Top, overridden
-
-INPUTS = Top.fields
+from .top import INPUTS, from_example, one_of_each, overridden
 
 
 class TopRow(NamedTuple):
@@ -83,6 +81,8 @@ class TopsFile(NamedTuple):
     """The names that are carried through, in their order."""
     computed: frozenset[str]
     """Names that are neither read nor carried."""
+    named: Collection[str]
+    """The inputs that the rows have: by the header, or by the first JSON object with any."""
 
     def row(self, number: int, raw: bytes) -> TopRow:
         """Return the top of a line, or what is wrong with it."""
@@ -94,6 +94,7 @@ class TopsFile(NamedTuple):
                 self._read_json(raw, carried, inputs)
             else:
                 self._read_csv(raw, carried, inputs)
+            one_of_each(inputs)
         except LagtopError as wrong:
             error = str(wrong)
         return TopRow(number, [carried.get(name) for name in self.carried], inputs, error)
@@ -194,7 +195,7 @@ def open_tops(
         head = [(start, first), *islice(lines, size - 1)]
         carried = [x for x in _names(raw for _, raw in head) if x not in computed]
         _check_spelling(carried, name)
-        file = TopsFile(None, carried, frozenset(computed))
+        file = TopsFile(None, carried, frozenset(computed), _named(raw for _, raw in head))
         return file, _blocks(file, chain(head, lines), size)
     try:
         columns = [cell.strip() for cell in split_cells(_decoded(first))]
@@ -203,7 +204,7 @@ def open_tops(
     carried = [x for x in columns if x not in INPUTS and x not in computed]
     _check_spelling(carried, name)
     _check_header(columns, name)
-    file = TopsFile(columns, carried, frozenset(computed))
+    file = TopsFile(columns, carried, frozenset(computed), set(columns) & set(INPUTS))
     return file, _blocks(file, lines, size)
 
 
@@ -230,6 +231,17 @@ def _names(lines: Iterable[bytes]) -> list[str]:
         with suppress(LagtopError):  # which the row will name
             names |= dict.fromkeys(_json_object(raw) if raw.strip() else ())
     return [name for name in names if name not in INPUTS]
+
+
+def _named(lines: Iterable[bytes]) -> set[str]:
+    """Return the inputs of the first JSON object that has some of a body, not all, or any."""
+    named: set[str] = set()
+    for raw in lines:
+        with suppress(LagtopError):  # which the row will name
+            named = {*_json_object(raw)} & {*INPUTS} if raw.strip() else named
+            if from_example(dict.fromkeys(named)):
+                break
+    return named
 
 
 def _check_spelling(carried: Sequence[str], name: str) -> None:

@@ -15,8 +15,8 @@ from ..errors import SomeFailedError
 from ..inputs.block import Block
 from ..output.row_texts import Columns
 from ..output.write import block_text
+from .measured_arrays import top_arrays
 from .records import Column, records
-from .top_arrays import TopArrays
 
 NumberedBlock = tuple[int, Block]
 """The number of a part, and the tops that it is made of."""
@@ -51,9 +51,7 @@ class Sweep(NamedTuple):
         """Compute one part."""
         number, block = numbered
         given = block.arrays(self.shared)
-        tops = TopArrays(
-            *(_filled(given.inputs.get(name), given.size) for name in TopArrays._fields)
-        )
+        tops = top_arrays(given.inputs, given.size)
         columns = records(tops, [*self.keys, "error"], radians=self.radians, errors=given.errors)
         errors = [(row, error) for row, error in enumerate(columns["error"]) if error]
         if given.lines is not None:
@@ -65,10 +63,6 @@ class Sweep(NamedTuple):
         computed = runs_of([columns[key][rows] for key in self.keys])
         text = block_text([*carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
-
-
-def _filled(values: Any, count: int) -> Any:
-    return np.broadcast_to(np.float64(np.nan if values is None else values), (count,))
 
 
 def runs_of(columns: Iterable[Column]) -> Columns:

@@ -12,12 +12,12 @@ from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
 from .. import __version__
-from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
 from ..errors import LagtopError
+from ..inputs.given import Given, gather
 from ..inputs.ranges import Product
-from ..inputs.top import build_top, overridden
-from ..inputs.tops_file import INPUTS, open_tops
+from ..inputs.top import INPUTS, overridden
+from ..inputs.tops_file import open_tops
 from .parts import NumberedBlock, Sweep
 from .records import BLOCK_ROWS, check_keys, record_keys
 
@@ -31,6 +31,8 @@ class Plan(NamedTuple):
     """The number of tops; 0 where only the end of the file can tell."""
     description: Mapping[str, Any]
     """What decides about the bytes of the parts, for the folder they are written to."""
+    given: Given
+    """What all tops share, and what of it nobody gave."""
 
 
 def plan(
@@ -55,49 +57,53 @@ def plan(
     scene = scenes[0] if scenes else None
     known = record_keys(radians=radians)
     chosen = list(check_keys(known if keys is None else keys, radians=radians))
-    ranges = {name: axis for name, axis in axes.items() if axis.count > 1}
-    first = {name: axis.bounds()[0] for name, axis in axes.items()}
     told: dict[str, Any] = {"lagtop": __version__, "format": fmt, "radians": radians}
     if not tables:
+        found = gather(axes, scene)
+        axes = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid = Product(axes)
         grid.check()
-        shared = shared_inputs(scene, first, varying=ranges)
+        ranges = ranges_of(axes)
+        shared = shared_inputs(found, varying=ranges)
         told |= {"keys": chosen, "inputs": shared | {x: str(axis) for x, axis in ranges.items()}}
         told |= {"file": None, "parts": -(-grid.size // BLOCK_ROWS)}
         sweep = Sweep(chosen, shared, chosen, radians, fmt, until_error)
-        return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told)
-    if ranges:
+        return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told, found)
+    if ranges := ranges_of(axes):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = _digested(tables[0]) if described else (None, "")
     computed = {*known, *record_keys(radians=not radians), *chosen}
     source, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
-    varying = INPUTS if source.columns is None else source.columns
-    shared = shared_inputs(scene, first, varying=varying)
+    found = gather(axes, scene, varying=source.named)
+    shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     if "error" not in chosen:
         chosen.append("error")
     told |= {"keys": chosen, "inputs": shared, "file": digest, "parts": None}
     header = [*source.carried, *chosen]
     sweep = Sweep(header, shared, chosen, radians, fmt, until_error)
-    return Plan(sweep, enumerate(lines), 0, told)
+    return Plan(sweep, enumerate(lines), 0, told, found)
 
 
-def shared_inputs(
-    scene: str | None, given: Mapping[str, Number], *, varying: Collection[str] = ()
-) -> dict[str, float]:
-    """Return inputs by key: those given, over those of a scene file, over the worked example.
+def ranges_of(axes: Mapping[str, Any]) -> dict[str, Points]:
+    """Return the axes that have more than one value."""
+    axes = {name: getattr(axis, "number", axis) for name, axis in axes.items()}
+    return {name: axis for name, axis in axes.items() if axis.count > 1}
+
+
+def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, float]:
+    """Return inputs by key as doubles: those given, over those of the worked example.
 
     Raises LagtopError for one that no top could have; the `varying` ones are not looked at.
     """
-    loose = {*varying, *({"A", "C"} if {"A", "C"} & set(varying) else ())}  # C <= 2A
-    fixed = {name: x for name, x in given.items() if name not in loose}
-    if scene is None:
-        top = build_top(fixed)
-    else:
-        from ..inputs.scene_file import read_scene
-
-        top = read_scene(scene, fixed)
+    loose = set(varying)
+    if loose & {"A", "A_cm", "C"} or ("A_cm" in found.inputs and loose & {"m", "s"}):
+        loose |= {"A", "A_cm", "C"}  # C <= 2A
+    numbers = {
+        name: x.bounds()[0] if isinstance(x, Points) else x for name, x in found.inputs.items()
+    }
+    top = found.replace(inputs=numbers).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
-    return overridden(inputs, {name: float(x) for name, x in given.items()})
+    return overridden(inputs, {name: float(x) for name, x in numbers.items()})
 
 
 def _digested(path: str) -> tuple[BufferedIOBase | None, str]:

@@ -17,13 +17,15 @@ from numpy.typing import ArrayLike, NDArray
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
+from ..inputs.mixed_body import warn_of
 from ..inputs.names import check_names
-from ..inputs.top import Top
+from ..inputs.top import INPUTS, Top, from_example, one_of_each, overridden
 from ..motion import record as motion_record
 from ..motion.gaps import gaps_of
 from ..motion.kinds import fast_remark, kind_of, vertical_remark
 from ..motion.regime import FAST, Facts, Regime
 from ..motion.solve import solve
+from .measured_arrays import top_arrays
 from .start_arrays import StartArrays
 from .top_arrays import TopArrays
 
@@ -68,16 +70,22 @@ def together(inputs: Mapping[str, ArrayLike]) -> Sequence[Array]:
 
     Raises LagtopError for an unknown input, or for shapes that do not go together.
     """
-    if unknown := set(inputs) - set(TopArrays._fields):
-        raise LagtopError(f"inputs must be among {' '.join(TopArrays._fields)}, got {min(unknown)}")
-    given = Top().inputs() | {"theta0_rad": np.nan}
-    if "theta0_rad" in inputs and "theta0_deg" not in inputs:
-        given["theta0_deg"] = np.nan
-    doubles = [_doubles(name, {**given, **inputs}[name]) for name in TopArrays._fields]
+    if unknown := set(inputs) - set(INPUTS):
+        raise LagtopError(f"inputs must be among {' '.join(INPUTS)}, got {min(unknown)}")
+    one_of_each(name for name in inputs if not name.startswith("theta0_"))
+    if missing := from_example(inputs):
+        warn_of(missing, stacklevel=4)
+    given = dict.fromkeys(TopArrays._fields, np.nan) | overridden(Top().inputs(), inputs)
+    doubles = [_doubles(name, values) for name, values in given.items()]
     try:
-        return np.broadcast_arrays(*doubles)
+        arrays = dict(zip(given, np.broadcast_arrays(*doubles), strict=True))
     except ValueError as error:
         raise LagtopError(f"the inputs do not go together: {error}") from None
+    if "A_cm" in inputs or "phidot0" in inputs:
+        shape, size = arrays["m"].shape, arrays["m"].size
+        tops = top_arrays({name: x.ravel() for name, x in arrays.items()}, size)
+        return [x.reshape(shape) for x in tops]
+    return list(arrays.values())
 
 
 def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.given import Given, gather
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.solve import Motion, solve
@@ -18,8 +19,9 @@ from ..motion.table import DEFAULT_COLUMNS, headings, rows
 from ..output.write import block_text
 from .angles import angles_of
 from .jobs import in_order
+from .measured_arrays import top_arrays
 from .parts import Part
-from .top_arrays import TopArrays
+from .plan import shared_inputs
 
 _TOPS_AT_ONCE = 1024
 _ROWS_PER_TASK = 50_000
@@ -69,8 +71,8 @@ class Tables(NamedTuple):
 
     def _angles(self, lines: Lines, times: Array) -> Iterator[Part]:
         """Yield tables of angles, computed for all tops at once."""
-        inputs = lines.arrays(self.shared).inputs
-        tops = TopArrays(*(np.asarray(inputs[name]) for name in TopArrays._fields))
+        given = lines.arrays(self.shared)
+        tops = top_arrays(given.inputs, given.size)
         rows = np.broadcast_to(times, (tops.m.size, times.size))
         angles, errors = angles_of(tops, rows, wrap=self.wrap)
         if not self.radians:
@@ -111,7 +113,8 @@ class Tables(NamedTuple):
 
 def open_tables(
     path: str,
-    shared: Mapping[str, float],
+    scene: str | None,
+    inputs: Mapping[str, Any],
     columns: Sequence[str],
     times: Callable[[Motion], Points],
     *,
@@ -120,15 +123,18 @@ def open_tables(
     fmt: str,
     rows_per_top: int | None = None,
     same: Points | None = None,
-) -> tuple[Tables, Iterator[Lines]]:
-    """Return the tables of the tops in a file, and its lines a few at a time.
+) -> tuple[Tables, Iterator[Lines], Given]:
+    """Return the tables of the tops in a file, its lines a few at a time, and what is shared.
 
-    They are fewer where a top has many rows, or nobody knows how many.  `same` are the times where
-    they are those of all tops.  Raises LagtopError if the file cannot be read.
+    What a row lacks comes from `inputs` by key, and from a scene file.  The lines are fewer where a
+    top has many rows, or nobody knows how many.  `same` are the times where they are those of all
+    tops.  Raises LagtopError if the file cannot be read.
     """
     at_once = 1 if not rows_per_top else min(max(_ROWS_PER_TASK // rows_per_top, 1), _TOPS_AT_ONCE)
     source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
     block = (
         None if same is None or same.count > _ROWS_PER_TASK else np.concatenate([*same.blocks()])
     )
-    return Tables(source, shared, columns, times, radians, wrap, fmt, block), lines
+    given = gather(inputs, scene, varying=source.named)
+    shared = shared_inputs(given)
+    return Tables(source, shared, columns, times, radians, wrap, fmt, block), lines, given

@@ -271,7 +271,7 @@ def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:
         ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
         ("m = nan\n", "line 1: m must be a finite number, got 'nan'"),
         ("m = 1e400\n", "line 1: m must be a finite number, got '1e400'"),
-        ("\nr0 = 'fast'\n", "line 2: r0 must be a finite number, got 'fast'"),
+        ("\nr0 = 'fast'\n", "line 2: r0 must be a finite decimal number, got 'fast'"),
         ("r0 = true\n", "line 1: r0 must be a finite number, got True"),
         ("A = 1\nC = 3\n", "line 2: C must be <= 2 A = 2.0, got 3.0"),
         ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_deg and theta0_rad are both given"),

@@ -15,7 +15,7 @@ import lagrange_cli
 from lagrange_cli import LagtopError, Top
 from lagrange_cli.arithmetic.points import POINTS_AT_ONCE
 from lagrange_cli.errors import DataError, SceneError
-from lagrange_cli.inputs.scene_file import read_scene
+from lagrange_cli.inputs.given import read_scene
 from lagrange_cli.inputs.times_file import TimesFile
 from lagrange_cli.inputs.tops_file import open_tops
 
@@ -61,10 +61,10 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
     ("text", "message"),
     [
         ("mm = 1", "unknown key 'mm' (did you mean 'm'?) (known: m, A, C"),
-        ("theta0 = 1", "did you mean 'theta0_"),
+        ("theta0 = 1", "theta0 must have a unit, as '30 deg', or be called theta0_deg"),
         (f"{'x' * 5000} = 1", "unknown key 'xxx"),
         ("r0 = true", "r0 must be a finite number, got True"),
-        ('r0 = "3"', "r0 must be a finite number, got '3'"),
+        ('r0 = "3"', "r0 must have a unit between quotes, or be a number without, got '3'"),
         (f"m = 1.{'0' * 50_000}", "m must be a finite number, got '1.000"),
         (f"m = 0x{'F' * 3000}", "m must be"),
         (f"m = {'9' * 5000}", "not a TOML file"),

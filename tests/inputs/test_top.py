@@ -21,7 +21,6 @@ from lagrange_cli.inputs.ranges import parse_values
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
-        ({"m": None}, "m must be a real number, got None"),
         ({"m": True}, "m must be a real number, got True"),
         ({"r0": np.True_}, "r0 must be a real number, got "),
         ({"m": "1587"}, "m must be a real number, got '1587'"),

@@ -94,7 +94,7 @@ def test_a_shorter_file_is_another_sweep(tmp_path: Path, lagtop: Lagtop) -> None
     [
         (["--keys", "r0,T_nutation"], "keys r0,K there and r0,T_nutation here"),
         (["--keys", "K,r0"], "keys r0,K there and K,r0 here"),
-        (["--keys", "r0,K", "--m", "2"], "m 1587.0 there and 2.0 here"),
+        (["--keys", "r0,K", "--g", "0"], "g 981.0 there and 0.0 here"),
         (["--keys", "r0,K", "--rad"], "radians False there and True here"),
         (["--keys", "r0,K", "--format", "ndjson"], "format csv there and ndjson here"),
         (["--keys", "r0,K", "--r0", "1:9:5001"], "r0 1:9:5000 there and 1:9:5001 here"),

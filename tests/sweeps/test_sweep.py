@@ -279,11 +279,11 @@ def test_keys_of_a_grid_are_all_that_is_printed(lagtop: Lagtop) -> None:
     header, *rows = csv.reader(io.StringIO(result.stdout))
     assert header == ["T_nutation", "spin_rate_half"]
     assert [bool(cell) for row in rows for cell in row] == [True, False, True, True]
-    failed = lagtop("sweep", "--r0", "50", "--m", "1,-1", "--keys", "k")
+    failed = lagtop("sweep", "--r0", "50", "--theta0", "30,-1", "--keys", "k")
     assert failed.exit_code == 1
     assert failed.stdout.splitlines()[::2] == ["k", '""']
     assert failed.stderr == (
-        "Error: 1 of 2 tops have an error; the first: m must be > 0, got -1.0\n"
+        "Error: 1 of 2 tops have an error; the first: theta0_deg must be in [0, 180], got -1.0\n"
     )
 
 

@@ -1,0 +1,121 @@
+"""What is given of a top, by options and by a scene file, and the top that it describes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..arithmetic.numbers import Number
+from ..arithmetic.values import Values
+from ..errors import LagtopError
+from .top import BODY, Top, from_example, one_of_each, overridden
+
+if TYPE_CHECKING:
+    from .scene_file import SceneFile
+    from .units import System
+
+
+class Given(Values):
+    """Inputs of a top by key, all in units of one system."""
+
+    inputs: Mapping[str, Any]
+    """What was given, as exact numbers, or what a sweep has in their place."""
+    body: Mapping[str, Number]
+    """The body of the worked example, in these units."""
+    system: System | None
+    """The units, where the inputs were given with units."""
+    missing: Sequence[str]
+    """The inputs of the body that are those of the worked example, while others were given."""
+    blame: Callable[[LagtopError], LagtopError]
+    """Names the file, and the line, in an error about an input that stands in a scene file."""
+
+    def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
+        """Return the top, its inputs rounded to doubles or kept `exact`.
+
+        Those `without` which it is made are as in the worked example.  Raises LagtopError for an
+        input that no top can have, SceneError where a file has it.
+        """
+        kept = {key: x for key, x in self.inputs.items() if key not in without}
+        numbers = overridden(self.body, kept).items()
+        try:
+            return Top(**{key: x if exact else nearest(key, x) for key, x in numbers})
+        except LagtopError as error:
+            raise self.blame(_not_given(error, self.missing)) from None
+
+
+def gather(
+    given: Mapping[str, Any],
+    path: str | None = None,
+    *,
+    system: str | None = None,
+    varying: Collection[str] = (),
+) -> Given:
+    """Return the inputs of a scene file, if any, and those that are `given`, which win.
+
+    An input is a number, or a `Quantity` where it has a unit; those with units are converted to a
+    `system`, `si` (the default) or `cgs`.  Inputs that are `varying` are given later.  Raises
+    SceneError for a file, LagtopError for an input that was given.
+    """
+    inputs: Mapping[str, Any] = given
+    file: SceneFile | None = None
+    if path is not None:
+        from .scene_file import SceneFile
+
+        file = SceneFile(path)
+        inputs = overridden(file.inputs, given)
+
+    def blame(error: LagtopError) -> LagtopError:
+        return error if file is None or error.key in given else file.error(error)
+
+    units: System | None = None
+    body: Mapping[str, Number] = BODY
+    try:
+        one_of_each(inputs)
+        if system is not None or any(hasattr(x, "unit") for x in inputs.values()):
+            from .units import in_one_system
+
+            inputs, units = in_one_system(inputs, system)
+            body = units.worked_example() if units else BODY
+    except LagtopError as error:
+        raise blame(error) from None
+    known = {name: _if_one(x) for name, x in inputs.items()}
+    missing = from_example(dict.fromkeys(varying) | known)
+    return Given(inputs, body, units, missing, blame)
+
+
+def _if_one(value: Any) -> Any:
+    """Return a number, also that of an axis of a sweep that has only one."""
+    return value.bounds()[0] if getattr(value, "count", 0) == 1 else value
+
+
+def read_scene(path: str, given: Mapping[str, Number] | None = None, *, exact: bool = False) -> Top:
+    """Return the top of a scene file; `given` inputs take the place of those of the file.
+
+    Numbers are rounded to doubles, or kept as `exact` decimals; those with units are converted to
+    SI.  A MixedBodyWarning names inputs of the body that are those of the worked example, where
+    others are given.  Raises SceneError, or LagtopError for an input that was given.
+    """
+    found = gather(given or {}, path)
+    top = found.top(exact=exact)
+    if found.missing:
+        from .mixed_body import warn_of
+
+        warn_of(found.missing, stacklevel=3)
+    return top
+
+
+def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
+    """Return an error about A and C with a remedy where one of them was not given."""
+    moments = [name for name in ("A", "C") if name in missing]
+    if not moments or error.key not in {"A", "C"}:
+        return error
+    which = f"{' and '.join(moments)} of the worked example"
+    return LagtopError(f"{error} (this is with {which}: give the whole body)", error.key)
+
+
+def nearest(key: str, value: Number) -> float:
+    """Return the double nearest to an input.  Raises LagtopError beyond all doubles."""
+    try:
+        return float(value)
+    except OverflowError:
+        raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None

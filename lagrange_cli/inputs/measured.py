@@ -1,0 +1,83 @@
+"""Inputs as they are measured: the moment about the centre of mass, the rate of the spin angle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+
+from ..arithmetic.correct_rounding import correctly_rounded
+from ..arithmetic.decimals import decimals, own_context
+from ..arithmetic.exact_cosine import Cosine
+from ..arithmetic.numbers import Number
+from ..errors import LagtopError
+from .top import EXAMPLE
+
+EXACT_DIGITS = 1100
+"""Digits of an irrational number that has to stand as a fraction: more than any output shows."""
+
+
+def as_solved(given: Mapping[str, Number]) -> dict[str, Number]:
+    """Return inputs of a top with A in the place of A_cm, and r0 in that of phidot0.
+
+    Each is a double, the one nearest to the exact value, unless it comes from a fraction.  Raises
+    LagtopError for an A_cm that is negative.
+    """
+    inputs = EXAMPLE | dict(given)
+    for measured, solved, formula in (("A_cm", "A", moment), ("phidot0", "r0", spin)):
+        if measured in given:
+            inputs[solved] = formula(inputs)
+            del inputs[measured]
+    return inputs
+
+
+def moment(inputs: Mapping[str, Number]) -> Number:
+    """Return the moment about the pivot, A = A_cm + m s^2 (Steiner's theorem)."""
+    A_cm, m, s = (inputs[name] for name in ("A_cm", "m", "s"))
+    if A_cm < 0:
+        raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
+    exact = Fraction(A_cm) + Fraction(m) * Fraction(s) ** 2
+    return exact if is_exact(A_cm, m, s) else nearest(exact)
+
+
+def spin(inputs: Mapping[str, Number]) -> Number:
+    """Return the total rate about the figure axis, r0 = phi' + psi' cos(theta0) (4,1).
+
+    Where the cosine is irrational a fraction has `EXACT_DIGITS` digits.
+    """
+    phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
+    degrees, radians = inputs.get("theta0_deg"), inputs.get("theta0_rad")
+    if degrees is None and radians is None:
+        degrees = 30
+    keeps = is_exact(*(x for x in (inputs["phidot0"], inputs["psidot0"], degrees, radians) if x))
+    cosine = Cosine(*(None if x is None else Fraction(x) for x in (degrees, radians)))
+    if not 0 <= (degrees or 0) <= 180 or not 0 <= (radians or 0) <= 4:
+        return inputs["phidot0"]  # the guards of the top refuse such a tilt
+    rational = cosine.rational if psi_rate else Fraction(0)
+    if rational is not None:
+        exact = phi_rate + psi_rate * rational
+        return exact if keeps else nearest(exact)
+
+    def value_in(digits: int) -> Decimal:
+        ar = decimals(digits)
+        with ar.working():
+            return ar.convert(phi_rate) + ar.convert(psi_rate) * cosine.value(ar)
+
+    if not keeps:
+        return correctly_rounded("r0", value_in, float) or 0.0
+    in_full = own_context(EXACT_DIGITS, [])
+    rounded = correctly_rounded("r0", value_in, in_full.plus, first=EXACT_DIGITS + 20)
+    return Fraction(rounded or 0)
+
+
+def is_exact(*inputs: Number) -> bool:
+    """Return whether some of the inputs are kept as fractions, and not as doubles."""
+    return any(isinstance(x, Fraction) for x in inputs)
+
+
+def nearest(exact: Fraction) -> float:
+    """Return the double nearest to a fraction, infinite beyond all doubles."""
+    try:
+        return float(exact)
+    except OverflowError:
+        return float("inf") if exact > 0 else float("-inf")

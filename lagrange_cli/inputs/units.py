@@ -1,0 +1,229 @@
+"""Units of inputs: their meaning by pint, exactly, and the system that all of them are put in.
+
+pint is loaded where a unit stands, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+from ..arithmetic.decimals import pi_to
+from ..arithmetic.numbers import Number
+from ..arithmetic.points import Points
+from ..arithmetic.values import Values
+from ..errors import LagtopError
+from .measured import EXACT_DIGITS
+from .quantity_text import Quantity
+from .scene_file import TILT
+from .top import BODY
+
+_RATE = (0, 0, -1)
+_TIME = (0, 0, 1)
+DIMENSIONS = {
+    "m": (1, 0, 0),
+    "A": (1, 2, 0),
+    "A_cm": (1, 2, 0),
+    "C": (1, 2, 0),
+    "s": (0, 1, 0),
+    "g": (0, 1, -2),
+    **dict.fromkeys(("r0", "phidot0", "thetadot0", "psidot0"), _RATE),
+    **dict.fromkeys(("t_min", "t_max", "dt"), _TIME),
+}
+"""The powers of mass, length and time in each input."""
+_EXAMPLES = {
+    (1, 0, 0): "350g",
+    (1, 2, 0): "'3.9e-3 kg*m^2'",
+    (0, 1, 0): "4cm",
+    (0, 1, -2): "'9.81 m/s^2'",
+    _RATE: "'50 rad/s' or 480rpm",
+    _TIME: "2s",
+}
+_ANGLE_EXAMPLE = "30deg or 0.5rad"
+
+_NAME = r"(?:[^\W\d]\w*|°)(?:\s*(?:\*\*|\^)\s*-?\d(?!\d))?"
+_GRAMMAR = re.compile(rf"(?:1?\s*/\s*)?{_NAME}(?:\s*[*·/ ]\s*{_NAME})*")
+"""Names of units with powers of one figure, times or over one another: others never reach pint."""
+_MOST_CHARACTERS = 60
+_RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_ROOTS = {"gram": 0, "meter": 1, "second": 2}
+
+
+class System(Values):
+    """A system of units, its mass and length in grams and metres; its time is the second."""
+
+    mass: str
+    length: str
+    grams: Fraction
+    metres: Fraction
+
+    def factor(self, dimensions: tuple[int, int, int]) -> Fraction:
+        """Return the unit of these dimensions in those of pint: grams, metres and seconds."""
+        return self.grams ** dimensions[0] * self.metres ** dimensions[1]
+
+    def worked_example(self) -> dict[str, Number]:
+        """Return the body of the worked example, which is in CGS, in these units."""
+        return {
+            key: Fraction(value) * CGS.factor(DIMENSIONS[key]) / self.factor(DIMENSIONS[key])
+            for key, value in BODY.items()
+        }
+
+    def named(self, unit: str) -> str:
+        """Return a unit such as `mass len²` or `rad/time` with the names of this system."""
+        names = {
+            "mass": self.mass,
+            "len": self.length,
+            "time": "s",
+            "energy": f"{self.mass} {self.length}²/s²",
+            "momentum": f"{self.mass} {self.length}²/s",
+        }
+        return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
+
+
+CGS = System("g", "cm", Fraction(1), Fraction(1, 100))
+SYSTEMS = {"si": System("kg", "m", Fraction(1000), Fraction(1)), "cgs": CGS}
+"""The systems of units by name; the first is the default."""
+
+
+class Meaning(Values):
+    """The size of a unit in grams, metres, seconds and radians, and its dimensions."""
+
+    rational: Fraction
+    """The size over that power of pi."""
+    power_of_pi: int
+    dimensions: tuple[int, int, int]
+    angular: bool
+    """Whether a plane angle is in the unit, or nothing but times, which goes for a rate too."""
+
+    @property
+    def size(self) -> Fraction:
+        """The size, with pi in `EXACT_DIGITS` digits."""
+        return self.rational * (Fraction(pi_to(EXACT_DIGITS)) if self.power_of_pi else 1)
+
+
+def in_one_system(
+    inputs: Mapping[str, Any], name: str | None
+) -> tuple[dict[str, Any], System | None]:
+    """Return inputs, in units or without, as numbers in one system, and the system.
+
+    The system is None where nothing but the tilt has a unit.  A 0 and a time need none.  Raises
+    LagtopError for an input without a unit where others have one, and for a unit of other
+    dimensions.
+    """
+    bare = [x for x in inputs if needs_unit(x, inputs[x])]
+    united = [x for x in inputs if hasattr(inputs[x], "unit") and x != TILT]
+    if bare and (united or name is not None):
+        why = f"as {united[0]} has" if united else "where --units is given"
+        example = _EXAMPLES[DIMENSIONS[bare[0]]]
+        raise LagtopError(f"{bare[0]} must have a unit, {why}: such as {example}", bare[0])
+    system = SYSTEMS[name or "si"] if united or name else None
+    found: dict[str, Any] = {}
+    for key, value in inputs.items():
+        if not hasattr(value, "unit"):
+            found[key] = value
+        elif key == TILT:
+            unit, factor = _tilt(value)
+            found[unit] = scaled(value.number, factor)
+        else:
+            assert system is not None
+            factor = factor_of(key, value) / system.factor(DIMENSIONS[key])
+            found[key] = scaled(value.number, factor)
+    return found, system
+
+
+def needs_unit(key: str, value: Any) -> bool:
+    """Return whether an input is a number without a unit that would need one."""
+    dimensions = DIMENSIONS.get(key, _TIME)
+    if dimensions == _TIME or hasattr(value, "unit"):
+        return False
+    zero = value.bounds() == [0.0, 0.0] if isinstance(value, Points) else value == 0
+    return not zero
+
+
+def scaled(number: Any, factor: Fraction) -> Any:
+    """Return a number, or what stands in its place, times a factor."""
+    return number.scaled(factor) if hasattr(number, "scaled") else number * factor
+
+
+def factor_of(key: str, value: Quantity[Any]) -> Fraction:
+    """Return the size of the unit of an input.  Raises LagtopError for wrong dimensions."""
+    dimensions = DIMENSIONS[key]
+    meaning = _meaning(key, value, _EXAMPLES[dimensions])
+    if meaning.dimensions != dimensions or meaning.angular != (dimensions == _RATE):
+        raise _refused(key, value, _EXAMPLES[dimensions])
+    return meaning.size
+
+
+def _tilt(value: Quantity[Any]) -> tuple[str, Fraction]:
+    """Return the key of a tilt, in degrees or in radians, whichever is exact, and the factor."""
+    meaning = _meaning(TILT, value, _ANGLE_EXAMPLE)
+    if meaning.dimensions != (0, 0, 0) or not meaning.angular:
+        raise _refused(TILT, value, _ANGLE_EXAMPLE)
+    if meaning.power_of_pi:
+        return f"{TILT}_deg", meaning.rational * 180
+    return f"{TILT}_rad", meaning.rational
+
+
+def _refused(key: str, value: Quantity[Any], example: str, why: str = "") -> LagtopError:
+    hint = f" ({why})" if why else ""
+    unit = repr(value.unit)[:_MOST_CHARACTERS]
+    return LagtopError(f"{key} must have a unit as in {example}, got the unit {unit}{hint}", key)
+
+
+def _meaning(key: str, value: Quantity[Any], example: str) -> Meaning:
+    text = re.sub("[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda x: f"^{x[0].translate(_RAISED)}", value.unit.strip())
+    if len(text) > _MOST_CHARACTERS or not _GRAMMAR.fullmatch(text):
+        raise _refused(key, value, example)
+    try:
+        return meaning_of(f"1{text}" if text.startswith("/") else text)
+    except ImportError:
+        raise LagtopError(
+            f"{key} has the unit {value.unit!r}, which needs pint: pip install 'lagtop[units]'", key
+        ) from None
+    except _UnknownUnitError as error:
+        raise _refused(key, value, example, str(error)) from None
+
+
+class _UnknownUnitError(Exception):
+    """A unit that pint does not know, or that is none of mechanics."""
+
+
+@lru_cache(maxsize=256)
+def meaning_of(text: str) -> Meaning:
+    """Return what a unit is by pint, whose constants are exact, but for pi.
+
+    Raises ImportError without pint.
+    """
+    registry = _registry()
+    try:
+        unit = registry.Quantity(Fraction(1), registry.parse_units(text))
+        root = unit.to_root_units()
+    except Exception as error:  # pint raises errors of many kinds, those of the language among them
+        raise _UnknownUnitError("no such unit") from error
+    powers = dict(root.unit_items())
+    angle = powers.pop("radian", 0)
+    if not powers.keys() <= _ROOTS.keys() or angle not in {0, 1}:
+        raise _UnknownUnitError("not one of mass, length, time and angle")
+    dimensions = [0, 0, 0]
+    for name, power in powers.items():
+        dimensions[_ROOTS[name]] = int(power)
+    of_times = all(
+        dict(registry.Quantity(1, name).dimensionality) == {"[time]": 1}
+        for name, _ in unit.unit_items()
+    )
+    angular = angle == 1 or (of_times and dimensions == [*_RATE])
+    size, pi = root.magnitude, registry.Quantity(Fraction(1), "pi").to_root_units().magnitude
+    over_pi = size / pi
+    of_pi = over_pi.denominator < size.denominator
+    a, b, c = dimensions
+    return Meaning(over_pi if of_pi else size, int(of_pi), (a, b, c), angular)
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Fraction)

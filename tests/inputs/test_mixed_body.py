@@ -1,0 +1,121 @@
+"""Bodies of which some inputs are given and others those of the worked example: said, once."""
+
+from __future__ import annotations
+
+import copy
+import shlex
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli import MixedBodyWarning, Top, read_scene, sweep, sweep_angles
+
+BODY = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81}
+WHOLE = " ".join(f"--{name} {value}" for name, value in BODY.items()).split()
+PARTS = ["--m", "0.35", "--C", "4e-4", "--g", "9.81"]
+SAID = "Warning: A and s are those of the worked example, in g, cm and s: --A 39032 --s 4\n"
+
+
+@pytest.fixture(autouse=True)
+def every_warning() -> Any:
+    """Let each warning count, which the configuration of the tests leaves out."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        yield
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {},
+        BODY,
+        {"r0": 3, "theta0_rad": 0.2, "psidot0": 1},
+        {name: BODY[name] for name in "mCsg"} | {"A_cm": 5e-4},
+        {"g": 0},
+        {"s": 0.0, "g": 0, "phidot0": 2},
+        Top().as_dict(),
+    ],
+)
+def test_nothing_given_or_a_whole_body_is_silent(inputs: dict[str, Any]) -> None:
+    top = Top(**inputs)
+    assert top.replace(m=top.m) == top == copy.deepcopy(top)
+    sweep(keys=["regime"], **{name: x for name, x in inputs.items() if x is not None})
+
+
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [
+        ({"m": 1}, "A, C, s and g are those .*: A=39032, C=17458, s=4, g=981$"),
+        ({"m": 1, "g": 0}, "A, C and s are those .*: A=39032, C=17458, s=4$"),
+        ({"A_cm": 1e5}, "m, C, s and g are those"),
+        ({name: BODY[name] for name in "mACs"}, "^g is that of the worked example, .*: g=981$"),
+    ],
+)
+def test_parts_of_a_body_are_named_where_they_were_given(
+    inputs: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("".join(f"{name} = {x}\n" for name, x in inputs.items()))
+    arrays: dict[str, Any] = {name: np.array([x, x]) for name, x in inputs.items()}
+    for ask in (
+        lambda: Top(**inputs),
+        lambda: read_scene(str(path)),
+        lambda: sweep(keys=["m"], **arrays),
+        lambda: sweep_angles(1.0, **arrays),
+    ):
+        with pytest.warns(MixedBodyWarning, match=said) as caught:
+            ask()
+        assert [warning.filename for warning in caught] == [__file__]
+
+
+def test_the_line_is_ready_to_be_typed(lagtop: Lagtop) -> None:
+    result = lagtop("solve", *PARTS, "--get", "m")
+    assert (result.stdout, result.stderr) == ("0.35\n", SAID)
+    words = shlex.split(SAID.partition(": --")[2])
+    typed = ["--" + words[0], *words[1:]]
+    again = lagtop("solve", *PARTS, *typed, "--format", "json")
+    assert again.stderr == ""
+    assert again.stdout == lagtop("solve", *PARTS, "--format", "json").stdout
+
+
+def test_once_per_grid_and_once_per_file(tmp_path: Path, lagtop: Lagtop) -> None:
+    keys = ["--keys", "m", "--r0"]
+    assert lagtop("sweep", *PARTS, *keys, "1:9:5000").stderr == SAID
+    assert lagtop("sweep", *WHOLE, *keys, "1:9:3").stderr == ""
+    assert lagtop("sweep", "--m", "1:2:3", *WHOLE[2:], *keys, "1").stderr == ""
+    assert lagtop("sweep", *keys, "1:9:3").stderr == ""
+    path = tmp_path / "tops.csv"
+    path.write_text("m,C,g,r0\n" + "0.35,4e-4,9.81,1\n" * 3)
+    assert lagtop("sweep", path).stderr == SAID
+    assert lagtop("sweep", path, "--A", "1e-3", "--s", "1").stderr == ""
+    assert lagtop("table", "--tops", path, "--t-max", "1").stderr == SAID
+    objects = '{"r0": 3}\n{"m": 0.35, "C": 4e-4, "g": 9.81}\n'
+    assert lagtop("sweep", "-", input=objects).stderr == SAID
+    assert lagtop("sweep", "-", "sample_inputs/slow-top.toml", input=objects).stderr == ""
+    assert lagtop("sweep", "-", input='{"r0": 3}\n').stderr == ""
+
+
+def test_a_scene_with_a_whole_body_may_be_changed(tmp_path: Path, lagtop: Lagtop) -> None:
+    whole = ["solve", "sample_inputs/fast-gyroscope.toml", "--get", "m"]
+    assert lagtop(*whole, "--m", "0.4").stderr == ""
+    assert lagtop(*whole, "--A-cm", "6e-4").stderr == ""
+    path = tmp_path / "scene.toml"
+    path.write_text("m = 0.35\nC = 4e-4\n")
+    assert lagtop("solve", path, "--g", "9.81").stderr == SAID
+    assert lagtop(
+        "find", path, "--g", "9.81", "--r0", "1:9", "K=2", "--scan", "9"
+    ).stderr.startswith(SAID)
+
+
+def test_an_error_that_comes_of_mixing_says_so(lagtop: Lagtop) -> None:
+    result = lagtop("solve", "--A", "8.5e-4", "--m", "0.35")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "Error: --C must be <= 2 A = 0.0017, got 17458.0 (no rigid body has more) "
+        "(this is with C of the worked example: give the whole body)\n"
+    )
+    assert "worked example" not in lagtop("solve", "--m", "-1").stderr
