@@ -121,9 +121,9 @@ def _found(
     wanted = read_conditions(conditions, radians=radians)
     given = gather(fixed, scenes[0] if scenes else None, varying=spans)
     shared = shared_inputs(given, varying=spans)
-    say_missing(given)
     known = {name: x for name, x in shared.items() if name not in spans}
     found = look(Search(known, spans, wanted, radians).check(), count, _watched)
+    say_missing(given)
     complain(f"{len(found.motions)} found; {found.looked}")
     return found.motions
 

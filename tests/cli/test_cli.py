@@ -274,7 +274,7 @@ def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:
         ("\nr0 = 'fast'\n", "line 2: r0 must be a finite decimal number, got 'fast'"),
         ("r0 = true\n", "line 1: r0 must be a finite number, got True"),
         ("A = 1\nC = 3\n", "line 2: C must be <= 2 A = 2.0, got 3.0"),
-        ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_deg and theta0_rad are both given"),
+        ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_rad and theta0_deg are both given"),
     ],
 )
 def test_bad_scene_file(text: str, message: str, lagtop: Lagtop, tmp_path: Path) -> None:
