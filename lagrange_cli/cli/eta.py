@@ -71,6 +71,7 @@ DISTANCE = Parsed("number", _parse_distance)
 )
 @click.option("--tau", "single", type=NUMBER, multiple=True, help="Time; may be repeated.")
 @click.option("--tau-range", "grid", type=RANGE, help="Times, as [log:]start:stop:count.")
+@click.option("--rate", is_flag=True, help="d eta/d tau of every tau too.")
 @click.option("--chain", is_flag=True, help="h1, theta and xi' of every tau too.")
 @click.option("--rad", is_flag=True, help="theta in radians.")
 @digits_option(MOST_TABLE_DIGITS)
@@ -87,6 +88,7 @@ def command(
     c3: Fraction,
     single: tuple[Fraction, ...],
     grid: Points | None,
+    rate: bool,
     chain: bool,
     rad: bool,
     digits: int | None,
@@ -98,10 +100,10 @@ def command(
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2), the motion of a satellite
     in latitude.
 
-    Without --tau the constants are written; with it eta and its rate, and under --chain also h1,
-    theta and xi' of (3.2.9) to (3.2.11).  The outer roots are given by --p and --q (imaginary, as
-    0.7i, for a complex pair), or by the gaps to them; with one gap alone the other outer root is at
-    infinity, as for Lagrange's top, and under --quadratic both are.
+    Without --tau the constants are written; with it eta, under --rate also its rate, and under
+    --chain also h1, theta and xi' of (3.2.9) to (3.2.11).  The outer roots are given by --p and --q
+    (imaginary, as 0.7i, for a complex pair), or by the gaps to them; with one gap alone the other
+    outer root is at infinity, as for Lagrange's top, and under --quadratic both are.
     """
     from ..elliptic.eta import record
 
@@ -116,20 +118,21 @@ def command(
     else:
         quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
     if times is None:
-        if chain:
-            raise LagtopError("--chain needs --tau or --tau-range")
+        for name, asked in {"--rate": rate, "--chain": chain}.items():
+            if asked:
+                raise LagtopError(f"{name} needs --tau or --tau-range")
         write_record(record(quadrature, digits, c3), fmt, output, lambda: ETA)
         return
-    from ..elliptic.eta_table import digit_rows, header, rows
+    from ..elliptic.eta_table import Wanted, digit_rows, header, rows
 
-    unit = ("rad" if rad else "deg") if chain else ""
+    wanted = Wanted(rate, ("rad" if rad else "deg") if chain else "")
     if digits is None:
-        parts = with_progress(rows(quadrature, times, c3, unit), times.count, 3_000_000)
-        write_table(header(unit), parts, fmt, output)
+        parts = with_progress(rows(quadrature, times, c3, wanted), times.count, 3_000_000)
+        write_table(header(wanted), parts, fmt, output)
     else:
-        lines = digit_rows(quadrature, times, c3, digits, unit)
+        lines = digit_rows(quadrature, times, c3, wanted, digits)
         texts = with_progress(([line] for line in lines), times.count, 1000)
-        write_table(header(unit), texts, fmt, output)
+        write_table(header(wanted), texts, fmt, output)
 
 
 def _quadrature(

@@ -85,10 +85,11 @@ MULTIPLES = Parsed("range", _parse_multiples)
 @click.option("--u-range", "grid", type=MULTIPLES, help="Arguments, as [log:]start:stop:count.")
 @click.option("--phi", "amplitudes", type=NUMBER, multiple=True, help="F and E of it instead.")
 @click.option("--phi-range", "fan", type=RANGE, help="Amplitudes, as [log:]start:stop:count.")
-@click.option("--theta", is_flag=True, help="Theta functions of u too.")
-@click.option("--zeta", is_flag=True, help="Their logarithmic derivatives too.")
-@click.option("--omega", is_flag=True, help="Chrapan's Omega functions of u and --param too.")
-@click.option("--pi", is_flag=True, help="Chrapan's Pi functions of u and --param too.")
+@click.option("--am", is_flag=True, help="am, sn, cn, dn of u; the default.")
+@click.option("--theta", is_flag=True, help="Theta functions of u.")
+@click.option("--zeta", is_flag=True, help="Their logarithmic derivatives.")
+@click.option("--omega", is_flag=True, help="Chrapan's Omega functions of u and --param.")
+@click.option("--pi", is_flag=True, help="Chrapan's Pi functions of u and --param.")
 @click.option(
     "--param", metavar="NUMBER", help="Parameter of Omega and Pi, as 0.7, 0.7i, 0.2+0.7i."
 )
@@ -107,6 +108,7 @@ def command(
     grid: Multiples | None,
     amplitudes: tuple[Fraction, ...],
     fan: Points | None,
+    am: bool,
     theta: bool,
     zeta: bool,
     omega: bool,
@@ -120,13 +122,14 @@ def command(
 ) -> None:
     """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
 
-    Without --u the constants of the modulus are written; with it am, sn, cn, dn of every u, and
-    what else is asked for.  With --phi it is Legendre's F(phi, k) and E(phi, k) of every phi, which
-    is in degrees and may be any number.
+    Without --u the constants of the modulus are written; with it am, sn, cn, dn of every u or, of
+    --am, --theta, --zeta, --omega and --pi, what is asked for.  With --phi it is Legendre's
+    F(phi, k) and E(phi, k) of every phi, which is in degrees and may be any number.
 
     Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param,
-    u and a real v less whole periods.  u and a real v go up to 2^50 periods, an imaginary v up to
-    K'; what is beyond is refused.  An empty cell is a pole.
+    u and a real v less whole periods; of at most 24 real functions each is the nearest double.  u
+    and a real v go up to 2^50 periods, an imaginary v up to K'; what is beyond is refused.  An
+    empty cell is a pole.
 
     Where a modulus is imaginary or above 1, an argument complex, or a parameter neither real nor
     imaginary, columns end in _re and _im, and imaginary parts go up to 2^50 periods too.  Omega and
@@ -141,16 +144,17 @@ def command(
     if len(chosen) != 1:
         raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
     modulus = ModulusInput(*chosen[0], radians=rad)
-    flags = {"theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
-    families = tuple(name for name, wanted in flags.items() if wanted)
+    flags = {"am": am, "theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
+    asked = tuple(name for name, wanted in flags.items() if wanted)
+    families = asked or ("am",)
     parameter, imaginary = _parameter(param, families)
     if beyond or not is_real(single, parameter):
         for name, wanted in (("--phi", amplitudes or fan), ("--series", terms)):
             if wanted:
                 raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
         points = complex_points(single, grid)
-        if points is None and families:
-            raise LagtopError(f"--{families[0]} needs --u or --u-range")
+        if points is None and asked:
+            raise LagtopError(f"--{asked[0]} needs --u or --u-range")
         given = k if beyond and k is not None else modulus
         write_complex(points, (given, families, parameter, rad), digits, (fmt, output))
         return
@@ -159,19 +163,19 @@ def command(
     )
     angles = listed("phi", amplitudes, fan)
     if angles:
-        others = {"--u": arguments, "--series": terms, f"--{(*families, '')[0]}": families or None}
+        others = {"--u": arguments, "--series": terms, f"--{(*asked, '')[0]}": asked or None}
         for name, value in {**others, "--param": param}.items():
             exclude({"--phi": angles, name: value})
         _write_integrals(modulus, angles, digits, fmt, output)
         return
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
-        exclude({"--series": terms, f"--{(*families, '')[0]}": families or None})
+        exclude({"--series": terms, f"--{(*asked, '')[0]}": asked or None})
         _write_series(modulus, arguments, in_quarters, terms, (fmt, output))
         return
     if arguments is None:
-        if families:
-            raise LagtopError(f"--{families[0]} needs --u or --u-range")
+        if asked:
+            raise LagtopError(f"--{asked[0]} needs --u or --u-range")
         write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
         return
     from ..elliptic.function_table import Request
@@ -210,8 +214,9 @@ def _write_rows(
     arguments: Points, request: Request, digits: int | None, fmt: str, output: str
 ) -> None:
     from ..elliptic.function_table import digit_rows, rows
+    from ..elliptic.proved_digits import are_few
 
-    if digits is None:
+    if digits is None and not are_few(arguments.count, 4 * len(request.families)):
         header, blocks = rows(arguments, request)
         parts = with_progress(blocks, arguments.count, 3_000_000)
         write_table(header, parts, fmt, output)
@@ -225,8 +230,9 @@ def _write_integrals(
     modulus: ModulusInput, amplitudes: Points, digits: int | None, fmt: str, output: str
 ) -> None:
     from ..elliptic.amplitude_table import digit_rows, header, rows
+    from ..elliptic.proved_digits import are_few
 
-    if digits is None:
+    if digits is None and not are_few(amplitudes.count, 2):
         blocks = rows(amplitudes, modulus)
         parts = with_progress(blocks, amplitudes.count, 3_000_000)
         write_table(header(modulus), parts, fmt, output)

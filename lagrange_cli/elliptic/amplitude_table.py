@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import cache
 from typing import TYPE_CHECKING
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .incomplete import e_of, f_of, in_degrees, in_radians
 from .modulus import Modulus
 from .modulus_input import ModulusInput
-from .proved_digits import require_digits, settled_texts
+from .proved_digits import Settled
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -27,17 +27,27 @@ def header(modulus_input: ModulusInput) -> list[str]:
     return ["phi_rad" if modulus_input.radians else "phi_deg", "F", "E"]
 
 
+def check_domain(amplitudes: Points, modulus_input: ModulusInput) -> Modulus:
+    """Return the modulus in doubles.
+
+    Raises LagtopError for amplitudes beyond 2^50 half turns and for a modulus out of range.
+    """
+    half_turn = math.pi if modulus_input.radians else 180.0
+    check_reach("phi", amplitudes, MAX_PERIODS * half_turn)
+    return modulus_input.in_doubles()
+
+
 def rows(amplitudes: Points, modulus_input: ModulusInput) -> Iterator[Array]:
     """Return blocks of rows in doubles; what is infinite (F for k = 1) is not a number.
 
     Amplitudes are in degrees, or in radians where the modulus is.  Raises LagtopError before the
-    first block for amplitudes beyond 2^50 half turns and for a modulus out of range.
+    first block as `check_domain` does.
     """
     import numpy as np
 
-    half_turn = math.pi if modulus_input.radians else 180.0
-    check_reach("phi", amplitudes, MAX_PERIODS * half_turn)
-    modulus = modulus_input.in_doubles()
+    from ..arithmetic.arrays import ARRAYS
+
+    modulus = check_domain(amplitudes, modulus_input)
 
     def block(phi: Array) -> Array:
         together = np.stack([phi, *_integrals(ARRAYS, phi, modulus, modulus_input.radians)], axis=1)
@@ -48,24 +58,33 @@ def rows(amplitudes: Points, modulus_input: ModulusInput) -> Iterator[Array]:
 
 
 def digit_rows(
-    amplitudes: Points, modulus_input: ModulusInput, digits: int
+    amplitudes: Points, modulus_input: ModulusInput, digits: int | None = None
 ) -> Iterator[list[NumberText]]:
-    """Return rows to so many significant digits; what is infinite is an empty text."""
-    names = header(modulus_input)
+    """Return rows to so many significant digits; what is infinite is an empty text.
+
+    Without `digits` amplitudes are rounded to doubles, and each number is the nearest double: what
+    `rows` does, without NumPy.  Raises LagtopError for a modulus out of range and, without
+    `digits`, as `check_domain` does.
+    """
+    names, settled = header(modulus_input), Settled(digits)
     modulus_input.check()
+    if digits is None:
+        check_domain(amplitudes, modulus_input)
     endless = {"F"} if "k_prime" in modulus_input.zeros() else set()
+    modulus_in = cache(modulus_input.in_digits)
 
     def at(phi: Fraction) -> list[NumberText]:
         def compute(ar: ManyDigits) -> dict[str, Value]:
-            require_digits(ar, digits, abs(ar.convert(phi)))
-            modulus, exact = modulus_input.in_digits(ar), ar.convert(phi)
-            integrals = _integrals(ar, exact, modulus, modulus_input.radians)
+            settled.require(ar, abs(ar.convert(phi)))
+            exact = ar.convert(phi)
+            integrals = _integrals(ar, exact, modulus_in(ar), modulus_input.radians)
             return dict(zip(names, (exact, *integrals), strict=True))
 
         known = names if phi == 0 else endless
-        return list(settled_texts(compute, digits, known).values())
+        return list(settled.texts(compute, known).values())
 
-    return (at(phi) for phi in amplitudes.decimals())
+    places = amplitudes.decimals()
+    return (at(phi if digits else Fraction(float(phi))) for phi in places)
 
 
 def _integrals(

@@ -21,7 +21,7 @@ from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .function_table import THETA, THIRD
 from .lattice import Lattice, Place, lattice, place
 from .modulus_input import ModulusInput
-from .proved_digits import require_digits, settled_or_rounded, settled_texts
+from .proved_digits import Settled, settled_or_rounded
 
 if TYPE_CHECKING:
     from ..arithmetic.text import NumberText
@@ -34,10 +34,10 @@ _MOST = 1e20
 
 
 class ComplexRequest(NamedTuple):
-    """A modulus of any kind, the families of functions besides am, sn, cn, dn, and a parameter."""
+    """A modulus of any kind, some families of functions, and a parameter."""
 
     modulus: ModulusInput | ExactComplex
-    families: tuple[str, ...] = ()
+    families: tuple[str, ...] = ("am",)
     parameter: ExactComplex = ExactComplex(Fraction(0))
     radians: bool = False
 
@@ -75,7 +75,7 @@ class _Functions(NamedTuple):
 
     modulus: AnyModulus
     periods: Lattice | None
-    """None where no family but am, sn, cn, dn is asked for."""
+    """None where am, sn, cn, dn alone are asked for."""
     third: dict[str, Parameter]
 
     def rounded(self) -> _Functions:
@@ -122,24 +122,23 @@ def complex_digit_rows(
     Raises LagtopError for a modulus out of range, before any row.
     """
     kind, _, stretch = request.modulus_in(ManyDigits())
+    settled = Settled(digits)
 
     @cache
-    def at_precision(dps: int) -> tuple[ManyDigits, _Functions]:
-        ar = ManyDigits(dps)
-        return ar, _functions(ar, request)
+    def constants(ar: ManyDigits) -> _Functions:
+        return _functions(ar, request)
 
     def at(u: ExactComplex) -> dict[str, NumberText]:
         known = known_parts(u, request, kind)
 
-        def compute(context: ManyDigits) -> dict[str, Value]:
+        def compute(ar: ManyDigits) -> dict[str, Value]:
             for far in (*u, *request.parameter):
-                require_digits(context, digits, abs(context.convert(far)) * stretch)
-            ar, functions = at_precision(context.dps)
+                settled.require(ar, abs(ar.convert(far)) * stretch)
             z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
-            columns = _columns(ar, z, functions, request, known.poles)
+            columns = _columns(ar, z, constants(ar), request, known.poles)
             return known.cleared(ar, _parts(ar, columns, real=arguments.imag is None))
 
-        return settled_texts(compute, digits, known.names())
+        return settled.texts(compute, known.names())
 
     header = list(at(next(arguments.exactly())))
     return header, (list(at(u).values()) for u in arguments.exactly())
@@ -164,7 +163,7 @@ def any_constants_record(modulus: ExactComplex, digits: int | None = None) -> di
 def _functions(ar: ManyDigits, request: ComplexRequest) -> _Functions:
     """Return the constants of a request in an mpmath context."""
     given = request.modulus_in(ar)
-    periods = lattice(ar, given) if request.families else None
+    periods = lattice(ar, given) if request.families != ("am",) else None
     third: dict[str, Parameter] = {}
     if periods and {"omega", "pi"} & set(request.families):
         v = ar.mpc(ar.convert(request.parameter.real), ar.convert(request.parameter.imag))
@@ -211,10 +210,11 @@ def _columns(
     without: Collection[str] = (),
 ) -> dict[str, Value]:
     """Return the functions at u by their names; those `without` a value are not numbers."""
-    unit, turn = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
-    am, sn, cn, dn = complex_jacobi(ar, u, functions.modulus)
-    columns = {"u": u, f"am_{unit}": am * turn, "sn": sn, "cn": cn, "dn": dn}
-    periods = functions.periods
+    columns, periods = {"u": u}, functions.periods
+    if "am" in request.families:
+        unit, turn = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
+        am, sn, cn, dn = complex_jacobi(ar, u, functions.modulus)
+        columns |= {f"am_{unit}": am * turn, "sn": sn, "cn": cn, "dn": dn}
     if periods is None:
         return columns
     for name, compute in _families(ar, place(ar, u, periods), functions, periods, request):
@@ -231,6 +231,8 @@ def _families(
 ) -> Iterator[tuple[str, Callable[[], Value]]]:
     """Yield the columns of the families by name, and how to compute each."""
     for family in request.families:
+        if family == "am":
+            continue
         if family in {"theta", "zeta"}:
             function = theta_at_place if family == "theta" else zeta_at_place
             for ij in THETA:
@@ -245,8 +247,8 @@ def _families(
 
 def _parts(ar: FunctionArithmetic, columns: dict[str, Value], *, real: bool) -> dict[str, Value]:
     """Return the parts of the columns; u, am, sn, cn, dn are real at real arguments."""
-    single = list(columns)[:5] if real else []
-    parts = {name: ar.re(columns[name]) for name in single}
+    single = columns.keys() & {"u", "am_deg", "am_rad", "sn", "cn", "dn"} if real else set()
+    parts = {name: ar.re(z) for name, z in columns.items() if name in single}
     return parts | _both(ar, {name: z for name, z in columns.items() if name not in parts})
 
 

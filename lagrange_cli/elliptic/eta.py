@@ -261,32 +261,3 @@ def modulus_in_use(c: EtaConstants, band: Band) -> Modulus:
     if band.pair:
         return Modulus(c.k, 1 / c.k1_prime, 0 * c.k)
     return Modulus(c.k1, c.k1_prime, 0 * c.k1)
-
-
-def eta_and_rate(
-    ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band
-) -> tuple[Value, Value]:
-    """Return eta and d eta/d tau where v = 2K w/T, w the time since a passage of delta*.
-
-    eta - delta* : delta - eta = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2, which is (3.2.10) to
-    (3.2.12) after a halving of the argument: both distances keep their digits.  Of a complex pair
-    of roots it is m'' (sn v dn v)^2 : m' cn^2 v of the modulus kappa.
-    """
-    from .jacobi import jacobi  # not for the constants
-
-    _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, band))
-    if band.pair:
-        up, down = abs(ar.sqrt(c.m2) * sn * dn), abs(ar.sqrt(c.m1) * cn)
-    else:
-        up, down = abs(ar.sqrt(band.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
-    larger = ar.where(up < down, down, up)  # so that no square leaves the range
-    up, down = (up / larger) ** 2, (down / larger) ** 2
-    risen, left = band.width * up / (up + down), band.width * down / (up + down)
-    eta = ar.where(risen < left, band.lower + risen, band.upper - left)
-    gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
-    if band.pair:
-        from_lower, from_upper, height = band.pair
-        apart = ar.where(risen < left, from_lower + risen, from_upper - left)
-        gaps = [ar.sqrt(apart * apart + height * height)] * 2
-    size = prod(map(ar.sqrt, (band.g, risen, left, *gaps)))
-    return eta, ar.where(sn * cn < 0, -size, size)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.doubles import DOUBLES
@@ -12,10 +13,11 @@ from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import complete_k
-from .eta import Band, EtaConstants, band_of, eta_and_rate, eta_constants, modulus_in_use
+from .eta import Band, EtaConstants, band_of, eta_constants, modulus_in_use
+from .eta_swing import swing
 from .jacobi import jacobi_at
 from .periods import whole_and_rest
-from .proved_digits import require_digits, settled_texts
+from .proved_digits import Settled
 from .quadrature import Quadrature
 
 if TYPE_CHECKING:
@@ -23,12 +25,28 @@ if TYPE_CHECKING:
     from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
 
-HEADER = ["tau", "eta", "etadot"]
+
+class Wanted(NamedTuple):
+    """What a table has beside tau and eta."""
+
+    rate: bool = False
+    """Whether it has d eta/d tau."""
+    unit: str = ""
+    """The unit of theta, deg or rad, where it has h1, theta and xi'; else nothing."""
 
 
-def header(unit: str = "") -> list[str]:
-    """Return the names of the columns; with h1, theta and xi' where theta has a unit."""
-    return [*HEADER, *(("h1", f"theta_{unit}", "xi_prime") if unit else ())]
+TAU_AND_ETA = Wanted()
+
+
+def header(wanted: Wanted) -> list[str]:
+    """Return the names of the columns."""
+    rate = ["etadot"] if wanted.rate else []
+    return [
+        "tau",
+        "eta",
+        *rate,
+        *(("h1", f"theta_{wanted.unit}", "xi_prime") if wanted.unit else ()),
+    ]
 
 
 def chain(
@@ -50,7 +68,9 @@ def chain(
     return h1, theta, (-cn if band.pair else sn)
 
 
-def rows(quadrature: Quadrature, times: Points, c3: Fraction, unit: str = "") -> Iterator[Array]:
+def rows(
+    quadrature: Quadrature, times: Points, c3: Fraction, wanted: Wanted = TAU_AND_ETA
+) -> Iterator[Array]:
     """Return blocks of rows of the columns of `header`; eta = delta* at tau = -c3.
 
     Raises LagtopError as `Quadrature.check_doubles` does, and for times beyond 2^50 periods.
@@ -74,16 +94,20 @@ def rows(quadrature: Quadrature, times: Points, c3: Fraction, unit: str = "") ->
     def block(tau: Array) -> Array:
         with np.errstate(all="ignore"):  # squares of small numbers may leave the doubles
             turns, since = reduce_phase(tau, rate, shift)
-            columns = [tau, *eta_and_rate(ARRAYS, half_period * (since + shift), c, band)]
-            if unit:
-                columns += chain(ARRAYS, (turns + float(whole), since + shift), c, band, unit)
+            place = swing(ARRAYS, half_period * (since + shift), c, band)
+            columns = [tau, place.eta]
+            if wanted.rate:
+                columns.append(place.rate(ARRAYS, band))
+            if wanted.unit:
+                phase = turns + float(whole), since + shift
+                columns += chain(ARRAYS, phase, c, band, wanted.unit)
         return np.stack(columns, axis=1) + 0.0  # no -0
 
     return (block(tau) for tau in times.blocks())
 
 
 def digit_rows(
-    quadrature: Quadrature, times: Points, c3: Fraction, digits: int, unit: str = ""
+    quadrature: Quadrature, times: Points, c3: Fraction, wanted: Wanted, digits: int
 ) -> Iterator[list[NumberText]]:
     """Return rows of the columns of `header` to so many significant digits.
 
@@ -92,23 +116,29 @@ def digit_rows(
     """
     quadrature.check()
     still = quadrature.lower == quadrature.upper
-    names = header(unit)
+    names, settled = header(wanted), Settled(digits)
+
+    @cache
+    def constants(ar: ManyDigits) -> tuple[EtaConstants, Band]:
+        return eta_constants(ar, quadrature), band_of(ar, quadrature)
 
     def at(tau: Fraction) -> list[NumberText]:
         def compute(ar: ManyDigits) -> dict[str, Value]:
-            c, time = eta_constants(ar, quadrature), ar.convert(tau + c3)
-            require_digits(ar, digits, abs(time / c.period))
-            band = band_of(ar, quadrature)
+            (c, band), time = constants(ar), ar.convert(tau + c3)
+            settled.require(ar, abs(time / c.period))
             turns, phase, _ = whole_and_rest(ar, time / c.period)
             quarter = complete_k(ar, modulus_in_use(c, band).k_prime)
-            values = [ar.convert(tau), *eta_and_rate(ar, 2 * quarter * phase, c, band)]
-            if unit:
-                values += chain(ar, (turns, phase), c, band, unit)
+            place = swing(ar, 2 * quarter * phase, c, band)
+            values = [ar.convert(tau), place.eta]
+            if wanted.rate:
+                values.append(place.rate(ar, band))
+            if wanted.unit:
+                values += chain(ar, (turns, phase), c, band, wanted.unit)
             return dict(zip(names, values, strict=True))
 
         at_start = still or tau + c3 == 0
         zero = {"tau": tau == 0, "eta": at_start and not quadrature.lower, "etadot": at_start}
         known = [name for name, is_zero in zero.items() if is_zero]
-        return list(settled_texts(compute, digits, known).values())
+        return list(settled.texts(compute, known).values())
 
     return (at(tau) for tau in times.decimals())

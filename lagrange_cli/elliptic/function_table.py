@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache, partial
+from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.correct_rounding import TooFewDigitsError
-from ..arithmetic.double_double import two_product
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
@@ -18,12 +17,12 @@ from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.sums_of_doubles import pair
 from ..errors import LagtopError
 from .complete import complete_k
-from .jacobi import jacobi, jacobi_at
+from .jacobi import Jacobi, jacobi, jacobi_at
 from .known_values import known_values, put_exact_values
 from .modulus import Modulus
 from .modulus_input import ModulusInput
 from .periods import Complex, Periods, of_quarters
-from .proved_digits import require_digits, settled_texts
+from .proved_digits import Settled
 from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
 from .third_kind import ThirdKind, check_near, check_parameter, third_kind
 
@@ -37,10 +36,11 @@ THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
 
 
 class Request(NamedTuple):
-    """What to evaluate: am, sn, cn, dn and these families, Omega and Pi with their parameter."""
+    """What to evaluate: some families of functions, Omega and Pi with their parameter."""
 
     modulus: ModulusInput
-    families: tuple[str, ...] = ()
+    families: tuple[str, ...] = ("am",)
+    """Some of am (with sn, cn and dn), theta, zeta, omega and pi."""
     parameter: Fraction = Fraction(0)
     imaginary: bool = False
     radians: bool = False
@@ -67,7 +67,7 @@ class Functions(NamedTuple):
 
     modulus: Modulus
     series: ThetaSeries | None
-    """None where no family but am, sn, cn, dn is asked for."""
+    """None for k = 1, where there are no periods."""
     third: dict[str, ThirdKind]
     K: Value
     """The quarter period; a pair in doubles."""
@@ -85,15 +85,14 @@ def functions_in(ar: ManyDigits, request: Request) -> Functions:
     Raises LagtopError for a modulus or a parameter out of range.
     """
     exact = request.modulus.in_digits(ar)
-    series = series_for(ar, exact) if request.families else None
+    endless = not exact.k_prime and request.families == ("am",)
+    series = None if endless else series_for(ar, exact)
     third: dict[str, ThirdKind] = {}
     if request.has_parameter:
         v = request.parameter_in(ar)
         check_parameter(ar, v, exact)
         third = {ij: third_kind(ar, ij, v, exact) for ij in THIRD}
-    return Functions(
-        exact, series, third, complete_k(ar, exact.k_prime) if exact.k_prime else ar.inf
-    )
+    return Functions(exact, series, third, ar.inf if endless else complete_k(ar, exact.k_prime))
 
 
 def values(
@@ -108,30 +107,37 @@ def values(
     u is a factor of K where the request says so.  Omega and Pi of an imaginary parameter are given
     by their imaginary parts.
     """
-    unit = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
+    series = functions.series
+    if not series:
+        found = jacobi(ar, u, functions.modulus)
+        columns = {"u": u} | dict(_named(ar, found, request))
+        return columns | {name: ar.convert(known[name]) for name in known.keys() & columns.keys()}
     if request.in_quarters:
         x = of_quarters(ar, u)
-        am, sn, cn, dn = jacobi_at(ar, x, functions.modulus)
         u = times_quarter(ar, u, functions.K)
     else:
-        am, sn, cn, dn = jacobi(ar, u, functions.modulus)
-    columns = {"u": u, f"am_{unit[0]}": am * unit[1], "sn": sn, "cn": cn, "dn": dn}
-    columns |= {name: ar.convert(known[name]) for name in columns if name in known}
-    if not functions.series:
-        return columns
-    if not request.in_quarters:
-        x = in_periods(ar, u, functions.series)
+        x = in_periods(ar, u, series)
         if not ar.is_array and u and not x.rest:
             raise TooFewDigitsError
-    for name, compute in _families(ar, x, functions, functions.series, request):
+    columns = {"u": u}
+    for name, compute in _families(ar, x, functions, series, request):
         columns[name] = ar.convert(known[name]) if name in known else compute()
     return columns
+
+
+def _named(ar: FunctionArithmetic, found: Jacobi, request: Request) -> Iterator[tuple[str, Value]]:
+    """Yield am, in the unit of the request, sn, cn and dn by the names of their columns."""
+    unit, size = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
+    yield f"am_{unit}", found.am * size
+    yield from zip(("sn", "cn", "dn"), found[1:], strict=True)
 
 
 def times_quarter(ar: FunctionArithmetic, factor: Value, K: Value) -> Value:
     """Return a multiple of K, which is a pair for arrays."""
     if not ar.is_array:
         return factor * K
+    from ..arithmetic.double_double import two_product
+
     product, error = two_product(factor, K.high)
     return product + (error + factor * K.low)
 
@@ -142,7 +148,10 @@ def _families(
     """Yield the columns of the families by name, and how to compute each."""
     suffix = "_imag" if request.imaginary else ""
     for family in request.families:
-        if family in {"theta", "zeta"}:
+        if family == "am":
+            for name, value in _named(ar, jacobi_at(ar, x, functions.modulus, series), request):
+                yield name, partial(ar.convert, value)
+        elif family in {"theta", "zeta"}:
             at = theta_at if family == "theta" else zeta_at
             for ij in THETA:
                 yield f"{family}{ij}", partial(at, ar, ij, x, series)
@@ -151,29 +160,37 @@ def _families(
                 yield f"{family}{ij}{suffix}", partial(getattr(kind, family), ar, x)
 
 
-def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array]]:
-    """Return the header, and blocks of rows in doubles; a pole is not a number.
+def check_domain(arguments: Points, request: Request) -> Modulus:
+    """Return the modulus in doubles.
 
-    Raises LagtopError before the first block, and before any arithmetic, for arguments or a
-    parameter out of range.
+    Raises LagtopError, before any arithmetic, for arguments or a parameter out of the range in
+    which doubles name a place in the periods.
     """
-    import numpy as np
-
-    request = request.in_doubles()
-    in_doubles = request.modulus.in_doubles()
-    has_periods = in_doubles.k_prime > 0
+    modulus = request.modulus.in_doubles()
+    has_periods = modulus.k_prime > 0
     if request.in_quarters:
         check_quarters(request)
         check_reach("u in units of K", arguments, 2 * MAX_PERIODS)
     else:
-        limit = (
-            MAX_PERIODS * 2 * complete_k(DOUBLES, in_doubles.k_prime) if has_periods else MAX_TIME
-        )
+        limit = MAX_PERIODS * 2 * complete_k(DOUBLES, modulus.k_prime) if has_periods else MAX_TIME
         check_reach("u", arguments, min(limit, MAX_TIME))
-    parameter = float(request.parameter)
     if request.has_parameter and has_periods and not request.imaginary:
-        check_near(parameter, in_doubles)
-    functions = functions_in(ManyDigits(), request).rounded(in_doubles)
+        check_near(float(request.parameter), modulus)
+    return modulus
+
+
+def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array]]:
+    """Return the header, and blocks of rows in doubles; a pole is not a number.
+
+    Raises LagtopError before the first block, as `check_domain` does.
+    """
+    import numpy as np
+
+    from ..arithmetic.arrays import ARRAYS
+
+    request, parameter = request.in_doubles(), float(request.parameter)
+    modulus = check_domain(arguments, request)
+    functions = functions_in(ManyDigits(), request).rounded(modulus)
 
     def columns(u: Array) -> dict[str, Array]:
         with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
@@ -195,33 +212,40 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
 
 
 def digit_rows(
-    arguments: Points, request: Request, digits: int
+    arguments: Points, request: Request, digits: int | None = None
 ) -> tuple[list[str], Iterator[list[NumberText]]]:
     """Return the header, and rows to so many significant digits; a pole is an empty text.
 
-    Raises LagtopError for a parameter out of range, before any row.
+    Without `digits` the arguments and the parameter are rounded to doubles, and each number is the
+    nearest double: what `rows` does, without NumPy.  Raises LagtopError before any row, for a
+    parameter out of range and, without `digits`, as `check_domain` does.
     """
-    if request.in_quarters:
+    if digits is None:
+        request = request.in_doubles()
+        check_domain(arguments, request)
+    elif request.in_quarters:
         check_quarters(request)
+    places = arguments.decimals()
+    if digits is None and not request.in_quarters:
+        places = (Fraction(float(u)) for u in places)
+    settled = Settled(digits)
 
     @cache
-    def at_precision(dps: int) -> tuple[ManyDigits, Functions]:
-        ar = ManyDigits(dps)
-        return ar, functions_in(ar, request)
+    def constants(ar: ManyDigits) -> Functions:
+        return functions_in(ar, request)
 
     def at(u: Fraction) -> dict[str, NumberText]:
         known = known_values(u, request)
 
-        def compute(context: ManyDigits) -> dict[str, Value]:
+        def compute(ar: ManyDigits) -> dict[str, Value]:
             for far in (u, request.parameter if not request.imaginary else 0):
-                require_digits(context, digits, abs(context.convert(far)))
-            ar, functions = at_precision(context.dps)
-            return values(ar, ar.convert(u), functions, request, known)
+                settled.require(ar, abs(ar.convert(far)))
+            return values(ar, ar.convert(u), constants(ar), request, known)
 
-        return settled_texts(compute, digits, known)
+        return settled.texts(compute, known)
 
-    header = list(at(next(arguments.decimals())))
-    return header, (list(at(u).values()) for u in arguments.decimals())
+    first = at(next(places))
+    return list(first), (list(row.values()) for row in chain([first], map(at, places)))
 
 
 def check_quarters(request: Request) -> None:

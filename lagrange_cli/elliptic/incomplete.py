@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from ..arithmetic.arrays import PAIRS
 from ..arithmetic.blocks import in_arithmetic
-from ..arithmetic.double_double import DoubleDouble, two_product, two_sum
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
@@ -33,6 +29,8 @@ def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
         half_turns = ar.nint(ar.re(phi) / ar.pi)
         rest = phi - half_turns * ar.pi
         return Amplitude(half_turns, ar.sin(rest), ar.cos(rest))
+    from ..arithmetic.double_double import two_product, two_sum
+
     half_turns = ar.nint(phi / ar.pi)
     product, error = two_product(half_turns, _PI[0])
     second, second_error = two_product(half_turns, _PI[1])
@@ -47,6 +45,8 @@ def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
 def in_degrees(ar: FunctionArithmetic, phi: Value) -> Amplitude:
     """Return an amplitude given in degrees, of which whole half turns are taken exactly."""
     if ar.is_array:
+        import numpy as np
+
         rest = np.fmod(phi, 180.0)
         half_turns = ar.nint((phi - rest) / 180)
         beyond = ar.where(abs(rest) > 90, ar.sign(rest), 0.0)
@@ -125,6 +125,11 @@ def _quasi_periodic(
     if not ar.is_array:
         quarter = complete(ar, k_prime) if modulus.k_prime else limit
         return quarters * quarter + within
+    import numpy as np
+
+    from ..arithmetic.arrays import PAIRS
+    from ..arithmetic.double_double import DoubleDouble, two_product
+
     pair = complete(PAIRS, DoubleDouble(np.asarray(k_prime) + 0.0, np.asarray(modulus.rest) + 0.0))
     high = ar.where(modulus.k_prime == 0, limit, pair.high)
     low = ar.where(modulus.k_prime == 0, 0.0, pair.low)

@@ -1,36 +1,15 @@
-"""Jacobi's am, sn, cn, dn (Aksenov section 3.1): arrays of any real u at once, or many digits.
-
-On arrays they come from tan(am u) = sn u/cn u, a quotient of two theta series that has no
-cancellation for |u| <= K/2; beyond, sn(K - u) : cn(K - u) = cn u : k' sn u.  Up to k = k' the
-series run in q; for larger k, by Jacobi's imaginary transformation, in q' = exp(-pi K/K').  So the
-nome in use is at most exp(-pi) and four terms are enough, however close k is to 1.
-"""
+"""Jacobi's am, sn, cn, dn (Aksenov section 3.1): of numbers of many digits, or of arrays."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
-from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import blocks, in_arithmetic, polynomial
-from ..arithmetic.double_double import reduce_phase
+from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.sums_of_doubles import Pair
-from ..arithmetic.types import Array
-from .complete import complete_k, nome
-from .modulus import Modulus, rate_of_half_periods
+from .complete import complete_k
+from .modulus import Modulus
 from .periods import Periods, whole_and_rest
-from .theta import series_for, theta_at
-
-_LARGEST_ARGUMENT = 350.0
-"""Greatest argument of sinh; beyond, for k' = 0 alone, cn and dn are exponentials."""
-_SMALL = 1e-290
-"""Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
-
-
-Polynomial = tuple[Value, ...]
-"""Coefficients, the lowest power first."""
+from .theta import ThetaSeries, series_for, theta_at
 
 
 class Jacobi(NamedTuple):
@@ -51,165 +30,46 @@ def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
     of 2K.  mpmath: u real or complex (am then only within |Im u| < K'), to a few eps and what
     |u|/K costs.
     """
-    if not ar.is_array:
-        return _in_many_digits(ar, u, modulus)
-    u = np.asarray(u, dtype=float)
-    if all(np.ndim(part) == 0 for part in modulus):
-        series = _series(modulus)
-        parts = [_of_arguments(u.ravel()[block], series) for block in blocks(u.size)]
-        return Jacobi(*(np.concatenate(f).reshape(u.shape) for f in zip(*parts, strict=True)))
-    u, *moduli = np.broadcast_arrays(u, *modulus)
-    flat = [np.ravel(part) for part in (u, *moduli)]
-    results = np.empty((4, u.size))
-    circular = flat[1] <= flat[2]
-    for family in (np.flatnonzero(circular), np.flatnonzero(~circular)):
-        for block in blocks(family.size):
-            index = family[block]
-            series = _series(Modulus(*(part[index] for part in flat[1:])))
-            results[:, index] = _of_arguments(flat[0][index], series)
-    return Jacobi(*results.reshape(4, *u.shape))
-
-
-@in_arithmetic
-def jacobi_at(ar: FunctionArithmetic, x: Periods, modulus: Modulus) -> Jacobi:
-    """Return the functions at x = u/2K, given with all its digits, for one modulus k < 1.
-
-    At whole quarters of arrays sn, cn, dn are 0, 1, -1 and k' exactly, as in Aksenov's table 2.
-    """
     if ar.is_array:
-        return _evaluate(x.turns, x.rest, 0.0, _series(modulus), x.low)
-    if not modulus.k:
-        return _in_many_digits(ar, ar.pi * (x.turns + x.rest), modulus)
-    return _by_theta(ar, x, modulus)
+        from .jacobi_arrays import jacobi_of_arrays
 
-
-class _Series(NamedTuple):
-    """tan(am u) = f(y) P(x)/Q(x): circular with f = tan, x = sin^2; hyperbolic with f = sinh,
-    x = q' sinh^2.  All for one modulus, or for one at each element."""
-
-    circular: bool
-    k_prime: Value
-    rate: Pair
-    """Half periods per unit of u, 1/(2K)."""
-    stretch: Value
-    """Argument y per half period."""
-    above: Polynomial
-    below: Polynomial
-    q: Value
-    """The nome in use."""
-
-
-def _series(modulus: Modulus) -> _Series:
-    """Return the coefficients of moduli that are all of one family."""
-    k, k_prime = modulus.k, modulus.k_prime
-    finite = np.where(k_prime > 0, k_prime, 1.0)
-    rate = rate_of_half_periods(finite, modulus.rest)
-    if np.all(k <= k_prime):
-        q = nome(ARRAYS, m=k * k, k_prime=k_prime)
-        return _Series(True, k_prime, rate, np.pi, *_circular(q, np.sqrt(k_prime)), q)
-    q = nome(ARRAYS, m=k_prime * k_prime, k_prime=k)
-    usual = q > _SMALL
-    stretch = -np.where(usual, np.log(np.where(usual, q, 1.0)), 2 * np.log(finite / 4))  # pi K/K'
-    return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
-
-
-def _circular(q: Value, root: Value) -> tuple[Polynomial, Polynomial]:
-    """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
-    q2 = q * q
-    q6 = q2 * q2 * q2
-    above = 1 - 3 * q2 + 5 * q6, 4 * q2 - 20 * q6, 16 * q6
-    below = 1 + q2 + q6, -4 * q2 - 12 * q6, 16 * q6
-    return above, tuple(root * c for c in below)
-
-
-def _hyperbolic(q: Value) -> tuple[Polynomial, Polynomial]:
-    """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
-    q2 = q * q
-    q4 = q2 * q2
-    q8 = q4 * q4
-    above = (
-        1 - 3 * q2 + 5 * q2 * q4 - 7 * q4 * q8,
-        -4 * q + 20 * q * q4 - 56 * q * q2 * q8,
-        16 * q4 - 112 * q2 * q8,
-        -64 * q * q8,
-    )
-    below = (
-        1 - 2 * q + 2 * q4 - 2 * q * q8,
-        -4 + 16 * q * q2 - 36 * q8,
-        16 * q2 - 96 * q * q2 * q4,
-        -64 * q2 * q4,
-    )
-    scale = (1 + q2 + q2 * q4 + q4 * q8) / (1 + 2 * q + 2 * q4 + 2 * q * q8)  # theta2/theta3
-    return above, tuple(scale * c for c in below)
-
-
-def _of_arguments(u: Array, series: _Series) -> Jacobi:
-    """Return the functions of one block of arguments."""
-    return _evaluate(*reduce_phase(u, series.rate), u, series)
-
-
-def _evaluate(halves: Array, since: Array, u: Value, series: _Series, low: Value = 0.0) -> Jacobi:
-    """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0.
-
-    `low` is what rounding took from `since`.
-    """
-    k_prime = series.k_prime
-    far = abs(since) > 0.25
-    side = np.copysign(1.0, since)
-    y = np.where(far, (0.5 * side - since) - low, since) * series.stretch
-    if np.any(k_prime == 0):  # without a period
-        endless = np.broadcast_to(k_prime == 0, halves.shape)
-        halves, far = np.where(endless, 0.0, halves), far & ~endless
-        y = np.where(endless, u, y)
-    above, below = _tangent(y, series)
-    if np.any(k_prime == 0):
-        below = below * np.exp(np.minimum(_LARGEST_ARGUMENT - abs(y), 0.0))
-    sine = np.where(far, side * below, above)
-    cosine = np.where(far, side * (k_prime * above), below)
-    am = halves * np.pi + np.arctan2(sine, cosine)
-    size = np.sqrt(sine * sine + cosine * cosine)
-    sine /= size
-    cosine /= size
-    dn = np.hypot(cosine, k_prime * sine)
-    pairs = halves / 2
-    sign = 1.0 - 4.0 * abs(pairs - np.rint(pairs))  # (-1)^halves
-    return Jacobi(am, sign * sine, sign * cosine, dn)
-
-
-def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
-    """Return numerator and denominator of tan(am u)."""
-    if series.circular:
-        f = np.tan(y)
-        square = f * f
-        x = square / (1.0 + square)
-    else:
-        f = np.sinh(np.clip(y, -_LARGEST_ARGUMENT, _LARGEST_ARGUMENT))
-        x = series.q * f * f
-    return f * polynomial(series.above, x), polynomial(series.below, x)
-
-
-def _in_many_digits(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
-    """Return the functions of real or complex u in many digits."""
+        return Jacobi(*jacobi_of_arrays(u, modulus))
     u = ar.convert(u)
     if not modulus.k_prime:
         am = 2 * ar.atan(ar.tanh(u / 2))
         return Jacobi(am, ar.tanh(u), 1 / ar.cosh(u), 1 / ar.cosh(u))
     if not modulus.k:
         return Jacobi(u, ar.sin(u), ar.cos(u), 1 + 0 * u)
-    return _by_theta(ar, whole_and_rest(ar, u / (2 * complete_k(ar, modulus.k_prime))), modulus)
+    x = whole_and_rest(ar, u / (2 * complete_k(ar, modulus.k_prime)))
+    return _by_theta(ar, x, modulus, series_for(ar, modulus))
 
 
-def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus) -> Jacobi:
+@in_arithmetic
+def jacobi_at(
+    ar: FunctionArithmetic, x: Periods, modulus: Modulus, series: ThetaSeries | None = None
+) -> Jacobi:
+    """Return the functions at x = u/2K, given with all its digits, for one modulus k < 1.
+
+    At whole quarters of arrays sn, cn, dn are 0, 1, -1 and k' exactly, as in Aksenov's table 2.
+    In many digits the series of the modulus may be given.
+    """
+    if ar.is_array:
+        from .jacobi_arrays import jacobi_of_places
+
+        return Jacobi(*jacobi_of_places(x, modulus))
+    if not modulus.k:
+        return jacobi(ar, ar.pi * (x.turns + x.rest), modulus)
+    return _by_theta(ar, x, modulus, series or series_for(ar, modulus))
+
+
+def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus, series: ThetaSeries) -> Jacobi:
     """Return the functions at x = u/2K by quotients of theta functions, for 0 < k < 1."""
-    halves, zero = x.turns, ar.convert(0)
-    series, here, start = series_for(ar, modulus), Periods(zero, x.rest), Periods(zero, zero)
-    sine, cosine, delta, below = (theta_at(ar, ij, here, series) for ij in ("11", "10", "00", "01"))
-    at_2, at_3, at_4 = (theta_at(ar, ij, start, series) for ij in ("10", "00", "01"))
-    sn, cn, dn = (
-        at_3 / at_2 * sine / below,
-        at_4 / at_2 * cosine / below,
-        at_4 / at_3 * delta / below,
-    )
+    within = x._replace(turns=0 * x.turns)
+    theta = {ij: theta_at(ar, ij, within, series) for ij in ("11", "10", "00", "01")}
+    k, k_prime, below = modulus.k, modulus.k_prime, theta["01"]
+    sn = theta["11"] / (ar.sqrt(k) * below)
+    cn = ar.sqrt(k_prime / k) * theta["10"] / below
+    dn = ar.sqrt(k_prime) * theta["00"] / below
     am = ar.atan2(sn, cn) if ar.im(x.rest) == 0 else -ar.mpc(0, 1) * ar.log(cn + ar.mpc(0, 1) * sn)
-    sign = -1 if halves % 2 else 1
-    return Jacobi(halves * ar.pi + am, sign * sn, sign * cn, dn)
+    sign = -1 if x.turns % 2 else 1
+    return Jacobi(x.turns * ar.pi + am, sign * sn, sign * cn, dn)

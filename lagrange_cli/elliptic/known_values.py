@@ -81,7 +81,7 @@ def put_exact_values(table: dict[str, Array], u: Array, request: Request) -> Non
         whole = u == np.rint(u)
         for quarter in range(4):
             put(whole & (u % 4 == quarter), known_at_quarter(quarter, request))
-        if not request.radians:
+        if "am_deg" in table:
             table["am_deg"] = np.where(whole, 90 * u, table["am_deg"])
         if request.imaginary:
             put(u == 1, {"omega11_imag": 0})

@@ -6,15 +6,15 @@ as a sum of three doubles, and the rest as a sum of two.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from ..arithmetic.double_double import two_product, two_sum
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.types import Array
+from ..arithmetic.sums_of_doubles import triple
 from .complete import complete_k
 from .modulus import Modulus, rate_of_half_periods
+
+if TYPE_CHECKING:  # NumPy is loaded for arrays only
+    from ..arithmetic.types import Array
 
 Complex = Value
 """A real or complex number, or array, of the arithmetic in use."""
@@ -32,7 +32,9 @@ class Periods(NamedTuple):
         """Return the place half a period further on."""
         forward = real_part(ar, self.rest) < 0
         half, turns = ar.where(forward, 0.5, -0.5), self.turns + ar.where(forward, 0.0, 1.0)
-        if ar.is_array and np.isrealobj(self.rest):
+        if is_real_array(ar, self.rest):
+            from ..arithmetic.double_double import two_sum
+
             rest, low = two_sum(self.rest, half)
             return Periods(turns, rest + (low + self.low))
         return Periods(turns, self.rest + half)
@@ -50,10 +52,7 @@ def rate_of(ar: FunctionArithmetic, modulus: Modulus) -> Rate:
     """Return the rate of a modulus with k' > 0: 48 digits in a context, 30 of arrays."""
     if ar.is_array:
         return Rate(*rate_of_half_periods(modulus.k_prime, modulus.rest))
-    exact = 1 / (2 * complete_k(ar, modulus.k_prime))
-    high = float(exact)
-    middle = float(exact - high)
-    return Rate(high, middle, float(exact - high - middle))
+    return Rate(*triple(1 / (2 * complete_k(ar, modulus.k_prime))))
 
 
 def whole_and_rest(ar: FunctionArithmetic, x: Complex) -> Periods:
@@ -70,6 +69,10 @@ def of_quarters(ar: FunctionArithmetic, factor: Value) -> Periods:
 
 def reduced(u: Array, rate: Rate) -> Periods:
     """Return real arguments in periods, for |u| up to 1e290."""
+    import numpy as np
+
+    from ..arithmetic.double_double import two_product, two_sum
+
     u, high, middle, low = np.broadcast_arrays(np.asarray(u, dtype=float), *rate)
     product, error = two_product(u, high)
     second, second_error = two_product(u, middle)
@@ -80,6 +83,15 @@ def reduced(u: Array, rate: Rate) -> Periods:
     more = rest.round()
     rest, low = two_sum(rest - more, low)
     return Periods(turns + more, rest, low)
+
+
+def is_real_array(ar: FunctionArithmetic, x: Complex) -> bool:
+    """Return whether x is an array of real numbers, whose rests have two doubles."""
+    if not ar.is_array:
+        return False
+    import numpy as np
+
+    return bool(np.isrealobj(x))
 
 
 def real_part(ar: FunctionArithmetic, x: Complex) -> Value:

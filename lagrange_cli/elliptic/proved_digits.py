@@ -9,21 +9,76 @@ few digits: it has to be known from its formula.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from functools import cache
+from math import isfinite
 from typing import Any
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, precisions
 from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.text import NumberText
+from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
 
 _GUARD = 8
 """Digits that must agree beyond those that are printed."""
+_DIGITS_OF_DOUBLES = 25
+_FEW = 24
+"""Numbers that are computed in many digits in the time that NumPy takes to load."""
 
 
-def require_digits(ar: ManyDigits, digits: int, size: Any) -> None:
-    """Raise TooFewDigitsError where a number of this size has fewer digits behind the point."""
-    if size > 1 and ar.log10(size) + digits + 5 > ar.dps:
-        raise TooFewDigitsError
+def are_few(rows: int, columns: int) -> bool:
+    """Return whether a table of doubles is so small that it is made sooner without NumPy."""
+    return rows * columns <= _FEW
+
+
+class Settled:
+    """What settles the numbers of a table, with so many significant digits.
+
+    Without `digits` each number becomes the nearest double, which `_DIGITS_OF_DOUBLES` tell but for
+    one in 1e8.  The contexts are kept, since making one takes longer than most numbers.
+    """
+
+    def __init__(self, digits: int | None = None) -> None:
+        self.digits = _DIGITS_OF_DOUBLES if digits is None else digits
+        self.in_doubles = digits is None
+        self.context = cache(ManyDigits)
+
+    def require(self, ar: ManyDigits, size: Any) -> None:
+        """Raise TooFewDigitsError where a number of this size has too few behind the point."""
+        if size > 1 and ar.log10(size) + self.digits + 5 > ar.dps:
+            raise TooFewDigitsError
+
+    def texts(
+        self, compute: Callable[[ManyDigits], Mapping[str, Any]], known: Collection[str] = ()
+    ) -> dict[str, Any]:
+        """Return numbers written out, all digits right; texts and None as they are.
+
+        `known` are the names of the numbers that may be 0 or not finite (which makes an empty
+        text).  Raises LagtopError where the digits do not settle.
+        """
+        wanted = self.digits + _GUARD
+        most = 20 * wanted + 4000
+        previous: dict[str, Any] | None = None
+        for working in precisions(wanted + 15, most):
+            ar = self.context(working)
+            try:
+                values = compute(ar)
+            except (TooFewDigitsError, ZeroDivisionError):  # a divisor of which nothing is left
+                continue
+            if any(_unproved(ar, value) for name, value in values.items() if name not in known):
+                continue
+            texts = {name: _text(ar, value, wanted) for name, value in values.items()}
+            if texts == previous:
+                return {name: self._rounded(ar, value) for name, value in values.items()}
+            previous = texts
+        raise LagtopError(f"{self.digits} digits did not settle with {most} to work with")
+
+    def _rounded(self, ar: ManyDigits, value: Any) -> Any:
+        """Return a number with its digits, or that of the nearest double."""
+        text = _text(ar, value, self.digits)
+        if not (text and self.in_doubles and isinstance(text, NumberText)):
+            return text
+        nearest = float(text) + 0.0  # no -0
+        return NumberText(double_text(nearest) if isfinite(nearest) else "")
 
 
 def settled_or_rounded(
@@ -31,38 +86,11 @@ def settled_or_rounded(
     digits: int | None,
     known: Collection[str] = (),
 ) -> dict[str, Any]:
-    """Return numbers as `settled_texts` does or, without `digits`, each the nearest double."""
+    """Return numbers as `Settled.texts` does or, without `digits`, each the nearest double."""
     if digits is not None:
-        return settled_texts(compute, digits, known)
+        return Settled(digits).texts(compute, known)
     exact = compute(ManyDigits())
     return {name: x if x is None or isinstance(x, str) else float(x) for name, x in exact.items()}
-
-
-def settled_texts(
-    compute: Callable[[ManyDigits], Mapping[str, Any]],
-    digits: int,
-    known: Collection[str] = (),
-) -> dict[str, Any]:
-    """Return numbers with so many significant digits, all right; texts and None as they are.
-
-    `known` are the names of the numbers that may be 0 or not finite (which makes an empty text).
-    Raises LagtopError where the digits do not settle.
-    """
-    wanted, most = digits + _GUARD, 20 * (digits + _GUARD) + 4000
-    previous: dict[str, Any] | None = None
-    for working in precisions(wanted + 15, most):
-        ar = ManyDigits(working)
-        try:
-            values = compute(ar)
-        except (TooFewDigitsError, ZeroDivisionError):  # a divisor of which nothing is left
-            continue
-        if any(_unproved(ar, value) for name, value in values.items() if name not in known):
-            continue
-        texts = {name: _text(ar, value, wanted) for name, value in values.items()}
-        if texts == previous:
-            return {name: _text(ar, value, digits) for name, value in values.items()}
-        previous = texts
-    raise LagtopError(f"{digits} digits did not settle with {most} to work with")
 
 
 def _unproved(ar: ManyDigits, value: Any) -> bool:

@@ -15,8 +15,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import FunctionArithmetic, Value
@@ -28,6 +26,7 @@ from .periods import (
     Periods,
     Rate,
     imaginary_part,
+    is_real_array,
     rate_of,
     real_part,
     reduced,
@@ -95,7 +94,11 @@ def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     """
     if not ar.everywhere(modulus.k_prime > 0):
         raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
-    if not ar.is_array or any(np.ndim(part) for part in modulus):
+    if not ar.is_array:
+        return theta_series(ar, modulus)
+    import numpy as np
+
+    if any(np.ndim(part) for part in modulus):
         return theta_series(ar, modulus)
     return rounded(theta_series(ManyDigits(), in_many_digits(ManyDigits(), modulus)))
 
@@ -135,18 +138,20 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
 def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
     """Return theta_ij at a place in its periods."""
     size = series.odd_size if ij[0] == "1" else series.even_size
-    return size * _bell(ar, ij, x.rest, series) * _with_slope(ar, ij, x, series)[0]
+    return size * _bell(ar, ij, x.rest, series) * _value(ar, ij, x, series)
 
 
 def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
     """Return Z_ij at a place in its periods."""
-    value, slope = _with_slope(ar, ij, x, series)
+    value, slope = _sums(ar, ij, x, series)
+    if ij == "10":
+        value = _value(ar, ij, x, series)
     return slope / value * series.rate
 
 
 def in_periods(ar: FunctionArithmetic, v: Complex, series: ThetaSeries) -> Periods:
     """Return v/2K; real arrays keep their digits far away and next to whole periods."""
-    if ar.is_array and np.isrealobj(v) and series.exact_rate:
+    if series.exact_rate and is_real_array(ar, v):
         return reduced(v, series.exact_rate)
     return whole_and_rest(ar, v * series.rate)
 
@@ -157,55 +162,55 @@ def _checked(ar: FunctionArithmetic, ij: str, modulus: Modulus) -> ThetaSeries:
     return series_for(ar, modulus)
 
 
-def _with_slope(
-    ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries
-) -> tuple[Complex, Complex]:
-    """Return theta_ij(x) and its derivative, both over the size of the function and its `_bell`.
+def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
+    """Return theta_ij(x) over the size of the function and its `_bell`.
 
-    theta10 is read from two places: its value half a period further on, where it is theta11 and
-    keeps its digits next to its zero, and its derivative here, where that keeps them next to 0.
+    theta10 is read half a period further on, where it is theta11 and keeps its digits next to its
+    zero; its derivative keeps them next to 0, and is not read there.
     """
-    if ij == "10":
-        further = x.half_further(ar)
-        value, _ = _sums(ar, "11", further, series)
-        _, slope = _sums(ar, "10", x, series)
-        if not (ar.is_array and np.isrealobj(x.rest)):  # of a real x the two bells are one
-            value *= _bell(ar, "11", further.rest, series) / _bell(ar, "10", x.rest, series)
-        return value, slope
-    return _sums(ar, ij, x, series)
+    if ij != "10":
+        return _sums(ar, ij, x, series, slopes=False)[0]
+    further = x.half_further(ar)
+    value, _ = _sums(ar, "11", further, series, slopes=False)
+    if is_real_array(ar, x.rest):  # of a real x the two bells are one
+        return value
+    return value * (_bell(ar, "11", further.rest, series) / _bell(ar, "10", x.rest, series))
 
 
 def _sums(
-    ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries
+    ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries, *, slopes: bool = True
 ) -> tuple[Complex, Complex]:
-    """Return the sum of a series and of its derivative."""
+    """Return the sum of a series and, where it is wanted, of its derivative."""
     odd, circular = ij[0] == "1", series.circular
     if ar.everywhere(circular):
-        value, slope = _fourier(ar, ij, x.rest, series.q)
+        value, slope = _fourier(ar, ij, x.rest, series.q, slopes=slopes)
     elif not ar.anywhere(circular):
-        value, slope = _gaussians(ar, ij, x.rest, series.steepness)
+        value, slope = _gaussians(ar, ij, x.rest, series.steepness, slopes=slopes)
     else:
-        fourier = _fourier(ar, ij, x.rest, series.q)
-        gauss = _gaussians(ar, ij, x.rest, series.steepness)
+        fourier = _fourier(ar, ij, x.rest, series.q, slopes=slopes)
+        gauss = _gaussians(ar, ij, x.rest, series.steepness, slopes=slopes)
         value, slope = (ar.where(circular, *pair) for pair in zip(fourier, gauss, strict=True))
     sign = 1 - 2 * (x.turns % 2) if odd else 1
     return sign * value, sign * slope
 
 
-def _fourier(ar: FunctionArithmetic, ij: str, x: Complex, q: Value) -> tuple[Complex, Complex]:
+def _fourier(
+    ar: FunctionArithmetic, ij: str, x: Complex, q: Value, *, slopes: bool
+) -> tuple[Complex, Complex]:
     """Return the series of section 1 in q <= exp(-pi) and its derivative.
 
     01 and 00: 1 + 2 sum (-+1)^h q^(h^2) cos 2 pi h x; over q^(1/4), 11 and 10:
     2 sum (-1)^h q^(h(h+1)) sin 2 pi (h+1/2) x, and cosines without the sign.
     """
     odd, sines = ij[0] == "1", ij == "11"
+    wave, other = (ar.sin, ar.cos) if sines else (ar.cos, ar.sin)
     value, slope = (0 * x, 0 * x) if odd else (1 + 0 * x, 0 * x)
     for h in range(0 if odd else 1, _fourier_terms(ar, x, q)):
         weight = 2 * (-1) ** (h * int(ij[1])) * q ** (h * (h + 1) if odd else h * h)
         rate = (2 * h + odd) * ar.pi
-        sine, cosine = ar.sin(rate * x), ar.cos(rate * x)
-        value = value + weight * (sine if sines else cosine)
-        slope = slope + weight * rate * (cosine if sines else -sine)
+        value = value + weight * wave(rate * x)
+        if slopes:
+            slope = slope + weight * (rate if sines else -rate) * other(rate * x)
     return value, slope
 
 
@@ -216,7 +221,9 @@ def _bell(ar: FunctionArithmetic, ij: str, x: Complex, series: ThetaSeries) -> C
     return ar.where(series.circular, 1 + 0 * bell, bell)
 
 
-def _gaussians(ar: FunctionArithmetic, ij: str, x: Complex, c: Value) -> tuple[Complex, Complex]:
+def _gaussians(
+    ar: FunctionArithmetic, ij: str, x: Complex, c: Value, *, slopes: bool
+) -> tuple[Complex, Complex]:
     """Return sum (+-1)^n exp(-c (x - n)^2) and its derivative, over the greatest of them.
 
     c is the steepness; n are the half-integers for 01 and 11, the integers for 00 and 10.  A
@@ -237,7 +244,8 @@ def _gaussians(ar: FunctionArithmetic, ij: str, x: Complex, c: Value) -> tuple[C
         if subtracted:
             total, difference = difference, total
         value = value + total
-        slope = slope - 2 * c * (x * total - n * difference)
+        if slopes:
+            slope = slope - 2 * c * (x * total - n * difference)
     turn = ar.where(left, -1, 1)
     return value * (turn if subtracted else 1), slope * (1 if subtracted else turn)
 
@@ -246,8 +254,11 @@ def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
     """Return how many terms there are until q^(h^2) exp(2 pi h |Im x|) is negligible."""
     height = ar.where(q > 0, abs(imaginary_part(ar, x)), 0 * q)
     peaks = -ar.pi * height / ar.log(ar.where(q > 0, q, 0 * q + ar.eps))
-    peak = float(np.max(peaks, initial=0.0) if ar.is_array else peaks)
-    return 2 + int(peak + math.sqrt(negligible(ar) / math.pi))
+    if ar.is_array:
+        import numpy as np
+
+        peaks = np.max(peaks, initial=0.0)
+    return 2 + int(float(peaks) + math.sqrt(negligible(ar) / math.pi))
 
 
 def negligible(ar: FunctionArithmetic) -> float:

@@ -15,8 +15,6 @@ from __future__ import annotations
 import math
 from typing import Any, Protocol
 
-import numpy as np
-
 from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
@@ -152,6 +150,8 @@ def _evaluate(
         kind = third_kind(ar, ij, v, modulus)
         value = getattr(kind, name)(ar, in_periods(ar, ar.convert(eta), series))
         return ar.mpc(0, value) if ar.im(v) else value
+    import numpy as np
+
     eta, v, *parts = np.broadcast_arrays(eta, v, *modulus)
     values = np.zeros(eta.shape, dtype=v.dtype if np.iscomplexobj(v) else float)
     many = ManyDigits()

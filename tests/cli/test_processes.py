@@ -46,6 +46,11 @@ def loaded(*args: str) -> set[str]:
         ("jacobi --k 0.8 --format json", set()),
         ("jacobi --k-prime 1e-9", {"rich"}),
         ("jacobi --nome 0.1 --format csv", {"mpmath"}),
+        ("jacobi --k 0.8 --u K/2 --u K/3 --format csv", {"mpmath"}),
+        ("jacobi --k 0.8 --u 0.5 --zeta --pi --param 0.7i --format json", {"mpmath"}),
+        ("jacobi --k 0.8 --u 0.5 --theta --omega --param 0.7", {"mpmath", "rich"}),
+        ("jacobi --k 0.8 --phi 30 --phi 60 --format csv", {"mpmath"}),
+        ("jacobi --k 0.8 --u-range 0:1:99 --format csv", {"mpmath", "numpy", "orjson"}),
         ("eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json", {"mpmath"}),
     ],
 )

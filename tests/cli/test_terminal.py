@@ -118,7 +118,7 @@ WIDE = [
     "table --n 3 --format table",
     "table --n 3 --columns t,axis,quaternion,energy --format table",
     "table --n 3 --digits 90 --format table",
-    "jacobi --k 0.5 --u-range 0:1:3 --theta --zeta",
+    "jacobi --k 0.5 --u-range 0:1:3 --am --theta --zeta",
     "jacobi --k 0.5 --digits 70",
     f"{ETA} --digits 60",
     f"{ETA} --tau 1 --digits 60",

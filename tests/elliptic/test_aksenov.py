@@ -14,9 +14,9 @@ from errata import misprints
 from lagrange_cli.elliptic.complete import complete_k, nome
 from lagrange_cli.elliptic.eta import (
     band_of,
-    eta_and_rate,
     eta_constants,
 )
+from lagrange_cli.elliptic.eta_swing import swing
 from lagrange_cli.elliptic.incomplete import incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
@@ -201,7 +201,7 @@ K1 = ar.ellipk(C.k1**2)
 
 def eta_at(tau: Any) -> Any:
     """Return eta at a time since it was at delta*."""
-    return eta_and_rate(ar, C.sigma1 * tau / 2, C, band_of(ar, NESTED))[0]
+    return swing(ar, C.sigma1 * tau / 2, C, band_of(ar, NESTED)).eta
 
 
 TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]

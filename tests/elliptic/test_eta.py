@@ -19,9 +19,10 @@ from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import units
 from lagrange_cli.elliptic.eta import eta_constants, record
-from lagrange_cli.elliptic.eta_table import digit_rows, header, rows
+from lagrange_cli.elliptic.eta_table import Wanted, digit_rows, header, rows
 from lagrange_cli.elliptic.quadrature import Quadrature
 
+RATE, ALL = Wanted(rate=True), Wanted(rate=True, unit="rad")
 ORBITS = {
     "generic": Quadrature(Fraction("-0.5"), Fraction("0.6"), (Fraction("-1.3"), Fraction("1.5"))),
     "Earth-like": Quadrature(Fraction("-0.9"), Fraction("0.9"), (Fraction(-33), Fraction("33.1"))),
@@ -114,7 +115,7 @@ def test_eta(name: str) -> None:
         period = 2 * integral.tau(mpmath.pi)
         assert abs(mpmath.mpf(eta_constants(ManyDigits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
-        block = next(rows(of, ListedPoints(times), Fraction(0)))
+        block = next(rows(of, ListedPoints(times), Fraction(0), RATE))
         for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             tau = time - period * mpmath.nint(time / period)
@@ -149,7 +150,7 @@ def test_chain(name: str) -> None:
         m, sigma1 = k2 / (1 + k2), mpmath.sqrt(integral.g * less * more * (1 + k2))
         assert abs(4 * mpmath.ellipk(m) / sigma1 / period - 1) < 1e-40
         times = [Fraction(float(period) * part) for part in PARTS]
-        block = next(rows(of, ListedPoints(times), Fraction(0), "rad"))
+        block = next(rows(of, ListedPoints(times), Fraction(0), ALL))
         for exact_time, row in zip(times, block.tolist(), strict=True):
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             turns = mpmath.nint(time / period)
@@ -202,7 +203,7 @@ def test_energy_and_ends(
     upper = lower + width
     ends = [upper + gaps[0] if above else lower - gaps[0], lower - gaps[-1]]
     of = Quadrature(lower, upper, tuple(ends[: len(gaps)]))
-    ((_, eta, rate),) = next(rows(of, ListedPoints([tau]), Fraction(0))).tolist()
+    ((_, eta, rate),) = next(rows(of, ListedPoints([tau]), Fraction(0), RATE)).tolist()
     assert lower <= Fraction(eta) + Fraction("1e-15")
     assert Fraction(eta) <= upper + Fraction("1e-15")
     radicand = (upper - Fraction(eta)) * (Fraction(eta) - lower)
@@ -214,7 +215,9 @@ def test_energy_and_ends(
 def test_far_times(lagtop: Lagtop) -> None:
     """More digits for them, or a refusal; c3 of many periods is as good as the rest of it."""
     args = "--delta 0.7 --delta-star 0.2 --gap-above 1 --gap-below 1".split()
-    shown = lagtop("eta", *args, "--tau", "1e60", "--digits", "17", "--format", "csv").stdout
+    shown = lagtop(
+        "eta", *args, "--tau", "1e60", "--rate", "--digits", "17", "--format", "csv"
+    ).stdout
     assert shown.splitlines()[1] == "1.0e+60,0.46542969581402027,-0.31188048026682578"
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
     of = ORBITS["generic"]
@@ -228,7 +231,7 @@ def test_far_times(lagtop: Lagtop) -> None:
 def test_digits_close_to_the_ends() -> None:
     """Next to a turning point eta is reckoned from there."""
     of = Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2)))
-    ((_, eta, _),) = next(rows(of, ListedPoints([Fraction("1e-9")]), Fraction(0))).tolist()
+    ((_, eta),) = next(rows(of, ListedPoints([Fraction("1e-9")]), Fraction(0))).tolist()
     assert eta == pytest.approx(0.5e-18, rel=1e-12, abs=0)
 
 
@@ -243,10 +246,13 @@ LOW, HIGH, OUT, IN = (Fraction(x) for x in ("-0.5", "0.6", "-1.3", "1.5"))
 
 def test_digits_agree_with_doubles() -> None:
     of, times = ORBITS["generic"], ListedPoints([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
-    block = next(rows(of, times, Fraction("0.4")))
-    texts = digit_rows(of, times, Fraction("0.4"), 30)
-    assert header() == ["tau", "eta", "etadot"]
-    assert block == pytest.approx(np.array([[float(x) for x in row] for row in texts]), abs=1e-15)
+    block = next(rows(of, times, Fraction("0.4"), ALL))
+    texts = digit_rows(of, times, Fraction("0.4"), ALL, 30)
+    assert header(ALL) == ["tau", "eta", "etadot", "h1", "theta_rad", "xi_prime"]
+    assert header(RATE) == ["tau", "eta", "etadot"]
+    assert block == pytest.approx(
+        np.array([[float(x) for x in row] for row in texts]), abs=1e-15, rel=1e-15
+    )
     assert record(of)["sigma1"] == float(record(of, 30)["sigma1"])
 
 
@@ -284,6 +290,7 @@ def test_digits_agree_with_doubles() -> None:
         ("--delta 1 --delta-star 0 --p 0 --quadratic", "--quadratic and --p exclude each other"),
         ("--delta 1 --delta-star 0 --p 3 --q 2", "makes the period infinite (k1 = 1), got 1.0"),
         ("--delta 1 --delta-star 0 --quadratic --chain", "--chain needs --tau or --tau-range"),
+        ("--delta 1 --delta-star 0 --quadratic --rate", "--rate needs --tau or --tau-range"),
     ],
 )
 def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
@@ -364,7 +371,7 @@ def test_complex_pairs_at_random() -> None:
             exact = (m1 * start * (1 + cn) + m2 * end * (1 - cn)) / (m1 * (1 + cn) + m2 * (1 - cn))
             slope = mpmath.sqrt((end - exact) * (exact - start) * ((exact - p) ** 2 + far**2))
             theta = mpmath.atan2(sn, cn) - mpmath.pi / 2 + 2 * mpmath.pi * turns
-            row = next(rows(of, ListedPoints([time]), Fraction(0), "rad"))[0].tolist()
+            row = next(rows(of, ListedPoints([time]), Fraction(0), ALL))[0].tolist()
             assert units(row[1], exact, slope, since) <= 2.5
             assert units(row[4], theta, rate * dn, since) <= 2
             assert units(row[5], -cn, rate * sn * dn, since) <= 2

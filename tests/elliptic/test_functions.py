@@ -313,8 +313,23 @@ def test_constants_of_the_command(lagtop: Lagtop) -> None:
     assert (one["k_prime"], one["K"], one["E"], one["nome"]) == (0.0, None, 1.0, 1.0)
 
 
+def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
+    """am, sn, cn and dn are the default, and beside other functions only under --am."""
+    plain = "u,am_deg,sn,cn,dn"
+    for families, names in (
+        ("", plain),
+        ("--am", plain),
+        ("--zeta", "u,zeta01,zeta00,zeta11,zeta10"),
+        ("--am --pi --param 0.3", f"{plain},pi01,pi00,pi11"),
+    ):
+        for count in (2, 20):  # with and without NumPy
+            args = ["--k", "0.8", "--u-range", f"0.1:1:{count}", *families.split()]
+            shown = lagtop("jacobi", *args, "--format", "csv").stdout.splitlines()
+            assert (shown[0], len(shown)) == (names, count + 1)
+
+
 def test_rows_of_the_command(lagtop: Lagtop) -> None:
-    args = "--k 0.8 --u-range -3:3.5:6 --theta --zeta --omega --pi --param 0.4i".split()
+    args = "--k 0.8 --u-range -3:3.5:6 --am --theta --zeta --omega --pi --param 0.4i".split()
     plain = json.loads(lagtop("jacobi", *args, "--format", "json").stdout)
     many = json.loads(lagtop("jacobi", *args, "--format", "json", "--digits", "25").stdout)
     assert len(plain) == 6

@@ -48,7 +48,7 @@ def test_zeros_and_poles_of_the_theta_functions(
     digits: list[str], modulus: str, parameter: str, lagtop: Lagtop
 ) -> None:
     """Zeros and poles are at whole quarters; no other cell there is 0 or empty."""
-    args = ["--theta", "--zeta", "--omega", "--pi", "--param", parameter, "--format", "csv"]
+    args = ["--am", "--theta", "--zeta", "--omega", "--pi", "--param", parameter, "--format", "csv"]
     shown = lagtop(
         *["jacobi", *modulus.split(), "--u-range=-3K:3K:7", *args, *digits]
     ).stdout.replace("_imag", "")
@@ -88,7 +88,7 @@ def random_request(rng: random.Random) -> tuple[Judge, Request, Fraction]:
     )
     judge = Judge(name, Fraction(value), 2600 if value < 1e-20 else 700)
     modulus = ModulusInput(name, Fraction(value))
-    return judge, Request(modulus, ("theta",), in_quarters=True), Fraction(factor)
+    return judge, Request(modulus, ("am", "theta"), in_quarters=True), Fraction(factor)
 
 
 def exact_values(judge: Judge, factor: Fraction) -> dict[str, tuple[Any, float]]:
@@ -133,7 +133,7 @@ def test_any_multiple(seed: int) -> None:
 
 def test_digits_of_a_third_of_a_quarter() -> None:
     judge = Judge("k", Fraction(1, 2))
-    request = Request(ModulusInput("k", Fraction(1, 2)), ("theta",), in_quarters=True)
+    request = Request(ModulusInput("k", Fraction(1, 2)), ("am", "theta"), in_quarters=True)
     header, texts = digit_rows(ListedPoints([Fraction(1, 3)]), request, 40)
     for name, text in zip(header, next(iter(texts)), strict=True):
         exact, _ = exact_values(judge, Fraction(1, 3))[name]
