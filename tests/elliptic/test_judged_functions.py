@@ -146,7 +146,7 @@ def misrounded(case: Case, judge: Judge) -> Iterator[str]:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_small_tables_have_the_nearest_doubles(seed: int) -> None:
-    """What is computed in many digits, without NumPy, is rounded once: 1 000 values were right."""
+    """Numbers of many digits are rounded once: each of 1 000 values was right."""
     case, judge = random_case(random.Random(f"few {seed}"))
     assert list(misrounded(case._replace(arguments=case.arguments[:2]), judge)) == []
 
