@@ -8,7 +8,9 @@ if TYPE_CHECKING:
     from .inputs.top import Top
     from .judge.compare import compare
     from .judge.judgement import Judgement
+    from .motion.angle_sensitivities import angle_sensitivities
     from .motion.regime import Regime
+    from .motion.sensitivities import sensitivities
     from .motion.solve import Motion, solve
     from .plot.browser.document import view
     from .sweeps.angles import sweep_angles
@@ -23,8 +25,10 @@ __all__ = [
     "Regime",
     "Top",
     "__version__",
+    "angle_sensitivities",
     "compare",
     "read_scene",
+    "sensitivities",
     "solve",
     "sweep",
     "sweep_angles",
@@ -38,8 +42,10 @@ _MODULES = {
     "Motion": "motion.solve",
     "Regime": "motion.regime",
     "Top": "inputs.top",
+    "angle_sensitivities": "motion.angle_sensitivities",
     "compare": "judge.compare",
     "read_scene": "inputs.given",
+    "sensitivities": "motion.sensitivities",
     "solve": "motion.solve",
     "sweep": "sweeps.records",
     "sweep_angles": "sweeps.angles",

@@ -168,20 +168,15 @@ def gaps_from_start(
     """
     a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
     zero = 0 * u0
-    around = start.psi_rate * start.sin
-    energy, momentum = start.theta_rate * start.theta_rate + around * around, around * start.sin
-    along, b2 = start.sin * start.theta_rate, b * b
-    c0 = along * along
+    energy, momentum, (c0, c1, c2) = cubic(start)
     a_c0 = a * c0
-    c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
-    c2 = 2 * a * u0 - energy - b2
     separatrix = facts.regime == "separatrix"
     if separatrix or facts.upper_root == 3:
         D = a * above
     elif facts.steady:
         D = -c2
     else:
-        bound = energy + b2 + 2 * a
+        bound = energy + b * b + 2 * a
         D = (find_root or largest_root)(ar, c2, a * c1, a * a_c0, bound)
     if facts.steady:
         x1, x2 = zero, zero
@@ -213,6 +208,16 @@ def gaps_from_start(
         if facts.upper_root or separatrix
         else above * (start.psi_rate * below - b),
     )
+
+
+def cubic(start: State[R]) -> tuple[R, R, tuple[R, R, R]]:
+    """Return theta'^2 + (psi' sin)^2, psi' sin^2, and c0, c1, c2 of a x^3 + c2 x^2 + c1 x + c0."""
+    a, b, u0 = start.a, start.b, start.cos
+    around = start.psi_rate * start.sin
+    energy, momentum = start.theta_rate * start.theta_rate + around * around, around * start.sin
+    along, b2 = start.sin * start.theta_rate, b * b
+    c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
+    return energy, momentum, (along * along, c1, 2 * a * u0 - energy - b2)
 
 
 def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:

@@ -27,14 +27,13 @@ from numpy.typing import ArrayLike
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks
 from ..arithmetic.double_double import reduce_phase
-from ..arithmetic.points import MAX_TIME
 from ..arithmetic.sums_of_doubles import Pair
 from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
-from ..errors import LagtopError
 from .attitude import Attitude, Growths, Spinor
 from .columns import ATTITUDE, NOTHING, Needs
 from .theta_series import Component, Frame, Polynomial
+from .times import check_times, times_of
 
 _IN_ORDER = slice(None)
 _GREATEST = 340.0
@@ -93,13 +92,7 @@ class Sampler:
 
     def check(self, t: ArrayLike) -> None:
         """Raise LagtopError where a time is not finite or names no phase."""
-        times, limit = times_of(t), min(self.max_time, MAX_TIME)
-        if not times.size or (times.min() >= -limit and times.max() <= limit):
-            return
-        bad = times[~(np.abs(times) <= limit)]
-        raise LagtopError(
-            f"t must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", "t"
-        )
+        check_times(times_of(t), self.max_time)
 
 
 @dataclass(frozen=True)
@@ -205,19 +198,6 @@ class SeparatrixSampler(Sampler):
         zero = np.zeros_like(h)
         spinor = Spinor(x2, y * y, arg_x, zero, falling)
         return Attitude(self.growths, space, _IN_ORDER, t, zero, spinor)
-
-
-def times_of(t: ArrayLike) -> Array:
-    """Return times as float64.  Raises LagtopError for what is not an array of real numbers."""
-    if np.ma.isMaskedArray(t) and np.ma.getmaskarray(t).any():
-        raise LagtopError("t must not be masked: fill it or leave the elements out", "t")
-    try:
-        times = np.asarray(t)
-        if times.size and times.dtype.kind not in "iufO":
-            raise TypeError(times.dtype)
-        return times.astype(np.float64, copy=False)
-    except (TypeError, ValueError, OverflowError):
-        raise LagtopError(f"t must be real numbers, got {repr(t)[:60]}", "t") from None
 
 
 def _by_parity(step: Array, space: Workspace) -> tuple[Any, int]:

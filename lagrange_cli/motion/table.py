@@ -105,7 +105,7 @@ def table(
     from ..arithmetic.arrays import ARRAYS
     from .columns import chosen_columns, name_of
     from .sample import samples
-    from .samplers import times_of
+    from .times import times_of
 
     chosen, times = chosen_columns(columns), times_of(t)
     motion.sampler().check(times)

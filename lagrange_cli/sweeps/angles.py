@@ -14,8 +14,8 @@ from ..arithmetic.workspace import Workspace
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.regime import Regime
-from ..motion.samplers import times_of
 from ..motion.solve import solve
+from ..motion.times import times_of
 from .angle_arrays import ArraySampler, array_sampler
 from .pair_motions import PairMotions, released, started
 from .records import BLOCK_ROWS, Column, together

@@ -1,0 +1,139 @@
+"""Exact derivatives of the angles over time by the inputs of a top.
+
+They are those of the closed form, not of neighbouring motions, and grow with time where rates
+differ.  Next to a steady precession they are small nutations; over a pole, along the vertical and
+on the separatrix some do not exist, or are not computed: these are NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.blocks import blocks
+from ..arithmetic.types import Array
+from ..inputs.names import check_names
+from ..inputs.top import Top
+from .neighbourhood import PARAMETERS, by_inputs
+from .regime import Exact, Regime, exact
+from .samplers import Angles
+from .sensitivities import Partials
+from .series_derivatives import SeriesDerivatives
+from .solve import Motion
+from .steady_neighbours import SteadyDerivatives
+from .times import check_times, times_of
+
+
+class AngleSensitivities(NamedTuple):
+    """Angles in radians in the shape of the times, and their derivatives by some inputs."""
+
+    inputs: tuple[str, ...]
+    """Names of the inputs, in the order of the last axis."""
+    angles: Angles
+    theta: Array
+    """Derivatives of the tilt: one more axis than the times, for the inputs."""
+    phi: Array
+    psi: Array
+
+
+def angle_sensitivities(
+    top: Top, t: ArrayLike, inputs: Sequence[str] | None = None
+) -> AngleSensitivities:
+    """Return the angles of a top at the times t, and their derivatives by inputs (default: all).
+
+    Angles are in radians, unwrapped; a derivative by `theta0_deg` is per degree.  Each derivative
+    is within 1e-12 of its size times the condition number; those that do not exist are NaN.  Raises
+    LagtopError for an unknown input or a time out of reach.
+    """
+    scene = exact(top)
+    chain = by_inputs(scene)
+    names = check_names("inputs", list(chain) if inputs is None else inputs, chain)
+    neighbours = AngleDerivatives(scene)
+    times = times_of(t)
+    check_times(times, neighbours.max_time)
+    flat = np.ascontiguousarray(times).reshape(-1)
+    angles, found = np.empty((3, flat.size)), np.empty((3, flat.size, len(names)))
+    with ARRAYS.working():
+        for part in blocks(flat.size):
+            angles[:, part], partials = neighbours.at(flat[part])
+            for i, name in enumerate(names):
+                found[:, part, i] = chained(partials, chain[name])
+    shape = times.shape
+    return AngleSensitivities(
+        tuple(names),
+        Angles(*(angle.reshape(shape) for angle in angles)),
+        *(derivative.reshape(*shape, len(names)) for derivative in found),
+    )
+
+
+def chained(partials: Array, by: dict[str, Fraction]) -> Array:
+    """Return the derivatives by an input from those by the parameters that hang on it."""
+    total = np.zeros_like(partials[:, 0])
+    for i, name in enumerate(PARAMETERS):
+        if name in by:
+            total += float(by[name]) * partials[:, i]
+    return total
+
+
+class Model(Protocol):
+    """Some motions next to a top."""
+
+    max_time: float
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return angles (3, times) and their derivatives (3, parameters, times)."""
+
+
+class AngleDerivatives:
+    """The angles of one top over time and their derivatives by `PARAMETERS`."""
+
+    def __init__(self, scene: Exact) -> None:
+        partials = Partials(scene)
+        near, facts = partials.near, scene.facts
+        self.arc = 1.0 if scene.top.theta0_deg is None else math.pi / 180
+        kept = [i for i, name in enumerate(PARAMETERS) if name not in near.broken]
+        every = list(range(len(PARAMETERS)))
+        self.models: list[tuple[Model, list[int]]]
+        if facts.regime is Regime.SEPARATRIX or (facts.steady and facts.pole):
+            self.models = [(Spinning(scene), kept)]
+        elif facts.steady:
+            self.models = [(SteadyDerivatives(near), every)]
+        else:
+            self.models = [(SeriesDerivatives(partials.here, partials.here), kept)]
+            if facts.free:
+                torque = SeriesDerivatives(partials.generic, partials.generic_means)
+                self.models.append((torque, [PARAMETERS.index("a")]))
+        self.max_time = self.models[0][0].max_time
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return angles (3, times) and their derivatives (3, parameters, times)."""
+        angles = np.empty((3, t.size))
+        derivatives = np.full((3, len(PARAMETERS), t.size), np.nan)
+        for model, rows in reversed(self.models):
+            angles, found = model.at(t)
+            derivatives[:, rows] = found[:, rows]
+        start = t == 0
+        angles[1:, start], derivatives[1:, :, start] = 0.0, 0.0
+        derivatives[0][:, start] = 0.0
+        derivatives[0, PARAMETERS.index("tilt"), start] = self.arc
+        return angles, derivatives
+
+
+class Spinning:
+    """Motions of which only the spin by r0 alone is told: the others part from them at once."""
+
+    def __init__(self, scene: Exact) -> None:
+        self.sampler = Motion(scene).sampler()
+        self.max_time = self.sampler.max_time
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return angles, and their derivatives: the spin grows with r0, and nothing else does."""
+        derivatives = np.zeros((3, len(PARAMETERS), t.size))
+        derivatives[1, PARAMETERS.index("r0")] = t
+        return np.array(self.sampler.angles(t)), derivatives

@@ -1,0 +1,273 @@
+"""The theta series of a nutating top and its derivatives by the parameters of its neighbourhood.
+
+X and Y about a turning point are polynomials in s, s = sin^2 z or sinh^2 z, with factors S and C
+(see `theta_series`).  Their coefficients, and what z = scale (2t/T + offset) is made of, are dual
+numbers; here they are rows of doubles, the value first and below it the derivatives.
+"""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.double_double import reduce_phase
+from ..arithmetic.duals import Dual
+from ..arithmetic.points import MAX_PERIODS
+from ..arithmetic.sums_of_doubles import Pair, pair
+from ..arithmetic.types import Array
+from ..arithmetic.workspace import Workspace
+from ..elliptic.carlson import carlson_rf
+from ..elliptic.jacobi import jacobi
+from ..elliptic.modulus import Modulus
+from .attitude import Growths, growths
+from .kinds import Nutating
+from .neighbourhood import PARAMETERS
+from .series_constants import theta_constants
+from .theta_series import Component, Polynomial, evaluate, theta_series
+
+_NEGLIGIBLE = Decimal(2) ** -100
+
+
+class Rows(NamedTuple):
+    """X or Y about one turning point, its coefficients in rows."""
+
+    real: Array
+    imag: Array
+    even: bool
+
+
+class Polar(NamedTuple):
+    """The squared modulus and the argument of X or Y, and their derivatives in rows."""
+
+    square: Array
+    squares: Array
+    argument: Array
+    arguments: Array
+
+
+class SeriesDerivatives:
+    """Angles of a nutating top over time, and their derivatives by `PARAMETERS`."""
+
+    def __init__(self, motion: Nutating[Dual], means: Nutating[Dual]) -> None:
+        """Take the constants from a motion, the mean rates from `means`."""
+        ar: Any = motion.ar
+        with ar.working():
+            constants = theta_constants(motion, smooth_offset(motion), _rises(motion))
+            series = theta_series(ar, constants)
+            nearest = ar.nint(constants.offset * 2)
+            offset = constants.offset * 2 - nearest
+            frames = [series.frames[(nearest + i) % 2] for i in range(2)]
+            x_start, y_start = evaluate(ar, series, frames[0], offset, constants.rises)[1::2]
+            speed = 2 / constants.period
+            rates = means.mean_spin_rate, means.mean_precession_rate
+            slopes = series.spin_slope, series.precession_slope
+            greatest = ar.exp(series.scale).value / 4 if series.hyperbolic else Decimal("0.5")
+            leading = max(abs(c.real[0].value) for frame in frames for c in frame[:2])
+            size = Decimal(2) ** math.frexp(float(leading))[1]
+            self.rates_of_tilt = [
+                np.array([float(x.value / size**4) for x in _kept(frame.rate, greatest)])
+                for frame in frames
+            ]
+            self.swing = _Swing.of(motion, means, first_is_upper=nearest % 2 == 0)
+
+            def component(c: Component) -> Rows:
+                real, imag = (
+                    _rows([x / Dual(size) for x in _kept(part, greatest)])
+                    for part in (c.real, c.imag)
+                )
+                return Rows(real, imag, c.even)
+
+            self.hyperbolic = series.hyperbolic
+            self.frames = [(component(frame.x), component(frame.y)) for frame in frames]
+            self.speed: Pair = pair(speed.value)
+            self.speeds, self.offsets, self.scales = map(_row, (speed, offset, series.scale))
+            self.rates, self.slopes = (np.array([_row(x) for x in y]) for y in (rates, slopes))
+            starts = x_start - y_start, x_start + y_start
+            self.starts = np.array(
+                [
+                    _row(start + offset * Dual(_decimal(slope)))  # the slope of the phase at t = 0
+                    for start, slope in zip(starts, slopes, strict=True)
+                ]
+            )
+            self.growths: Growths = growths(
+                ar.plain,
+                rates=(rates[0].value, rates[1].value),
+                slopes=(_decimal(slopes[0]), _decimal(slopes[1])),
+                starts=(x_start.value, y_start.value),
+            )
+            self.max_time = float(int(MAX_PERIODS) * constants.period.value)
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return tilt, spin and precession at times, and their derivatives by the parameters.
+
+        The shapes are (3, times) and (3, parameters, times).
+        """
+        step, since = reduce_phase(t, self.speed, float(self.offsets[0]))
+        phase = since + self.offsets[0]
+        moved = np.multiply.outer(self.speeds[1:], t)
+        x, y = (self._polar(i, step, phase) for i in range(2))
+        dphase = moved + self.offsets[1:, None]
+        rates = self._rates(step, phase, x.square, y.square)
+        angles = np.empty((3, t.size))
+        derivatives = np.empty((3, len(PARAMETERS), t.size))
+        angles[0] = 2.0 * np.arctan2(np.sqrt(y.square), np.sqrt(x.square))
+        both = np.sqrt(x.square * y.square) * (x.square + y.square)
+        derivatives[0] = (x.square * y.squares - y.square * x.squares) / both + rates[0] * dphase
+        series = x.argument - y.argument, x.argument + y.argument
+        slopes = x.arguments - y.arguments, x.arguments + y.arguments
+        for i, growth in enumerate((self.growths.phi, self.growths.psi)):
+            with Workspace(t.size) as space:
+                angles[i + 1] = growth.unwrapped(t, since, series[i], space)
+            grown = np.multiply.outer(self.rates[i, 1:], t)
+            wound = np.multiply.outer(self.slopes[i, 1:], since) - self.starts[i, 1:, None]
+            derivatives[i + 1] = slopes[i] + wound + grown + rates[i + 1] * dphase
+        return angles, derivatives
+
+    def _rates(self, step: Array, phase: Array, x2: Array, y2: Array) -> list[Array]:
+        """Return what tilt, spin and precession gain per step, of the latter less the mean growth.
+
+        Formed from the width of the nutation, they keep their digits where that is small.
+        """
+        z = phase * self.scales[0]
+        S, C = (np.sinh(z), np.cosh(z)) if self.hyperbolic else (np.sin(z), np.cos(z))
+        odd = np.remainder(step, 2.0) != 0
+        rate = np.where(odd, *(_value(part, S * S) for part in self.rates_of_tilt[::-1])) * S * C
+        norm = x2 + y2
+        theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
+        phi, psi = self.swing.rates(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
+        return [gain / self.speed.high for gain in (theta, phi, psi)]
+
+    def _polar(self, which: int, step: Array, phase: Array) -> Polar:
+        """Return X (0) or Y (1) with its derivatives at a fixed phase."""
+        z = phase * self.scales[0]
+        dz = np.multiply.outer(self.scales[1:], phase)
+        odd = np.remainder(step, 2.0) != 0
+        real, imag = np.empty((2, len(dz) + 1, z.size))
+        for rows, frame in ((~odd, self.frames[0]), (odd, self.frames[1])):
+            parts = _component(frame[which], z[rows], self.hyperbolic)
+            for whole, (values, slope) in zip((real, imag), parts, strict=True):
+                values[1:] += slope * dz[:, rows]
+                whole[:, rows] = values
+        square = real[0] * real[0] + imag[0] * imag[0]
+        return Polar(
+            square,
+            2.0 * (real[0] * real[1:] + imag[0] * imag[1:]),
+            np.arctan2(imag[0], real[0]),
+            (real[0] * imag[1:] - imag[0] * real[1:]) / square,
+        )
+
+
+class _Swing(NamedTuple):
+    """The rates of spin and precession about their means, by how far u is from u1 and u2."""
+
+    modulus: Modulus
+    quarter: float
+    """K."""
+    south: float
+    """(beta + b)/2 (u1 - u2)/(1 + u1), over 1 + u the part of the precession rate beyond u1."""
+    north: float
+    south_at_u1: float
+    """(beta + b)/2/(1 + u1) less the mean of (beta + b)/2/(1 + u)."""
+    north_at_u2: float
+    first_is_upper: bool
+    """Whether the turning point of the even steps is u1."""
+
+    @classmethod
+    def of(cls, motion: Nutating[Dual], means: Nutating[Dual], *, first_is_upper: bool) -> _Swing:
+        """Return the constants of a motion, rounded from many digits."""
+        gaps = motion.gaps
+        plus, minus = gaps.beta_plus_b.value / 2, gaps.beta_minus_b.value / 2
+        drift = means.mean_spin_rate.value - motion.state.pole_drift.value
+        precession, width = means.mean_precession_rate.value, gaps.u1_u2.value
+        south, north = plus / gaps.below_u1.value, minus / gaps.above_u2.value
+        return cls(
+            Modulus(float(motion.k.value), float(motion.k_prime.value)),
+            quarter=float(motion.K.value),
+            south=float(south * width),
+            north=float(north * width),
+            south_at_u1=float(south - (precession + drift) / 2),
+            north_at_u2=float(north - (precession - drift) / 2),
+            first_is_upper=first_is_upper,
+        )
+
+    def rates(self, phase: Array, odd: Array, below: Array, above: Array) -> tuple[Array, Array]:
+        """Return both rates less their means; `below` and `above` are 1 + u and 1 - u."""
+        _, sn, cn, dn = jacobi(ARRAYS, phase * self.quarter, self.modulus)
+        away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 the rest
+        mirrored = (self.modulus.k_prime * sn / dn) ** 2
+        upper = odd != self.first_is_upper
+        under_u1 = np.where(upper, mirrored, cn * cn)
+        over_u2 = np.where(upper, (cn / dn) ** 2, away)
+        south = self.south_at_u1 + self.south * under_u1 / below
+        north = self.north_at_u2 + self.north * over_u2 / above
+        return south - north, south + north
+
+
+def smooth_offset(motion: Nutating[Dual]) -> Dual:
+    """Return w/2K for the argument w of (4,22)-(4,24) at t = 0, counted from a passage of u1.
+
+    sn w and, counted from u2, cn w/dn w go as sin(theta) theta': a (u1 - u) (u - u2) (u3 - u) is
+    its square.  So they are smooth where the start is a turning point.
+    """
+    ar, gaps, state = motion.ar, motion.gaps, motion.state
+    swing, one = state.sin * state.theta_rate, 0 * motion.K + 1
+    if gaps.u1_u <= gaps.u_u2:
+        sine = swing * ar.sqrt(gaps.a_u3_u2 / (gaps.u_u2 * gaps.u1_u2)) / gaps.a_u3_u
+        cosine2 = gaps.a_u3_u1 * gaps.u_u2 / (gaps.a_u3_u * gaps.u1_u2)
+        integral: Dual = carlson_rf(ar, cosine2, gaps.a_u3_u1 / gaps.a_u3_u, one)
+        return sine * integral / (2 * motion.K)
+    sine = swing / ar.sqrt(gaps.u1_u * gaps.a_u3_u * gaps.u1_u2)
+    integral = carlson_rf(ar, gaps.u1_u / gaps.u1_u2, gaps.a_u3_u / gaps.a_u3_u2, one)
+    return one / 2 - sine * integral / (2 * motion.K)
+
+
+def _rises(motion: Nutating[Dual]) -> int:
+    return -1 if motion.state.theta_rate < 0 else 1
+
+
+def _component(component: Rows, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
+    """Return real and imaginary part, each in rows and with its derivative by z."""
+    S, C = (np.sinh(z), np.cosh(z)) if hyperbolic else (np.sin(z), np.cos(z))
+    s, rising, curvature = S * S, 2.0 * S * C, 1.0 if hyperbolic else -1.0
+    factors = (C, curvature * S), (S, C)
+    if component.even:
+        factors = (np.ones_like(z), np.zeros_like(z)), (S * C, C * C + curvature * s)
+    parts = []
+    for coefficients, (factor, slope) in zip(component[:2], factors, strict=True):
+        powers = s ** np.arange(coefficients.shape[1])[:, None]
+        rows = coefficients @ powers
+        growing = coefficients[0, 1:] * np.arange(1, coefficients.shape[1]) @ powers[:-1]
+        parts.append((factor * rows, slope * rows[0] + factor * growing * rising))
+    return parts
+
+
+def _kept(polynomial: Polynomial, greatest: Decimal) -> Polynomial:
+    """Return the coefficients that matter beside the first, up to the greatest argument."""
+    kept, least = list(polynomial), _NEGLIGIBLE * abs(polynomial[0].value)
+    while len(kept) > 2 and abs(kept[-1].value) * greatest ** (len(kept) - 1) <= least:
+        del kept[-1]
+    return kept
+
+
+def _rows(polynomial: Polynomial) -> Array:
+    """Return coefficients as columns of their value and derivatives."""
+    return np.array([_row(x) for x in polynomial]).T
+
+
+def _row(x: Dual | Decimal) -> Array:
+    """Return the value and the derivatives of a number as doubles."""
+    partials = x.partials if isinstance(x, Dual) else None
+    none = [Decimal(0)] * len(PARAMETERS)
+    return np.array([float(_decimal(x)), *map(float, partials or none)])
+
+
+def _value(polynomial: Array, s: Array) -> Array:
+    return np.asarray(np.polynomial.polynomial.polyval(s, polynomial), dtype=float)
+
+
+def _decimal(x: Any) -> Decimal:
+    return x.value if isinstance(x, Dual) else Decimal(x)
