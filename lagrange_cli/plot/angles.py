@@ -40,15 +40,21 @@ def angle_curves(motion: Motion, t_max: float) -> AngleCurves:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw tilt, spin and precession over time, and the mean rates as thin lines."""
+    axes = panel.subplots(3, sharex=True)
+    draw_on(axes, motion, request, look)
+    panel.align_ylabels(axes)
+
+
+def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the picture on three axes, which share the time."""
     course = angle_curves(motion, request.t_max or span(motion, 3))
     rows = (
         ("ϑ", course.theta, None),
         ("φ", course.phi, motion.mean_spin_rate),
         ("ψ", course.psi, motion.mean_precession_rate),
     )
-    axes = panel.subplots(3, sharex=True)
-    axes[0].set_title("Tilt ϑ, spin φ, precession ψ; thin: mean rates")
-    for ax, (symbol, angle, rate), colour in zip(axes, rows, look.lines, strict=True):
+    places[0].set_title("Tilt ϑ, spin φ, precession ψ; thin: mean rates")
+    for ax, (symbol, angle, rate), colour in zip(places, rows, look.lines, strict=True):
         ax.set_ylabel(f"{symbol} ({request.angle_unit})")
         if angle is course.psi and motion.regime in (Regime.SLEEPING, Regime.HANGING):
             ax.text(0.5, 0.5, "not defined: all is spin", transform=ax.transAxes, ha="center")
@@ -57,15 +63,15 @@ def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> 
         if rate is not None:
             ax.plot(course.t, rate * course.t * request.per_radian, color=look.quiet, lw=0.9)
         ax.plot(course.t, angle * request.per_radian, color=colour)
-    finish_time_axes(axes, motion, course.t)
-    panel.align_ylabels(axes)
+    finish_time_axes(places, motion, course.t)
 
 
 def finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array) -> None:
     """Write the time below; mark nutation periods above and by thin lines through all panels."""
     axes[-1].set_xlabel("time t")
     axes[-1].locator_params(axis="x", nbins=6)  # small steps have long labels
-    axes[-1].set_xlim(t[0], t[-1])
+    for ax in axes:
+        ax.set_xlim(t[0], t[-1])
     T = nutation_period(motion)
     if not T or t[-1] < T * (1 - 1e-9):
         return

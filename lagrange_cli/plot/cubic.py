@@ -5,6 +5,7 @@ Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -62,8 +63,12 @@ def cubic_curve(motion: Motion) -> Cubic:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw f(u), its roots, and the band in which the motion takes place."""
-    cubic = cubic_curve(motion)
-    axes = panel.subplots()
+    draw_on([panel.subplots()], motion, request, look)
+
+
+def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the picture on one axes."""
+    cubic, (axes,) = cubic_curve(motion), places
     axes.set_title("The cubic f(u) = u̇² (4,9), the motion shaded")
     axes.set(xlabel="u = cos ϑ", ylabel="f(u) (1/time²)")
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -133,25 +134,31 @@ def _sleeping(inputs: dict[str, Any], like: Array) -> Array:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw a key over two inputs, with the sleeping threshold and the scene itself."""
+    axes = panel.subplots()
+    draw_on([axes], motion, request, look)
+    if axes.get_legend_handles_labels()[0]:
+        panel.legend(loc="outside lower center", ncols=2, fontsize="small")
+
+
+def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the picture on one axes, with the bar of its colours and without the legend."""
     usual = default_ranges(motion.top)
     x, y = request.x or usual[0], request.y or usual[1]
     chart = key_map(motion, request.key, x, y, request.progress)
-    axes = panel.subplots()
+    (axes,) = places
     axes.set_title(request.key)
     axes.set(xlabel=INPUTS[x.name], ylabel=INPUTS[y.name])
     axes.set_facecolor(look.faint)  # where there is no such number
-    _draw_cells(panel, axes, chart, look)
+    _draw_cells(axes, chart, look)
     axes.set(xscale=_scale_name(x), yscale=_scale_name(y))
     if chart.sleeping.min() < 1.0 < chart.sleeping.max():
         for colour, width in ((look.paper, 3.2), (look.ink, 1.6)):
             axes.contour(x.values, y.values, chart.sleeping, [1.0], colors=colour, linewidths=width)
         axes.plot([], [], color=look.ink, lw=1.6, label="sleeping threshold, C²r₀² = 4Amgs")
     _mark_own(axes, motion, chart, look)
-    if axes.get_legend_handles_labels()[0]:
-        panel.legend(loc="outside lower center", ncols=2, fontsize="small")
 
 
-def _draw_cells(panel: SubFigure, axes: Axes, chart: KeyMap, look: Look) -> None:
+def _draw_cells(axes: Axes, chart: KeyMap, look: Look) -> None:
     """Draw the values as coloured cells, with the bar that explains the colours."""
     logarithmic = _is_logarithmic(chart.values)
     mesh = axes.pcolormesh(
@@ -162,7 +169,7 @@ def _draw_cells(panel: SubFigure, axes: Axes, chart: KeyMap, look: Look) -> None
         norm=LogNorm() if logarithmic else Normalize(),
         rasterized=True,
     )
-    bar = panel.colorbar(mesh, ax=axes, aspect=28)
+    bar = axes.figure.colorbar(mesh, ax=axes, aspect=28)
     bar.outline.set_visible(False)
     if logarithmic:
         bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

@@ -1,16 +1,17 @@
 """The kinds of picture: one row per kind, from which the command, its help and the page are made.
 
-A new picture is one file of this room with a function `draw(panel, motion, request, look)`, and one
-row here.
+A new picture is one file of this room with the functions `draw(panel, motion, request, look)` and
+`draw_on(places, motion, request, look)`, which draws on axes that are there, and one row here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import SubFigure
 
     from ..motion.solve import Motion
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from .style import Look
 
     Draw = Callable[[SubFigure, Motion, PlotRequest, Look], None]
+    DrawOn = Callable[[Sequence[Axes], Motion, PlotRequest, Look], None]
 
 
 class Kind(NamedTuple):
@@ -32,6 +34,8 @@ class Kind(NamedTuple):
     """Width and height (inches) of a page with this picture alone."""
     on_sheet: bool
     """Whether the picture is on the sheet, which the command draws by default."""
+    axes: int = 1
+    """Number of axes that the picture takes, one below the other."""
 
     @property
     def draw(self) -> Draw:
@@ -39,11 +43,17 @@ class Kind(NamedTuple):
         draw: Draw = import_module(f".{self.file}", __package__).draw
         return draw
 
+    @property
+    def draw_on(self) -> DrawOn:
+        """The function that draws on axes that are there."""
+        draw_on: DrawOn = import_module(f".{self.file}", __package__).draw_on
+        return draw_on
+
 
 _ROWS = [
     Kind("sphere", "sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
-    Kind("angles", "angles", "tilt, spin and precession over time", (7.0, 6.0), True),
-    Kind("remainders", "remainders", "spin and precession less their mean growth", (7, 5), True),
+    Kind("angles", "angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
+    Kind("remainders", "remainders", "spin and precession less their mean growth", (7, 5), True, 2),
     Kind("cubic", "cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
     Kind("phase", "phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
     Kind("map", "key_map", "a key of the record over two inputs", (6.8, 5.0), False),

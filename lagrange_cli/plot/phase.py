@@ -6,9 +6,11 @@ Equation numbers are Chrapan's.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
@@ -67,8 +69,13 @@ def separatrix(a: float, b: float) -> tuple[Array, Array]:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the nutation in the plane of tilt and tilt rate, and the separatrix."""
-    portrait, factor = phase_portrait(motion), request.per_radian
-    axes = panel.subplots()
+    draw_on([panel.subplots()], motion, request, look)
+    panel.legend(loc="outside lower center", ncols=3, fontsize="small")
+
+
+def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the picture on one axes, without the legend."""
+    (axes,), portrait, factor = places, phase_portrait(motion), request.per_radian
     axes.set_title("Nutation in the phase plane")
     axes.set(xlabel=f"tilt ϑ ({request.angle_unit})", ylabel="tilt rate ϑ̇ (rad/time)")
     axes.locator_params(axis="x", nbins=5)
@@ -81,4 +88,3 @@ def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> 
     axes.plot(*both, color=look.lines[1], label=portrait.why, **dashes)
     axes.ticklabel_format(axis="x", useOffset=False)
     axes.margins(0.06)
-    panel.legend(loc="outside lower center", ncols=3, fontsize="small")

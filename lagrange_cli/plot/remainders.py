@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
@@ -44,13 +46,28 @@ def remainder_curves(motion: Motion, t_max: float) -> Remainders:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw what is left of spin and precession when their mean growth is taken off."""
-    curves = remainder_curves(motion, request.t_max or span(motion, 2))
-    rows = ("Δφ", curves.spin), ("Δψ", curves.precession)
+    curves = _wanted_curves(motion, request)  # before the axes: an empty picture has none
     axes = panel.subplots(2, sharex=True)
+    _draw_curves(axes, curves, motion, request, look)
+    panel.align_ylabels(axes)
+
+
+def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the picture on two axes, which share the time."""
+    _draw_curves(places, _wanted_curves(motion, request), motion, request, look)
+
+
+def _wanted_curves(motion: Motion, request: PlotRequest) -> Remainders:
+    return remainder_curves(motion, request.t_max or span(motion, 2))
+
+
+def _draw_curves(
+    axes: Sequence[Axes], curves: Remainders, motion: Motion, request: PlotRequest, look: Look
+) -> None:
+    rows = ("Δφ", curves.spin), ("Δψ", curves.precession)
     axes[0].set_title("Spin and precession less their mean growth, (6,4), (7,4)")
     for ax, (symbol, remainder), colour in zip(axes, rows, look.lines[1:], strict=True):
         ax.axhline(0.0, color=look.quiet, lw=0.9)
         ax.plot(curves.t, remainder * request.per_radian, color=colour)
         ax.set_ylabel(f"{symbol} ({request.angle_unit})")
     finish_time_axes(axes, motion, curves.t)
-    panel.align_ylabels(axes)

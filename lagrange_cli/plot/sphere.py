@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -62,15 +63,28 @@ def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> 
     path = axis_path(motion, request.t_max or turn_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
     axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
-    view = best_view(path.axis)
-    axes[0].set_title(f"Figure axis on the unit sphere: {path.path or motion.regime.value}")
-    draw_globe(axes[0], view, path, request, look)
-    lines = _draw_path(axes[0], view, path, look)
+    lines = _draw_sphere(axes[0], path, motion, request, look)
     bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)
     bar.outline.set_visible(False)
     bar.set_label("time t")
     if narrow:
         _draw_magnified(axes[1], motion, path, request, look)
+
+
+def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the globe with the path on one axes, without a bar for the colours of time."""
+    path = axis_path(motion, request.t_max or turn_span(motion))
+    _draw_sphere(places[0], path, motion, request, look)
+
+
+def _draw_sphere(
+    axes: Axes, path: AxisPath, motion: Motion, request: PlotRequest, look: Look
+) -> LineCollection:
+    """Draw the globe with the path, and return the path on the near side, coloured by time."""
+    view = best_view(path.axis)
+    axes.set_title(f"Figure axis on the unit sphere: {path.path or motion.regime.value}")
+    draw_globe(axes, view, path, request, look)
+    return _draw_path(axes, view, path, look)
 
 
 def draw_globe(axes: Axes, view: View, path: AxisPath, request: PlotRequest, look: Look) -> None:
