@@ -128,6 +128,7 @@ def near(inputs: dict[str, float]) -> HardScene:
     return HardScene(inputs, NEAR, [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stratum", ["bottom pass", "units", "fast"])
 def test_command_line_of_an_angle_shows_it(stratum: str, lagtop: Lagtop) -> None:
     case = battery.judge(near(hard_scene(stratum, 5, 0, 2).inputs), peers=False)
@@ -226,6 +227,7 @@ def test_a_quaternion_with_the_other_sign_is_seen(monkeypatch: pytest.MonkeyPatc
     assert case.command().startswith("lagtop table ")
 
 
+@pytest.mark.slow
 def test_what_is_wrong_exits_with_1(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
     bend(monkeypatch, "a", lambda value: value * (1 + 1e-15))
     line = ["--samples", 1, "--strata", "generic,sphere", "--format", "json"]

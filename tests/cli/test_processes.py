@@ -90,6 +90,7 @@ def test_head_is_silent(command: str, unbuffered: str) -> None:
     assert result.stdout.split()[-1] in (b"0", b"141")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize(
     "command", ["solve", "solve --format json", "table --n 100000", "sweep --r0 1:9:20000"]
@@ -100,6 +101,7 @@ def test_full_disk(command: str, unbuffered: str) -> None:
     assert result.stderr == b"Error: cannot write standard output: No space left on device\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("command", ["solve --get b", "solve --format json", "table", "sweep"])
 def test_closed_output(command: str, unbuffered: str) -> None:

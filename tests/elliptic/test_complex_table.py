@@ -60,6 +60,7 @@ def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("k", ["0.8", "0.8i", "1.5"])
 def test_every_column(k: str, lagtop: Lagtop) -> None:
     args = f"jacobi --k {k} --rad --u 0.3+0.7i --u=-4-1i {EVERYTHING}"

@@ -123,6 +123,7 @@ def errors(case: Case, judge: Judge) -> Iterator[tuple[str, float]]:
             yield column, units(cells[column], exact, with_v=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_columns(seed: int) -> None:
     """Worst seen in 97 000 values: 2.2 units of eps (max(1, |f|) + |u f'| + |v df/dv|)."""

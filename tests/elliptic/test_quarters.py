@@ -41,6 +41,7 @@ def test_table_2_prints_exactly(digits: list[str], modulus: list[str], lagtop: L
     assert shown["am_deg"] == ["0.0", "90.0", "180.0", "270.0", "360.0"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("digits", [[], ["--digits", "20"]])
 @pytest.mark.parametrize("modulus", ["--k 0.3", "--k-prime 1e-9", "--nome 0.2"])
 @pytest.mark.parametrize("parameter", ["0.4", "0.4i", "0"])

@@ -39,6 +39,7 @@ def test_every_point_is_rounded_once(first: Fraction, last: Fraction, count: int
     assert [math.copysign(1, x) for x in values] == [math.copysign(1, x or 1) for x in values]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "step"),
     [

@@ -368,6 +368,7 @@ TOPS: dict[str, Top] = {
 TOPS = {name: top for name, top in TOPS.items() if top != TOP}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TOPS)
 def test_the_top_that_moved_is_named(name: str) -> None:
     _, states = dop853(Body.of(TOPS[name]), T)

@@ -45,6 +45,7 @@ def rows_of(text: str) -> list[dict[str, Any]]:
     return rows
 
 
+@pytest.mark.slow
 def test_formats_say_the_same(lagtop: Lagtop, right: Path, coarse: Path) -> None:
     shown = {
         fmt: lagtop("compare", right, coarse, *OPTIONS, "--format", fmt)
