@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
@@ -111,35 +111,22 @@ class Ball:
         return self.arb.is_finite() and self.arb.contains(other.arb)
 
     def ends(self, digits: int) -> tuple[Decimal, Decimal]:
-        """Return decimals below and above all of the ball, rounded outwards to so many digits.
+        """Return decimals below and above all of the ball, which know so many digits of it.
 
         Raises TooFewDigitsError for a ball without bounds.
         """
         if not self.arb.is_finite():
             raise TooFewDigitsError
-        (middle, place), (radius, other) = (
-            (int(mantissa), int(exponent))
-            for mantissa, exponent in (self.arb.mid().man_exp(), self.arb.rad().man_exp())
+        middle, radius, exponent = map(int, self.arb.mid_rad_10exp(digits))
+        wide = own_context(digits + 50, [])
+        low, high = (
+            wide.scaleb(Decimal(end), exponent) for end in (middle - radius, middle + radius)
         )
-        last = min(place, other)
-        middle, radius = middle << (place - last), radius << (other - last)
-        return (
-            _decimal(middle - radius, last, digits, ROUND_FLOOR),
-            _decimal(middle + radius, last, digits, ROUND_CEILING),
-        )
+        return low, high
 
 
 def _plain(other: Ball | int) -> arb | int:
     return other.arb if isinstance(other, Ball) else other
-
-
-def _decimal(mantissa: int, exponent: int, digits: int, rounding: str) -> Decimal:
-    """Return mantissa 2^exponent as a decimal of so many digits."""
-    context = own_context(digits, [])
-    context.rounding = rounding
-    if exponent >= 0:
-        return context.create_decimal(mantissa << exponent)
-    return context.divide(Decimal(mantissa), Decimal(1 << -exponent))
 
 
 class Balls:
@@ -226,6 +213,14 @@ class Balls:
             raise TooFewDigitsError
         mantissa, exponent = (int(part) for part in x.arb.mid().man_exp())
         return round(Fraction(mantissa) * Fraction(2) ** exponent)
+
+    @staticmethod
+    def ceiling(x: Ball) -> int:
+        """Return the least integer that is at least x; TooFewDigitsError where x is about one."""
+        integer = x.arb.ceil().unique_fmpz() if x.arb.is_finite() else None
+        if integer is None:
+            raise TooFewDigitsError
+        return int(integer)
 
     @staticmethod
     def where(condition: Truth, yes: Ball | int, no: Ball | int) -> Ball:

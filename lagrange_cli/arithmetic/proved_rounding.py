@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from decimal import ROUND_CEILING, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_UP, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
@@ -21,7 +21,9 @@ S = TypeVar("S")
 FIRST_BITS, MOST_BITS = 128, 20_000
 """Where the search for enough bits begins and where it ends; a thousand digits are 3322 bits."""
 _GUARD_BITS = 48
-_RADIUS_DIGITS = 2
+_OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])
+_OUTWARDS.rounding = _SHORT.rounding = ROUND_UP
+_A_HAIR_MORE = Decimal("1.000000000001")
 
 
 class Proved(NamedTuple, Generic[T]):
@@ -31,20 +33,20 @@ class Proved(NamedTuple, Generic[T]):
     radius: NumberText
 
 
-def bits_to_try(digits: int = 0) -> Iterator[int]:
-    """Yield the precisions to try for so many digits, each half as much again."""
-    bits = max(FIRST_BITS, int(digits * 3.33) + _GUARD_BITS)
+def bits_to_try(digits: int = 0, more: int = 0) -> Iterator[int]:
+    """Yield the precisions to try for so many digits and some `more` bits, each half more."""
+    bits = max(FIRST_BITS, int(digits * 3.33) + _GUARD_BITS) + more
     while bits <= MOST_BITS:
         yield bits
         bits = bits * 3 // 2
 
 
-def decided(what: str, compute: Callable[[int], S], digits: int = 0) -> S:
+def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0) -> S:
     """Return the first result that some number of bits decides.
 
     Raises LagtopError where no number of bits up to 20 000 does.
     """
-    for bits in bits_to_try(digits):
+    for bits in bits_to_try(digits, more):
         try:
             return compute(bits)
         except TooFewDigitsError:
@@ -58,12 +60,14 @@ def proved(
     rounding: Callable[[Decimal | Fraction], T],
     *,
     digits: int = 0,
+    more: int = 0,
     exactly: Callable[[], Fraction | None] = lambda: None,
 ) -> Proved[T] | None:
     """Return the rounding of a number of which every precision gives an enclosure; None for none.
 
-    Both ends have to round alike.  Where the first precision leaves that open, `exactly` is asked:
-    it may know the number.  Raises LagtopError where 20 000 bits do not decide.
+    Both ends have to round alike.  Whole turns, say, take some `more` bits.  Where the first
+    precision leaves a number open, `exactly` is asked: it may know it.  Raises LagtopError where
+    20 000 bits do not decide.
     """
     known: Fraction | None = None
     asked = False
@@ -79,7 +83,7 @@ def proved(
             known, asked = (known if asked else exactly()), True
             raise
 
-    return decided(what, rounded, digits)
+    return decided(what, rounded, digits, more)
 
 
 def _rounded(ball: Ball, bits: int, rounding: Callable[[Decimal | Fraction], T]) -> Proved[T]:
@@ -95,15 +99,19 @@ def _rounded(ball: Ball, bits: int, rounding: Callable[[Decimal | Fraction], T])
 
 
 def about(value: T, *ends: Decimal | Fraction) -> Proved[T]:
-    """Return a printed number with its distance from the farther end of an enclosure."""
-    printed = Fraction(value)
-    return Proved(value, radius_text(max(abs(Fraction(end) - printed) for end in ends)))
+    """Return a printed number with its distance from the farther end of an enclosure.
+
+    The distance is rounded up to two digits, and so far that the double that is read is no less.
+    """
+    printed = Decimal(value)
+    away = max(abs(_OUTWARDS.subtract(_as_decimal(end, printed), printed)) for end in ends)
+    return Proved(value, text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec))
 
 
-def radius_text(radius: Fraction) -> NumberText:
-    """Return a radius in two digits, rounded up so far that the double that is read is no less."""
-    context = own_context(_RADIUS_DIGITS, [])
-    context.rounding = ROUND_CEILING
-    outward = radius * (1 + Fraction(1, 10**12))
-    shown = context.divide(Decimal(outward.numerator), Decimal(outward.denominator))
-    return NumberText(text_of(shown, _RADIUS_DIGITS))
+def _as_decimal(end: Decimal | Fraction, printed: Decimal) -> Decimal:
+    """Return an end of an enclosure, a fraction rounded away from what is printed."""
+    if isinstance(end, Decimal):
+        return end
+    context = own_context(1200, [])
+    context.rounding = ROUND_CEILING if end > printed else ROUND_FLOOR
+    return context.divide(Decimal(end.numerator), Decimal(end.denominator))

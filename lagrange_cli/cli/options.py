@@ -244,6 +244,12 @@ def digits_option(most: int) -> Callable[[F], F]:
     return click.option("--digits", type=COUNT, callback=check, metavar="N", help=text)
 
 
+def certify_option(more: str) -> Callable[[F], F]:
+    """Add the flag --certify, with what the command writes then."""
+    text = f"Prove every printed digit in ball arithmetic (extra certify).  {more}"
+    return click.option("--certify", is_flag=True, help=text)
+
+
 def output_options(*formats: str) -> Callable[[F], F]:
     """Add the options --format, whose default is the first one, and --output."""
 

@@ -14,6 +14,7 @@ from .command import ExamplesFirst, chain_layout, top_layout, write_keys
 from .completion import KEY_NAMES
 from .options import (
     MOST_RECORD_DIGITS,
+    certify_option,
     complain,
     digits_option,
     exclude,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
         lagtop solve --r0 80 --get theta_min_deg,theta_max_deg
         lagtop solve --theta0 60 --get psi_period_deg
         lagtop solve --theta0 60 --derivation
+        lagtop solve --digits 30 --certify --format json
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
     """,
 )
@@ -57,11 +59,13 @@ if TYPE_CHECKING:
     metavar="KEY,...",
     help="Print values of the record, bare, one per line; the keys stand below.",
 )
+@certify_option("JSON and CSV have KEY_radius beside every number.")
 @output_options("table", "json", "csv")
 def command(
     scene: str | None,
     rad: bool,
     digits: int | None,
+    certify: bool,
     derivation: bool,
     keys: list[str] | None,
     fmt: str,
@@ -80,21 +84,34 @@ def command(
         check_names("get", keys, known if set(keys) <= {*known} else all_keys(radians=rad))
     motion = solved(scene, rad, digits is not None, options)
     chosen = _steps(motion, rad) if derivation else keys
-    if digits:
-        record = motion.digits(digits, radians=rad, keys=chosen)
-    elif chosen:
-        record = motion.record(radians=rad, keys=chosen)
-    else:
-        record, beyond = motion.record_in_range(radians=rad)
-        if beyond:
-            complain("Warning: " + "; ".join(map(str, beyond)))
+    record = _record(motion, digits, rad, chosen, certify)
     if keys is not None:
         write_values([_number(motion, record, key) for key in keys], output)
     elif derivation:
+        radii = {name: record[name] for name in record if name.endswith("_radius")}
         steps = {name: record[name] for name in chosen or ()}
-        write_record(steps, fmt, output, chain_layout)
+        write_record(steps | radii, fmt, output, chain_layout)
     else:
         write_record(record, fmt, output, top_layout)
+
+
+def _record(
+    motion: Motion, digits: int | None, radians: bool, keys: list[str] | None, certify: bool
+) -> dict[str, Any]:
+    """Return the record, or some keys of it; of what is beyond the range of doubles, say so."""
+    if certify:
+        from ..motion.certified import Certified
+
+        record, beyond = Certified(motion.exact).record_in_range(digits, radians=radians, keys=keys)
+    elif digits:
+        return motion.digits(digits, radians=radians, keys=keys)
+    else:
+        record, beyond = motion.record_in_range(radians=radians, keys=keys)
+    if beyond and keys:
+        raise beyond[0]
+    if beyond:
+        complain("Warning: " + "; ".join(map(str, beyond)))
+    return record
 
 
 def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:

@@ -20,6 +20,7 @@ from .options import (
     MOST_TABLE_DIGITS,
     NUMBER,
     by_key,
+    certify_option,
     digits_option,
     exclude,
     jobs_option,
@@ -47,6 +48,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
         lagtop table sample_inputs/fast-gyroscope.toml --t-max 10 --dt 0.01 --wrap
         lagtop table --t-min -5 --t-max 5 --n 1e6 --rad -o angles.csv
         lagtop table --t-max 1 --columns t,axis,energy
+        lagtop table --t-max 1e9 --n 3 --digits 30 --certify --format json
         lagtop table --tops tops.csv --t-max 1 --n 11 --jobs auto
         seq 0 0.25 2 | lagtop table --times - --format json
     """,
@@ -77,6 +79,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 @jobs_option
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
+@certify_option("Of the columns thetadot, p, q, moment, energy and Lz cannot be proved.")
 @output_options("csv", "json", "table", "parquet", "npy")
 def command(
     scene: str | None,
@@ -91,6 +94,7 @@ def command(
     jobs: int | None,
     wrap: bool,
     digits: int | None,
+    certify: bool,
     fmt: str,
     output: str,
     **options: Any,
@@ -109,11 +113,12 @@ def command(
     if jobs is not None and tops is None:
         raise LagtopError("--jobs shares out many tops: it needs --tops")
     exclude({"--tops": tops, "--digits": digits})
+    exclude({"--tops": tops, "--certify": certify or None})
     stdin = {"--tops -": tops, "--times -": times}
     exclude({name: True if path == "-" else None for name, path in stdin.items()})
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
-    _check_format(fmt, times, tops, digits)
+    _check_format(fmt, times, tops, digits, certify)
     wish = Wish(
         _listed(times, tops, fmt) or partial(_grid, t_min=t_min, t_max=t_max, n=count, dt=dt),
         DEFAULT_COLUMNS if columns is None else columns,
@@ -124,18 +129,22 @@ def command(
         tops is not None and (times is not None or t_max is not None),
     )
     if tops is None:
-        _write_one(solved(scene, rad, digits is not None, options), wish, digits, fmt, output)
+        motion = solved(scene, rad, digits is not None, options)
+        (_write_certified if certify else _write_one)(motion, wish, digits, fmt, output)
     else:
         _write_many(tops, scene, by_key(options, radians=rad), wish, fmt, output)
 
 
-def _check_format(fmt: str, times: str | None, tops: str | None, digits: int | None) -> None:
+def _check_format(
+    fmt: str, times: str | None, tops: str | None, digits: int | None, certify: bool
+) -> None:
     """Raise LagtopError for a format that cannot hold what is asked for."""
     if tops is not None and fmt in {"table", "npy"}:
         holds = "shows one top" if fmt == "table" else "holds numbers of one top"
         raise LagtopError(f"--format {fmt} {holds}: with --tops take csv, json or parquet")
-    if digits is not None and fmt in {"npy", "parquet"}:
-        raise LagtopError(f"--format {fmt} holds doubles: with --digits take csv, json or table")
+    if (digits is not None or certify) and fmt in {"npy", "parquet"}:
+        texts = "--certify" if certify else "--digits"
+        raise LagtopError(f"--format {fmt} holds doubles: with {texts} take csv, json or table")
     if times == "-" and fmt == "npy":
         raise LagtopError("--format npy begins with the number of rows: give --times a file")
     if fmt == "parquet":
@@ -202,6 +211,20 @@ def _write_one(motion: Motion, wish: Wish, digits: int | None, fmt: str, output:
     parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **units)
     long = LONG if digits is None else LONG_IN_DIGITS
     write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)
+
+
+def _write_certified(motion: Motion, wish: Wish, digits: int | None, fmt: str, output: str) -> None:
+    """Write a table whose numbers are proved, with their radii but where it is drawn."""
+    from ..motion.certified import Certified
+    from ..motion.certified_table import CertifiedTable, certified_rows
+
+    times = wish.times(motion)
+    if fmt == "table" and times.count > MAX_TABLE_ROWS:
+        raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
+    units = {"radians": wish.radians, "wrap": wish.wrap}
+    table = CertifiedTable(Certified(motion.exact), wish.columns, digits, **units)
+    header, parts = certified_rows(table, times, radii=fmt != "table")
+    write_table(header, with_progress(parts, times.count, LONG_IN_DIGITS), fmt, output, times.count)
 
 
 def _write_many(

@@ -18,6 +18,7 @@ from ..arithmetic.correct_rounding import TooFewDigitsError, nearest_double, tex
 from ..arithmetic.numbers import Number
 from ..arithmetic.proved_rounding import Proved, about, decided, proved
 from ..arithmetic.text import NumberText
+from ..errors import OutOfRangeError
 from ..inputs.top import Top
 from .gaps import are_told_apart, gaps_of, state
 from .kinds import Kind, Nutating, fast_remark, kind_of
@@ -164,21 +165,37 @@ class Certified:
         `KEY_radius` says how far the exact value may be from the number under KEY.  Raises
         LagtopError where no precision tells a number, or where one is beyond the range of doubles.
         """
+        record, beyond = self.record_in_range(digits, radians=radians, keys=keys)
+        if beyond:
+            raise beyond[0]
+        return record
+
+    def record_in_range(
+        self,
+        digits: int | None = None,
+        *,
+        radians: bool = False,
+        keys: Collection[str] | None = None,
+    ) -> tuple[dict[str, Any], list[OutOfRangeError]]:
+        """Return the record with radii, and what is to be said of numbers beyond doubles."""
         radii: dict[str, NumberText | None] = {}
+        beyond: list[OutOfRangeError] = []
 
         def note(name: str, found: Proved[Any] | None) -> Any:
-            radii[f"{name}_radius"] = None if found is None else found.radius
+            radii[name] = None if found is None else found.radius
             return None if found is None else found.value
 
         def number(name: str, radians: bool) -> Any:
-            found = self.number(name, digits, radians=radians)
+            found = None
+            try:
+                found = self.number(name, digits, radians=radians)
+            except OutOfRangeError as error:
+                beyond.append(error)
             return note(unit_name(name, radians=radians), found)
 
         inputs = {name: note(name, x) for name, x in self._inputs(digits, radians=radians).items()}
         record = record_of(self, inputs, number, radians=radians, keys=keys)
-        return record | {
-            f"{x}_radius": radii[f"{x}_radius"] for x in record if f"{x}_radius" in radii
-        }
+        return record | {f"{x}_radius": radii[x] for x in record if x in radii}, beyond
 
     def _inputs(self, digits: int | None, *, radians: bool) -> Mapping[str, Proved[Any]]:
         """Return the inputs as they are printed."""

@@ -272,6 +272,8 @@ def test_ends_are_outside_the_ball(digits: int) -> None:
         with balls(BITS).working():
             edges = [balls(BITS).convert(Fraction(end)).arb for end in (low, high)]
             assert edges[0] <= ball <= edges[1]
+            assert edges[1] - edges[0] <= 4 * ball.rad() + abs(ball.mid()) * arb(10) ** (2 - digits)
+    assert Ball(arb("1e-999999999999999")).ends(5)[0] > 0
     assert Ball(arb("0.125")).ends(40) == (Decimal("0.125"), Decimal("0.125"))
     with pytest.raises(TooFewDigitsError):
         Ball(arb("nan")).ends(5)

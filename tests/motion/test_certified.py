@@ -7,39 +7,12 @@ from typing import Any
 
 import pytest
 from ball_judge import Judge
-from scenes import UNIT
+from scenes import EVERY_KIND as SCENES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.motion.certified import certified
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
-
-SCENES: dict[str, dict[str, Any]] = {
-    "worked example": {},
-    "fast": {"r0": 2000.0},
-    "slow": UNIT | {"r0": 0.5, "theta0_deg": 130},
-    "any start": UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.75, "psidot0": 0.5},
-    "looping": UNIT | {"r0": -3, "theta0_deg": 110, "thetadot0": 1.5, "psidot0": 1},
-    "starts lowest": UNIT | {"r0": 3, "theta0_deg": 40, "psidot0": 2},
-    "radians": UNIT | {"r0": 3, "theta0_rad": 0.7, "psidot0": 2},
-    "over the top": UNIT | {"theta0_deg": 120, "psidot0": 1, "r0": 0.5, "thetadot0": 2.5},
-    "over the bottom": UNIT | {"theta0_deg": 60, "psidot0": -2, "r0": 1, "thetadot0": 0.7},
-    "pendulum": UNIT | {"theta0_deg": 60, "r0": 0},
-    "whirling": UNIT | {"theta0_deg": 60, "r0": 0, "thetadot0": -3},
-    "from the upper pole": UNIT | {"theta0_deg": 0, "r0": 1, "thetadot0": 1},
-    "from the lower pole": UNIT | {"theta0_deg": 180, "r0": 1, "thetadot0": -1},
-    "cusp": UNIT | {"theta0_deg": 60, "r0": 2, "psidot0": 0.5, "thetadot0": 0.75},
-    "separatrix": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5, "thetadot0": 0.5},
-    "next to it": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5, "thetadot0": 0.5 + 1e-13},
-    "steady": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5},
-    "nearly steady": UNIT | {"theta0_deg": 60, "psidot0": 1, "r0": 1.5 + 1e-12},
-    "sleeping": UNIT | {"theta0_deg": 0, "r0": 3},
-    "hanging": UNIT | {"theta0_deg": 180, "r0": 3},
-    "torque-free": UNIT | {"theta0_deg": 50, "g": 0, "r0": 2, "psidot0": 1, "thetadot0": 1},
-    "torque-free at rest": UNIT | {"theta0_deg": 50, "g": 0, "r0": 2},
-    "idle": UNIT | {"theta0_deg": 50, "g": 0, "r0": 0},
-    "k = k'": UNIT | {"theta0_deg": 60, "r0": 2**0.5},
-}
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
