@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING
 
 import click
@@ -25,6 +26,7 @@ from .progress import with_count, with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
+    from ..sweeps.parts import Make
 
 
 def _parse_values(text: str) -> Points:
@@ -131,11 +133,14 @@ def command(
     say_missing(todo.given)
     tally = Tally(fail_fast=fail_fast)
     blocks = shard_of(todo.blocks, shard)
-    parts_folder = None
+    parts_folder: Folder | None = None
+    make: AbstractContextManager[Make] = nullcontext(todo.sweep.part)
     if folder is not None:
         parts_folder = Folder(folder, todo.sweep, todo.description)
         blocks = parts_folder.missing(blocks, tally)
-    with computed(todo.sweep, blocks, cluster, jobs or 1) as parts:
+        if cluster is not None and not fail_fast:
+            make = parts_folder.made_by_workers()
+    with make as part, computed(part, blocks, cluster, jobs or 1) as parts:
         passing = tally.until_error(parts, ended=to_stdout) if fail_fast else tally.passing(parts)
         if todo.size:
             share = todo.size // (shard or (1, 1))[1]

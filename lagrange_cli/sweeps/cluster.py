@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from .. import __version__
 from ..errors import LagtopError, UnavailableError
 from .jobs import in_order
-from .parts import NumberedBlock, Part, Sweep
+from .parts import Make, NumberedBlock, Part
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -34,23 +34,24 @@ MOST_PARTS_PER_TASK = 16
 
 @contextmanager
 def computed(
-    sweep: Sweep, blocks: Iterable[NumberedBlock], address: str | None, jobs: int = 1
+    make: Make, blocks: Iterable[NumberedBlock], address: str | None, jobs: int = 1
 ) -> Iterator[Iterator[Part]]:
     """Yield the parts in their order, made by so many processes, or by a Dask cluster.
 
     The address of a cluster may be `local`, for one of its own.
 
     Raises UnavailableError for a cluster that cannot be reached, has no worker, or whose workers
-    have no lagtop or another version of it; LagtopError for an address that is none.
+    have no lagtop or another version of it; LagtopError for an address that is none; and what
+    `make` raises.
     """
     if address is None:
-        with closing(in_order(sweep.part, blocks, jobs)) as parts:
+        with closing(in_order(make, blocks, jobs)) as parts:
             yield parts
         return
     client = _client(address)
     try:
         _check_workers(client)
-        yield _gathered(client, sweep, blocks)
+        yield _gathered(client, make, blocks)
     finally:
         with suppress(OSError, RuntimeError):  # what ended the sweep is what matters
             client.close(timeout=20 if address == "local" else 2)
@@ -144,8 +145,8 @@ class _Call:
     where it would die.
     """
 
-    def __init__(self, sweep: Sweep, blocks: Sequence[NumberedBlock]) -> None:
-        self.content = pickle.dumps((sweep, blocks))
+    def __init__(self, make: Make, blocks: Sequence[NumberedBlock]) -> None:
+        self.content = pickle.dumps((make, blocks))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return compute, (__version__, self.content)
@@ -168,12 +169,12 @@ def compute(version: str, content: bytes) -> Computed:
     if version != __version__:
         raise UnavailableError(f"a worker of the cluster has lagtop {__version__}, not {version}")
     begun = monotonic()
-    sweep, blocks = pickle.loads(content)
-    parts = [sweep.part(block) for block in blocks]
+    make, blocks = pickle.loads(content)
+    parts = [make(block) for block in blocks]
     return Computed(parts, monotonic() - begun)
 
 
-def _gathered(client: Client, sweep: Sweep, blocks: Iterable[NumberedBlock]) -> Iterator[Part]:
+def _gathered(client: Client, make: Make, blocks: Iterable[NumberedBlock]) -> Iterator[Part]:
     """Yield the parts in their order; those of a lost worker are computed by another one.
 
     A few tasks per worker are under way at a time, so that memory does not grow with their number.
@@ -184,7 +185,7 @@ def _gathered(client: Client, sweep: Sweep, blocks: Iterable[NumberedBlock]) -> 
     left, size = iter(blocks), 1
     while True:
         if few := list(islice(left, size)):
-            call = pickle.dumps(_Call(sweep, few))
+            call = pickle.dumps(_Call(make, few))
             waiting.append(client.submit(pickle.loads, call, pure=False))
         elif not waiting:
             return

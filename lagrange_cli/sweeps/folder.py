@@ -9,18 +9,55 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
 import socket
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..errors import CannotWriteError
 from ..output.destination import opened
 from ..output.write import part_file
-from .parts import NumberedBlock, Part, Sweep, Tally
+from .parts import Make, NumberedBlock, Part, Sweep, Tally
 
 DESCRIPTION = "sweep.json"
 _TEMPORARY = ".lagtop-"
+
+
+class PartFiles(NamedTuple):
+    """The files of the parts of a sweep in a folder, written by whoever sees the folder."""
+
+    path: Path
+    sweep: Sweep
+    token: str = ""
+    """The name of a file that tells this folder from any other of its name, on other machines."""
+
+    def made(self, numbered: NumberedBlock) -> Part:
+        """Compute a part, and write it where this machine sees the folder and may write to it."""
+        part = self.sweep.part(numbered)
+        if not ((self.path / self.token).exists() and os.access(self.path, os.W_OK)):
+            return part
+        self.write(part)
+        return part._replace(text=b"", is_written=True)
+
+    def write(self, part: Part) -> None:
+        """Write a part into a file of its own, which appears whole or not at all."""
+        if part.failed:  # before the part, which counts as done from then on
+            errors = {"failed": part.failed, "first": part.first_error}
+            with opened(str(self.errors(part.number)), _mark()) as stream:
+                stream.write(json.dumps(errors).encode() + b"\n")
+        content = part_file(self.sweep.fmt, self.sweep.header, part.number, part.text)
+        with opened(str(self.part(part.number)), _mark()) as stream:
+            stream.write(content)
+
+    def part(self, number: int) -> Path:
+        """Return the file of a part."""
+        return self.path / f"part-{number:06}.{self.sweep.fmt}"
+
+    def errors(self, number: int) -> Path:
+        """Return the file that counts the errors of a part."""
+        return self.path / f"errors-{number:06}.json"
 
 
 class Folder:
@@ -31,7 +68,8 @@ class Folder:
 
         Raises CannotWriteError for a folder that cannot be made or holds parts of another sweep.
         """
-        self.path, self.sweep = Path(path), sweep
+        self.path = Path(path)
+        self.files = PartFiles(self.path, sweep)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self._claim(json.loads(json.dumps(description)))
@@ -42,32 +80,40 @@ class Folder:
     def missing(self, blocks: Iterable[NumberedBlock], tally: Tally) -> Iterator[NumberedBlock]:
         """Yield the blocks whose parts are not here yet, and count the others as done."""
         for number, block in blocks:
-            if self._part(number).exists():
+            if self.files.part(number).exists():
                 tally.add(self._done(number, block.size))
             else:
                 yield number, block
 
     def write(self, parts: Iterable[Part]) -> None:
-        """Write each part into a file of its own, which appears whole or not at all."""
+        """Write the parts that no worker has written."""
         for part in parts:
-            if part.failed:  # before the part, which counts as done from then on
-                errors = {"failed": part.failed, "first": part.first_error}
-                with opened(str(self._errors(part.number)), _mark()) as stream:
-                    stream.write(json.dumps(errors).encode() + b"\n")
-            content = part_file(self.sweep.fmt, self.sweep.header, part.number, part.text)
-            with opened(str(self._part(part.number)), _mark()) as stream:
-                stream.write(content)
+            if not part.is_written:
+                self.files.write(part)
 
-    def _part(self, number: int) -> Path:
-        return self.path / f"part-{number:06}.{self.sweep.fmt}"
+    @contextmanager
+    def made_by_workers(self) -> Iterator[Make]:
+        """Yield what computes a part and, where a worker sees this folder, writes it there.
 
-    def _errors(self, number: int) -> Path:
-        return self.path / f"errors-{number:06}.json"
+        Such a worker sees a file that is here meanwhile, of a name that nobody else would think of.
+        What workers of this machine that were killed have left is removed at the end.
+        """
+        token = f"{_TEMPORARY}{_mark()}{secrets.token_hex(8)}"
+        try:
+            (self.path / token).touch()
+        except OSError as error:
+            raise CannotWriteError(f"cannot write {self.path}: {error.strerror}") from None
+        try:
+            yield self.files._replace(path=self.path.absolute(), token=token).made
+        finally:
+            with suppress(OSError):
+                (self.path / token).unlink()
+                self._remove_leftovers()
 
     def _done(self, number: int, count: int) -> Part:
         """Return a part that is whole already, without its text."""
         try:
-            errors = json.loads(self._errors(number).read_text())
+            errors = json.loads(self.files.errors(number).read_text())
         except FileNotFoundError:
             return Part(number, b"", count, 0, "")
         return Part(number, b"", count, errors["failed"], errors["first"])

@@ -6,7 +6,7 @@ hold in their order, wherever each of them was made.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +20,8 @@ from .records import Column, records
 
 NumberedBlock = tuple[int, Block]
 """The number of a part, and the tops that it is made of."""
+Make = Callable[[NumberedBlock], "Part"]
+"""What computes a part; a worker that is sent it must be able to unpickle it."""
 
 
 class Part(NamedTuple):
@@ -32,6 +34,8 @@ class Part(NamedTuple):
     failed: int
     """The number of tops that have an error."""
     first_error: str
+    is_written: bool = False
+    """Whether the worker that computed it wrote it into its folder, and sent no text back."""
 
 
 class Sweep(NamedTuple):

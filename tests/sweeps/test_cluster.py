@@ -19,8 +19,11 @@ from conftest import LAGTOP, process
 from distributed import Client, LocalCluster
 
 from lagrange_cli.errors import UnavailableError
-from lagrange_cli.sweeps.cluster import Computed, compute
+from lagrange_cli.inputs.ranges import parse_values
+from lagrange_cli.sweeps.cluster import Computed, compute, computed
+from lagrange_cli.sweeps.folder import Folder
 from lagrange_cli.sweeps.parts import Part
+from lagrange_cli.sweeps.plan import plan
 
 pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itself does
 
@@ -49,6 +52,53 @@ def test_the_bytes_of_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("seen", [True, False])
+def test_workers_write_the_parts_of_a_folder_that_they_see(
+    seen: bool, cluster: LocalCluster, tmp_path: Path
+) -> None:
+    """The client writes the others; a folder of the same name elsewhere lacks its token."""
+    axes = {"r0": parse_values("1:100:9000"), "theta0_deg": parse_values("0,30")}
+    todo = plan([], axes, keys=["r0", "K"], described=True)
+    folder = Folder(str(tmp_path), todo.sweep, todo.description)
+    blocks = list(todo.blocks)
+    with folder.made_by_workers() as make:
+        if not seen:
+            next(tmp_path.glob(".lagtop-*")).unlink()
+        with computed(make, blocks, cluster.scheduler_address) as parts:
+            found = list(parts)
+    assert [part.is_written for part in found] == [seen] * len(blocks)
+    assert [not part.text for part in found] == [seen] * len(blocks)
+    folder.write(found)
+    assert (
+        joined(tmp_path)
+        == process("sweep", "--r0", "1:100:9000", "--theta0", "0,30", "--keys", "r0,K").stdout
+    )
+    assert list(tmp_path.glob(".lagtop-*")) == []
+
+
+@pytest.mark.slow
+def test_a_worker_that_cannot_write(tmp_path: Path) -> None:
+    """One line, as where the client cannot: here a file may not grow beyond 10 kB."""
+    with LocalCluster(n_workers=0, dashboard_address=None) as empty:
+        address, out = empty.scheduler_address, tmp_path / "out"
+        limited = """if True:
+            import resource, runpy, signal
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+            runpy.run_module("distributed.cli.dask_worker", run_name="__main__")
+        """
+        with ended("-c", limited, address, "--no-nanny", "--no-dashboard", cwd=tmp_path):
+            wait_for_workers(address, 1)
+            options = ["sweep", "--r0", "1:100:9000", "--dask", address, "--parts", str(out)]
+            result = process(*options, check=False)
+    assert (result.returncode, result.stdout) == (74, b"")
+    assert result.stderr.startswith(f"Error: cannot write {out}/part-".encode())
+    assert result.stderr.endswith(b": File too large\n")
+    assert result.stderr.count(b"\n") == 1
+    assert [path.name for path in out.iterdir()] == ["sweep.json"]
+
+
+@pytest.mark.slow
 def test_rows_and_errors_as_in_a_local_run(cluster: LocalCluster, tmp_path: Path) -> None:
     file = tmp_path / "tops.csv"
     file.write_text("id,r0\n" + "".join(f"{i},{'x' if i % 999 == 5 else i}\n" for i in range(9000)))
@@ -73,6 +123,7 @@ def test_a_killed_worker_loses_nothing(cluster: LocalCluster, tmp_path: Path) ->
     os.kill(victim, signal.SIGKILL)
     assert running.wait(timeout=60) == 0
     assert joined(tmp_path) == here
+    assert list(tmp_path.glob(".lagtop-*")) == []  # nor of the worker that was killed
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import signal
 import subprocess
 import time
@@ -11,6 +12,11 @@ from pathlib import Path
 
 import pytest
 from conftest import LAGTOP, Lagtop
+
+from lagrange_cli.errors import CannotWriteError
+from lagrange_cli.inputs.ranges import parse_values
+from lagrange_cli.sweeps.folder import Folder
+from lagrange_cli.sweeps.plan import plan
 
 
 def test_shards_make_the_whole(tmp_path: Path, lagtop: Lagtop) -> None:
@@ -243,3 +249,26 @@ def test_fail_fast_prints_the_rows_before_the_error(fmt: str, lagtop: Lagtop) ->
 
 def test_fail_fast_says_nothing_of_a_sweep_without_errors(lagtop: Lagtop) -> None:
     assert lagtop("sweep", "--r0", "1,2", "--fail-fast").exit_code == 0
+
+
+def test_a_part_is_written_where_its_folder_is_seen(tmp_path: Path) -> None:
+    """What a worker does; it sees the token of the run, or it sends the part back."""
+    todo = plan([], {"r0": parse_values("1:9:9")}, keys=["r0", "K"], described=True)
+    folder = Folder(str(tmp_path), todo.sweep, todo.description)
+    block = next(todo.blocks)
+    with folder.made_by_workers() as make:
+        written = make(block)
+    sent = make(block)  # the run is over
+    assert (written.text, written.is_written, sent.is_written) == (b"", True, False)
+    assert (tmp_path / "part-000000.csv").read_bytes() == b"r0,K\n" + sent.text
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["part-000000.csv", "sweep.json"]
+    full = tmp_path / "part-000001.csv"
+    full.symlink_to("/dev/full")
+    with (
+        folder.made_by_workers() as make,
+        pytest.raises(
+            CannotWriteError, match=r"part-000001\.csv: No space left on device"
+        ) as error,
+    ):
+        make((1, block[1]))
+    assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
