@@ -23,7 +23,7 @@ Lagtop = Callable[..., Result]
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Write the bytecode of the package, as pip does: else each command under test compiles it for itself."""
+    """Write the bytecode of the package, as pip does: else each tested command makes it again."""
     if not hasattr(config, "workerinput"):  # once, not in each worker of pytest-xdist
         compileall.compile_dir(ROOT / "lagrange_cli", quiet=1)
 
