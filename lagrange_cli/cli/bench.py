@@ -9,10 +9,10 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
-from .completion import METHOD_NAMES
 from .options import (
     COUNT,
     FILE,
+    METHOD_NAMES,
     NUMBER,
     exclude,
     output_options,

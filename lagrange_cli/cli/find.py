@@ -10,9 +10,9 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_keys
-from .completion import KEY_NAMES
 from .options import (
     COUNT,
+    KEY_NAMES,
     Parsed,
     by_key,
     complain,

@@ -30,10 +30,13 @@ V = TypeVar("V")
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A parameter type: what a function makes of a text.  Errors begin with the option's name."""
+    """A parameter type: what a function makes of a text.  Errors begin with the option's name.
 
-    def __init__(self, name: str, parse: Callable[[str], Any]) -> None:
-        self.name, self.parse = name, parse
+    A shell completes it by a list of `completion.py`, where one is named.
+    """
+
+    def __init__(self, name: str, parse: Callable[[str], Any], words: str = "") -> None:
+        self.name, self.parse, self.words = name, parse, words
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the value; click may hand it in a second time, when it is no text any more."""
@@ -43,6 +46,14 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
             return self.parse(value)
         except LagtopError as error:
             raise click.UsageError(f"{param.opts[0] if param else 'value'} {error}", ctx) from None
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Return the names that go on like what is there."""
+        from .completion import completed
+
+        return completed(self.words, incomplete)
 
 
 class FileName(click.ParamType):  # type: ignore[type-arg]
@@ -54,9 +65,9 @@ class FileName(click.ParamType):  # type: ignore[type-arg]
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
         """Return the request that the shell offers its files."""
-        from click.shell_completion import CompletionItem
+        from .completion import files
 
-        return [CompletionItem(incomplete, type="file")]
+        return files(incomplete)
 
 
 def _parse_count(text: str) -> int:
@@ -174,7 +185,10 @@ FILE = FileName()
 NUMBER = Parsed("number", parse_number)
 COUNT = Parsed("integer", _parse_count)
 RANGE = Parsed("range", _parse_range)
-NAMES = Parsed("names", _split_names)
+NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
+    Parsed("names", _split_names, words) for words in ("", "keys", "columns", "methods", "strata")
+)
+PICTURES = Parsed("text", str, "pictures")
 
 _SCENE_OPTIONS = [
     ("--m", "Mass."),

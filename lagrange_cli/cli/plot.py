@@ -17,8 +17,7 @@ from ..output.write import write_bytes
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look, require_matplotlib
 from .command import ExamplesFirst
-from .completion import PICTURES
-from .options import FILE, NUMBER, input_options, solved
+from .options import FILE, NUMBER, PICTURES, input_options, solved
 from .progress import with_progress
 
 FORMATS = ("png", "svg", "pdf")

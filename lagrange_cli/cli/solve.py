@@ -11,8 +11,8 @@ from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_values
 from .command import ExamplesFirst, chain_layout, top_layout, write_keys
-from .completion import KEY_NAMES
 from .options import (
+    KEY_NAMES,
     MOST_RECORD_DIGITS,
     certify_option,
     complain,

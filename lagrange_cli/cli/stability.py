@@ -8,10 +8,10 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
-from .completion import STRATUM_NAMES
 from .options import (
     COUNT,
     FILE,
+    STRATUM_NAMES,
     exclude,
     jobs_option,
     output_options,

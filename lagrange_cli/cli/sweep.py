@@ -11,9 +11,9 @@ import click
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
-from .completion import KEY_NAMES
 from .options import (
     FILE,
+    KEY_NAMES,
     Parsed,
     by_key,
     exclude,

@@ -13,8 +13,8 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
-from .completion import COLUMN_NAMES
 from .options import (
+    COLUMN_NAMES,
     COUNT,
     FILE,
     MOST_TABLE_DIGITS,
