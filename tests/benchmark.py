@@ -12,7 +12,9 @@ import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable, Mapping, Sequence
+from compileall import compile_dir
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -35,6 +37,7 @@ from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
 COUNT = 1_000_000
+ROOT = Path(__file__).parent.parent
 TOP = {name: np.nan if x is None else float(x) for name, x in Top().as_dict().items()}
 STARTS: dict[str, dict[str, float]] = {
     "worked example": {},
@@ -145,7 +148,7 @@ def text(rng: np.random.Generator) -> None:
 
 
 def start_up() -> None:
-    """Compare `jacobi --k 0.8` with importing click and rich: <= 1.3."""
+    """Compare `jacobi --k 0.8` with importing click and rich, <= 1.3, and `solve`, <= 1.2."""
     commands = {
         "importing click and what a table needs of rich": [
             "-c",
@@ -155,7 +158,15 @@ def start_up() -> None:
         "lagtop jacobi --k 0.8 --format json": (
             "-m lagrange_cli jacobi --k 0.8 --format json".split()
         ),
+        "lagtop jacobi --k 0.8 --u 0.5 --format csv, without NumPy": (
+            "-m lagrange_cli jacobi --k 0.8 --u 0.5 --format csv".split()
+        ),
+        "lagtop jacobi --k 0.8 --u-range 0:1:7 --format csv, with NumPy": (
+            "-m lagrange_cli jacobi --k 0.8 --u-range 0:1:7 --format csv".split()
+        ),
+        "lagtop solve (<= 1.2)": ["-m", "lagrange_cli", "solve"],
     }
+    compile_dir(ROOT / "lagrange_cli", quiet=1)  # as pip does
     best = dict.fromkeys(commands, float("inf"))
     for _ in range(15):
         for name, command in commands.items():

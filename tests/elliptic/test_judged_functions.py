@@ -147,7 +147,7 @@ def misrounded(case: Case, judge: Judge) -> Iterator[str]:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_small_tables_have_the_nearest_doubles(seed: int) -> None:
-    """Numbers of many digits are rounded once: each of 1 000 values was right."""
+    """Numbers of many digits are rounded once: each of 3 900 values was right."""
     case, judge = random_case(random.Random(f"few {seed}"))
     assert list(misrounded(case._replace(arguments=case.arguments[:2]), judge)) == []
 
