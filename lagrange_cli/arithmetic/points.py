@@ -53,6 +53,10 @@ class Points:
         first, last = self.at(np.array([0, self.count - 1]))
         return [float(first), float(last)]
 
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor > 0."""
+        raise NotImplementedError
+
     def blocks(self) -> Iterator[Array]:
         """Yield all points as arrays of at most `POINTS_AT_ONCE`."""
         import numpy as np
@@ -66,6 +70,10 @@ class EvenPoints(Points):
 
     def __str__(self) -> str:
         return f"{self.start}:{self.start + (self.count - 1) * self.step}:{self.count}"
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor."""
+        return EvenPoints(self.start * factor, self.step * factor, self.count)
 
     def __init__(self, start: Fraction, step: Fraction, count: int) -> None:
         """Raise LagtopError where there would be more than 1e9 points."""
@@ -115,6 +123,10 @@ class LogPoints(Points):
     def __str__(self) -> str:
         return f"log:{self.first}:{self.last}:{self.count}"
 
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor > 0."""
+        return LogPoints(self.first * factor, self.last * factor, self.count)
+
     def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
         self.first, self.last, self.count = first, last, count
 
@@ -139,6 +151,10 @@ class ListedPoints(Points):
 
     def __str__(self) -> str:
         return ",".join(map(str, self.exact))
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor."""
+        return ListedPoints([point * factor for point in self.exact])
 
     def __init__(self, exact: list[Fraction]) -> None:
         self.exact, self.count = exact, len(exact)

@@ -14,7 +14,7 @@ from ..output.terminal import spelt, view_of
 
 if TYPE_CHECKING:
     from ..motion.quantity import Key
-    from ..output.layouts import Line
+    from ..output.layouts import Layout, Line
 
 
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:
@@ -96,6 +96,31 @@ def _grouped(keys: Mapping[str, Key]) -> dict[str, list[Line]]:
     for name, key in keys.items():
         layout.setdefault(key.group, []).append(_line(name, key))
     return layout
+
+
+def in_units(layout: Layout, named: Callable[[str], str]) -> Layout:
+    """Return a layout with the units of a system, which `named` gives, in place of mass and len."""
+    return {
+        group: [line._replace(unit=named(line.unit)) for line in lines]
+        for group, lines in layout.items()
+    }
+
+
+def units_of(record: Mapping[str, Any], layout: Layout) -> dict[str, str]:
+    """Return the units of the keys of a record that have one, by the lines of a layout."""
+    units = {}
+    for line in (line for lines in layout.values() for line in lines):
+        for key, unit in _keys_of(line).items():
+            if key in record and unit:
+                units[key] = unit
+    return units
+
+
+def _keys_of(line: Line) -> dict[str, str]:
+    """Return the keys that a line may stand for, and the unit of each."""
+    if line.unit != "angle":
+        return {line.key: line.unit}
+    return {f"{line.key}_{unit}": unit for unit in ("deg", "rad")}
 
 
 def _line(name: str, key: Key) -> Line:

@@ -15,6 +15,7 @@ from ..inputs.names import split_names
 from .command import ExamplesFirst
 from .options import (
     FILE,
+    INPUT,
     NAMES,
     NUMBER,
     Parsed,
@@ -72,7 +73,7 @@ def _parse_steps(text: str) -> list[float]:
     metavar="TRAJECTORY...",
 )
 @click.option("--scene", type=FILE, metavar="FILE", help="Scene file; options win over it.")
-@input_options(NUMBER)
+@input_options(INPUT)
 @click.option(
     "--columns",
     type=NAMES,

@@ -10,6 +10,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_keys
+from .given import say_missing
 from .options import (
     COUNT,
     KEY_NAMES,
@@ -19,7 +20,6 @@ from .options import (
     exclude,
     input_options,
     output_options,
-    say_missing,
 )
 from .progress import with_progress
 
@@ -46,7 +46,7 @@ def _parse_input(text: str) -> Any:
     """,
 )
 @click.argument("words", nargs=-1, metavar="[SCENE.toml] CONDITION...")
-@input_options(Parsed("number or from:to", _parse_input))
+@input_options(Parsed("number or from:to", _parse_input), units=False)
 @click.option(
     "--scan",
     type=COUNT,

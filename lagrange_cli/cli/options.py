@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import is_decimal, parse_number
 from ..errors import LagtopError
 from ..output.terminal import has_colours, one_line
 
@@ -78,6 +78,15 @@ def _parse_count(text: str) -> int:
     return int(exact)
 
 
+def parse_input(text: str) -> Any:
+    """Return a number, or a number in a unit."""
+    if is_decimal(text.strip()):
+        return parse_number(text)
+    from ..inputs.quantity_text import parse_quantity  # where there may be a unit
+
+    return parse_quantity(text, parse_number)
+
+
 def _parse_range(text: str) -> Points:
     from ..inputs.ranges import parse_range
 
@@ -99,16 +108,8 @@ def inputs_of(scene: str | None, rad: bool, options: Mapping[str, Any]) -> Given
     """Return the inputs of a scene file, if any, and of the options, which win."""
     from ..inputs.given import gather  # not for commands without a top
 
-    return gather(by_key(options, radians=rad), scene)
-
-
-def say_missing(found: Given) -> None:
-    """Name the inputs of the body that are those of the worked example, where others are given."""
-    if found.missing:
-        from ..inputs import mixed_body
-
-        words = mixed_body.options(found.missing, units=found.system is not None)
-        complain(f"Warning: {mixed_body.remark(found.missing, words)}")
+    given = by_key(options, radians=rad)
+    return gather(given, scene, system=given.pop("units", None))
 
 
 def motion_of(found: Given, exact: bool) -> Motion:
@@ -119,7 +120,10 @@ def motion_of(found: Given, exact: bool) -> Motion:
     from ..motion.solve import solve
 
     motion = solve(found.top(exact=exact))
-    say_missing(found)
+    if found.missing:
+        from .given import say_missing
+
+        say_missing(found)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
@@ -183,6 +187,7 @@ def complain(line: str) -> None:
 
 FILE = FileName()
 NUMBER = Parsed("number", parse_number)
+INPUT = TIME = Parsed("number", parse_input)
 COUNT = Parsed("integer", _parse_count)
 RANGE = Parsed("range", _parse_range)
 NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
@@ -205,13 +210,20 @@ _SCENE_OPTIONS = [
 ]
 
 
-def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[type-arg]
-    """Add the options for the inputs of a top, with their defaults, and --rad."""
+def input_options(
+    kind: click.ParamType,  # type: ignore[type-arg]
+    *,
+    units: bool = True,
+) -> Callable[[F], F]:
+    """Add the options for the inputs of a top, with their defaults, --units and --rad."""
     from ..inputs.top import Top  # not for commands without a top
 
     defaults = Top().inputs()
 
     def decorate(command: F) -> F:
+        if units:
+            text = "Units of the output, where inputs have units.  [default: si]"
+            command = click.option("--units", type=click.Choice(["si", "cgs"]), help=text)(command)
         command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
             command
         )
@@ -227,7 +239,7 @@ def input_options(kind: click.ParamType) -> Callable[[F], F]:  # type: ignore[ty
 
 def scene_options(command: F) -> F:
     """Add the argument for a scene file and the options that override it."""
-    command = input_options(NUMBER)(command)
+    command = input_options(INPUT)(command)
     return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml]")(command)
 
 

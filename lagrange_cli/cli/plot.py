@@ -17,7 +17,8 @@ from ..output.write import write_bytes
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look, require_matplotlib
 from .command import ExamplesFirst
-from .options import FILE, NUMBER, PICTURES, input_options, solved
+from .given import in_seconds
+from .options import FILE, INPUT, NUMBER, PICTURES, TIME, input_options, inputs_of, motion_of
 from .progress import with_progress
 
 FORMATS = ("png", "svg", "pdf")
@@ -44,8 +45,8 @@ Needs matplotlib: pip install 'lagtop[plot]'.
     """,
 )
 @click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml] [KIND]...")
-@input_options(NUMBER)
-@click.option("--t-max", type=NUMBER, help="Last time.  [default: some nutation periods]")
+@input_options(INPUT)
+@click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
 @click.option(
     "--key", default="mean_precession_rate", show_default=True, help="Key of the record for `map`."
 )
@@ -101,10 +102,13 @@ def command(
     from ..plot.page import Page, page_bytes, show_page
     from ..plot.request import PlotRequest
 
-    motion = solved(scene, rad, False, options)
+    options, times = in_seconds(options, t_max=t_max)
+    found = inputs_of(scene, rad, options)
+    motion = motion_of(found, False)
     request = PlotRequest(
-        t_max=checked_span(motion, t_max),
+        t_max=checked_span(motion, times["t_max"]),
         radians=rad,
+        unit=found.system.named if found.system else str,
         key=key,
         x=parse_input_range("x", x) if x else None,
         y=parse_input_range("y", y) if y else None,

@@ -10,7 +10,7 @@ from ..errors import AbsentError
 from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_values
-from .command import ExamplesFirst, chain_layout, top_layout, write_keys
+from .command import ExamplesFirst, chain_layout, in_units, top_layout, units_of, write_keys
 from .options import (
     KEY_NAMES,
     MOST_RECORD_DIGITS,
@@ -19,13 +19,18 @@ from .options import (
     digits_option,
     exclude,
     given,
+    inputs_of,
+    motion_of,
     output_options,
     scene_options,
-    solved,
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..inputs.units import System
     from ..motion.solve import Motion
+    from ..output.layouts import Layout
 
 
 @click.command(
@@ -40,6 +45,7 @@ if TYPE_CHECKING:
         period=$(lagtop solve --r0 80 --get T_nutation)
         lagtop solve --r0 80 --get theta_min_deg,theta_max_deg
         lagtop solve --theta0 60 --get psi_period_deg
+        lagtop solve --m 350g --A 8.5e-4kg*m^2 --C 4e-4kg*m^2 --s 3cm --g 1g_0 --r0 12000rpm
         lagtop solve --theta0 60 --derivation
         lagtop solve --digits 30 --certify --format json
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
@@ -76,13 +82,17 @@ def command(
 
     Every number is the double nearest to its exact value, or has --digits right digits.  JSON and
     CSV hold the same keys; what a regime does not have is null or empty.
+
+    All inputs or none may have units (pip install 'lagtop[units]'); the output is then in SI, or in
+    --units cgs, and JSON names them.
     """
     exclude({"--get": keys, "--derivation": derivation or None})
     if keys is not None:
         exclude({"--get": keys, "--format": fmt if given("fmt") else None})
         known = record_keys(radians=rad)
         check_names("get", keys, known if set(keys) <= {*known} else all_keys(radians=rad))
-    motion = solved(scene, rad, digits is not None, options)
+    found = inputs_of(scene, rad, options)
+    motion = motion_of(found, digits is not None)
     chosen = _steps(motion, rad) if derivation else keys
     record = _record(motion, digits, rad, chosen, certify)
     if keys is not None:
@@ -90,9 +100,28 @@ def command(
     elif derivation:
         radii = {name: record[name] for name in record if name.endswith("_radius")}
         steps = {name: record[name] for name in chosen or ()}
-        write_record(steps | radii, fmt, output, chain_layout)
+        _write(steps | radii, found.system, fmt, output, chain_layout)
     else:
-        write_record(record, fmt, output, top_layout)
+        _write(record, found.system, fmt, output, top_layout)
+
+
+def _write(
+    record: dict[str, Any],
+    system: System | None,
+    fmt: str,
+    output: str,
+    layout: Callable[[], Layout],
+) -> None:
+    """Write a record, with units where its inputs had any."""
+    if system is None:
+        write_record(record, fmt, output, layout)
+        return
+    named = in_units(layout(), system.named)
+    if record.get("remark"):
+        record = record | {"remark": system.in_words(record["remark"])}
+    if fmt == "json":
+        record = record | {"units": units_of(record, named)}
+    write_record(record, fmt, output, lambda: named)
 
 
 def _record(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
+from .given import say_missing
 from .options import (
     FILE,
     KEY_NAMES,
@@ -20,7 +21,6 @@ from .options import (
     input_options,
     jobs_option,
     output_options,
-    say_missing,
 )
 from .progress import with_count, with_progress
 
@@ -29,10 +29,11 @@ if TYPE_CHECKING:
     from ..sweeps.parts import Make
 
 
-def _parse_values(text: str) -> Points:
+def _parse_values(text: str) -> Any:
+    from ..inputs.quantity_text import parse_quantity
     from ..inputs.ranges import parse_values
 
-    return parse_values(text)
+    return parse_quantity(text, parse_values)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -93,15 +94,17 @@ def command(
     folder: str | None,
     fmt: str,
     output: str,
+    units: str | None,
     **axes: Points | None,
 ) -> None:
     """The record of `solve` for each top of a grid or of a file.
 
     An input is a number, a list 1,2,3 or a range [log:]start:stop:count.  The grid is the product
-    of all; the last option varies fastest.
+    of all; the last option varies fastest.  A unit stands once, at the end: --r0 '1e3:9e3:5 rpm'.
 
     A file is CSV with a header, or JSON lines, whose names are those of a record.  What a row lacks
-    comes from the options and the scene; other columns are carried through.  A top that cannot be
+    comes from the options and the scene; other columns are carried through.  A heading may have a
+    unit, as in m [g], if all have one.  A top that cannot be
     solved has its `error` in its row, and the exit code is 1.
 
     A folder of --parts belongs to one sweep: any number of runs, shards among them, may fill it,
@@ -127,6 +130,7 @@ def command(
         keys=keys,
         radians=rad,
         fmt=fmt,
+        system=units,
         until_error=fail_fast and to_stdout,
         described=folder is not None,
     )

@@ -13,26 +13,28 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
+from .given import in_seconds, say_missing
 from .options import (
     COLUMN_NAMES,
     COUNT,
     FILE,
     MOST_TABLE_DIGITS,
-    NUMBER,
+    TIME,
     by_key,
     certify_option,
     digits_option,
     exclude,
+    inputs_of,
     jobs_option,
+    motion_of,
     output_options,
-    say_missing,
     scene_options,
-    solved,
 )
 from .progress import with_count, with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
+    from ..inputs.units import System
     from ..motion.solve import Motion
 
 LONG, LONG_IN_DIGITS = 3_000_000, 1000
@@ -54,10 +56,10 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
     """,
 )
 @scene_options
-@click.option("--t-max", type=NUMBER, help="Last time.  [default: one nutation period, or 1]")
-@click.option("--t-min", type=NUMBER, help="First time.  [default: 0]")
+@click.option("--t-max", type=TIME, help="Last time.  [default: one nutation period, or 1]")
+@click.option("--t-min", type=TIME, help="First time.  [default: 0]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")
-@click.option("--dt", type=NUMBER, help="Step, instead of --n.")
+@click.option("--dt", type=TIME, help="Step, instead of --n.")
 @click.option(
     "--times",
     type=FILE,
@@ -104,10 +106,11 @@ def command(
     Angles are within 4 units at times up to 2^50 nutation periods; a unit is 2^-52 times the angle,
     or 1 rad if that is larger, and more where an angle sweeps round next to a pole.  Spin and
     precession count on from 0 at t = 0 unless --wrap.  The times are t-min + i dt, each rounded
-    once.
+    once.  Where inputs have units (see lagtop solve --help) a time without one is in seconds.
     """
     from ..motion.table import DEFAULT_COLUMNS, DEFAULT_ROWS
 
+    options, interval = in_seconds(options, t_min=t_min, t_max=t_max, dt=dt)
     exclude({"--n": count, "--dt": dt})
     exclude({"--columns": columns, "--digits": digits})
     if jobs is not None and tops is None:
@@ -120,7 +123,7 @@ def command(
         exclude({"--times": times, name: value})
     _check_format(fmt, times, tops, digits, certify)
     wish = Wish(
-        _listed(times, tops, fmt) or partial(_grid, t_min=t_min, t_max=t_max, n=count, dt=dt),
+        _listed(times, tops, fmt) or partial(_grid, n=count, **interval),
         DEFAULT_COLUMNS if columns is None else columns,
         rad,
         wrap,
@@ -129,10 +132,12 @@ def command(
         tops is not None and (times is not None or t_max is not None),
     )
     if tops is None:
-        motion = solved(scene, rad, digits is not None, options)
-        (_write_certified if certify else _write_one)(motion, wish, digits, fmt, output)
+        found = inputs_of(scene, rad, options)
+        motion = motion_of(found, digits is not None)
+        write = _write_certified if certify else partial(_write_one, system=found.system)
+        write(motion, wish, digits, fmt, output)
     else:
-        _write_many(tops, scene, by_key(options, radians=rad), wish, fmt, output)
+        _write_many(tops, scene, options, wish, fmt, output)
 
 
 def _check_format(
@@ -201,15 +206,26 @@ def _grid(motion: Motion, **interval: Any) -> Points:
     return grid(motion, **interval)
 
 
-def _write_one(motion: Motion, wish: Wish, digits: int | None, fmt: str, output: str) -> None:
+def _write_one(
+    motion: Motion,
+    wish: Wish,
+    digits: int | None,
+    fmt: str,
+    output: str,
+    system: System | None = None,
+) -> None:
+    from ..motion.columns import chosen_columns
     from ..motion.table import digit_rows, rows
 
-    times, units = wish.times(motion), {"radians": wish.radians, "wrap": wish.wrap}
+    times, shown = wish.times(motion), {"radians": wish.radians, "wrap": wish.wrap}
     if fmt == "table" and times.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
-    header, blocks = rows(motion, times, wish.columns, **units)
-    parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **units)
+    header, blocks = rows(motion, times, wish.columns, **shown)
+    parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **shown)
     long = LONG if digits is None else LONG_IN_DIGITS
+    if fmt == "table" and system is not None:
+        units = [system.named(part.unit) for part in chosen_columns(wish.columns)]
+        header = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=True)]
     write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)
 
 
@@ -238,10 +254,12 @@ def _write_many(
     from ..sweeps.parts import Tally
     from ..sweeps.tables import open_tables
 
+    inputs = by_key(options, radians=wish.radians)
+    system = inputs.pop("units", None)
     tables, lines, given = open_tables(
         tops,
         scene,
-        options,
+        inputs,
         wish.columns,
         wish.times,
         radians=wish.radians,
@@ -249,6 +267,7 @@ def _write_many(
         fmt=fmt,
         rows_per_top=wish.rows_per_top,
         same=wish.same_times(),
+        system=system,
     )
     say_missing(given)
     tally = Tally()

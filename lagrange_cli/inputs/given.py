@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import Number
@@ -20,6 +21,8 @@ class Given(Values):
 
     inputs: Mapping[str, Any]
     """What was given, as exact numbers, or what a sweep has in their place."""
+    others: Mapping[str, Any]
+    """What else was given with units, such as times."""
     body: Mapping[str, Number]
     """The body of the worked example, in these units."""
     system: System | None
@@ -49,12 +52,14 @@ def gather(
     *,
     system: str | None = None,
     varying: Collection[str] = (),
+    others: Mapping[str, Any] = MappingProxyType({}),
 ) -> Given:
     """Return the inputs of a scene file, if any, and those that are `given`, which win.
 
     An input is a number, or a `Quantity` where it has a unit; those with units are converted to a
-    `system`, `si` (the default) or `cgs`.  Inputs that are `varying` are given later.  Raises
-    SceneError for a file, LagtopError for an input that was given.
+    `system`, `si` (the default) or `cgs`, and so are `others`, such as times or the units of
+    columns.  Inputs that are `varying` are given later.  Raises SceneError for a file, LagtopError
+    for an input that was given.
     """
     inputs: Mapping[str, Any] = given
     file: SceneFile | None = None
@@ -71,16 +76,17 @@ def gather(
     body: Mapping[str, Number] = BODY
     try:
         one_of_each(inputs)
-        if system is not None or any(hasattr(x, "unit") for x in inputs.values()):
-            from .units import in_one_system
+        if system or any(hasattr(x, "unit") for x in (*inputs.values(), *others.values())):
+            from .units import converted, system_of
 
-            inputs, units = in_one_system(inputs, system)
+            units = system_of(overridden(inputs, others), system)
+            inputs, others = converted(inputs, units), converted(others, units)
             body = units.worked_example() if units else BODY
     except LagtopError as error:
         raise blame(error) from None
     known = {name: _if_one(x) for name, x in inputs.items()}
     missing = from_example(dict.fromkeys(varying) | known)
-    return Given(inputs, body, units, missing, blame)
+    return Given(inputs, others, body, units, missing, blame)
 
 
 def _if_one(value: Any) -> Any:

@@ -14,6 +14,12 @@ _UNIT = re.compile(r"(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*",
 """From the first letter on that begins no exponent; `1/` or `/` before it belongs to the unit."""
 
 
+TILT = "theta0"
+"""The key of a tilt that has a unit of its own."""
+_LOG = "log:"
+"""How a range with equal ratios begins."""
+
+
 class Quantity(Values, Over[V]):
     """A number in a unit of its own, as it was written; nothing is converted yet."""
 
@@ -27,10 +33,10 @@ def split_unit(text: str) -> tuple[str, str]:
 
     The number part is what stands before the first letter that is not the e of an exponent; it may
     hold an uncertainty, such as `1587(2)` or `1587 +/- 0.1 %`.  A text without a digit before its
-    first letter, such as `nan`, has no unit.
+    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end.
     """
     text = text.strip()
-    found = _UNIT.search(text)
+    found = _UNIT.search(text, len(_LOG) if text.startswith(_LOG) else 0)
     if found is None or not re.search(r"\d", text[: found.start()]):
         return text, ""
     return text[: found.start()].rstrip(), found[0]

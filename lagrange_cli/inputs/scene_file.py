@@ -10,13 +10,12 @@ from typing import Any
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError, SceneError
 from .names import suggestion
+from .quantity_text import TILT, Quantity, parse_quantity
 from .top import INPUTS
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
 """Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
-TILT = "theta0"
-"""The key of a tilt that has a unit of its own."""
 KEYS = (*INPUTS, TILT)
 
 
@@ -58,8 +57,6 @@ class SceneFile:
 
     def _quantity(self, key: str, text: str) -> Any:
         """Return what a text says, a number in a unit."""
-        from .quantity_text import Quantity, parse_quantity
-
         try:
             value = parse_quantity(text, parse_number)
         except LagtopError as error:

@@ -8,17 +8,21 @@ from __future__ import annotations
 
 import csv
 import math
-import re
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from fractions import Fraction
 from io import BufferedIOBase
 from itertools import chain, islice
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import json_text, parse_number
 from ..errors import DataError, LagtopError
 from .block import InputArrays
+from .given import Given, nearest
+from .headings import check_header, check_spelling, heading
+from .quantity_text import Quantity
 from .top import INPUTS, from_example, one_of_each, overridden
 
 
@@ -83,6 +87,26 @@ class TopsFile(NamedTuple):
     """Names that are neither read nor carried."""
     named: Collection[str]
     """The inputs that the rows have: by the header, or by the first JSON object with any."""
+    units: Mapping[str, Any] = MappingProxyType({})
+    """What 1 means in each column of an input: a quantity, where its heading has a unit."""
+    factors: Mapping[str, Fraction] = MappingProxyType({})
+    """What the numbers of a column are multiplied with, where its heading has a unit."""
+
+    def in_units(self, found: Given) -> TopsFile:
+        """Return the way to read the file in the units of what was given beside it.
+
+        Raises LagtopError for JSON lines where these have units.
+        """
+        if self.columns is None:
+            if found.system is not None:
+                raise LagtopError(
+                    "JSON lines have no units: take CSV with headings such as m [g], or inputs "
+                    "without units"
+                )
+            return self
+        keys = dict(zip(self.units, found.others, strict=True))
+        factors = {keys[x]: found.others[keys[x]] for x in keys if hasattr(self.units[x], "unit")}
+        return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
     def row(self, number: int, raw: bytes) -> TopRow:
         """Return the top of a line, or what is wrong with it."""
@@ -108,7 +132,7 @@ class TopsFile(NamedTuple):
             raise LagtopError(f"a row must have {len(self.columns)} cells, got {len(cells)}")
         for name, text in texts.items():
             if name in INPUTS:
-                inputs[name] = _double(name, text)
+                inputs[name] = _double(name, text, self.factors.get(name))
 
     def _read_json(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         values = _json_object(raw)
@@ -141,17 +165,17 @@ def _decoded(raw: bytes) -> str:
         raise LagtopError("a row must be UTF-8 text") from None
 
 
-def _double(name: str, text: str) -> float:
+def _double(name: str, text: str, factor: Fraction | None = None) -> float:
     try:
         value = float(text)
     except ValueError:
         value = math.nan
-    if value and math.isfinite(value) and text.isascii() and "_" not in text:
+    if factor is None and value and math.isfinite(value) and text.isascii() and "_" not in text:
         return value
     if not text.strip():
         raise LagtopError(f"{name} must be a number, got an empty cell")
     try:
-        return float(parse_number(text))
+        return nearest(name, parse_number(text) * (1 if factor is None else factor))
     except LagtopError as error:
         raise LagtopError(f"{name} {error}") from None
 
@@ -194,17 +218,24 @@ def open_tops(
     if first.lstrip().startswith(b"{"):
         head = [(start, first), *islice(lines, size - 1)]
         carried = [x for x in _names(raw for _, raw in head) if x not in computed]
-        _check_spelling(carried, name)
+        check_spelling(carried, name)
         file = TopsFile(None, carried, frozenset(computed), _named(raw for _, raw in head))
         return file, _blocks(file, chain(head, lines), size)
     try:
-        columns = [cell.strip() for cell in split_cells(_decoded(first))]
+        headings = [heading(cell.strip()) for cell in split_cells(_decoded(first))]
     except LagtopError as error:
         raise DataError(f"{name}, line {start}: {error}") from None
-    carried = [x for x in columns if x not in INPUTS and x not in computed]
-    _check_spelling(carried, name)
-    _check_header(columns, name)
-    file = TopsFile(columns, carried, frozenset(computed), set(columns) & set(INPUTS))
+    columns = [column for column, _ in headings]
+    known = {*INPUTS, *(x for x, unit in headings if unit)}
+    carried = [x for x in columns if x not in known and x not in computed]
+    check_spelling(carried, name)
+    check_header(columns, known, name)
+    units = {
+        column: Quantity(Fraction(1), unit) if unit else Fraction(1)
+        for column, unit in headings
+        if column in known
+    }
+    file = TopsFile(columns, carried, frozenset(computed), set(columns) & set(INPUTS), units)
     return file, _blocks(file, lines, size)
 
 
@@ -242,26 +273,3 @@ def _named(lines: Iterable[bytes]) -> set[str]:
             if from_example(dict.fromkeys(named)):
                 break
     return named
-
-
-def _check_spelling(carried: Sequence[str], name: str) -> None:
-    """Raise LagtopError for a column that is not read but looks like an input."""
-    for column in carried:
-        for known in INPUTS:
-            if _plain(column) == _plain(known):
-                raise DataError(f"{name}: the column {column} must be spelt {known}")
-
-
-def _plain(column: str) -> str:
-    """Return a name without case, underscores, the 0 of theta0 and the unit: easily mistaken."""
-    return re.sub("_|0|deg$|rad$", "", column.lower()) or column
-
-
-def _check_header(columns: Sequence[str], name: str) -> None:
-    if twice := [x for i, x in enumerate(columns) if x in columns[:i]]:
-        raise DataError(f"{name} must name each column once, got {twice[0]!r} twice")
-    if not set(columns) & set(INPUTS):
-        raise DataError(
-            f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "
-            f"got {','.join(columns)[:60]!r}"
-        )

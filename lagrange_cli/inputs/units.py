@@ -17,8 +17,7 @@ from ..arithmetic.points import Points
 from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .measured import EXACT_DIGITS
-from .quantity_text import Quantity
-from .scene_file import TILT
+from .quantity_text import TILT, Quantity
 from .top import BODY
 
 _RATE = (0, 0, -1)
@@ -82,6 +81,10 @@ class System(Values):
         }
         return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
 
+    def in_words(self, remark: str) -> str:
+        """Return a remark with the second after numbers and strokes."""
+        return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)
+
 
 CGS = System("g", "cm", Fraction(1), Fraction(1, 100))
 SYSTEMS = {"si": System("kg", "m", Fraction(1000), Fraction(1)), "cgs": CGS}
@@ -104,22 +107,27 @@ class Meaning(Values):
         return self.rational * (Fraction(pi_to(EXACT_DIGITS)) if self.power_of_pi else 1)
 
 
-def in_one_system(
-    inputs: Mapping[str, Any], name: str | None
-) -> tuple[dict[str, Any], System | None]:
-    """Return inputs, in units or without, as numbers in one system, and the system.
+def system_of(inputs: Mapping[str, Any], name: str | None) -> System | None:
+    """Return the system for inputs in units or without; None where nothing but a tilt has a unit.
 
-    The system is None where nothing but the tilt has a unit.  A 0 and a time need none.  Raises
-    LagtopError for an input without a unit where others have one, and for a unit of other
-    dimensions.
+    A 0 and a time need none.  Raises LagtopError for an input without a unit where others have one,
+    or where a system is asked for.
     """
     bare = [x for x in inputs if needs_unit(x, inputs[x])]
     united = [x for x in inputs if hasattr(inputs[x], "unit") and x != TILT]
     if bare and (united or name is not None):
-        why = f"as {united[0]} has" if united else "where --units is given"
+        why = f"as {united[0]} has" if united else "where a time or the output has one"
         example = _EXAMPLES[DIMENSIONS[bare[0]]]
-        raise LagtopError(f"{bare[0]} must have a unit, {why}: such as {example}", bare[0])
-    system = SYSTEMS[name or "si"] if united or name else None
+        wrong = f"{bare[0]} must have a unit such as {example}, {why}, got none"
+        raise LagtopError(wrong, bare[0])
+    return SYSTEMS[name or "si"] if united or name else None
+
+
+def converted(inputs: Mapping[str, Any], system: System | None) -> dict[str, Any]:
+    """Return inputs as numbers in a system; a tilt with a unit is in degrees or in radians.
+
+    Raises LagtopError for a unit of other dimensions.
+    """
     found: dict[str, Any] = {}
     for key, value in inputs.items():
         if not hasattr(value, "unit"):
@@ -128,10 +136,9 @@ def in_one_system(
             unit, factor = _tilt(value)
             found[unit] = scaled(value.number, factor)
         else:
-            assert system is not None
-            factor = factor_of(key, value) / system.factor(DIMENSIONS[key])
-            found[key] = scaled(value.number, factor)
-    return found, system
+            size = factor_of(key, value)
+            found[key] = scaled(value.number, size / (system or CGS).factor(DIMENSIONS[key]))
+    return found
 
 
 def needs_unit(key: str, value: Any) -> bool:
@@ -181,7 +188,9 @@ def _meaning(key: str, value: Quantity[Any], example: str) -> Meaning:
         return meaning_of(f"1{text}" if text.startswith("/") else text)
     except ImportError:
         raise LagtopError(
-            f"{key} has the unit {value.unit!r}, which needs pint: pip install 'lagtop[units]'", key
+            f"{key} must be a finite decimal number "
+            f"(units need pint: pip install 'lagtop[units]'), got the unit {value.unit!r}",
+            key,
         ) from None
     except _UnknownUnitError as error:
         raise _refused(key, value, example, str(error)) from None
@@ -205,7 +214,8 @@ def meaning_of(text: str) -> Meaning:
         raise _UnknownUnitError("no such unit") from error
     powers = dict(root.unit_items())
     angle = powers.pop("radian", 0)
-    if not powers.keys() <= _ROOTS.keys() or angle not in {0, 1}:
+    whole = all(power == int(power) for power in powers.values())
+    if not powers.keys() <= _ROOTS.keys() or angle not in {0, 1} or not whole:
         raise _UnknownUnitError("not one of mass, length, time and angle")
     dimensions = [0, 0, 0]
     for name, power in powers.items():
@@ -226,4 +236,6 @@ def meaning_of(text: str) -> Meaning:
 def _registry() -> Any:
     import pint
 
-    return pint.UnitRegistry(non_int_type=Fraction)
+    registry: Any = pint.UnitRegistry(non_int_type=Fraction)
+    registry.define("rev = turn")
+    return registry

@@ -33,6 +33,8 @@ class Part(NamedTuple):
     method: str
     """The method of `sample.Sample` that computes it."""
     needs: Needs
+    unit: str = ""
+    """A unit such as `rad/time`, where it is none of angles."""
 
 
 class Column(NamedTuple):
@@ -42,25 +44,27 @@ class Column(NamedTuple):
     parts: Sequence[Part]
 
 
-def _one(meaning: str, needs: Needs, method: str, heading: str) -> Column:
-    return Column(meaning, [Part(heading, method, needs)])
+def _one(meaning: str, needs: Needs, method: str, heading: str, unit: str = "") -> Column:
+    return Column(meaning, [Part(heading, method, needs, unit)])
 
 
 COLUMNS: dict[str, Column] = {
-    "t": _one("time", NOTHING, "times", "t"),
+    "t": _one("time", NOTHING, "times", "t", "time"),
     "theta": _one("tilt", TILT, "theta", "theta_*"),
     "phi": _one("spin", TURN, "phi", "phi_*"),
     "psi": _one("precession", TURN, "psi", "psi_*"),
     "dphi": _one("spin less its mean growth (6,4), a wave", TURN, "phi_remainder", "dphi_*"),
     "dpsi": _one("precession less its mean growth (7,4), a wave", TURN, "psi_remainder", "dpsi_*"),
     "u": _one("cos(theta)", TILT, "cosine", "u"),
-    "thetadot": _one("nutation rate", SWING, "nutation_rate", "thetadot"),
-    "phidot": _one("spin rate", TILT, "phi_rate", "phidot"),
-    "psidot": _one("precession rate", TILT, "psi_rate", "psidot"),
-    "p": _one("angular velocity about the body's x axis", SWING | TURN, "p", "p"),
-    "q": _one("angular velocity about the body's y axis", SWING | TURN, "q", "q"),
-    "r": _one("angular velocity about the figure axis", NOTHING, "r", "r"),
-    "moment": _one("moment of the weight about the line of nodes", TILT, "moment", "moment"),
+    "thetadot": _one("nutation rate", SWING, "nutation_rate", "thetadot", "rad/time"),
+    "phidot": _one("spin rate", TILT, "phi_rate", "phidot", "rad/time"),
+    "psidot": _one("precession rate", TILT, "psi_rate", "psidot", "rad/time"),
+    "p": _one("angular velocity about the body's x axis", SWING | TURN, "p", "p", "rad/time"),
+    "q": _one("angular velocity about the body's y axis", SWING | TURN, "q", "q", "rad/time"),
+    "r": _one("angular velocity about the figure axis", NOTHING, "r", "r", "rad/time"),
+    "moment": _one(
+        "moment of the weight about the line of nodes", TILT, "moment", "moment", "energy"
+    ),
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
         [
@@ -73,9 +77,13 @@ COLUMNS: dict[str, Column] = {
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
         [Part(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE) for part in "wxyz"],
     ),
-    "energy": _one("energy; constant but for rounding", SWING, "energy", "energy"),
+    "energy": _one("energy; constant but for rounding", SWING, "energy", "energy", "energy"),
     "Lz": _one(
-        "vertical angular momentum; constant but for rounding", TILT, "vertical_momentum", "Lz"
+        "vertical angular momentum; constant but for rounding",
+        TILT,
+        "vertical_momentum",
+        "Lz",
+        "momentum",
     ),
 }
 

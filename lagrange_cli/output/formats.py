@@ -258,6 +258,8 @@ def _object(members: Iterable[tuple[str, str]]) -> bytes:
 
 
 def _json_value(value: Any) -> str:
+    if isinstance(value, dict):  # of words
+        return _object((key, _json_value(x)) for key, x in value.items()).decode()
     if type(value) is str:  # our only strings are plain words
         return f'"{value}"'
     return value_text(value) or "null"

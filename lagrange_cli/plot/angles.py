@@ -63,12 +63,13 @@ def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: 
         if rate is not None:
             ax.plot(course.t, rate * course.t * request.per_radian, color=look.quiet, lw=0.9)
         ax.plot(course.t, angle * request.per_radian, color=colour)
-    finish_time_axes(places, motion, course.t)
+    finish_time_axes(places, motion, course.t, request)
 
 
-def finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array) -> None:
+def finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array, request: PlotRequest) -> None:
     """Write the time below; mark nutation periods above and by thin lines through all panels."""
-    axes[-1].set_xlabel("time t")
+    unit = request.unit("time")
+    axes[-1].set_xlabel("time t" if unit == "time" else f"time t ({unit})")
     axes[-1].locator_params(axis="x", nbins=6)  # small steps have long labels
     for ax in axes:
         ax.set_xlim(t[0], t[-1])

@@ -70,7 +70,7 @@ def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: 
     """Draw the picture on one axes."""
     cubic, (axes,) = cubic_curve(motion), places
     axes.set_title("The cubic f(u) = u̇² (4,9), the motion shaded")
-    axes.set(xlabel="u = cos ϑ", ylabel="f(u) (1/time²)")
+    axes.set(xlabel="u = cos ϑ", ylabel=request.label("f(u) (1/time²)"))
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
     axes.axhline(0.0, color=look.quiet, lw=0.9)
     if cubic.u2 < cubic.u1:

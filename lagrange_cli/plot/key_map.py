@@ -18,7 +18,7 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
-from ..motion.record import NUMBER_KEYS
+from ..motion.record import KEYS, NUMBER_KEYS
 from ..motion.solve import Motion
 from ..sweeps.records import sweep
 from .request import InputRange, PlotRequest, Progress, no_progress
@@ -147,7 +147,7 @@ def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: 
     chart = key_map(motion, request.key, x, y, request.progress)
     (axes,) = places
     axes.set_title(request.key)
-    axes.set(xlabel=INPUTS[x.name], ylabel=INPUTS[y.name])
+    axes.set(xlabel=_label(x.name, request), ylabel=_label(y.name, request))
     axes.set_facecolor(look.faint)  # where there is no such number
     _draw_cells(axes, chart, look)
     axes.set(xscale=_scale_name(x), yscale=_scale_name(y))
@@ -175,6 +175,14 @@ def _draw_cells(axes: Axes, chart: KeyMap, look: Look) -> None:
         bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         bar.ax.yaxis.set_major_formatter("{x:g}")
         bar.ax.yaxis.set_minor_locator(NullLocator())
+
+
+def _label(name: str, request: PlotRequest) -> str:
+    """Return what an input is, with its unit where there is one."""
+    text = INPUTS[name]
+    if name in KEYS and "(" not in text and request.unit(KEYS[name].unit) != KEYS[name].unit:
+        text += f" ({KEYS[name].unit})"
+    return request.label(text)
 
 
 def _scale_name(axis: InputRange) -> str:

@@ -77,7 +77,9 @@ def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: 
     """Draw the picture on one axes, without the legend."""
     (axes,), portrait, factor = places, phase_portrait(motion), request.per_radian
     axes.set_title("Nutation in the phase plane")
-    axes.set(xlabel=f"tilt ϑ ({request.angle_unit})", ylabel="tilt rate ϑ̇ (rad/time)")
+    axes.set(
+        xlabel=f"tilt ϑ ({request.angle_unit})", ylabel=request.label("tilt rate ϑ̇ (rad/time)")
+    )
     axes.locator_params(axis="x", nbins=5)
     axes.axhline(0.0, color=look.quiet, lw=0.9)
     axes.plot(portrait.theta * factor, portrait.rate, color=look.lines[0], label="this motion")

@@ -70,4 +70,4 @@ def _draw_curves(
         ax.axhline(0.0, color=look.quiet, lw=0.9)
         ax.plot(curves.t, remainder * request.per_radian, color=colour)
         ax.set_ylabel(f"{symbol} ({request.angle_unit})")
-    finish_time_axes(axes, motion, curves.t)
+    finish_time_axes(axes, motion, curves.t, request)

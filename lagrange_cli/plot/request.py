@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 if TYPE_CHECKING:
@@ -47,8 +48,14 @@ class PlotRequest(NamedTuple):
     """Horizontal axis of a map; by default the spin."""
     y: InputRange | None = None
     """Vertical axis of a map; by default the tilt."""
+    unit: Callable[[str], str] = str
+    """Names a unit such as `rad/time` in the units of the inputs."""
     progress: Progress = no_progress
     """What may show the progress of a map."""
+
+    def label(self, text: str) -> str:
+        """Return a label whose unit stands between brackets, in the units of the inputs."""
+        return re.sub(r"\((.*?)\)", lambda inside: f"({self.unit(inside[1])})", text)
 
     @property
     def angle_unit(self) -> str:

@@ -41,6 +41,7 @@ def plan(
     *,
     keys: Sequence[str] | None = None,
     radians: bool = False,
+    system: str | None = None,
     fmt: str = "csv",
     until_error: bool = False,
     described: bool = False,
@@ -59,7 +60,7 @@ def plan(
     chosen = list(check_keys(known if keys is None else keys, radians=radians))
     told: dict[str, Any] = {"lagtop": __version__, "format": fmt, "radians": radians}
     if not tables:
-        found = gather(axes, scene)
+        found = gather(axes, scene, system=system)
         axes = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
         grid = Product(axes)
         grid.check()
@@ -73,19 +74,21 @@ def plan(
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = _digested(tables[0]) if described else (None, "")
     computed = {*known, *record_keys(radians=not radians), *chosen}
-    source, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
-    found = gather(axes, scene, varying=source.named)
+    file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
+    found = gather(axes, scene, system=system, varying=file.named, others=file.units)
+    source = file.in_units(found)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     if "error" not in chosen:
         chosen.append("error")
     told |= {"keys": chosen, "inputs": shared, "file": digest, "parts": None}
     header = [*source.carried, *chosen]
     sweep = Sweep(header, shared, chosen, radians, fmt, until_error)
-    return Plan(sweep, enumerate(lines), 0, told, found)
+    blocks = (block._replace(file=source) for block in lines)
+    return Plan(sweep, enumerate(blocks), 0, told, found)
 
 
 def ranges_of(axes: Mapping[str, Any]) -> dict[str, Points]:
-    """Return the axes that have more than one value."""
+    """Return the axes that have more than one value, in units or without."""
     axes = {name: getattr(axis, "number", axis) for name, axis in axes.items()}
     return {name: axis for name, axis in axes.items() if axis.count > 1}
 

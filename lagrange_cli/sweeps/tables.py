@@ -123,6 +123,7 @@ def open_tables(
     fmt: str,
     rows_per_top: int | None = None,
     same: Points | None = None,
+    system: str | None = None,
 ) -> tuple[Tables, Iterator[Lines], Given]:
     """Return the tables of the tops in a file, its lines a few at a time, and what is shared.
 
@@ -131,10 +132,12 @@ def open_tables(
     tops.  Raises LagtopError if the file cannot be read.
     """
     at_once = 1 if not rows_per_top else min(max(_ROWS_PER_TASK // rows_per_top, 1), _TOPS_AT_ONCE)
-    source, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
+    file, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
     block = (
         None if same is None or same.count > _ROWS_PER_TASK else np.concatenate([*same.blocks()])
     )
-    given = gather(inputs, scene, varying=source.named)
+    given = gather(inputs, scene, system=system, varying=file.named, others=file.units)
+    source = file.in_units(given)
     shared = shared_inputs(given)
-    return Tables(source, shared, columns, times, radians, wrap, fmt, block), lines, given
+    tables = Tables(source, shared, columns, times, radians, wrap, fmt, block)
+    return tables, (some._replace(file=source) for some in lines), given

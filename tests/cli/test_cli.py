@@ -217,7 +217,7 @@ BAD = {
     "--r0 −5": "(write the minus sign as an ASCII hyphen, -)",
     "--r0 1_000": "(leave out the underscores)",
     "--r0 ٣": "--r0 must be a finite decimal number, got '٣'",
-    "--r0 0x10": "--r0 must be a finite decimal number",
+    "--r0 0x10": "--r0 must have a unit as in '50 rad/s' or 480rpm, got the unit 'x10'",
     "--m 0": "m must be > 0, got 0.0",
     "--A -1": "A must be > 0, got -1.0",
     "--C 0": "C must be > 0, got 0.0",

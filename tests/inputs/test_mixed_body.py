@@ -106,9 +106,8 @@ def test_a_scene_with_a_whole_body_may_be_changed(tmp_path: Path, lagtop: Lagtop
     path = tmp_path / "scene.toml"
     path.write_text("m = 0.35\nC = 4e-4\n")
     assert lagtop("solve", path, "--g", "9.81").stderr == SAID
-    assert lagtop(
-        "find", path, "--g", "9.81", "--r0", "1:9", "K=2", "--scan", "9"
-    ).stderr.startswith(SAID)
+    found = lagtop("find", path, "--g", "9.81", "--r0", "1:9", "r0=5")
+    assert found.stderr.startswith(SAID)
 
 
 def test_an_error_that_comes_of_mixing_says_so(lagtop: Lagtop) -> None:

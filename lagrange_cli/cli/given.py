@@ -1,0 +1,32 @@
+"""What is made and said of inputs that are given, before there is a top."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from .options import complain
+
+if TYPE_CHECKING:
+    from ..inputs.given import Given
+
+
+def in_seconds(options: Mapping[str, Any], **times: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the options and times, these as numbers of seconds where they have units.
+
+    A time with a unit asks for units of all inputs, as --units does.
+    """
+    if not any(hasattr(x, "unit") for x in times.values()):
+        return dict(options), times
+    from ..inputs.units import converted
+
+    return {**options, "units": options.get("units") or "si"}, converted(times, None)
+
+
+def say_missing(found: Given) -> None:
+    """Name the inputs of the body that are those of the worked example, where others are given."""
+    if found.missing:
+        from ..inputs import mixed_body  # for few tops only
+
+        words = mixed_body.options(found.missing, units=found.system is not None)
+        complain(f"Warning: {mixed_body.remark(found.missing, words)}")

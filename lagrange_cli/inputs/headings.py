@@ -1,0 +1,44 @@
+"""Headings of files of tops: the inputs they name, their units, and slips in them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+
+from ..errors import DataError, LagtopError
+from .quantity_text import TILT
+from .top import INPUTS
+
+
+def check_spelling(carried: Sequence[str], name: str) -> None:
+    """Raise DataError for a column that is not read but looks like an input."""
+    for column in carried:
+        for known in INPUTS:
+            if _plain(column) == _plain(known):
+                raise DataError(f"{name}: the column {column} must be spelt {known}")
+
+
+def _plain(column: str) -> str:
+    """Return a name without case, underscores, the 0 of theta0 and the unit: easily mistaken."""
+    return re.sub("_|0|deg$|rad$", "", column.lower()) or column
+
+
+def heading(cell: str) -> tuple[str, str]:
+    """Return the name of a column and its unit, which a heading such as `m [g]` of an input has."""
+    name, bracket, unit = cell.partition("[")
+    if not bracket or not unit.endswith("]") or name.strip() not in {*INPUTS, TILT}:
+        return cell, ""
+    if name.strip().startswith(f"{TILT}_"):
+        raise LagtopError(f"the column {cell} must be called {TILT} [{unit}")
+    return name.strip(), unit[:-1].strip()
+
+
+def check_header(columns: Sequence[str], known: Collection[str], name: str) -> None:
+    """Raise DataError for a header that names a column twice, or none of the `known` inputs."""
+    if twice := [x for i, x in enumerate(columns) if x in columns[:i]]:
+        raise DataError(f"{name} must name each column once, got {twice[0]!r} twice")
+    if not set(columns) & set(known):
+        raise DataError(
+            f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "
+            f"got {','.join(columns)[:60]!r}"
+        )

@@ -1,0 +1,285 @@
+"""Units: what they mean, that conversion is exact, that all inputs have them or none."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import pytest
+from conftest import Lagtop, assert_one_line
+
+from lagrange_cli import LagtopError, Top, read_scene
+from lagrange_cli.arithmetic.text import parse_number
+from lagrange_cli.inputs.given import gather
+from lagrange_cli.inputs.quantity_text import parse_quantity
+from lagrange_cli.inputs.units import CGS, SYSTEMS, factor_of, meaning_of
+
+PAPER = "--m 1587g --A 39032g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
+BODY = {"m": "350g", "A": "8.5e-4 kg m²", "C": "4000 g*cm^2", "s": "3cm", "g": "9.81 m/s^2"}
+WORDS = [word for name, text in BODY.items() for word in (f"--{name}", text)]
+
+
+def read(inputs: dict[str, str]) -> dict[str, Any]:
+    """Return inputs as they are read from their texts."""
+    return {name: parse_quantity(text, parse_number) for name, text in inputs.items()}
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "size"),
+    [
+        ("m", "1 lb", Fraction(45359237, 100000)),
+        (
+            "m",
+            "1 slug",
+            Fraction(45359237, 100000) * Fraction(980665, 100000) / Fraction(3048, 10000),
+        ),
+        ("s", "1 in", Fraction(254, 10000)),
+        ("A", "1 lb*in^2", Fraction(45359237, 100000) * Fraction(254, 10000) ** 2),
+        ("A", "1 N·m·s²", Fraction(1000)),
+        ("A_cm", "1 kg m^2", Fraction(1000)),
+        ("g", "1 g_0", Fraction(980665, 100000)),
+        ("g", "1 m/s/s", Fraction(1)),
+        ("g", "1 ft s⁻²", Fraction(3048, 10000)),
+        ("r0", "1 rad/s", Fraction(1)),
+        ("r0", "1/s", Fraction(1)),
+        ("r0", "1 1/min", Fraction(1, 60)),
+        ("t_max", "1 ms", Fraction(1, 1000)),
+    ],
+)
+def test_definitions_are_exact(key: str, text: str, size: Fraction) -> None:
+    value = parse_quantity(text, parse_number)
+    assert not isinstance(value, Fraction)
+    assert factor_of(key, value) == size
+
+
+@pytest.mark.parametrize(
+    ("unit", "turns"),
+    [("rpm", "1/60"), ("turn/s", "1"), ("rev/min", "1/60"), ("deg/s", "1/360"), ("°/s", "1/360")],
+)
+def test_turns_have_pi_in_all_digits(unit: str, turns: str) -> None:
+    meaning = meaning_of(unit)
+    assert (meaning.rational, meaning.power_of_pi) == (2 * Fraction(turns), 1)
+    with mpmath.workdps(1150):
+        size = mpmath.mpf(meaning.size.numerator) / meaning.size.denominator
+        exact = 2 * mpmath.pi * mpmath.mpf(Fraction(turns).numerator) / Fraction(turns).denominator
+        assert abs(size - exact) < mpmath.mpf(10) ** -1098
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "value"),
+    [
+        ("30deg", "theta0_deg", Fraction(30)),
+        ("0.5 rad", "theta0_rad", Fraction(1, 2)),
+        ("250mrad", "theta0_rad", Fraction(1, 4)),
+        ("90 arcmin", "theta0_deg", Fraction(3, 2)),
+        ("0.25turn", "theta0_deg", Fraction(90)),
+        ("50 gon", "theta0_deg", Fraction(45)),
+    ],
+)
+def test_a_tilt_stays_exact_in_degrees_or_in_radians(text: str, key: str, value: Fraction) -> None:
+    found = gather(read({"theta0": text}))
+    assert (found.inputs, found.system) == ({key: value}, None)
+
+
+def test_inputs_are_the_nearest_doubles_in_either_system() -> None:
+    inputs = read(BODY | {"r0": "12000 rpm", "psidot0": "30 deg/s", "theta0": "60deg"})
+    si, cgs = gather(inputs), gather(inputs, system="cgs")
+    assert si.system == SYSTEMS["si"]
+    assert cgs.system == CGS
+    assert si.top() == Top(
+        m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=1256.6370614359173, theta0_deg=60,
+        psidot0=0.5235987755982989,
+    )  # fmt: skip
+    assert cgs.top() == si.top().replace(m=350, A=8500, C=4000, s=3, g=981)
+    assert gather(
+        read({"m": "0.1 oz", "A": "1e9g m²", "C": "1e9 g m²", "s": "1m", "g": "1g_0"})
+    ).top(exact=True).m == Fraction(45359237, 16 * 10**9)
+
+
+def test_the_worked_example_in_si(solved: Any, lagtop: Lagtop) -> None:
+    plain, si = solved("--r0", 50), solved(*PAPER, "--r0", "50rad/s")
+    sizes = {"m": 1e3, "A": 1e7, "C": 1e7, "s": 1e2, "g": 1e2}
+    for key, value in plain.items():
+        if isinstance(value, float):
+            assert si[key] * sizes.get(key, 1) == pytest.approx(value, rel=1e-13), key
+    cgs = solved(*PAPER, "--r0", "50rad/s", "--units", "cgs")
+    units = cgs.pop("units")
+    assert cgs == plain
+    assert (units["A"], units["mean_spin_rate"], units["theta_max_deg"]) == (
+        "g cm²",
+        "rad/s",
+        "deg",
+    )
+    assert set(units) <= set(cgs)
+    example = solved("--units", "si")
+    assert (example["m"], example["units"]["m"]) == (1.587, "kg")
+    assert lagtop("solve", *PAPER, "--format", "csv").stdout.startswith("m,A,C,s,g,r0,")
+
+
+def test_units_are_named_in_tables_and_remarks(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", *WORDS, "--r0", "200turn/s").stdout
+    assert "kg m²" in shown
+    assert "rad/s" in shown
+    assert "time" not in shown
+    plain = lagtop("solve").stdout
+    assert "mass len²" in plain
+    table = lagtop(
+        "table", *WORDS, "--t-max", "1ms", "--n", "2", "--format", "table", "--columns", "t,r,Lz"
+    )
+    assert table.stdout.split("\n")[0].split("  ") != []
+    assert all(unit in table.stdout for unit in ("t [s]", "r [rad/s]", "Lz [kg m²/s]"))
+    rows = lagtop("table", *WORDS, "--t-max", "1ms", "--n", "2").stdout.splitlines()
+    assert rows[0] == "t,theta_deg,phi_deg,psi_deg"
+    assert rows[2].startswith("0.001,")
+
+
+def test_digits_go_on_as_far_as_one_likes(lagtop: Lagtop) -> None:
+    ask = ["solve", *WORDS, "--r0", "12000 rpm", "--digits", "200", "--get"]
+    with mpmath.workdps(210):
+        assert lagtop(*ask, "r0").stdout == mpmath.nstr(400 * mpmath.pi, 200) + "\n"
+    assert lagtop(*ask, "A").stdout == "0.00085\n"
+
+
+def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("".join(f'{name} = "{text}"\n' for name, text in BODY.items()))
+    with path.open("a") as file:
+        file.write('r0 = "480rpm"\ntheta0 = "0.5 rad"\n')
+    top = read_scene(str(path))
+    assert (top.m, top.r0, top.theta0_rad) == (0.35, 50.26548245743669, 0.5)
+    assert lagtop("solve", path, "--s", "1in", "--get", "s").stdout == "0.0254\n"
+    assert lagtop("solve", path, "--psidot0", "0", "--theta0", "20", "--get", "m").exit_code == 0
+    bare = lagtop("solve", path, "--r0", "50")
+    assert_one_line(bare, 2, "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has")
+    other = lagtop("solve", "sample_inputs/fast-gyroscope.toml", "--r0", "50rpm")
+    assert_one_line(other, 65, "sample_inputs/fast-gyroscope.toml, line 2: m must have a unit")
+    path.write_text('theta0_deg = "0.5 rad"\n')
+    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: theta0_deg must be called theta0")
+    path.write_text('m = "350 s"\n')
+    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: m must have a unit as in 350g")
+
+
+def test_what_is_missing_of_a_body_is_typed_with_units(lagtop: Lagtop) -> None:
+    said = lagtop("solve", "--m", "350g", "--r0", "9rpm", "--get", "A")
+    assert said.stdout == "0.0039032\n"
+    assert said.stderr.endswith(
+        ": --A '39032 g*cm^2' --C '17458 g*cm^2' --s '4 cm' --g '981 cm/s^2'\n"
+    )
+
+
+def test_moments_about_the_mass_centre_and_rates_of_phi(lagtop: Lagtop) -> None:
+    body = [
+        "--m",
+        "350g",
+        "--A-cm",
+        "5350g*cm^2",
+        "--C",
+        "4000g*cm^2",
+        "--s",
+        "30mm",
+        "--g",
+        "1g_0",
+    ]
+    assert lagtop("solve", *body, "--get", "A").stdout == "0.00085\n"
+    found = lagtop("solve", *body, "--phidot0", "10turn/s", "--get", "r0").stdout
+    assert float(found) == 20 * math.pi
+
+
+def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
+    keys = ["--keys", "m,r0,error"]
+    grid = lagtop("sweep", *WORDS[2:], "--m", "1,2 lb", "--r0", "log:60:6000:2 rpm", *keys)
+    assert grid.stdout.splitlines()[1:] == [
+        f"{m},{r0}," for m in (0.45359237, 0.90718474) for r0 in (2 * math.pi, 200 * math.pi)
+    ]
+    path = tmp_path / "tops.csv"
+    path.write_text("id,m [g],theta0 [mrad],r0 [rpm]\na,350,500,480\nb,5O,500,480\n")
+    rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_deg,theta_min_deg", "--rad")
+    assert rows.exit_code == 2
+    rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_rad", "--rad")
+    assert rows.stdout.splitlines()[1] == "a,0.35,50.26548245743669,0.5,"
+    assert "line 3: m must be a finite decimal number, got '5O'" in rows.stdout
+    table = lagtop(
+        "table", "--tops", path, *WORDS[2:], "--t-max", "1s", "--n", "2", "--columns", "r"
+    )
+    assert table.stdout.splitlines()[1] == "a,50.26548245743669,"
+
+
+@pytest.mark.parametrize(
+    ("header", "options", "message"),
+    [
+        ("m,r0 [rpm]", WORDS, "--m must have a unit such as 350g, as A has, got none"),
+        ("m [g],r0", WORDS, "--r0 must have a unit"),
+        ("m [g]", ["--r0", "50"], "--r0 must have a unit"),
+        ("m [rpm]", WORDS, "--m must have a unit as in 350g, got the unit 'rpm'"),
+        ("m [g],m", WORDS, "standard input must name each column once"),
+        ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
+        ("theta0_deg [rad]", [], "standard input, line 1: the column theta0_deg [rad] must be"),
+        ('{"m": 1}', WORDS, "JSON lines have no units"),
+    ],
+)
+def test_wrong_headings(header: str, options: list[str], message: str, lagtop: Lagtop) -> None:
+    options = [word for word in options if word not in {"--m", "350g"}]
+    result = lagtop("sweep", "-", *options, input=f"{header}\n")
+    assert_one_line(result, result.exit_code, message)
+    assert result.exit_code in {2, 65}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("--m 350s", "--m must have a unit as in 350g, got the unit 's'"),
+        ("--m 350x", "--m must have a unit as in 350g, got the unit 'x' (no such unit)"),
+        ("--m 9kg^99999999", "--m must have a unit as in 350g, got the unit 'kg^99999999'"),
+        ("--m 9kg**9**9**9", "--m must have a unit"),
+        ("--m 9(kg)", "--m must be a finite decimal number, got '9('"),
+        ("--m 9g;import", "--m must have a unit"),
+        ("--m 1e400g", "--m must be at most 1.8e308"),
+        ("--m 1e308kg --units cgs", "--m must be at most 1.8e308 in size"),
+        ("--m nang", "--m must be a finite decimal number, got 'nang'"),
+        ("--r0 50Hz", "--r0 must have a unit as in '50 rad/s' or 480rpm, got the unit 'Hz'"),
+        ("--r0 50cps", "--r0 must have a unit"),
+        ("--g 9.81g", "--g must have a unit as in '9.81 m/s^2', got the unit 'g'"),
+        ("--A 1kg*m^2*turn", "--A must have a unit"),
+        ("--s 4degC", "--s must have a unit as in 4cm"),
+        ("--theta0 1m", "--theta0 must have a unit as in 30deg or 0.5rad, got the unit 'm'"),
+        ("--theta0 1ppm", "--theta0 must have a unit"),
+        ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
+        ("--units cgs --m 1", "--m must have a unit such as 350g, where a time or the output has"),
+    ],
+)  # fmt: skip
+def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
+    assert_one_line(lagtop("solve", *options.split()), 2, message)
+
+
+def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
+    ask = ["table", "--n", "2", "--columns", "t"]
+    assert lagtop(*ask, "--t-max", "2min").stdout == "t\n0.0\n120.0\n"
+    assert lagtop(*ask, *PAPER, "--t-max", "2").stdout == "t\n0.0\n2.0\n"
+    assert_one_line(lagtop(*ask, "--r0", "3", "--t-max", "2s"), 2, "--r0 must have a unit")
+    assert_one_line(lagtop(*ask, "--t-max", "2m"), 2, "--t-max must have a unit as in 2s")
+
+
+def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> None:
+    from lagrange_cli.inputs import units
+
+    monkeypatch.setitem(sys.modules, "pint", None)
+    units.meaning_of.cache_clear()
+    monkeypatch.setattr(units, "_registry", units._registry.__wrapped__)
+    result = lagtop("solve", "--m", "350g")
+    assert_one_line(
+        result,
+        2,
+        "--m must be a finite decimal number (units need pint: pip install 'lagtop[units]')",
+    )
+    with pytest.raises(LagtopError, match="need pint"):
+        gather(read({"theta0": "3deg"}))
+    units.meaning_of.cache_clear()
+
+
+def test_json_has_units_only_where_inputs_have(lagtop: Lagtop) -> None:
+    assert "units" not in json.loads(lagtop("solve", "--format", "json").stdout)
