@@ -120,7 +120,7 @@ def test_table_that_is_made(table: Callable[[], list[str]], folder: str) -> None
     assert with_table(page, table()) == page
 
 
-@pytest.mark.parametrize("room", ["elliptic", "judge", "motion", "plot"])
+@pytest.mark.parametrize("room", ["elliptic", "fits", "judge", "motion", "plot"])
 def test_the_readme_of_a_room_says_what_each_module_is_for(room: str) -> None:
     folder = ROOT / "lagrange_cli" / room
     page = (folder / "README.md").read_text()

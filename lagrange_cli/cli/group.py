@@ -15,7 +15,7 @@ from .command import ExamplesFirst
 from .options import complain
 
 COMMANDS = [
-    *("solve", "table", "sweep", "find", "compare", "plot", "view"),
+    *("solve", "table", "sweep", "find", "fit", "compare", "plot", "view"),
     *("jacobi", "eta", "bench", "stability"),
 ]
 

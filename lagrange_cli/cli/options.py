@@ -214,8 +214,9 @@ def input_options(
     kind: click.ParamType,  # type: ignore[type-arg]
     *,
     units: bool = True,
+    with_defaults: bool = True,
 ) -> Callable[[F], F]:
-    """Add the options for the inputs of a top, with their defaults, --units and --rad."""
+    """Add the options for the inputs of a top, maybe with their defaults, --units and --rad."""
     from ..inputs.top import Top  # not for commands without a top
 
     defaults = Top().inputs()
@@ -230,7 +231,8 @@ def input_options(
         for option, text in reversed(_SCENE_OPTIONS):
             name = option[2:].replace("-", "_")
             default = defaults.get(f"{name}_deg", defaults.get(name))
-            shown = text if default is None else f"{text}  [default: {default:g}]"
+            is_shown = with_defaults and default is not None
+            shown = f"{text}  [default: {default:g}]" if is_shown else text
             command = click.option(option, name, type=kind, help=shown)(command)
         return command
 

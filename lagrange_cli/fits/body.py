@@ -105,7 +105,8 @@ def completed(
 ) -> dict[str, float]:
     """Return all six inputs of a body that moves so; what is not told is 1, or such that C = A.
 
-    A product that is told stands in its first input.
+    A product that is told stands in its first input; m and s that are told as a product are shared
+    out so that m s^2 = A/10, as of a body that can be built.
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
     inputs = {name: others.get(name, 1.0) for name in INPUTS} | dict(known)
@@ -113,4 +114,8 @@ def completed(
         (name, power), *rest = x.powers.items()
         assert power == 1
         inputs[name] = x.value / math.prod(inputs[other] ** float(n) for other, n in rest)
+    if not {"m", "s"} & known.keys():
+        product = inputs["m"] * inputs["s"]
+        inputs["s"] = inputs["A"] / (10 * product)
+        inputs["m"] = product / inputs["s"]
     return {name: inputs[name] for name in ("m", "A", "C", "s", "g", "r0")}

@@ -26,6 +26,9 @@ from ..inputs.top import Top
 _MODULI = 400
 """Moduli of the scan; they are denser at both ends."""
 
+SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+"""Signs of beta + b and of beta - b."""
+
 
 class Nutation(NamedTuple):
     """What is seen of a nutation: tilts in radians, and the period."""
@@ -120,7 +123,7 @@ def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
     most, found = nutation.most_m, []
     phases = np.linspace(0, math.pi, _MODULI + 1)[1:-1]
     moduli = most * (1 - np.cos(phases)) / 2
-    for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+    for signs in SIGNS:
 
         def off(m: float, signs: tuple[int, int] = signs) -> float:
             return float(candidates(nutation, np.array(m), signs).mean_rate) - mean_rate

@@ -110,6 +110,12 @@ def see(given: Quantities, conventions: Conventions, said: Said) -> Seen:
     return replace(seen, **reader.rates(seen))
 
 
+def angles_in(given: Quantities, conventions: Conventions, said: Said) -> dict[str, Array]:
+    """Return those of tilt, spin and precession, in radians, that have a column of their own."""
+    reader = _Reader(given, conventions, said)
+    return {key: reader.angle(key)[:, 0] for key in ANGLES if key in given}
+
+
 class _Reader:
     """Quantities with their conventions."""
 
@@ -118,7 +124,7 @@ class _Reader:
 
     def attitude(self) -> dict[str, Any]:
         """Return the attitude, from the first quantity that gives all of it, or most of it."""
-        alone = {key: self.angle(key)[:, 0] for key in ANGLES if key in self.given}
+        alone = angles_in(self.given, self.conventions, self.said)
         if len(alone) == len(ANGLES) and not {"quaternion", "matrix"} & set(self.given):
             return {"quaternion": rotations.of_angles(**alone)}
         for key in ("quaternion", "matrix", "euler", "rotvec", "axis"):

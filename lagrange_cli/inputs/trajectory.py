@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, cast
 
 from ..errors import DataError, LagtopError
 from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
+from .words import Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -48,6 +49,9 @@ class Table(Protocol):
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
         """Yield some columns, once, a block of rows at a time; names are for errors."""
 
+    def words_of(self, column: int) -> Words:
+        """Return the words of a column, which from now on stand for numbers in it."""
+
 
 class Trajectory:
     """A trajectory that has been opened: its quantities, and its rows."""
@@ -81,27 +85,42 @@ class Trajectory:
             )
         return list(self._table.names)
 
+    def add(self, key: str, column: str, unit: str | None = None) -> None:
+        """Read one more column, as a quantity with this key."""
+        self.quantities[key] = Found([self.names.index(column)], "", unit)
+
+    def add_words(self, key: str, column: str) -> Words:
+        """Read one more column, of words, whose numbers the words that are returned explain."""
+        self.add(key, column)
+        return self._table.words_of(self.names.index(column))
+
     def blocks(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
         """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
 
         Raises DataError for what is no number, and for a time that is missing or turns back.
         """
+        clock = Clock(self)
+        for found, places in self.rows():
+            clock.advance(found["t"][:, 0], places)
+            yield found, places
+
+    def rows(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
+        """Yield the same, whatever the times: those of several clocks, say, each of which a `Clock`
+        may watch.
+        """
         wanted = sorted(i for found in self.quantities.values() for i in found.columns)
         at = {
             key: [wanted.index(i) for i in found.columns] for key, found in self.quantities.items()
         }
-        check = _Clock(self)
         for values, places in self._table.blocks(wanted, [self.names[i] for i in wanted]):
-            found = {key: values[:, columns] for key, columns in at.items()}
-            check.advance(found["t"][:, 0], places)
-            yield found, places
+            yield {key: values[:, columns] for key, columns in at.items()}, places
 
     def where(self, place: int) -> str:
         """Return the name of the file and the place of a row."""
         return f"{self.name}, {self._table.place} {place}"
 
 
-class _Clock:
+class Clock:
     """The times of a trajectory, which go on in one direction."""
 
     def __init__(self, trajectory: Trajectory) -> None:

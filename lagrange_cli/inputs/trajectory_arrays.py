@@ -18,6 +18,7 @@ from ..errors import DataError, LagtopError
 from .trajectory import Block
 from .trajectory_columns import quantities_in
 from .trajectory_text import parts
+from .words import PlainNumbers, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -83,7 +84,15 @@ class NpyStream:
         ]
 
 
-class ArrayTable:
+class _Numbers:
+    """A table that holds nothing but numbers."""
+
+    def words_of(self, column: int) -> Words:
+        """Return the texts of its numbers."""
+        return PlainNumbers()
+
+
+class ArrayTable(_Numbers):
     """Arrays side by side, each with some of the columns."""
 
     place = "row"
@@ -136,7 +145,7 @@ def read_npz(stream: BinaryIO, name: str) -> ArrayTable:
     return ArrayTable(list(fitting.values()), names, len(names))
 
 
-class ParquetTable:
+class ParquetTable(_Numbers):
     """Rows of a Parquet file: columns of numbers, or of lists of a fixed size."""
 
     place = "row"

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from ..errors import DataError
 from .trajectory import Block, Table
 from .trajectory_columns import names_in_comments
+from .words import PlainNumbers, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -105,6 +106,11 @@ class TextTable:
             cells if has_header else names_in_comments(comments, self.width)
         )
         self._lines = chain([[] if has_header else [first]], lines.blocks())
+        self._words: dict[int, Words] = {}
+
+    def words_of(self, column: int) -> Words:
+        """Return the words of a column."""
+        return self._words.setdefault(column, Words())
 
     def _cells(self, line: str) -> list[str]:
         return [cell.strip().strip('"') for cell in line.split(self.delimiter)]
@@ -127,7 +133,13 @@ class TextTable:
         import numpy as np
 
         with suppress(ValueError):
-            values = np.loadtxt(texts, delimiter=self.delimiter, ndmin=2, comments=None)
+            values = np.loadtxt(
+                texts,
+                delimiter=self.delimiter,
+                ndmin=2,
+                comments=None,
+                converters={i: words.number for i, words in self._words.items()} or None,
+            )
             if values.shape == (len(texts), self.width):
                 return values[:, columns]
         return np.array([self._row(*x, columns, names) for x in block])
@@ -142,6 +154,9 @@ class TextTable:
             )
         row = []
         for i, name in zip(columns, names, strict=True):
+            if i in self._words:
+                row.append(self._words[i].number(cells[i]))
+                continue
             if cells[i] and not _is_number(cells[i]):
                 raise DataError(
                     f"{self.name}, line {number}, column {i + 1}: {name} must be a number, "
@@ -171,8 +186,12 @@ class JsonTable:
         self.sizes = {
             key: len(value) if isinstance(value, list) else 0
             for key, value in self._object(first[0], bare).items()
-            if isinstance(value, int | float | list | None)
+            if isinstance(value, int | float | list | str | None)
         }
+        self._texts = {
+            key for key, value in self._object(first[0], bare).items() if isinstance(value, str)
+        }
+        self._words: dict[str, Words] = {}
         self.names: Sequence[str] = [
             name for key, n in self.sizes.items() for name in parts(key, n)
         ]
@@ -182,11 +201,18 @@ class JsonTable:
         """Yield some columns of the rows.  Raises DataError for what is no number."""
         import numpy as np
 
+        if wrong := {self.names[i] for i in columns} & self._texts - self._words.keys():
+            raise DataError(f"{self.name}, column {min(wrong)}: must be numbers, got texts")
         for lines in self._lines:
             bare = ((i, line.strip(_AROUND)) for i, line in lines)
             if block := [x for x in bare if x[1]]:
                 values = np.array([self._row(*x) for x in block], dtype=np.float64)
                 yield Block(values[:, columns], [i for i, _ in block])
+
+    def words_of(self, column: int) -> Words:
+        """Return the words of a column, or the texts of its numbers."""
+        name = self.names[column]
+        return self._words.setdefault(name, Words()) if name in self._texts else PlainNumbers()
 
     def _object(self, number: int, line: bytes) -> dict[str, Any]:
         import orjson
@@ -206,6 +232,10 @@ class JsonTable:
         values = self._object(number, line)
         for key, size in self.sizes.items():
             value, count = values.get(key), size or 1
+            if key in self._texts:
+                words = self._words.get(key)
+                row.append(words.number(str(value)) if words else math.nan)
+                continue
             numbers = [value] if not size else [None] * size if value is None else value
             if not isinstance(numbers, list) or len(numbers) != count or not _are_real(numbers):
                 wanted = f"{size} numbers" if size else "a number"

@@ -50,6 +50,7 @@ def test_a_leap_is_no_root() -> None:
     assert all(abs(motion.mean_spin_rate - 46) < 1e-12 for motion in found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("conditions", "unknowns"),
     [

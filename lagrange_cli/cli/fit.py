@@ -1,0 +1,271 @@
+"""The command `lagtop fit`: a top from data."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import LagtopError
+from ..inputs.names import split_names
+from .command import ExamplesFirst
+from .options import (
+    FILE,
+    INPUT,
+    NAMES,
+    Parsed,
+    by_key,
+    complain,
+    input_options,
+    output_options,
+    write_report,
+)
+from .progress import with_steps
+
+if TYPE_CHECKING:
+    from ..fits.record import Outcome
+    from ..fits.recording import Recording
+
+
+def _write_names(formatter: click.HelpFormatter) -> None:
+    """Write the quantities of a recording, and the names of columns by which each is known."""
+    from ..inputs.trajectory_columns import shown_quantities
+
+    with formatter.section("Columns of a recording, by name; NAME_std is a standard deviation"):
+        left_out = {"position", "rates", "angle_rates"}
+        shown = shown_quantities().items()
+        formatter.write_dl([(name, text) for name, text in shown if name not in left_out])
+
+
+def _parse_sigma(text: str) -> float | dict[str, float]:
+    from ..arithmetic.text import parse_number
+
+    parts = [part.partition("=") for part in split_names(text)]
+    if len(parts) == 1 and not parts[0][1]:
+        return _positive(float(parse_number(parts[0][0])))
+    return {name.strip(): _positive(float(parse_number(value))) for name, _, value in parts}
+
+
+def _positive(value: float) -> float:
+    if not value > 0:
+        raise LagtopError(f"must be > 0, got {value:g}")
+    return value
+
+
+@click.command(
+    "fit",
+    cls=ExamplesFirst,
+    shows=_write_names,
+    examples="""
+        lagtop fit sample_inputs/recording.csv
+        lagtop fit sample_inputs/recording.csv --sigma theta=0.3,psi=0.5 --m 1.587 --g 9.81 --s 0.04
+        lagtop fit sample_inputs/recording.csv --format json
+        lagtop fit sample_inputs/recording.csv --g 9.81 -o fitted.toml
+        lagtop table --t-max 2 --n 200 --columns t,axis | lagtop fit - --sigma 0.1
+    """,
+)
+@click.argument("recording", type=FILE)
+@click.option(
+    "--scene", type=FILE, metavar="FILE", help="Scene file, of which --fix takes what is known."
+)
+@input_options(INPUT, units=False, with_defaults=False)
+@click.option(
+    "--fix",
+    type=NAMES,
+    help="Inputs of the scene that are known, with commas between; those given by options are.",
+)
+@click.option(
+    "--sigma",
+    type=Parsed("sigma", _parse_sigma),
+    help="Standard deviation of all angles, or of each, such as theta=0.3,psi=0.5; columns "
+    "NAME_std win.  [default: that of what is left]",
+)
+@click.option("--by", metavar="COLUMN", help="Column that tells several recordings apart.")
+@click.option(
+    "--together", is_flag=True, help="The recordings of --by are of one body: a and C/A are shared."
+)
+@click.option(
+    "--columns",
+    type=NAMES,
+    help="Names of all columns from the left, whatever the file says; _ leaves a column out.",
+)
+@click.option(
+    "--quaternion",
+    type=click.Choice(["wxyz", "xyzw"]),
+    default="wxyz",
+    show_default=True,
+    help="Order of a quaternion whose names do not tell.",
+)
+@click.option(
+    "--euler",
+    default="xyz",
+    show_default=True,
+    metavar="SEQUENCE",
+    help="Axes of `euler`, as scipy writes them.",
+)
+@click.option(
+    "--plot",
+    type=FILE,
+    metavar="FILE",
+    help="Draw data, motion and what is left: FILE.svg or .png.",
+)
+@output_options("table", "csv", "json")
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    recording: str,
+    scene: str | None,
+    rad: bool,
+    fix: list[str] | None,
+    sigma: float | dict[str, float] | None,
+    by: str | None,
+    together: bool,
+    columns: list[str] | None,
+    quaternion: str,
+    euler: str,
+    plot: str | None,
+    fmt: str,
+    output: str,
+    **options: Any,
+) -> None:
+    """The top behind a recording: a, b and the start, and what they tell of the body.
+
+    A recording is a file, as of `lagtop compare`, or - for standard input: times, and tilt, spin
+    and precession, the axis or the attitude.  Cells may be missing, angles may be wrapped, and psi
+    and phi may count from anywhere.  The start is that of the first row.
+
+    Nothing is taken from the worked example: what is known are the inputs given by options, and
+    those of the scene that --fix names.  What cannot be told apart is named.
+
+    -o FILE.toml writes a scene that every other command reads, beside the report.  The exit code
+    is 1 where a fit has failed.
+    """
+    from ..fits.record import FAILED
+    from ..fits.recording import Reading, read_recordings
+    from ..inputs.seen import Conventions
+    from ..plot.style import check_plot
+
+    check_plot(plot, output)
+    if together and by is None:
+        raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
+    known = _known(scene, fix or [], by_key(options, radians=rad))
+    conventions = Conventions(quaternion, euler, "body", rad).checked()
+    spread = _in_radians(sigma, rad)
+    recordings = read_recordings(recording, Reading(columns, conventions, by, spread))
+    scene_path = output if output.endswith(".toml") else None
+    if scene_path and len(recordings) > 1:
+        raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
+    groups = [recordings] if together else [[one] for one in recordings]
+    found = _fitted(groups, known, recording, rad)
+    if scene_path:
+        _write_scene(found[0], recording, scene_path)
+    if plot:
+        _draw(found, plot, rad)
+    _write(found, recording, fmt, "-" if scene_path else output)
+    if any(outcome.verdict == FAILED for outcome in found):
+        ctx.exit(1)
+
+
+def _fitted(
+    groups: list[list[Recording]], known: Mapping[str, float], source: str, radians: bool
+) -> list[Outcome]:
+    from ..fits.fit import fit
+    from ..fits.record import outcomes
+    from ..inputs.trajectory import shown_path
+
+    found: list[Outcome] = []
+    for group in with_steps(groups, "fits"):
+        found.extend(outcomes(fit(group, known, shown_path(source)), radians=radians))
+    return found
+
+
+def _known(scene: str | None, fix: list[str], given: Mapping[str, Any]) -> dict[str, float]:
+    """Return the inputs that are known, theta0 in radians.  Raises LagtopError."""
+    from ..inputs.given import gather
+    from ..inputs.names import check_names
+    from ..inputs.top import Top
+
+    present = gather(given, scene).inputs
+    names = [x for x in present if x in given]
+    for name in fix:
+        matching = [x for x in (name, f"{name}_deg", f"{name}_rad") if x in present]
+        if not matching:
+            check_names("fix", [name], [*Top.fields, "theta0"])
+            raise LagtopError(f"--fix {name} must be given by an option or by --scene")
+        names.append(matching[0])
+    known = {name: float(present[name]) for name in names}
+    _check(known)
+    if "A_cm" in known:
+        known["A"] = known.pop("A_cm") + known["m"] * known["s"] ** 2
+    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
+        if key in known:
+            known["theta0"] = known.pop(key) * unit
+    return known
+
+
+def _check(known: Mapping[str, float]) -> None:
+    """Raise LagtopError for inputs that no top has, or that need others."""
+    from ..inputs.top import Top
+
+    if "phidot0" in known:
+        raise LagtopError("--phidot0 is no input of a fit: give --r0")
+    if "A_cm" in known and not {"m", "s"} <= known.keys():
+        raise LagtopError("--A-cm needs --m and --s: A = A_cm + m s^2")
+    for name in ("s", "g", "r0"):
+        if known.get(name) == 0:
+            raise LagtopError(f"--{name} must not be 0 in a fit: leave it out")
+    moment = known.get("A", known.get("A_cm", known.get("C", 1.0)))
+    others = {"m": 1.0, "s": 1.0, "g": 1.0} | ({} if "A_cm" in known else {"A": moment})
+    others |= {} if "theta0_rad" in known else {"theta0_deg": 30.0}
+    Top(**{"C": moment} | others | dict(known))  # the guards on each
+
+
+def _in_radians(
+    sigma: float | dict[str, float] | None, radians: bool
+) -> float | dict[str, float] | None:
+    unit = 1.0 if radians else math.pi / 180
+    if isinstance(sigma, dict):
+        return {name: value * unit for name, value in sigma.items()}
+    return None if sigma is None else sigma * unit
+
+
+def _write(found: list[Outcome], source: str, fmt: str, output: str) -> None:
+    """Write a report, or one record for each recording."""
+    if fmt == "table":
+        from ..fits.report import report
+        from ..inputs.trajectory import shown_path
+
+        write_report(lambda: report(found, shown_path(source)), fmt, output)
+        return
+    from ..output.write import block_text, write_record, write_text_blocks
+
+    records = [outcome.record() for outcome in found]
+    if len(records) == 1 and fmt == "json":
+        write_record(records[0], fmt, output, dict)
+    else:
+        keys = list(dict.fromkeys(key for record in records for key in record))
+        columns = [[record.get(key) for record in records] for key in keys]
+        write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)
+    for record in records:
+        if record["remark"]:
+            complain(f"Note: {record['remark']}")
+
+
+def _write_scene(outcome: Outcome, source: str, path: str) -> None:
+    from ..fits.record import scene_text
+    from ..output.write import write_bytes
+
+    write_bytes(path, lambda: scene_text(outcome, source).encode())
+
+
+def _draw(found: list[Outcome], path: str, radians: bool) -> None:
+    from ..fits.curves import curves_of
+    from ..output.write import write_bytes
+    from ..plot.fit_curves import FittedCurve, draw_fit
+
+    curves = [FittedCurve(*x) for outcome in found for x in curves_of(outcome)]
+    write_bytes(path, partial(draw_fit, curves, "rad" if radians else "deg", path))

@@ -1,0 +1,244 @@
+"""What a fit has found, by key: numbers with their standard deviations, and how good they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from .body import Told, completed, told_of
+from .fit import Fit
+from .model import STATE, angles_of
+from .parameters import QUANTITIES
+from .quality import Remainder, chi2_bounds, remainder
+
+ANGLES = ("theta0", "psi_zero", "phi_zero")
+"""Quantities whose keys have a unit."""
+_BODY = ("a", "b", "r0")
+FAILED = "failed"
+_FAR, _MUCH = 0.2, 3.0
+"""A fit that leaves more of the tilt, over its variation and over its noise, has failed."""
+MEANINGS = {
+    "a": "2mgs/A (4,4)",
+    "b": "C r0/A (4,5)",
+    "r0": "total spin rate",
+    "theta0": "tilt in the first row",
+    "thetadot0": "nutation rate there",
+    "psidot0": "precession rate there",
+    "psi_zero": "psi of the data there",
+    "phi_zero": "phi of the data there",
+}
+
+
+class Outcome:
+    """What was found of one recording."""
+
+    def __init__(self, found: Fit, index: int, *, radians: bool = False) -> None:
+        self.fit, self.index, self.radians = found, index, radians
+        self.recording = found.recordings[index]
+        self.known = found.solution.parameters.known
+        values, covariance = found.values(index)
+        self.values = dict(zip(QUANTITIES, values.tolist(), strict=True))
+        self.covariance = covariance
+        deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
+        self.deviations = dict(zip(QUANTITIES, deviations.tolist(), strict=True))
+        self.seen = {name: self.values[name] for name in _BODY if self._is_seen(name)}
+        self.told = told_of(self.seen, self.known) if all(self.seen.values()) else []
+        channels = self.recording.channels
+        self.remainders: dict[str, Remainder] = {
+            channel: remainder([values])
+            for channel, values in zip(channels, found.solution.left[index], strict=True)
+        }
+
+    def _is_seen(self, name: str) -> bool:
+        """Return whether a number of the body is there, and not as an input that is known."""
+        if name == "r0":
+            return self.fit.solution.parameters.spins and "r0" not in self.known
+        return True
+
+    @property
+    def chi2_dof(self) -> float:
+        """Chi^2 per degree of freedom, of all recordings of the fit together."""
+        return self.fit.solution.chi2 / max(self.fit.solution.dof, 1)
+
+    @property
+    def verdict(self) -> str:
+        """`good`, `doubtful` where there are warnings, or `failed`."""
+        if self._failed:
+            return FAILED
+        return "doubtful" if self.warnings() else "good"
+
+    @property
+    def _failed(self) -> bool:
+        """Whether the fit found nothing that moves as the recording does."""
+        left = self.remainders["theta"].rms
+        varies = float(np.nanstd(self.recording.angles["theta"]))
+        unlike = left > _FAR * varies and left > _MUCH * self.fit.noise[self.index]
+        return unlike or not self.fit.solution.converged
+
+    def unit(self, name: str) -> str:
+        """Return the key of a quantity in the unit of angles in use."""
+        return f"{name}_{'rad' if self.radians else 'deg'}" if name in ANGLES else name
+
+    def scale(self, name: str) -> float:
+        """Return what takes a quantity from radians to the unit of angles in use."""
+        return 1.0 if self.radians or name not in ANGLES else 180 / math.pi
+
+    def found(self) -> Iterator[tuple[str, float, float]]:
+        """Yield name, value and standard deviation of what was found of the motion."""
+        for name in MEANINGS:
+            if name in self.known:
+                continue
+            is_there = {
+                "r0": self.fit.solution.parameters.spins,
+                "psi_zero": "psi" in self.recording.angles,
+                "phi_zero": "phi" in self.recording.angles,
+            }
+            if is_there.get(name, True):
+                yield name, self.values[name], self.deviations[name]
+
+    def products(self) -> Iterator[tuple[Told, float]]:
+        """Yield what is told of the body, beside r0, and its standard deviation."""
+        rows = [QUANTITIES.index(name) for name in self.seen]
+        covariance = self.covariance[np.ix_(rows, rows)]
+        for told in self.told:
+            if told.name == "r0":
+                continue
+            change = np.array(
+                [float(told.shares.get(name, 0)) / self.seen[name] for name in self.seen]
+            )
+            spread = abs(told.value) * math.sqrt(max(float(change @ covariance @ change), 0.0))
+            yield told, spread
+
+    def correlations(self) -> Iterator[tuple[str, str, float]]:
+        """Yield the correlations of a, b and r0."""
+        names = [name for name in self.seen if self.deviations[name] > 0]
+        for i, first in enumerate(names):
+            for second in names[i + 1 :]:
+                both = self.covariance[QUANTITIES.index(first), QUANTITIES.index(second)]
+                yield (
+                    first,
+                    second,
+                    float(both) / (self.deviations[first] * self.deviations[second]),
+                )
+
+    def untold(self) -> list[str]:
+        """Return sentences on inputs that cannot be told apart."""
+        sentences = []
+        for told in self.told:
+            names = list(told.powers)
+            if len(names) > 1:
+                listed = f"{', '.join(names[:-1])} and {names[-1]}"
+                sentences.append(f"{listed} only as {told.name}")
+        return sentences
+
+    def warnings(self) -> list[str]:
+        """Return what makes the numbers doubtful."""
+        solution, found = self.fit.solution, []
+        if self._failed:
+            found.append("the fit has failed: no motion that was found is like the recording")
+        if solution.unknown:
+            found.append(f"the data do not tell {', '.join(solution.unknown)} from one another")
+        if self.fit.sigma_known and solution.dof > 0:
+            low, high = chi2_bounds(solution.dof)
+            if not low <= self.chi2_dof <= high:
+                found.append(
+                    f"chi2/dof = {self.chi2_dof:.3g} is beyond {low:.3g} to {high:.3g}: another "
+                    "motion, or another sigma"
+                )
+        for channel, left in self.remainders.items():
+            if not left.is_noise:
+                found.append(
+                    f"what is left of {channel} is no noise: neighbours correlate by "
+                    f"{left.lag1:.2f}, noise by {3 / math.sqrt(left.rows):.2f} at most"
+                )
+        ratio = self.values["b"] / self.values["r0"] if self.values["r0"] else 1.0
+        if not 0 < ratio <= 2:
+            found.append(f"C/A = {ratio:.3g} is that of no rigid body, 0 to 2")
+        return found
+
+    def notes(self) -> list[str]:
+        """Return how the recording was understood."""
+        if self.fit.mirrored[self.index]:
+            return ["psi is counted the other way round: its sign was changed"]
+        return []
+
+    def record(self) -> dict[str, Any]:
+        """Return everything by key, flat."""
+        solution, recording = self.fit.solution, self.recording
+        record: dict[str, Any] = {"name": recording.name} if recording.name else {}
+        for name, value, deviation in self.found():
+            scale = self.scale(name)
+            record[self.unit(name)] = value * scale
+            record[f"{self.unit(name)}_std"] = deviation * scale
+        for told, deviation in self.products():
+            record[told.name], record[f"{told.name}_std"] = told.value, deviation
+        for name, value in self.known.items():
+            record[self.unit(name)] = value * self.scale(name)
+        for first, second, value in self.correlations():
+            record[f"{first}_{second}_correlation"] = value
+        low, high = chi2_bounds(max(solution.dof, 1))
+        record |= {
+            "t_start": recording.t_start,
+            "rows": recording.t.size,
+            "dof": solution.dof,
+            "chi2_dof": self.chi2_dof if self.fit.sigma_known else None,
+            "chi2_dof_low": low,
+            "chi2_dof_high": high,
+        }
+        degrees = 1.0 if self.radians else 180 / math.pi
+        suffix = "rad" if self.radians else "deg"
+        for channel, left in self.remainders.items():
+            record[f"{channel}_rms_{suffix}"] = left.rms * degrees
+            record[f"{channel}_lag1"] = left.lag1
+        return record | {
+            "verdict": self.verdict,
+            "remark": "; ".join([*self.notes(), *self.untold(), *self.warnings()]) or None,
+        }
+
+    def inputs(self) -> dict[str, float]:
+        """Return inputs of `Top` that move so; what is not told is 1, or such that C = A."""
+        body = completed(self.seen, _of_body(self.known), self.told)
+        return {
+            **body,
+            "theta0_deg": math.degrees(self.values["theta0"]),
+            "thetadot0": self.values["thetadot0"],
+            "psidot0": self.values["psidot0"],
+        }
+
+
+def _of_body(known: Mapping[str, float]) -> dict[str, float]:
+    return {name: x for name, x in known.items() if name in {"m", "A", "C", "s", "g", "r0"}}
+
+
+def outcomes(found: Fit, *, radians: bool = False) -> list[Outcome]:
+    """Return what was found of each recording of a fit."""
+    return [Outcome(found, i, radians=radians) for i in range(len(found.recordings))]
+
+
+def scene_text(outcome: Outcome, source: str) -> str:
+    """Return a scene file of the motion, which every command reads."""
+    lines = [
+        f"# Found by `lagtop fit` from {' '.join(source.split())}: the start is its first row, at "
+        f"t = {outcome.recording.t_start!r}.",
+        *(f"# {text}: one of them is put in." for text in outcome.untold()),
+        *(f"# Warning: {text}." for text in outcome.warnings()),
+    ]
+    lines += [f"{name} = {value!r}" for name, value in outcome.inputs().items()]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
+    """Return the angles of the motion that was found, counted as in the recording."""
+    values = outcome.values
+    state = np.array([[values[name] for name in STATE]])
+    theta, phi, psi = angles_of(state, t)[:, 0]
+    spin = (values["r0"] - values["b"]) * t if "phi" in outcome.recording.angles else 0.0
+    return {
+        "theta": theta,
+        "phi": phi + spin + values["phi_zero"],
+        "psi": psi + values["psi_zero"],
+    }

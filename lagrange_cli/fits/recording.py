@@ -1,0 +1,222 @@
+"""Recordings of tops: tilt, spin and precession as they were measured, with their uncertainties."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array, Mask
+from ..errors import DataError, LagtopError
+from ..inputs import rotations
+from ..inputs.seen import ANGLES, Conventions, Quantities, Said, angles_in, see
+from ..inputs.trajectory import Clock, Trajectory, open_trajectory
+from ..inputs.trajectory_columns import plain_name
+
+CHANNELS = {
+    "angles": ANGLES,
+    "axis": ("theta", "across"),
+    "attitude": ("theta", "across", "along"),
+}
+"""What is compared, by what is given: angles of their own columns; the direction of the axis, along
+the meridian and across it; or the attitude, with the turn about the axis too.
+"""
+LEAST_ROWS = 12
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The motion of one top as it was measured; what is missing is NaN."""
+
+    name: str
+    """What a column says of the rows, or nothing."""
+    t: Array
+    """Times since the first row, in ascending order."""
+    t_start: float
+    """The time of the first row."""
+    kind: str
+    """A key of CHANNELS."""
+    angles: Mapping[str, Array]
+    """Angles, those of theta, phi and psi that are known, in radians; within whole turns."""
+    sigma: Mapping[str, Array]
+    """Standard deviations in radians by channel; empty where nobody gave them."""
+
+    @property
+    def channels(self) -> list[str]:
+        """What is compared with a motion."""
+        if self.kind == "angles":
+            return [name for name in ANGLES if name in self.angles]
+        return list(CHANNELS[self.kind])
+
+    @property
+    def known(self) -> Mask:
+        """Where there is a number, shape (channels, times)."""
+        sources = self.channels
+        if self.kind != "angles":  # of an axis or an attitude all is there, or nothing
+            sources = ["theta"] * len(self.channels)
+        return np.stack([np.isfinite(self.angles[name]) for name in sources])
+
+    @property
+    def mirrored(self) -> Recording:
+        """The recording with psi counted in the other direction."""
+        angles = {name: -x if name == "psi" else x for name, x in self.angles.items()}
+        return Recording(self.name, self.t, self.t_start, self.kind, angles, self.sigma)
+
+
+class Reading(NamedTuple):
+    """How a file of recordings is read."""
+
+    columns: Sequence[str] | None = None
+    conventions: Conventions = Conventions()
+    by: str | None = None
+    """A column that tells recordings apart."""
+    sigma: Mapping[str, float] | float | None = None
+    """Standard deviations in radians: one for all channels, or by channel."""
+
+
+def read_recordings(path: str, reading: Reading) -> list[Recording]:
+    """Return the recordings of a file, in the order in which they begin.
+
+    Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
+    """
+    with open_trajectory(path, reading.columns) as trajectory:
+        spread = _add_spreads(trajectory)
+        said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
+        if reading.by is None:
+            parts = {"": _joined(block for block, _ in trajectory.blocks())}
+        else:
+            parts = _by_column(trajectory, reading.by)
+        if not parts:
+            raise DataError(f"{trajectory.name} holds no rows")
+        made = []
+        for name, given in parts.items():
+            where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"
+            made.append(_recording(name, _Source(where, reading, said, spread), given))
+    return made
+
+
+def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:
+    """Read the columns NAME_std too; return the units in their names, by what they belong to."""
+    units: dict[str, str | None] = {}
+    for name in trajectory.names:
+        base = name.lower().replace("_std", "")
+        word, unit = plain_name(base)
+        if base != name.lower() and word in (*ANGLES, "axis", "quaternion", "attitude"):
+            trajectory.add(f"{word}_std", name)
+            units[word] = unit
+    return units
+
+
+def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array]]:
+    """Return the rows of each word of a column.  Raises LagtopError where there is no such one."""
+    if column not in trajectory.names:
+        shown = ", ".join(trajectory.names)[:100]
+        raise LagtopError(
+            f"by must name a column of {trajectory.name} ({shown}), got {column!r}", "by"
+        )
+    words = trajectory.add_words("by", column)
+    parts: dict[float, list[Quantities]] = {}
+    clocks: dict[float, Clock] = {}
+    for block, places in trajectory.rows():
+        labels = block["by"][:, 0]
+        for label in dict.fromkeys(labels.tolist()):
+            rows = np.flatnonzero(labels == label)
+            some = {key: x[rows] for key, x in block.items()}
+            clock = clocks.setdefault(label, Clock(trajectory))
+            clock.advance(some["t"][:, 0], [places[row] for row in rows.tolist()])
+            parts.setdefault(label, []).append(some)
+    return {words.word(label): _joined(blocks) for label, blocks in parts.items()}
+
+
+def _joined(blocks: Iterable[Quantities]) -> dict[str, Array]:
+    listed = list(blocks)
+    if not listed:
+        return {"t": np.empty((0, 1))}
+    return {key: np.concatenate([block[key] for block in listed]) for key in listed[0]}
+
+
+class _Source(NamedTuple):
+    """Where rows come from, and how they are read."""
+
+    where: str
+    reading: Reading
+    said: Said
+    spread: Mapping[str, str | None]
+    """Units of the columns NAME_std, by what they belong to."""
+
+
+def _recording(name: str, source: _Source, given: Quantities) -> Recording:
+    where = source.where
+    if len(given["t"]) < LEAST_ROWS:
+        raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {len(given['t'])}")
+    kind, angles = _angles(given, source.said, source.reading.conventions)
+    if "theta" not in angles:
+        raise DataError(f"{where} must have the tilt: theta, axis, quaternion or the like")
+    known = np.logical_or.reduce([np.isfinite(x) for x in angles.values()])
+    order = np.flatnonzero(known)[np.argsort(given["t"][known, 0], kind="stable")]
+    if order.size < LEAST_ROWS:
+        raise DataError(
+            f"{where} must have {LEAST_ROWS} rows or more with a number, got {order.size}"
+        )
+    t = given["t"][order, 0]
+    if not t[-1] > t[0]:
+        raise DataError(f"{where}: t must go on, got {t[0]:g} in all rows")
+    channels = Recording(name, t, 0.0, kind, angles, {}).channels
+    sigma = _sigma(source, given, channels, kind)
+    return Recording(
+        name,
+        t - t[0],
+        float(t[0]),
+        kind,
+        {key: x[order] for key, x in angles.items()},
+        {key: x[order] for key, x in sigma.items()},
+    )
+
+
+def _angles(
+    given: Quantities, said: Said, conventions: Conventions
+) -> tuple[str, dict[str, Array]]:
+    """Return what is given, as a key of CHANNELS, and the angles that are known from it."""
+    alone = angles_in(given, conventions, said)
+    whole = {"quaternion", "matrix", "euler", "rotvec"} & set(given)
+    if alone and not whole:
+        return "angles", alone
+    seen = see(given, conventions, said)
+    if seen.quaternion is not None:
+        return "attitude", rotations.angles_of(seen.quaternion)
+    if seen.axis is not None:
+        return "axis", rotations.angles_of_axis(seen.axis)
+    return "angles", {}
+
+
+def _sigma(
+    source: _Source, given: Quantities, channels: Sequence[str], kind: str
+) -> dict[str, Array]:
+    """Return the standard deviation of each channel: of columns, or else as it was given.
+
+    Raises LagtopError where only some channels have one, or one is not positive.
+    """
+    found: dict[str, Array] = {}
+    reading, spread = source.reading, source.spread
+    for channel in channels:
+        names = [channel] if kind == "angles" else ["attitude", "quaternion", "axis"]
+        column = next((name for name in names if name in spread), None)
+        if column is not None:
+            unit = spread[column]
+            radians = reading.conventions.radians if unit is None else unit == "rad"
+            values = given[f"{column}_std"][:, 0]
+            found[channel] = values if radians else np.radians(values)
+        elif isinstance(reading.sigma, float):
+            found[channel] = np.full(len(given["t"]), reading.sigma)
+        elif reading.sigma is not None and channel in reading.sigma:
+            found[channel] = np.full(len(given["t"]), reading.sigma[channel])
+    if found and (missing := [x for x in channels if x not in found]):
+        raise LagtopError(
+            f"sigma must be given of all angles or of none, got none of {missing[0]}", "sigma"
+        )
+    for channel, values in found.items():
+        if not np.all((values > 0) | np.isnan(values)):
+            raise DataError(f"{source.where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
+    return found

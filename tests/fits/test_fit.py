@@ -1,0 +1,407 @@
+"""`fit`: the top behind data that an integrator made, with noise of a known size."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import recordings
+from conftest import Lagtop, assert_one_line
+from engines import Array, Body, dop853
+from scipy.spatial.transform import Rotation
+
+from lagrange_cli import Top, read_scene, solve
+from lagrange_cli.fits import fit as fits
+from lagrange_cli.fits.least_squares import Problem
+from lagrange_cli.fits.quality import chi2_bounds
+from lagrange_cli.fits.record import FAILED, Outcome, outcomes
+from lagrange_cli.fits.recording import Reading, Recording, read_recordings
+from lagrange_cli.fits.residuals import residuals
+from lagrange_cli.output.uncertain import with_uncertainty
+
+NOISE = math.radians(0.5)
+SAMPLE = recordings.PATH
+
+
+def motion_of(top: Top, t: Array) -> Rotation:
+    """Return the attitude at times, by Euler's equations that scipy integrates."""
+    states = dop853(Body.of(top), t)[1]
+    return Rotation.from_quat(states[:, :4], scalar_first=True)
+
+
+def angles_of(turns: Rotation) -> dict[str, Array]:
+    psi, theta, phi = turns.as_euler("ZXZ").T
+    return {"theta": theta, "phi": phi, "psi": psi}
+
+
+def recorded(
+    top: Top, seed: int, names: tuple[str, ...] = ("theta", "psi"), count: int = 240
+) -> Recording:
+    """Return noisy angles of a top over some periods, psi and phi counted from anywhere."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0, solve(top).T_nutation * rng.uniform(1.5, 8), count)
+    exact = angles_of(motion_of(top, t))
+    angles = {name: exact[name] + rng.normal(scale=NOISE, size=count) for name in names}
+    for name in set(names) - {"theta"}:
+        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
+    sigma = {name: np.full(count, NOISE) for name in angles}
+    return Recording("", t, 0.0, "angles", angles, sigma)
+
+
+def any_top(seed: int) -> Top:
+    """Return a random top that nutates: cusped, looping or wavy, of either spin."""
+    rng = np.random.default_rng(seed)
+    a, b = 10 ** rng.uniform(1, 2.7), rng.choice([-1, 1]) * 10 ** rng.uniform(0, 1.7)
+    ratio = rng.uniform(0.2, 1.9)
+    start = {"theta0_deg": rng.uniform(5, 175)}
+    if seed % 3:
+        start |= {"thetadot0": rng.normal(scale=2), "psidot0": rng.normal(scale=3)}
+    return Top(m=1, s=1, g=a / 2, A=1, C=ratio, r0=b / ratio, **start)
+
+
+def pulls(outcome: Outcome, top: Top) -> Array:
+    """Return how far from the truth a fit is, in its own standard deviations."""
+    motion = solve(top)
+    truth = {
+        "a": motion.a,
+        "b": motion.b,
+        "r0": top.r0,
+        "theta0": math.radians(float(top.theta0_deg or 0)),
+        "thetadot0": top.thetadot0,
+        "psidot0": top.psidot0,
+    }
+    return np.array([(x - float(truth[n])) / s for n, x, s in outcome.found() if n in truth])
+
+
+def check(seed: int, names: tuple[str, ...]) -> Array:
+    top = any_top(seed)
+    (outcome,) = outcomes(fits.fit([recorded(top, seed, names)], {}))
+    low, high = chi2_bounds(outcome.fit.solution.dof)
+    off = pulls(outcome, top)
+    assert np.all(np.abs(off) < 4), (top, off)
+    assert low < outcome.chi2_dof < high
+    assert outcome.verdict != FAILED
+    return off
+
+
+@pytest.mark.parametrize("seed", [1])
+def test_a_random_top_is_found(seed: int) -> None:
+    check(seed, ("theta", "psi"))
+
+
+@pytest.mark.slow
+def test_random_tops_are_found_within_their_standard_deviations() -> None:
+    off = np.concatenate([check(seed, ("theta", "psi")) for seed in range(100, 118)])
+    assert 0.7 < np.std(off) < 1.3
+
+
+@pytest.mark.slow
+def test_random_tops_with_their_spin() -> None:
+    off = np.concatenate([check(seed, ("theta", "phi", "psi")) for seed in range(200, 212)])
+    assert 0.7 < np.std(off) < 1.3
+
+
+@pytest.fixture(scope="module")
+def sample() -> Outcome:
+    """Return what the recording of sample_inputs tells, with the noise that it has."""
+    degree = math.pi / 180
+    sigma = {"theta": 0.3 * degree, "psi": 0.5 * degree, "phi": degree}
+    recording = read_recordings(str(SAMPLE), Reading(sigma=sigma))
+    return outcomes(fits.fit(recording, {"m": 1.587, "g": 9.81, "s": 0.04}))[0]
+
+
+def test_the_recording_is_what_the_script_writes() -> None:
+    assert recordings.text() == SAMPLE.read_text()
+
+
+def test_the_sample_is_what_an_integrator_gives() -> None:
+    rows = np.genfromtxt(SAMPLE, delimiter=",", skip_header=3)
+    angles = angles_of(motion_of(recordings.TOP, rows[:, 0] - recordings.FIRST))
+    assert abs(rows[:, 1] - np.degrees(angles["theta"])).max() < 1.2
+    assert np.isnan(rows[:, 3]).sum() > 50
+
+
+def test_the_sample_gives_the_body(sample: Outcome) -> None:
+    record = sample.record()
+    for key in ("A", "C", "r0", "theta0_deg", "thetadot0", "psidot0"):
+        truth = float(getattr(recordings.TOP, key))
+        assert abs(record[key] - truth) < 3 * record[f"{key}_std"], key
+    assert record["A_std"] < 0.001 * record["A"]
+    assert record["psi_zero_deg"] == pytest.approx(recordings.PSI_ZERO, abs=0.3)
+    assert record["phi_zero_deg"] == pytest.approx(recordings.PHI_ZERO, abs=0.6)
+    assert record["verdict"] == "good"
+    assert record["remark"] is None
+
+
+def test_the_derivatives_are_those_of_what_is_left(sample: Outcome) -> None:
+    recording = sample.recording
+    for kind, names in (("angles", 3), ("axis", 2), ("attitude", 3)):
+        one = Recording("", recording.t, 0.0, kind, filled(recording), {})
+        parameters = sample.fit.solution.parameters
+        sigma = {channel: np.ones(recording.t.size) for channel in one.channels}
+        problem = Problem([one], [sigma], parameters)
+        at = sample.fit.solution.values
+        slopes = problem._at(at)[1]
+        assert slopes.shape == (names * recording.t.size, at.size)
+        for i, step in enumerate(1e-4 * np.maximum(abs(at), 1)):
+            shift = np.eye(at.size)[i] * step
+            change = problem._at(at + shift)[0] - problem._at(at - shift)[0]
+            same = np.abs(change) < 1  # but for a turn
+            slope = change / (2 * step)
+            assert np.allclose(slopes[same, i], slope[same], atol=2e-5 * np.abs(slope).max() + 1e-9)
+
+
+def filled(recording: Recording) -> Mapping[str, Array]:
+    """Return the angles of a recording, with something in its missing cells."""
+    return {name: np.nan_to_num(x, nan=1.0) for name, x in recording.angles.items()}
+
+
+def test_residuals_of_directions_are_distances_on_the_sphere() -> None:
+    rng = np.random.default_rng(3)
+    turns = Rotation.random(50, rng=3)
+    off = 1e-3 * rng.normal(size=(50, 3))
+    seen = angles_of(turns * Rotation.from_rotvec(off))
+    exact = angles_of(turns)
+    moved = np.stack([exact["theta"], exact["phi"], exact["psi"]])
+    attitude = residuals(Recording("", np.arange(50.0), 0.0, "attitude", seen, {}), moved)
+    assert np.linalg.norm(attitude.values, axis=0) == pytest.approx(
+        np.linalg.norm(off, axis=1), rel=0.01
+    )
+    axis = residuals(Recording("", np.arange(50.0), 0.0, "axis", seen, {}), moved)
+    assert np.linalg.norm(axis.values, axis=0) == pytest.approx(
+        np.linalg.norm(off[:, :2], axis=1), rel=0.01
+    )
+
+
+def written(path: Path, names: str, columns: list[Any]) -> Path:
+    """Write a file of columns."""
+    rows = zip(*columns, strict=True)
+    lines = [",".join("" if np.isnan(x) else str(x) for x in row) for row in rows]
+    path.write_text("\n".join([names, *lines]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("kind", ["axis", pytest.param("quaternion", marks=pytest.mark.slow)])
+def test_the_axis_and_the_attitude(lagtop: Lagtop, tmp_path: Path, kind: str) -> None:
+    rng = np.random.default_rng(7)
+    t = np.linspace(0, 2, 150)
+    turns = motion_of(recordings.TOP, t) * Rotation.from_rotvec(
+        NOISE * rng.normal(size=(t.size, 3))
+    )
+    turns = Rotation.from_euler("z", 1.0) * turns
+    if kind == "axis":
+        names, columns = "t,axis_x,axis_y,axis_z", turns.apply([0, 0, 1]).T
+    else:
+        names, columns = "t,qw,qx,qy,qz", turns.as_quat(scalar_first=True).T
+    path = written(tmp_path / "data.csv", names, [t, *columns])
+    shown = lagtop("fit", path, "--sigma", 0.5, "--format", "json")
+    record = json.loads(shown.stdout)
+    motion = solve(recordings.TOP)
+    assert abs(record["a"] - motion.a) < 4 * record["a_std"]
+    assert abs(record["b"] - motion.b) < 4 * record["b_std"]
+    assert record["chi2_dof_low"] < record["chi2_dof"] < record["chi2_dof_high"]
+    assert ("r0" in record) == (kind == "quaternion")
+    assert record["psi_zero_deg"] == pytest.approx(math.degrees(1), abs=1)
+    if kind == "quaternion":
+        assert abs(record["r0"] - 50) < 4 * record["r0_std"]
+        assert "C/A" in record
+
+
+@pytest.mark.slow
+def test_psi_may_count_the_other_way() -> None:
+    top = any_top(4)
+    recording = recorded(top, 4, ("theta", "phi", "psi"))
+    (one,) = outcomes(fits.fit([recording], {}))
+    (other,) = outcomes(fits.fit([recording.mirrored], {}))
+    assert one.notes() == []
+    assert other.notes()[0].startswith("psi is counted the other way round")
+    assert other.values["b"] == pytest.approx(one.values["b"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_top_that_is_let_go_needs_no_precession() -> None:
+    top = Top()
+    recording = recorded(top, 5, ("theta",))
+    known = {"psidot0": 0.0, "thetadot0": 0.0, "r0": 50.0}
+    (outcome,) = outcomes(fits.fit([recording], known))
+    motion = solve(top)
+    assert abs(outcome.values["a"] - motion.a) < 4 * outcome.deviations["a"]
+    assert abs(outcome.values["b"] - motion.b) < 4 * outcome.deviations["b"]
+
+
+def trials(tmp_path: Path) -> Path:
+    """Write a file of two recordings of one body, row by row in turn, named by a column."""
+    rng = np.random.default_rng(11)
+    t = np.linspace(0, 1.5, 100)
+    rows = []
+    for name, change in (("first", {}), ("second, fast", {"r0": 70, "theta0_deg": 60})):
+        angles = angles_of(motion_of(recordings.TOP.replace(**change), t))
+        for i in range(t.size):
+            cells = [math.degrees(x[i]) + rng.normal(scale=0.5) for x in angles.values()]
+            rows.append((t[i], f'"{name}"', cells))
+    rows.sort(key=lambda row: row[0])
+    lines = [f"{at},{name},{','.join(map(str, cells))}" for at, name, cells in rows]
+    path = tmp_path / "trials.csv"
+    path.write_text("\n".join(["t,trial,theta,phi,psi", *lines]).replace(", fast", " fast") + "\n")
+    return path
+
+
+@pytest.mark.slow
+def test_several_recordings_in_one_file(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = trials(tmp_path)
+    options = ("fit", path, "--by", "trial", "--sigma", 0.5, "--format", "json")
+    apart = json.loads(lagtop(*options).stdout)
+    together = json.loads(lagtop(*options, "--together").stdout)
+    assert [row["name"] for row in apart] == ["first", "second fast"]
+    assert apart[0]["a"] != apart[1]["a"]
+    assert together[0]["a"] == together[1]["a"]
+    assert together[0]["a_std"] < min(row["a_std"] for row in apart)
+    motion = solve(recordings.TOP)
+    for row, r0 in zip(together, (50, 70), strict=True):
+        assert abs(row["a"] - motion.a) < 4 * row["a_std"]
+        assert abs(row["r0"] - r0) < 4 * row["r0_std"]
+        assert row["C/A"] == pytest.approx(1.7458e-3 / 3.9032e-3, abs=4 * row["C/A_std"])
+
+
+def test_the_scene_is_read_by_other_commands(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = tmp_path / "fitted.toml"
+    shown = lagtop("fit", SAMPLE, "--g", 9.81, "-o", path)
+    assert shown.exit_code == 0, shown.stderr
+    assert "m, s and A only as m*s/A" in shown.stdout
+    motion = solve(read_scene(str(path)))
+    assert motion.top.caveat() is None
+    truth = solve(recordings.TOP)
+    assert motion.top.g == 9.81
+    assert motion.a == pytest.approx(truth.a, rel=2e-3)
+    assert motion.b == pytest.approx(truth.b, rel=2e-3)
+    assert "# m, s and A only as m*s/A" in path.read_text()
+    assert set(tomllib.loads(path.read_text())) >= {"m", "A", "C", "s", "g", "r0", "theta0_deg"}
+
+
+@pytest.mark.slow
+def test_known_inputs_of_a_scene(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text("m = 1.587\ng = 9.81\ns = 0.04\nr0 = 3\n")
+    shown = lagtop("fit", SAMPLE, "--scene", scene, "--fix", "m,g,s", "--format", "json")
+    record = json.loads(shown.stdout)
+    assert record["A"] == pytest.approx(3.9032e-3, rel=2e-3)
+    assert record["r0"] == pytest.approx(50, abs=0.1)  # that of the scene is not known
+
+
+@pytest.mark.slow
+def test_what_is_no_noise_is_said(lagtop: Lagtop, tmp_path: Path) -> None:
+    t = np.linspace(0, 3, 200)
+    angles = angles_of(motion_of(recordings.TOP, t))
+    rng = np.random.default_rng(2)
+    theta = np.degrees(angles["theta"]) * np.exp(-0.03 * t) + rng.normal(scale=0.2, size=t.size)
+    psi = np.degrees(angles["psi"]) + rng.normal(scale=0.2, size=t.size)
+    path = written(tmp_path / "friction.csv", "t,theta,psi", [t, theta, psi])
+    shown = lagtop("fit", path, "--sigma", 0.2)
+    assert shown.exit_code == 0
+    assert "Warning: chi2/dof = " in shown.stdout
+    assert "Warning: what is left of theta is no noise" in shown.stdout
+    record = json.loads(lagtop("fit", path, "--format", "json").stdout)
+    assert record["verdict"] == "doubtful"
+    assert record["chi2_dof"] is None
+
+
+@pytest.mark.slow
+def test_standard_deviations_in_columns(lagtop: Lagtop, tmp_path: Path) -> None:
+    t = np.linspace(0, 2, 200)
+    angles = angles_of(motion_of(recordings.TOP, t))
+    rng = np.random.default_rng(2)
+    spread = np.where(np.arange(t.size) % 4, 0.1, 4.0)
+    columns = [np.degrees(angles[x]) + spread * rng.normal(size=t.size) for x in ("theta", "psi")]
+    names = "t,theta_deg,psi_deg,theta_deg_std,psi_std_deg"
+    path = written(tmp_path / "data.csv", names, [t, *columns, spread, spread])
+    record = json.loads(lagtop("fit", path, "--format", "json").stdout)
+    assert record["chi2_dof_low"] < record["chi2_dof"] < record["chi2_dof_high"]
+    plain = written(tmp_path / "plain.csv", "t,theta_deg,psi_deg", [t, *columns])
+    assert (
+        record["a_std"] < json.loads(lagtop("fit", plain, "--format", "json").stdout)["a_std"] / 4
+    )
+
+
+T = np.linspace(0, 2, 100)
+
+
+@pytest.mark.parametrize(
+    ("columns", "code", "message"),
+    [
+        ([T[:5], T[:5], T[:5]], 65, "must have 12 rows or more, got 5"),
+        ([T, 0 * T + 30, T], 65, "theta must vary, got 30 in all rows"),
+        ([T, T * np.nan, T * np.nan], 65, "must have 12 rows or more with a number, got 0"),
+        ([T[::-1] ** 2 % 0.5, 30 + T, T], 65, "t must not turn back"),
+        ([T / 10, 30 + 5 * np.sin(T), T], 65, "a recording must last for a period"),
+        ([0 * T + 1, 30 + T, T], 65, "t must go on, got 1 in all rows"),
+    ],
+)
+def test_bad_data_get_a_line(
+    lagtop: Lagtop, tmp_path: Path, columns: list[Array], code: int, message: str
+) -> None:
+    path = written(tmp_path / "data.csv", "t,theta,psi", columns)
+    result = lagtop("fit", path)
+    assert (result.exit_code, result.stdout) == (code, "")
+    assert result.stderr.count("\n") == 1
+    assert message in result.stderr
+
+
+def test_noise_alone_is_no_nutation(lagtop: Lagtop, tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    path = written(tmp_path / "data.csv", "t,theta,psi", [T, 40 + rng.normal(size=100), 90 * T])
+    result = lagtop("fit", path)
+    assert result.exit_code == 65
+    assert "theta must nod beyond its noise" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        ("--sigma 0", 2, "--sigma must be > 0"),
+        ("--sigma theta=1", 2, "--sigma must be given of all angles or of none"),
+        ("--fix m", 2, "--fix m must be given by an option or by --scene"),
+        ("--g 0", 2, "--g must not be 0 in a fit"),
+        ("--phidot0 3", 2, "--phidot0 is no input of a fit"),
+        ("--A-cm 3", 2, "--A-cm needs --m and --s"),
+        ("--by nothing", 2, "--by must name a column"),
+        ("--together", 2, "--together needs --by"),
+        ("--plot fit.gif", 2, "--plot must end in .svg or .png"),
+        ("-o /nowhere/x.toml", 74, "cannot write /nowhere/x.toml"),
+    ],
+)
+def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
+    assert_one_line(lagtop("fit", SAMPLE, *words.split()), code, message)
+
+
+def test_theta_alone_needs_a_start(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = written(tmp_path / "data.csv", "t,theta", [T, 40 + 5 * np.sin(20 * T)])
+    assert_one_line(lagtop("fit", path), 2, f"{path} has neither psi nor phi, and theta alone")
+
+
+@pytest.mark.slow
+def test_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
+    path = tmp_path / "fit.svg"
+    assert lagtop("fit", SAMPLE, "--plot", path).exit_code == 0
+    assert path.read_text().count('<g id="axes_') == 6
+
+
+@pytest.mark.parametrize(
+    ("value", "deviation", "text"),
+    [
+        (319.2749, 0.148, "319.27(15)"),
+        (0.447, 0.00996, "0.447(10)"),
+        (22.379, 0.0104, "22.379(10)"),
+        (39032, 123, "39030(120)"),
+        (-1.5, 2.34, "-1.5(23)"),
+        (1.23456e-7, 2.1e-9, "1.235(21)e-7"),
+        (5.0, 0.0, "5"),
+    ],
+)
+def test_numbers_with_their_uncertainty(value: float, deviation: float, text: str) -> None:
+    assert with_uncertainty(value, deviation) == text
