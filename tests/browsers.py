@@ -1,10 +1,14 @@
-"""A headless browser for the tests of the page, and the questions they ask of it."""
+"""A headless browser for the tests of the page, and the questions they ask of it.
+
+Run as a script it prints how long frames take: `python tests/browsers.py`.
+"""
 
 from __future__ import annotations
 
 import base64
 import json
 import shutil
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -90,7 +94,47 @@ def chromium() -> Iterator[Browser]:
     options.add_argument("--hide-scrollbars")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(programs[1]))
+    driver.set_script_timeout(120)
     try:
         yield Browser(driver)
     finally:
         driver.quit()
+
+
+FRAMES = """
+    const done = arguments[0];
+    const { page } = window.lagtop;
+    const [whole, own] = [[], []];
+    const draw = page.draw.bind(page);
+    page.draw = () => {
+        const start = performance.now();
+        draw();
+        own.push(performance.now() - start);
+    };
+    page.clock.play(true);
+    const middle = (times) => times.sort((x, y) => x - y)[times.length >> 1];
+    const next = (last) => requestAnimationFrame((now) => {
+        whole.push(now - last);
+        if (whole.length < 300) next(now);
+        else done([middle(whole), middle(own)]);
+    });
+    requestAnimationFrame(next);
+"""
+"""Asks for the medians over 300 frames, in milliseconds: from frame to frame, and our own part."""
+
+
+def main() -> None:
+    """Print the medians of the times that frames take, for some scenes."""
+    from lagrange_cli import Top, solve, view
+
+    with chromium() as browser, tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "top.html"
+        view(solve(Top())).save(path)
+        for fragment in ("#", "#psidot0=-4", "#theta0_deg=1e-6", "#r0=1000"):
+            browser.open(path, fragment)
+            whole, own = browser.driver.execute_async_script(FRAMES)
+            print(f"{fragment:17} {whole:5.1f} ms from frame to frame, {own:4.1f} ms our own")
+
+
+if __name__ == "__main__":
+    main()

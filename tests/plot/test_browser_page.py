@@ -25,12 +25,25 @@ pytestmark = pytest.mark.slow
 
 Picture = NDArray[np.float64]
 
-SEPARATRIX = {**UNIT, "A": 2, "theta0_deg": 90, "r0": 0}
-CLOSE = {
-    f"{gap:g} from the separatrix": SEPARATRIX | {"thetadot0": -1 - gap}
-    for gap in (1e-3, -1e-6, 1e-9, -1e-12, 2**-52)
+LEVEL: dict[str, float] = {**UNIT, "theta0_deg": 90}
+SPECIAL = {
+    "separatrix with spin": LEVEL | {"r0": 1, "psidot0": 1, "thetadot0": 1},
+    "separatrix with the other spin": LEVEL | {"r0": -1, "psidot0": -1, "thetadot0": -1},
+    "steady at 60 degrees": {**UNIT, "theta0_deg": 60, "r0": 1.5, "psidot0": 1},
+    "cusps after a moving start": LEVEL | {"m": 5, "r0": 5, "psidot0": 1, "thetadot0": 1},
+    "beta = b u3": LEVEL | {"m": 2, "r0": 1, "psidot0": 2, "thetadot0": 2},
+    "u3 is 1": LEVEL | {"r0": 1, "psidot0": 1, "thetadot0": 0.25},
+    "u3 is nearly 1": LEVEL | {"r0": 1, "psidot0": 1 + 2**-52, "thetadot0": 0.25},
+    "nearly upright, nearly at rest": {"theta0_deg": 1e-3, "thetadot0": 1e-4, "psidot0": 1e-2},
 }
-"""Scenes whose second and third roots all but touch."""
+"""Scenes in which something is exactly, or all but exactly, 0."""
+CLOSE = {
+    f"{gap:g} from the separatrix, r0 = {r0:g}": LEVEL
+    | {"A": 2 - r0, "r0": r0, "psidot0": r0 * (1 + gap), "thetadot0": -1 - gap / 3}
+    for gap in (1e-3, -1e-6, 1e-9, -1e-12, 2**-50)
+    for r0 in (0.0, 1.0)
+}
+"""Scenes whose first and third roots all but touch."""
 
 README_PICTURE = ROOT / "sample_inputs" / "images" / "view.png"
 README_FRAGMENT = "#psidot0=-4&t=0.35"
@@ -68,7 +81,9 @@ def test_the_page_complains_of_nothing_and_asks_nobody(session: Browser, page_fi
 def motions() -> dict[str, Motion]:
     """Return motions of all regimes, the samples, and random ones, half of them not at rest."""
     rng = random.Random(18)
-    found = {name: solve(Top(**scene)) for name, scene in (NAMED | REGIMES | CLOSE).items()}
+    found = {
+        name: solve(Top(**scene)) for name, scene in (NAMED | REGIMES | SPECIAL | CLOSE).items()
+    }
     found |= {path.name: sample_motion(path) for path in SAMPLES}
     for i in range(40):
         scene = random_scene(rng)
@@ -91,7 +106,10 @@ def turned(x: Any, y: Any) -> float:
 
 
 def test_angles_and_records_are_those_of_lagtop(browser: Browser) -> None:
-    """1e-9 rad is promised.  Worst case seen: 3e-13, of 1500 such scenes."""
+    """1e-9 rad is promised.
+
+    Worst case seen, of 1500 scenes: 7e-12, for a top let go 2e-12 degrees off the vertical.
+    """
     known = motions()
     cases: list[dict[str, Any]] = [
         {"scene": page_scene(motion), "times": times_of(motion)} for motion in known.values()
@@ -107,12 +125,12 @@ def test_angles_and_records_are_those_of_lagtop(browser: Browser) -> None:
         angles = motion.angles(case["times"], wrap=True)
         for symbol, key in (("theta", "theta"), ("phi", "phiWithin"), ("psi", "psiWithin")):
             got = [at[key] for at in page["angles"]]
-            assert turned(getattr(angles, symbol), got) < 1e-9, (name, symbol)
+            assert turned(getattr(angles, symbol), got) < 1e-11, (name, symbol)
         unwrapped = motion.angles(case["times"])
         for symbol in ("phi", "psi"):
             got = [at[symbol] for at in page["angles"]]
             assert getattr(unwrapped, symbol) == pytest.approx(got, rel=1e-12, abs=1e-9), name
-        record = motion.record()
+        record = motion.record(keys=list(page["record"]))
         for key, value in page["record"].items():
             wanted = record[key]
             if isinstance(value, str) or value is None or wanted is None:
@@ -183,10 +201,17 @@ def test_the_link_carries_the_scene(browser: Browser, page_file: Path) -> None:
     assert browser.ask("return [page.scene.r0, page.clock.t, at.time.value]") == [
         *(33.5, 1e6, "1000000")
     ]
+    browser.ask("location.hash = '#psidot0=-4'")
+    browser.settle()
+    assert browser.ask("return [page.scene.psidot0, document.title]") == [
+        *(-4, "Regular motion with loops · lagtop")
+    ]
     for bad in ("#r0=fast", "#colour=1", "#C=1e9", "#theta0_deg=0&psidot0=1", "#r0="):
-        browser.open(page_file, bad)
-        assert browser.ask("return at.error.textContent").startswith("The link was not understood")
-        assert browser.ask("return page.scene.r0") == 50
+        browser.ask("location.hash = arguments[0]", bad)
+        browser.settle()
+        said, r0 = browser.ask("return [at.error.textContent, page.scene.r0]")
+        assert said.startswith("The link was not understood")
+        assert r0 == 50
     assert browser.complaints() == []
 
 

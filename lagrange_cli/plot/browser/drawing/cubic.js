@@ -8,7 +8,7 @@ const MARGIN = { left: 14, right: 14, top: 12, bottom: 32 };
 /** f(u) from its product form; without torque it is a parabola. */
 function cubicOf({ start, record, gaps }) {
   const lead = record.u3 === null ? null : +start.a;
-  const parabola = gaps.aU3FromStart ? -gaps.aU3FromStart : 0;
+  const parabola = gaps.aU3FromU1 ? -gaps.aU3FromU1 : 0;
   return (u) => (u - record.u1) * (u - record.u2) * (
     lead === null ? parabola : lead * (u - record.u3));
 }
@@ -21,12 +21,12 @@ function windowOf({ u1, u2, u3 }) {
   return { low: u2 - 0.5 * width, high: u2 + 1.5 * width, near };
 }
 
-/** Draw the cubic, and the top at the tilt of now. */
-export function drawCubic(canvas, look, motion, theta) {
+/** Draw the cubic; returns where the top is on it at a tilt, if it is on it at all. */
+export function drawCubic(canvas, look, motion) {
   const { context, width, height } = prepared(canvas);
   if (motion.facts.vertical) {
     write(context, "the axis is vertical: nothing nods", [width / 2, height / 2], look.quiet);
-    return;
+    return () => null;
   }
   const f = cubicOf(motion);
   const { low, high, near } = windowOf(motion.record);
@@ -46,8 +46,10 @@ export function drawCubic(canvas, look, motion, theta) {
   stroke(context, us.map((u) => [place.x(u), place.y(f(u))]), { colour: look.blue, width: 1.8 });
   context.restore();
   drawRoots(context, look, place, motion.record, near, width);
-  const now = Math.min(Math.max(Math.cos(theta), u2), u1);
-  dot(context, [place.x(now), place.y(Math.max(f(now), 0))], 4.5, look.trace, look.paper);
+  return (theta) => {
+    const u = Math.min(Math.max(Math.cos(theta), u2), u1);
+    return [place.x(u), place.y(Math.max(f(u), 0))];
+  };
 }
 
 /** Draw the band of the motion, the axis f = 0 and the poles u = 1 and u = -1. */

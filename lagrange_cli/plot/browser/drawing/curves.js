@@ -1,5 +1,5 @@
-// The times at which curves are drawn: even in the amplitude of the nutation and not in time, so
-// that cusps stay sharp, with more where the axis is fast.
+// The times at which curves are drawn: even in the amplitude of the nutation, so that cusps stay
+// sharp, and even in time for a top that waits; with more of them where the axis is fast.
 
 import { firstKind } from "../numerics/integrals.js";
 import { pair } from "../numerics/pair.js";
@@ -39,7 +39,8 @@ function timesBetween(motion, from, until) {
   const T = +period;
   const top = -offset / 2 * T;  // a time at which the axis is highest
   const half = halfPeriod(kPrime);
-  const whole = [...half, ...half.slice(1, -1).reverse().map((x) => 1 - x)];
+  const later = half.slice(1, -1).map((x) => 1 - x);
+  const whole = [...half, ...later, ...even(0, 1, PHASES).slice(1, -1)].sort((x, y) => x - y);
   const [first, last] = [Math.floor((from - top) / T), Math.ceil((until - top) / T)];
   const times = [from];
   for (let n = first; n < last; n += 1) {

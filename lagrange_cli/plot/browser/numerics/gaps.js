@@ -34,7 +34,6 @@ function gapsFromRest({ a, b, sleep, sin, above, below }) {
     belowU2: b.squared().times(below).over(aBelowU3),                 // 1 + u2
     aboveU1: above,                                                   // 1 - u1
     aboveU2: fast ? smallerAbove : largerAbove.over(a),               // 1 - u2
-    aU3FromStart: up,                                                 // a (u3 - u0)
     aU3FromU1: up,                                                    // a (u3 - u1)
     aU3FromU2: rho.times(2),                                          // a (u3 - u2)
     aU3Above: fast ? largerAbove : a.times(smallerAbove),             // a (u3 - 1)
@@ -48,7 +47,7 @@ function gapsFromRest({ a, b, sleep, sin, above, below }) {
 /** After any start: with x = u - u0 the cubic is a x^3 + c2 x^2 + c1 x + c0. */
 function gapsFromStart(start, facts) {
   const { a, b, above, below, psiRate } = start;
-  const { aU3FromStart: far, x1, x2 } = rootsFromStart(start, facts);
+  const { far, x1, x2 } = rootsFromStart(start, facts);
   const touches = facts.upperRoot || facts.separatrix;
   const gaps = {
     u1FromStart: x1,
@@ -58,7 +57,6 @@ function gapsFromStart(start, facts) {
     belowU2: below.plus(x2),
     aboveU1: above.minus(x1),
     aboveU2: above.minus(x2),
-    aU3FromStart: far,
     aU3FromU1: far.minus(a.times(x1)),
     aU3FromU2: far.minus(a.times(x2)),
     aU3Above: far.minus(a.times(above)),
@@ -102,7 +100,6 @@ function nextToSeparatrix({ a, b, sin, above, psiRate, thetaRate }, gaps) {
   gaps.aU3Above = up;
   gaps.aboveU1 = down.negative().over(a);
   gaps.aU3FromU1 = up.minus(down);
-  gaps.aU3FromStart = up.plus(a.times(above));
   gaps.u1FromStart = above.minus(gaps.aboveU1);
 }
 
@@ -142,7 +139,7 @@ function rootsFromStart({ a, b, sin, cos, above, below, psiRate, thetaRate }, fa
     [x1, x2] = twoRoots(c1.plus(a.times(c0).over(far)).over(far), c0.over(far).negative());
   }
   return {
-    aU3FromStart: far,
+    far,
     x1: facts.upperRoot === 1 ? above : x1,
     x2: facts.overBottom ? below.negative() : x2,
   };

@@ -37,25 +37,20 @@ export function periodMean(kPrime, p, a, b) {
   return first.times(mean).plus(second).over(mean.plus(root));
 }
 
-/** Carlson's R_F(x, y, z) by duplication and the first terms of its series (DLMF 19.36.1). */
+/** Carlson's R_F(x, y, z) by duplication (DLMF 19.36.1), until two terms of its series will do. */
 function carlsonRF(x, y, z) {
   let all = [pair(x), pair(y), pair(z)];
   for (;;) {
     const mean = all[0].plus(all[1]).plus(all[2]).over(3);
     const [dx, dy] = all.map((number) => pair(1).minus(number.over(mean)));
-    if (Math.max(Math.abs(dx), Math.abs(dy)) < 1e-6) return rfSeries(dx, dy).over(mean.sqrt());
+    if (Math.max(Math.abs(dx), Math.abs(dy)) < 1e-9) {
+      const e2 = dx.times(dy).minus(dx.plus(dy).squared());
+      return pair(1).minus(e2.over(10)).over(mean.sqrt());
+    }
     const [r, s, t] = all.map((number) => number.sqrt());
     const shift = r.times(s).plus(s.times(t)).plus(t.times(r));
     all = all.map((number) => number.plus(shift).over(4));
   }
-}
-
-function rfSeries(dx, dy) {
-  const dz = dx.plus(dy).negative();
-  const e2 = dx.times(dy).minus(dz.squared());
-  const e3 = dx.times(dy).times(dz);
-  return pair(1).minus(e2.over(10)).plus(e3.over(14)).plus(e2.squared().over(24))
-    .minus(e2.times(e3).times(3).over(44));
 }
 
 /**

@@ -71,7 +71,6 @@ function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
   const { belowU1, belowU2, aboveU1, aboveU2, momentumU1, momentumU2 } = gaps;
   let spinRate;
   if (facts.atRest) spinRate = start.spinDrift.plus(start.r0 < 0 ? halfTurn.negative() : halfTurn);
-  else if (facts.drifts) spinRate = start.spinDrift;
   if (facts.free || overTop || facts.overBottom) {
     const south = poleRate(facts.overBottom, facts.signPlus, belowU1, belowU2, gaps.betaPlusB);
     const north = poleRate(overTop, facts.signMinus, aboveU1, aboveU2, gaps.betaMinusB);

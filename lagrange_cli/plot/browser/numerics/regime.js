@@ -39,17 +39,16 @@ export function factsOf(start) {
     signPlus: plus || 1,
     signMinus: minus || 1,
     stable: +start.sleep >= 0,
-    ...stands(start, minus),
+    cusp: standsAtU1(start, minus),
   };
   return { ...facts, vertical, regime: regimeOf(facts, vertical) };
 }
 
-/** Whether beta/b is a root of the cubic: u1, where the precession stands still, or u3. */
-function stands({ a, b, psiRate, thetaRate, sin }, minus) {
+/** Whether the precession stands still at u1: beta/b is a root of the cubic, and not u3. */
+function standsAtU1({ a, b, psiRate, thetaRate, sin }, minus) {
   const around = psiRate.times(sin.squared());
-  const isRoot = minus * b !== 0 && signOf(
+  return minus * b < 0 && signOf(
     around.times(b).times(psiRate), around.times(a).negative(), b.times(thetaRate.squared())) === 0;
-  return { cusp: isRoot && minus * b < 0, drifts: isRoot && minus * b > 0 };
 }
 
 function regimeOf(facts, vertical) {

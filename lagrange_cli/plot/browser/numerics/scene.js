@@ -5,7 +5,7 @@ import { pair, sineOfDegrees } from "./pair.js";
 /** The inputs by key: symbol, meaning and whether each must be positive, or not negative. */
 export const INPUTS = {
   m: { symbol: "m", meaning: "mass", least: "positive" },
-  A: { symbol: "A", meaning: "equatorial moment about the pivot", least: "positive" },
+  A: { symbol: "A", meaning: "equatorial moment (pivot)", least: "positive" },
   C: { symbol: "C", meaning: "polar moment, at most 2A", least: "positive" },
   s: { symbol: "s", meaning: "pivot to centre of mass", least: "zero" },
   g: { symbol: "g", meaning: "gravity", least: "zero" },

@@ -32,8 +32,15 @@ class Page {
     this.start();
   }
 
-  /** Begin with the scene of the address, if it carries one, else with the one that was given. */
+  /** Begin, moving unless the reader wants things to stand still. */
   start() {
+    this.follow();
+    this.clock.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    requestAnimationFrame((now) => this.frame(now, now));
+  }
+
+  /** Show the scene of the address, if it carries one, else the one that was given. */
+  follow() {
     let linked = {};
     let complaint = "";
     try {
@@ -47,8 +54,6 @@ class Page {
     this.show({ ...this.given, ...inputs }, true);
     this.clock.set(t);
     this.complain(complaint);
-    this.clock.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
-    requestAnimationFrame((now) => this.frame(now, now));
   }
 
   offerExamples() {
@@ -80,6 +85,7 @@ class Page {
     plots.addEventListener("pointermove", scrub);
     new ResizeObserver(() => { this.curves = null; this.stale(); }).observe(document.body);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.relook());
+    window.addEventListener("hashchange", () => this.follow());
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -119,6 +125,7 @@ class Page {
     const [title, text] = wordsOf(this.motion);
     if (this.at.title.textContent !== title) this.at.title.textContent = title;
     this.at.words.textContent = text;
+    document.title = `${title} · lagtop`;
     showRecord(this.at.record, this.motion.record);
     this.recurve();
     this.clock.adapt(windowOf(this.motion, 1), freshSpeed);
@@ -178,6 +185,7 @@ class Page {
     if (!curves || clock.t < curves.from || clock.t >= curves.from + curves.span) {
       this.curves = curvesAt(motion, span, clock.t);
       this.field = drawPlots(this.at.plots, this.look, this.curves, this.at.waves.checked);
+      this.placeOnCubic = drawCubic(this.at.cubic, this.look, motion);
       this.report();
     }
     const angles = motion.angles(clock.t);
@@ -191,10 +199,12 @@ class Page {
     drawSpace(this.at.space, this.camera, look, {
       motion, curves, t: clock.t, angles, blurred, shown: this.shown,
     });
-    drawCubic(this.at.cubic, look, motion, angles.theta);
     const part = (clock.t - curves.from) / curves.span;
     const x = field.left + part * (field.right - field.left);
     this.at.cursor.style.transform = `translateX(${x}px)`;
+    const place = this.placeOnCubic(angles.theta);
+    this.at.point.hidden = !place;
+    if (place) this.at.point.style.transform = `translate(${place[0]}px, ${place[1]}px)`;
     this.at.now.textContent = ["theta", "phiWithin", "psiWithin"]
       .map((name, i) => `${"ϑφψ"[i]} = ${(angles[name] * 180 / Math.PI).toFixed(2)}°`)
       .join("   ").replace(/-/g, "−");
