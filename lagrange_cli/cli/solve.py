@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import AbsentError
+from ..errors import AbsentError, LagtopError
 from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_values
 from .command import ExamplesFirst, chain_layout, in_units, top_layout, units_of, write_keys
 from .options import (
+    COUNT,
     KEY_NAMES,
     MOST_RECORD_DIGITS,
     certify_option,
@@ -22,7 +23,8 @@ from .options import (
     inputs_of,
     motion_of,
     output_options,
-    scene_options,
+    uncertain_scene_options,
+    write_report,
 )
 
 if TYPE_CHECKING:
@@ -48,10 +50,13 @@ if TYPE_CHECKING:
         lagtop solve --m 350g --A 8.5e-4kg*m^2 --C 4e-4kg*m^2 --s 3cm --g 1g_0 --r0 12000rpm
         lagtop solve --theta0 60 --derivation
         lagtop solve --digits 30 --certify --format json
+        lagtop solve --m '1587(2)' --theta0 '30 +/- 1 %'
+        lagtop solve --m '1587(2)' --theta0 '30(1)' --budget T_nutation
+        lagtop solve --theta0 '30(1)' --samples 100000 --seed 1
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
     """,
 )
-@scene_options
+@uncertain_scene_options
 @digits_option(MOST_RECORD_DIGITS)
 @click.option(
     "--derivation",
@@ -66,6 +71,16 @@ if TYPE_CHECKING:
     help="Print values of the record, bare, one per line; the keys stand below.",
 )
 @certify_option("JSON and CSV have KEY_radius beside every number.")
+@click.option(
+    "--budget", metavar="KEY", help="What each uncertain input contributes to a number (GUM)."
+)
+@click.option(
+    "--samples",
+    type=COUNT,
+    metavar="N",
+    help="Monte Carlo: quantiles of N random tops, and whether first order holds.",
+)
+@click.option("--seed", type=COUNT, metavar="N", help="Seed of the random tops.")
 @output_options("table", "json", "csv")
 def command(
     scene: str | None,
@@ -74,6 +89,9 @@ def command(
     certify: bool,
     derivation: bool,
     keys: list[str] | None,
+    budget: str | None,
+    samples: int | None,
+    seed: int | None,
     fmt: str,
     output: str,
     **options: Any,
@@ -85,16 +103,42 @@ def command(
 
     All inputs or none may have units (pip install 'lagtop[units]'); the output is then in SI, or in
     --units cgs, and JSON names them.
+
+    An input may be uncertain: '1587(2)', '1587+/-2', '1587±2' or '1587 +/- 0.1 %'.  Then numbers
+    are shown with their standard uncertainties, of first order by exact derivatives; JSON and CSV
+    have them as KEY_std after the record.
     """
-    exclude({"--get": keys, "--derivation": derivation or None})
+    exclude(
+        {
+            "--get": keys,
+            "--derivation": derivation or None,
+            "--budget": budget,
+            "--samples": samples,
+        }
+    )
     if keys is not None:
         exclude({"--get": keys, "--format": fmt if given("fmt") else None})
+        values = list(dict.fromkeys(key.removesuffix("_std") for key in keys))
         known = record_keys(radians=rad)
-        check_names("get", keys, known if set(keys) <= {*known} else all_keys(radians=rad))
+        check_names("get", values, known if set(values) <= {*known} else all_keys(radians=rad))
+    if seed is not None and samples is None:
+        raise LagtopError("--seed is that of random tops: it needs --samples")
     found = inputs_of(scene, rad, options)
+    on_request = any(key.endswith("_std") for key in keys or ())
+    if found.stds or on_request or budget is not None or samples is not None:
+        from . import uncertainty
+
+        uncertainty.check(found, digits, derivation, certify)
     motion = motion_of(found, digits is not None)
+    if budget is not None or samples is not None:
+        find = uncertainty.report(found, motion, budget, samples, seed, rad)
+        write_report(find, fmt, output)
+        return
     chosen = _steps(motion, rad) if derivation else keys
-    record = _record(motion, digits, rad, chosen, certify)
+    wanted = list(dict.fromkeys(key.removesuffix("_std") for key in chosen)) if chosen else None
+    record = _record(motion, digits, rad, wanted, certify)
+    if found.stds:
+        record = uncertainty.with_stds(found, motion, record, fmt == "table" and keys is None)
     if keys is not None:
         write_values([_number(motion, record, key) for key in keys], output)
     elif derivation:

@@ -31,6 +31,8 @@ class Given(Values):
     """The inputs of the body that are those of the worked example, while others were given."""
     blame: Callable[[LagtopError], LagtopError]
     """Names the file, and the line, in an error about an input that stands in a scene file."""
+    stds: Mapping[str, float] = MappingProxyType({})
+    """Standard uncertainties of the inputs that have one, in these units."""
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.
@@ -84,9 +86,11 @@ def gather(
             body = units.worked_example() if units else BODY
     except LagtopError as error:
         raise blame(error) from None
+    stds = {name: float(x.std) for name, x in inputs.items() if hasattr(x, "std")}
+    inputs = {name: x.value if name in stds else x for name, x in inputs.items()}
     known = {name: _if_one(x) for name, x in inputs.items()}
     missing = from_example(dict.fromkeys(varying) | known)
-    return Given(inputs, others, body, units, missing, blame)
+    return Given(inputs, others, body, units, missing, blame, stds)
 
 
 def _if_one(value: Any) -> Any:

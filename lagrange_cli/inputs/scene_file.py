@@ -56,11 +56,15 @@ class SceneFile:
         return value
 
     def _quantity(self, key: str, text: str) -> Any:
-        """Return what a text says, a number in a unit."""
+        """Return what a text says, a number in a unit or an uncertain one."""
+        from .uncertain import Uncertain, parse_uncertain
+
         try:
-            value = parse_quantity(text, parse_number)
+            value = parse_quantity(text, parse_uncertain)
         except LagtopError as error:
             raise self.error(LagtopError(f"{key} {error}", key)) from None
+        if isinstance(value, Uncertain) and key != TILT:
+            return value
         if not isinstance(value, Quantity):
             wrong = f"{key} must have a unit between quotes, or be a number without, got {text!r}"
             raise self.error(LagtopError(wrong[:200], key))

@@ -1,0 +1,207 @@
+"""Uncertain inputs of `lagtop solve`: values with uncertainties, budgets and Monte Carlo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..arithmetic.text import NumberText
+from ..errors import AbsentError, LagtopError
+from ..inputs.names import check_names
+from ..inputs.uncertain import by_given
+from ..motion.record import NUMBER_KEYS, unit_name
+from ..motion.uncertainty import FirstOrder
+from ..output.findings import Field, Findings
+from ..output.uncertain_text import uncertain_text
+from .options import complain, exclude
+from .progress import with_progress
+
+if TYPE_CHECKING:
+    from ..inputs.given import Given
+    from ..motion.solve import Motion
+
+_PER_RADIAN = 57.29577951308232
+_LONG = 300_000
+"""Samples that are known to take longer than a moment."""
+
+
+def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> None:
+    """Raise LagtopError for what does not go with uncertain inputs, or where there are none."""
+    if not found.stds:
+        raise LagtopError("no input is uncertain: give one as in --m '1587(2)'")
+    others = {"--digits": digits, "--derivation": derivation or None, "--certify": certify or None}
+    for name, value in others.items():
+        exclude({name: value, "uncertain inputs": True})
+
+
+def report(
+    found: Given,
+    motion: Motion,
+    key: str | None,
+    samples: int | None,
+    seed: int | None,
+    radians: bool,
+) -> Callable[[], Findings]:
+    """Return what makes the budget of a key, or else the report on random samples."""
+    if key is None:
+        return sampled(found, motion, samples=samples or 0, seed=seed, radians=radians)
+    check_names("budget", [key], [unit_name(name, radians=radians) for name in NUMBER_KEYS])
+    findings = budget(found, motion, key, radians)
+    return lambda: findings
+
+
+def with_stds(
+    found: Given, motion: Motion, record: Mapping[str, Any], shown: bool
+) -> dict[str, Any]:
+    """Return a record with uncertainties: `shown` with the numbers, or as keys of their own.
+
+    A line names the numbers that have none.
+    """
+    uncertain = first_order(found, motion)
+    stds = stds_of(record, uncertain)
+    lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
+    if lost := [key for key in lost if stds[f"{key}_std"] is None]:
+        reasons = uncertain.sensitivities.reasons
+        reason = next((reasons[key] for key in lost if key in reasons), "keys on request have none")
+        complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
+    return shown_with(record, stds) if shown else dict(record) | stds
+
+
+def first_order(found: Given, motion: Motion) -> FirstOrder:
+    """Return the uncertainties of first order of a motion."""
+    return FirstOrder(motion.top, found.stds, by_given(motion.top, found.inputs.keys()))
+
+
+def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
+    """Return `KEY_std` for every number of a record, in its units."""
+    stds = {}
+    for name, value in record.items():
+        if isinstance(value, str) or name in {"regime", "path", "remark"}:
+            continue
+        degrees = f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
+        tilt = {"theta0_deg", "theta0_rad"} & uncertain.by_given.keys()
+        key = tilt.pop() if degrees == "theta0_deg" else degrees
+        std = None if value is None else uncertain.std(key)
+        scale = 1.0
+        if key != name:  # the other unit of an angle
+            scale = 1 / _PER_RADIAN if name.endswith("_rad") else _PER_RADIAN
+        stds[f"{name}_std"] = None if std is None else std * scale
+    return stds
+
+
+def shown_with(record: Mapping[str, Any], stds: Mapping[str, float | None]) -> dict[str, Any]:
+    """Return a record in which numbers are written with their uncertainties, for a table."""
+    shown = dict(record)
+    for name, value in record.items():
+        if value is not None and (std := stds.get(f"{name}_std")):
+            shown[name] = NumberText(uncertain_text(float(value), std))
+    return shown
+
+
+def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
+    """Return the budget of a key: what each uncertain input contributes.
+
+    Raises AbsentError where the motion has no such key, or it has no derivative.
+    """
+    name = next(x for x in NUMBER_KEYS if unit_name(x, radians=radians) == key)
+    value, uncertain = getattr(motion, name), first_order(found, motion)
+    if value is None:
+        raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
+    whole = uncertain.std(name)
+    if whole is None:
+        raise AbsentError(f"no uncertainty of first order: {uncertain.sensitivities.reasons[name]}")
+    given = {x: float(found.inputs[x]) for x in found.stds}
+    scale = 1 / _PER_RADIAN if key != name else 1.0
+    lines = [
+        line._replace(sensitivity=line.sensitivity * scale, contribution=line.contribution * scale)
+        for line in uncertain.budget(name, value, given)
+    ]
+    result = uncertain_text(value * scale, whole * scale)
+    conclusions = [f"{key} = {result}, to first order; inputs are taken as independent."]
+    return Findings({"key": key}, _BUDGET_FIELDS, lines, conclusions)
+
+
+def _figures(x: float) -> str:
+    return f"{x:.4g}"
+
+
+_BUDGET_FIELDS = [
+    Field("input", "input", is_text=True, names_the_row=True),
+    Field("value", "value", _figures),
+    Field("std", "uncertainty", _figures),
+    Field("sensitivity", "sensitivity", _figures),
+    Field("contribution", "contribution", _figures),
+    Field("elasticity", "elasticity", _figures),
+    Field("share", "share", lambda x: f"{100 * x:.1f} %"),
+]
+
+
+def sampled(
+    found: Given, motion: Motion, *, samples: int, seed: int | None, radians: bool
+) -> Callable[[], Findings]:
+    """Return what makes the report on random samples of the inputs."""
+    from ..sweeps import monte_carlo
+
+    uncertain = first_order(found, motion)
+    numbers = {}
+    for key, value in motion.numbers().items():
+        scale = 1 / _PER_RADIAN if radians and key.endswith("_deg") else 1.0
+        if value is not None and (std := uncertain.std(key)) != 0:
+            numbers[key] = value * scale, None if std is None else std * scale
+
+    def steps(blocks: Iterable[int], count: int) -> Iterable[int]:
+        return with_progress(blocks, count, _LONG, lambda _: monte_carlo.BLOCK, "samples")
+
+    def find() -> Findings:
+        outcome = monte_carlo.propagate(
+            _all_inputs(found, motion),
+            found.stds,
+            numbers,
+            samples=samples,
+            seed=seed,
+            radians=radians,
+            steps=steps,
+        )
+        return _report(outcome, samples, seed)
+
+    return find
+
+
+def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
+    """Return every input once, as it was given or as it was solved."""
+    inputs = {name: float(x) for name, x in motion.top.as_dict().items() if x is not None}
+    for measured, solved in (("A_cm", "A"), ("phidot0", "r0")):
+        if measured in found.inputs:
+            del inputs[solved]
+            inputs[measured] = float(found.inputs[measured])
+    return inputs
+
+
+def _report(outcome: Any, samples: int, seed: int | None) -> Findings:
+    from ..sweeps.monte_carlo import FAILS, OPEN
+
+    conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})
+    shares = [f"{name} {100 * share:.3g} %" for name, share in outcome.regimes.items()]
+    conditions["regimes"] = ", ".join(shares)
+    conclusions = []
+    for verdict, words in ((FAILS, "does not hold"), (OPEN, "is left open by so few samples")):
+        if keys := [spread.key for spread in outcome.spreads if spread.first_order == verdict]:
+            conclusions.append(f"First order {words} for {', '.join(keys)}.")
+    if not conclusions:
+        conclusions.append("First order holds for every number.")
+    return Findings(conditions, _SAMPLE_FIELDS, outcome.spreads, conclusions)
+
+
+_SAMPLE_FIELDS = [
+    Field("key", "key", is_text=True, names_the_row=True),
+    Field("value", "value", _figures),
+    Field("std", "uncertainty", _figures),
+    Field("sampled_mean", "mean", _figures),
+    Field("sampled_std", "std", _figures),
+    Field("q2_5", "2.5 %", _figures),
+    Field("q16", "16 %", _figures),
+    Field("q50", "50 %", _figures),
+    Field("q84", "84 %", _figures),
+    Field("q97_5", "97.5 %", _figures),
+    Field("first_order", "first order", is_text=True),
+]

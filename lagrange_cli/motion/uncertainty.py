@@ -1,0 +1,74 @@
+"""First-order propagation of uncertainties (GUM 5.1.2), by the exact derivatives of the record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from ..inputs.top import Top
+from .sensitivities import sensitivities
+
+
+class Contribution(NamedTuple):
+    """What one input contributes to the uncertainty of a number, a line of a budget."""
+
+    input: str
+    value: float
+    std: float
+    sensitivity: float
+    """The derivative of the number by the input."""
+    contribution: float
+    """Sensitivity times uncertainty, with its sign."""
+    elasticity: float | None
+    """By how many parts the number grows where the input grows by one part of itself."""
+    share: float | None
+    """The part of the variance."""
+
+
+class FirstOrder:
+    """Standard uncertainties of the record of a top, whose inputs are not correlated."""
+
+    def __init__(
+        self, top: Top, stds: Mapping[str, float], by_given: Mapping[str, Mapping[str, float]]
+    ) -> None:
+        """Take the uncertainties of the inputs as they were given.
+
+        `by_given` has the derivatives of the inputs of the top by those (see `inputs.uncertain`).
+        """
+        self.top, self.stds, self.by_given = top, stds, by_given
+        self.sensitivities = sensitivities(top)
+
+    def derivative(self, key: str, name: str) -> float | None:
+        """Return the derivative of a key, or an input, by an input that was given.
+
+        None says that the motion has no such key, NaN that it has no derivative.
+        """
+        by = self.by_given[name]
+        if key in self.sensitivities.inputs or key in self.by_given:
+            return by.get(key, 0.0)
+        row = self.sensitivities.derivatives.get(key)
+        return None if row is None else sum(row[one] * x for one, x in by.items())
+
+    def std(self, key: str) -> float | None:
+        """Return the standard uncertainty of a key or of an input; None where there is none."""
+        parts = [(self.derivative(key, name), std) for name, std in self.stds.items()]
+        if any(slope is None or math.isnan(slope) for slope, _ in parts):
+            return None
+        return math.hypot(*(slope * std for slope, std in parts if slope is not None))
+
+    def budget(self, key: str, value: float, given: Mapping[str, float]) -> list[Contribution]:
+        """Return what each uncertain input contributes to a key, the greatest first.
+
+        `value` is that of the key, `given` has those of the inputs.
+        """
+        whole = self.std(key)
+        lines = []
+        for name, std in self.stds.items():
+            slope = self.derivative(key, name)
+            assert slope is not None
+            part = slope * std
+            elasticity = slope * given[name] / value if value else None
+            share = part * part / (whole * whole) if whole else None
+            lines.append(Contribution(name, given[name], std, slope, part, elasticity, share))
+        return sorted(lines, key=lambda line: -abs(line.contribution))

@@ -1,0 +1,149 @@
+"""Monte Carlo propagation of uncertainties (GUM supplement 1), through `sweep`.
+
+Inputs are normal and independent.  A tilt beyond a pole is the tilt on its other side.  Samples
+that are no top, such as those with s < 0, are counted and left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..motion.record import unit_name
+from .records import sweep
+
+QUANTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
+"""Percents; the ends are those of the interval that covers 95 %."""
+BLOCK = 1 << 14
+"""Samples that are computed together."""
+MOST_SAMPLES = 1_000_000
+LEAST_SAMPLES = 100
+COVERAGE = 1.959963984540054
+"""Standard deviations on either side that cover 95 % of a normal distribution."""
+HOLDS, OPEN, FAILS = "holds", "open: more samples", "does not hold"
+_MISSING = 1e-3
+"""Share of samples without a key, from which on its distribution is not that of one motion."""
+_HALF_TURN, _TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}, 2.0
+
+Steps = Callable[[Iterable[int], int], Iterable[int]]
+"""Hands on the numbers of the blocks, of so many samples in all, and may show how far it is."""
+
+
+class Spread(NamedTuple):
+    """The distribution of one key."""
+
+    key: str
+    value: float
+    std: float | None
+    """Uncertainty of first order; None where there is no derivative."""
+    sampled_mean: float
+    sampled_std: float
+    q2_5: float
+    q16: float
+    q50: float
+    q84: float
+    q97_5: float
+    first_order: str
+    """Whether the interval of first order is that of the samples."""
+
+
+class Outcome(NamedTuple):
+    """What became of the samples."""
+
+    spreads: Sequence[Spread]
+    regimes: Mapping[str, float]
+    """The share of the samples in each regime, those that are no top among them."""
+
+
+def propagate(
+    inputs: Mapping[str, float],
+    stds: Mapping[str, float],
+    numbers: Mapping[str, tuple[float, float | None]],
+    *,
+    samples: int,
+    seed: int | None = None,
+    radians: bool = False,
+    steps: Steps = lambda blocks, _: blocks,
+) -> Outcome:
+    """Return the distributions of keys of the record, and the regimes of the samples.
+
+    `numbers` has the value and the uncertainty of first order of each key.  Raises LagtopError for
+    a number of samples that is none, and where no sample is a top.
+    """
+    if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
+        limits = f"[{LEAST_SAMPLES}, {MOST_SAMPLES}]"
+        raise LagtopError(f"samples must be in {limits}, got {samples}", "samples")
+    rng = np.random.default_rng(seed)
+    keys = [unit_name(key, radians=radians) for key in numbers]
+    columns: dict[str, list[Array]] = {key: [] for key in keys}
+    regimes: Counter[str] = Counter()
+    for first in steps(range(0, samples, BLOCK), samples):
+        count = min(BLOCK, samples - first)
+        drawn = {name: _drawn(rng, name, inputs[name], std, count) for name, std in stds.items()}
+        wanted = [*keys, "regime", "remark", "error"]
+        tops: dict[str, Any] = {**inputs, **drawn}
+        found = sweep(keys=wanted, radians=radians, **tops)
+        regimes.update(map(_regime, found["regime"], found["remark"]))
+        for key in keys:
+            column = np.asarray(found[key], dtype=float)
+            columns[key].append(column[~np.isnan(column)])
+    shares = {name: count / samples for name, count in regimes.most_common()}
+    spreads = [
+        _spread(shown, np.sort(np.concatenate(columns[shown])), *numbers[key], samples)
+        for key, shown in zip(numbers, keys, strict=True)
+    ]
+    return Outcome(spreads, shares)
+
+
+def _drawn(rng: np.random.Generator, name: str, value: float, std: float, count: int) -> Array:
+    drawn = rng.normal(value, std, count)
+    if name not in _HALF_TURN:
+        return drawn
+    half = _HALF_TURN[name]
+    return half - np.abs(half - np.abs(drawn) % (_TURN * half))
+
+
+def _regime(regime: str | None, remark: str | None) -> str:
+    """Return the regime of a sample; a sleeping top is stable or not."""
+    if regime is None:
+        return "no top"
+    if regime != "sleeping" or not remark:
+        return regime
+    return f"{regime}, {'un' * ('unstable' in remark)}stable"
+
+
+def _spread(key: str, ordered: Array, value: float, std: float | None, samples: int) -> Spread:
+    if not ordered.size:
+        ordered = np.full(1, math.nan)
+    q2_5, q16, q50, q84, q97_5 = np.percentile(ordered, QUANTILES).tolist()
+    lost = 1 - np.count_nonzero(~np.isnan(ordered)) / samples
+    verdict = FAILS if std is None or lost > _MISSING else first_order_holds(ordered, value, std)
+    mean, deviation = float(ordered.mean()), float(ordered.std())
+    return Spread(key, value, std, mean, deviation, q2_5, q16, q50, q84, q97_5, first_order=verdict)
+
+
+def first_order_holds(ordered: Array, value: float, std: float) -> str:
+    """Return whether the interval of first order that covers 95 % is that of samples in order.
+
+    Its ends may be off by half a unit of the first digit of the uncertainty (GUM supplement 1, 8.1,
+    with one digit); where the noise of the quantiles leaves that open, it says so.
+    """
+    if not std:
+        return HOLDS if ordered[0] == ordered[-1] else FAILS
+    tolerance = 0.5 * 10.0 ** math.floor(math.log10(std))
+    worst = []
+    for percent, side in ((QUANTILES[0], -1), (QUANTILES[-1], 1)):
+        part = percent / 100
+        noise = math.sqrt(part * (1 - part) / ordered.size)
+        low, end, high = np.quantile(ordered, np.clip([part - noise, part, part + noise], 0, 1))
+        off = abs(value + side * COVERAGE * std - end)
+        worst.append((off - (high - low), off + (high - low)))  # two standard errors
+    if all(most <= tolerance for _, most in worst):
+        return HOLDS
+    return FAILS if any(least > tolerance for least, _ in worst) else OPEN

@@ -1,0 +1,147 @@
+"""Uncertain inputs on the command line: `uncertainties` judges notation and rounding."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import random
+
+import pytest
+from conftest import Lagtop
+
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.inputs.uncertain import Uncertain, by_given, parse_uncertain
+from lagrange_cli.output.uncertain_text import uncertain_text
+
+uncertainties = pytest.importorskip("uncertainties")
+
+BODY = ["--m", "1587(2)", "--A", "39032", "--C", "17458", "--s", "4.00(1)", "--g", "981 ± 0.1 %"]
+
+
+def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
+    rng = random.Random(1)
+    for _ in range(500):
+        value = rng.choice([-1, 1]) * 10 ** rng.uniform(-8, 9)
+        std = abs(value) * 10 ** rng.uniform(-13, 2)
+        text = uncertain_text(value, std)
+        assert text == f"{uncertainties.ufloat(value, std):S}", text
+        read, judge = parse_uncertain(text), uncertainties.ufloat_fromstr(text)
+        assert isinstance(read, Uncertain)
+        assert float(read.value) == pytest.approx(judge.n, rel=1e-15)
+        assert float(read.std) == pytest.approx(judge.s, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "std"),
+    [
+        ("1587(2)", 1587, 2),
+        ("1.587(2)e3", 1587, 2),
+        ("12.3(4.5)", 12.3, 4.5),
+        ("1587+/-2", 1587, 2),
+        ("1587±2", 1587, 2),
+        (" 1587 +/- 0.1 % ", 1587, 1.587),
+        ("(-1.5+/-0.1)e3", -1500, 100),
+        ("-20(0)", -20, 0),
+    ],
+)
+def test_all_spellings_are_read(text: str, value: float, std: float) -> None:
+    read = parse_uncertain(text)
+    assert isinstance(read, Uncertain)
+    assert (float(read.value), float(read.std)) == (value, std)
+
+
+@pytest.mark.parametrize("text", ["1(2", "nan+/-1", "1+/--2", "1(-2)", "3(1)e999", "()", "1+/-"])
+def test_other_texts_are_refused(text: str) -> None:
+    with pytest.raises(LagtopError):
+        parse_uncertain(text)
+
+
+def test_the_record_carries_uncertainties(lagtop: Lagtop) -> None:
+    text = lagtop("solve", *BODY, "--theta0", "30(1)", "--format", "json").stdout
+    record = json.loads(text)
+    assert list(record)[list(record).index("remark") + 1] == "m_std"
+    assert record["m_std"] == 2
+    assert record["g_std"] == 0.981
+    assert record["A_std"] == 0
+    exact = record["T_nutation"]
+    slopes = {
+        name: (solve(Top(**{name: value + step})).T_nutation - exact) / step
+        for name, value, step in (("s", 4, 1e-6), ("g", 981, 1e-4), ("theta0_deg", 30, 1e-5))
+    }
+    parts = [2 * -6.07547e-05, 0.01 * slopes["s"], 0.981 * slopes["g"], slopes["theta0_deg"]]
+    assert record["T_nutation_std"] == pytest.approx(math.hypot(*parts), rel=1e-5)
+    shown = lagtop("solve", *BODY, "--theta0", "30(1)").stdout
+    assert uncertain_text(exact, record["T_nutation_std"]) in shown
+    assert "1587.0(2.0)" in shown
+    radians = json.loads(
+        lagtop("solve", *BODY, "--rad", "--theta0", "0.5(1)", "--format", "json").stdout
+    )
+    assert radians["theta_min_rad_std"] == pytest.approx(0.1)
+
+
+def test_measured_inputs_hand_their_uncertainty_on() -> None:
+    """A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0): differences of both."""
+    given = {"m": 2.0, "A_cm": 3.0, "s": 0.5, "phidot0": 4.0, "psidot0": 1.5, "theta0_deg": 50.0}
+    top = Top(C=1, g=1, **given)
+    chain = by_given(top, given)
+    for name, row in chain.items():
+        if name not in given:
+            continue
+        ahead = Top(C=1, g=1, **(given | {name: given[name] + 1e-6}))
+        for solved in ("A", "r0"):
+            slope = (getattr(ahead, solved) - getattr(top, solved)) / 1e-6
+            assert row.get(solved, 0.0) == pytest.approx(slope, abs=1e-5), (name, solved)
+
+
+def test_a_budget_adds_up(lagtop: Lagtop) -> None:
+    arguments = [*BODY, "--theta0", "30(1)", "--budget", "T_nutation"]
+    rows = list(csv.DictReader(io.StringIO(lagtop("solve", *arguments, "--format", "csv").stdout)))
+    assert [row["input"] for row in rows] == ["theta0_deg", "s", "m", "g"]
+    whole = math.hypot(*(float(row["contribution"]) for row in rows))
+    std = lagtop("solve", *BODY, "--theta0", "30(1)", "--get", "T_nutation_std").stdout
+    assert whole == pytest.approx(float(std), rel=1e-14)
+    assert sum(float(row["share"]) for row in rows) == pytest.approx(1)
+    assert float(rows[0]["elasticity"]) == pytest.approx(-0.572, abs=1e-3)
+    text = lagtop("solve", *arguments).stdout
+    assert f"T_nutation = {uncertain_text(0.4292501244785477, whole)}" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--m", "1(2"], "--m must be a number, or an uncertain one as 1587(2)"),
+        (["--m", "9(2)", "--digits", "30"], "--digits and uncertain inputs exclude each other"),
+        (["--m", "9(2)", "--derivation"], "--derivation and uncertain inputs exclude"),
+        (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
+        (["--get", "T_nutation_std"], "no input is uncertain"),
+        (["--theta0", "30(1)", "--budget", "T"], "--budget must be among a, b"),
+        (["--theta0", "30(1)", "--samples", "5"], "--samples must be in [100, 1000000], got 5"),
+        (["--theta0", "30(1)", "--seed", "5"], "--seed is that of random tops"),
+    ],
+)
+def test_what_does_not_go_together_is_a_line(
+    lagtop: Lagtop, arguments: list[str], words: str
+) -> None:
+    result = lagtop("solve", *arguments)
+    assert result.exit_code == 2
+    assert words in result.stderr
+    assert result.stdout == ""
+
+
+def test_a_number_without_an_uncertainty_is_named(lagtop: Lagtop) -> None:
+    result = lagtop("solve", "--theta0", "0(1)", "--get", "u1")
+    assert result.stdout == "1.0\n"
+    assert "no uncertainty of u1: next to the vertical" in result.stderr
+    refused = lagtop("solve", "--theta0", "0(1)", "--budget", "u1")
+    assert refused.exit_code == 1
+    assert "no uncertainty of first order" in refused.stderr
+
+
+def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: object) -> None:
+    scene = f"{tmp_path}/top.toml"
+    with open(scene, "w", encoding="utf-8") as file:
+        file.write('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
+    assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
+    assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
