@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..output.findings import Findings
 from ..output.write import write_bytes
-from ..plot.style import figure_bytes
+from ..plot.files import About, figure_bytes
+from ..plot.style import LIGHT, head, styled
 from .battery import CONTRACT
 from .front import is_done
 from .series import Series, series
@@ -18,63 +19,91 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEAST_ERROR = 1e-17
+"""Least error (rad) that is drawn; a smaller one stands there with its number."""
 LEAST_UNITS = 1e-2
-"""Least values that are drawn; an error of 0 stands there."""
+"""Least error in units that is drawn; a smaller one stands there as an arrow."""
+LETTERS = 0.85
+"""Size of the letters over that of `lagtop plot`."""
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:
     """Draw error on x and time on y, both as logarithms, a line for each method, and the front."""
-    figure, (axes,) = _figure(1)
-    rows = [row for row in findings.rows if is_done(row)]
-    front = sorted((row.error_max, row.ns_min) for row in rows if row.front)
-    if front:
-        x, y = _drawable(front)
-        axes.step(x, y, where="post", color="0.8", lw=6, zorder=1, label="front")
-    for name, look in series(row.method for row in sorted(rows, key=_by_error)).items():
-        points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
-        _line(axes, name, look, points)
-    axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
-    axes.set_title(f"Error against run time\ntimes: {findings.conditions['times']}", fontsize=9)
-    _save(figure, path)
+    with styled(LIGHT, LETTERS):
+        figure, (axes,) = _figure(1)
+        rows = [row for row in findings.rows if is_done(row)]
+        front = sorted((row.error_max, row.ns_min) for row in rows if row.front)
+        if front:
+            x, y = _drawable(front)
+            label = "front: none is faster\nand more accurate"
+            axes.step(x, y, where="post", color="0.85", lw=6, zorder=1, label=label)
+        for name, look in series(row.method for row in sorted(rows, key=_by_error)).items():
+            points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
+            _line(axes, name, look, points)
+        axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
+        _save(figure, path, "Error against run time", findings)
 
 
 def draw_long_spans(findings: Findings, path: str) -> None:
     """Draw error and time against the span."""
-    figure, (above, below) = _figure(2)
-    rows = [row for row in findings.rows if is_done(row)]
-    for name, look in series(row.method for row in rows).items():
-        mine = [row for row in rows if row.method == name]
-        _line(above, name, look, [(row.periods, row.units_max) for row in mine])
-        _line(below, name, look, [(row.periods, row.ns_min) for row in mine])
-    above.set(xlabel="nutation periods", ylabel="greatest error (units)")
-    below.set(xlabel="nutation periods", ylabel="time per sample (ns)")
-    title = f"Error and time against the span\ntimes: {findings.conditions['times']}"
-    above.set_title(title, fontsize=9)
-    _save(figure, path)
+    with styled(LIGHT, LETTERS):
+        figure, (above, below) = _figure(2)
+        rows = [row for row in findings.rows if is_done(row)]
+        for name, look in series(row.method for row in rows).items():
+            mine = [row for row in rows if row.method == name]
+            _line(above, name, look, [(row.periods, row.error_max) for row in mine])
+            _line(below, name, look, [(row.periods, row.ns_min) for row in mine])
+        above.set(xlabel="nutation periods", ylabel="greatest error (rad)")
+        below.set(xlabel="nutation periods", ylabel="time per sample (ns)")
+        _save(figure, path, "Error and time against the span", findings)
 
 
 def draw_stability(findings: Findings, path: str) -> None:
-    """Draw the worst error of each stratum in units, ours and the others'."""
-    figure, (axes,) = _figure(1)
-    strata = [row.stratum for row in findings.rows]
-    axes.set(yscale="linear", yticks=range(len(strata)))
-    marks = {
-        "lagtop": ("o", "black", [row.angle_units for row in findings.rows]),
-        "scipy.special": ("s", "C0", [row.scipy_units for row in findings.rows]),
-        "DOP853": ("^", "C1", [row.dop853_units for row in findings.rows]),
+    """Draw the worst error of each stratum in units, ours and the others', and their failures."""
+    with styled(LIGHT, LETTERS):
+        figure, (axes,) = _figure(1)
+        rows = findings.rows
+        axes.set(yscale="linear", yticks=range(len(rows)))
+        axes.set_yticklabels([row.stratum for row in rows])
+        axes.axvline(CONTRACT, color=LIGHT.quiet, lw=0.8, ls="--", label=f"promised: {CONTRACT:g}")
+        for name, (marker, color, units) in _errors_of(rows).items():
+            known = [(max(x, LEAST_UNITS), i) for i, x in enumerate(units) if x is not None]
+            if known:
+                axes.plot(*zip(*known, strict=True), marker, color=color, label=name)
+            small = [i for i, x in enumerate(units) if x is not None and x < LEAST_UNITS]
+            _arrows(axes, [(LEAST_UNITS, i) for i in small], color)
+        axes.set_xlim(LEAST_UNITS / 3, axes.get_xlim()[1])
+        _write_failures(axes, rows)
+        axes.set_xlabel(
+            "worst error (units: rounding errors, eps, of the angle and of the time it is asked at)"
+        )
+        axes.invert_yaxis()
+        _save(figure, path, "Error by stratum, a kind of hard scenes", findings)
+
+
+def _errors_of(rows: Sequence[Any]) -> dict[str, tuple[str, str, list[float | None]]]:
+    """Return mark, colour and errors of what is compared, by name."""
+    blue, red, _ = LIGHT.lines
+    return {
+        "lagtop": ("o", LIGHT.ink, [row.angle_units for row in rows]),
+        "scipy.special": ("s", blue, [row.scipy_units for row in rows]),
+        "DOP853, times\nwithin 5 periods": ("^", red, [row.dop853_units for row in rows]),
     }
-    for name, (marker, color, units) in marks.items():
-        known = [(max(x, LEAST_UNITS), i) for i, x in enumerate(units) if x is not None]
-        if known:
-            axes.plot(*zip(*known, strict=True), marker, color=color, label=name)
-    axes.axvline(CONTRACT, color="0.5", lw=0.8, label="contract")
-    axes.set(xlim=(LEAST_UNITS / 2, None), xlabel="worst error (units)")
-    axes.set_yticklabels(strata)
-    axes.invert_yaxis()
-    axes.set_title(
-        f"Error by stratum\nscenes: {findings.conditions['scenes'].partition(';')[0]}", fontsize=9
-    )
-    _save(figure, path)
+
+
+def _write_failures(axes: Axes, rows: Sequence[Any]) -> None:
+    """Write at the right how many scenes scipy.special and DOP853 could not do, where some."""
+    blue, red, _ = LIGHT.lines
+    how: dict[str, Any] = {"xycoords": axes.get_yaxis_transform(), "va": "center", "size": "small"}
+    how["textcoords"] = "offset points"
+    failures = [(row.scipy_failed or 0, row.dop853_failed or 0) for row in rows]
+    if not any(map(any, failures)):
+        return
+    for i, (row, failed) in enumerate(zip(rows, failures, strict=True)):
+        for count, shift, color in zip(failed, (8, 40), (blue, red), strict=True):
+            if count:
+                text = f"× {count}/{row.scenes}"
+                axes.annotate(text, (1.0, i), (shift, 0), color=color, **how)
+    axes.plot([], [], "x", color=LIGHT.quiet, label="failed: no number,\nor over 2 s")
 
 
 def _by_error(row: Any) -> float:
@@ -99,13 +128,39 @@ def _drawable(points: Sequence[tuple[float, float]]) -> list[list[float]]:
 
 
 def _line(axes: Axes, name: str, look: Series, points: Sequence[tuple[float, float]]) -> None:
-    """Draw the line of a method."""
+    """Draw the line of a method; the errors of points beyond the left edge are written there."""
     x, y = _drawable(points)
     axes.plot(x, y, label=name, **look.look())
+    beyond = [point for point in points if point[0] < LEAST_ERROR]
+    if beyond:
+        errors = ", ".join(f"{error:.0e}" for error, _ in sorted(beyond))
+        place = LEAST_ERROR, max(height for _, height in beyond)
+        how: dict[str, Any] = {"textcoords": "offset points", "size": "small"}
+        axes.annotate(f"← {errors}: beyond this edge", place, (-6, 7), **how)
 
 
-def _save(figure: Figure, path: str) -> None:
+def _arrows(axes: Axes, points: Sequence[tuple[float, float]], color: str) -> None:
+    """Draw arrows to the left over points that stand at the edge of the picture."""
+    if points:
+        arrow: Any = {"marker": r"$\leftarrow$", "ms": 13, "ls": "none", "zorder": 4}
+        axes.plot(*zip(*points, strict=True), color=color, **arrow)
+
+
+def _save(figure: Figure, path: str, title: str, findings: Findings) -> None:
     """Write the figure with its legend; the same findings give the same file."""
+    head(figure, title)
     for axes in figure.axes[:1]:
-        axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
-    write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150))
+        if any(hasattr(row, "stratum") for row in findings.rows):
+            figure.legend(fontsize="small", loc="outside lower center", ncols=5)
+        else:
+            axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1, 1))
+        conditions = findings.conditions
+        below = (
+            f"times: {conditions['times']}"
+            if "times" in conditions
+            else f"scenes: {conditions.get('scenes', '')}"
+        )
+        axes.set_title(below, fontsize="small", color=LIGHT.quiet)
+    text = "; ".join(f"{name}: {line}" for name, line in findings.conditions.items())
+    about = About(f"lagtop: {title}", text)
+    write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about))

@@ -94,7 +94,7 @@ def command(
     from ..bench import work_precision as bench
     from ..bench.diagrams import draw_long_spans, draw_work_precision
     from ..bench.long_spans import compare_spans
-    from ..plot.style import check_plot
+    from ..plot.files import check_plot
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)

@@ -153,7 +153,7 @@ def command(
     from ..judge.alignment import alignment
     from ..judge.files import Request, compare_files
     from ..judge.report import failed, report
-    from ..plot.style import check_plot
+    from ..plot.files import check_plot
 
     if max_error is not None and not max_error > 0:
         raise LagtopError(f"--max-error must be > 0, got {float(max_error)}")

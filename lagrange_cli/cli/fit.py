@@ -147,7 +147,7 @@ def command(
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings
     from ..inputs.seen import Conventions
-    from ..plot.style import check_plot
+    from ..plot.files import check_plot
 
     check_plot(plot, output)
     if together and by is None:

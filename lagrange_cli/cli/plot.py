@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from collections.abc import Sequence
@@ -11,11 +12,13 @@ from typing import Any
 
 import click
 
+from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..output.write import write_bytes
+from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
-from ..plot.style import chosen_look, require_matplotlib
+from ..plot.style import chosen_look
 from .command import ExamplesFirst
 from .given import in_seconds
 from .options import FILE, INPUT, NUMBER, PICTURES, TIME, input_options, inputs_of, motion_of
@@ -41,7 +44,8 @@ Needs matplotlib: pip install 'lagtop[plot]'.
         lagtop plot sample_inputs/looping-top.toml sphere -o loops.svg
         lagtop plot angles phase --r0 20 --dark -o page.pdf
         lagtop plot map --x r0=5:120:80 --y theta0=2:178:60 --key T_nutation -o map.png
-        lagtop plot --r0 30 --animate top.gif
+        lagtop plot sphere --view 40,15 -o from-the-side.pdf
+        lagtop plot --r0 30 --animate top.gif --duration 10 --speed 0.1
     """,
 )
 @click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml] [KIND]...")
@@ -56,6 +60,18 @@ Needs matplotlib: pip install 'lagtop[plot]'.
     help="Horizontal axis of `map`: INPUT=[log:]start:stop:count.  [default: over r0]",
 )
 @click.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: over theta0]")
+@click.option(
+    "--range",
+    "limits",
+    metavar="LOW:HIGH",
+    help="Ends of the colours of `map`.  [default: all but the outermost 1 % of the values]",
+)
+@click.option(
+    "--view",
+    metavar="AZ,EL",
+    help="Azimuth and elevation of the eye.  [default: whence most of the path is seen]",
+)
+@click.option("--no-numbers", is_flag=True, help="Leave out the numbers beside several pictures.")
 @click.option("--dark", is_flag=True, help="Light on dark.")
 @click.option("--size", metavar="WxH", help="Width and height of the page in inches, as 8x6.")
 @click.option(
@@ -64,6 +80,13 @@ Needs matplotlib: pip install 'lagtop[plot]'.
     help="Pixels per inch, 20 to 1000; small letters need more than 20.  [default: 150, film 100]",
 )
 @click.option("--animate", metavar="FILE", help="A film of the top: FILE.gif or FILE.mp4.")
+@click.option("--fps", type=NUMBER, help="Frames per second of the film, 1 to 60.  [default: 25]")
+@click.option("--duration", type=NUMBER, help="Seconds that the film lasts.  [default: 6]")
+@click.option(
+    "--speed",
+    type=NUMBER,
+    help="Time of the motion in a second of the film.  [default: as --t-max needs]",
+)
 @click.option("--show", is_flag=True, help="Open a window.")
 @click.option("--format", "fmt", type=click.Choice(FORMATS), help="[default: as FILE ends]")
 @click.option(
@@ -80,10 +103,16 @@ def command(
     key: str,
     x: str | None,
     y: str | None,
+    limits: str | None,
+    view: str | None,
+    no_numbers: bool,
     dark: bool,
     size: str | None,
     dpi: Fraction | None,
     animate: str | None,
+    fps: Fraction | None,
+    duration: Fraction | None,
+    speed: Fraction | None,
     show: bool,
     fmt: str | None,
     output: str | None,
@@ -95,9 +124,14 @@ def command(
     scene, chosen = _scene_and_kinds(words)
     written = _format_of(fmt, output)
     inches = _inches(size)
+    eye, ends = _eye(view, rad), _ends(limits)
+    pacing = {"fps": fps, "duration": duration, "speed": speed}
+    for name, value in pacing.items():
+        if value is not None and animate is None:
+            raise LagtopError(f"--{name} needs --animate FILE.gif")
     require_matplotlib()
     from ..plot.curves import checked_span
-    from ..plot.film import check_film, film_bytes
+    from ..plot.film import check_film, film_bytes, film_pace
     from ..plot.key_map import parse_input_range
     from ..plot.page import Page, page_bytes, show_page
     from ..plot.request import PlotRequest
@@ -112,6 +146,9 @@ def command(
         key=key,
         x=parse_input_range("x", x) if x else None,
         y=parse_input_range("y", y) if y else None,
+        view=eye,
+        limits=ends,
+        numbers=not no_numbers,
         progress=partial(with_progress, long=1000, label="tops"),
     )
     page = Page(motion, chosen, request, chosen_look(dark), inches)
@@ -120,11 +157,13 @@ def command(
         page.check_dpi(page_dpi, written)
     if animate is not None:
         check_film(page, animate, film_dpi)
+        paced = {name: None if x is None else float(x) for name, x in pacing.items()}
+        pace = film_pace(motion, animate, t_max=request.t_max, **paced)
     if output is not None:
         write_bytes(output, lambda: page_bytes(page, written, page_dpi))
     if animate is not None:
         frames = partial(with_progress, long=1, label="frames")
-        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, frames))
+        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, pace, frames))
     if show:
         show_page(page)
 
@@ -162,3 +201,34 @@ def _inches(size: str | None) -> tuple[float, float] | None:
     if not (2 <= width <= 50 and 2 <= height <= 50):
         raise LagtopError(f"--size must be WIDTHxHEIGHT, each in [2, 50] inches, got {size!r}")
     return width, height
+
+
+def _eye(text: str | None, radians: bool) -> tuple[float, float] | None:
+    """Return azimuth and elevation (radians) of a text such as `30,-15`."""
+    if text is None:
+        return None
+    unit = 1.0 if radians else math.pi / 180
+    try:
+        azimuth, elevation = (float(parse_number(part)) * unit for part in text.split(","))
+    except (LagtopError, ValueError):
+        azimuth = elevation = math.inf
+    if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
+        turn, quarter, name = ("2π", "π/2", "rad") if radians else ("360", "90", "deg")
+        raise LagtopError(
+            f"--view must be AZIMUTH,ELEVATION in [-{turn}, {turn}] and [-{quarter}, {quarter}]"
+            f" {name}, got {text!r}"
+        )
+    return azimuth, elevation
+
+
+def _ends(text: str | None) -> tuple[float, float] | None:
+    """Return the two numbers of a text such as `0:12.5`, the lower one first."""
+    if text is None:
+        return None
+    try:
+        low, high = (float(parse_number(part)) for part in text.split(":"))
+    except (LagtopError, ValueError):
+        low = high = 0.0
+    if not low < high:
+        raise LagtopError(f"--range must be LOW:HIGH, two numbers with LOW < HIGH, got {text!r}")
+    return low, high

@@ -80,7 +80,7 @@ def command(
         raise LagtopError(f"--samples must be in [1, {MOST_SAMPLES}], got {samples}")
     from ..bench import stability
     from ..bench.diagrams import draw_stability
-    from ..plot.style import check_plot
+    from ..plot.files import check_plot
 
     check_plot(plot, output)
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)

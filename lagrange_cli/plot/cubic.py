@@ -5,18 +5,28 @@ Equation numbers are Chrapan's.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
+from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
 from .motion_facts import start_of
 from .request import PlotRequest
-from .style import Look
+from .style import Look, head, number_text, points
+
+NEAR = 1.5
+"""The third root is shown where it is within so many widths of the band above it."""
+TOUCHING = 0.09
+"""Part of the window within which the names of two roots would touch."""
+POLES = {1: "upright", -1: "hanging"}
+"""What the top is at the ends of the range of a cosine."""
+
+TITLE = "The cubic f(u) = u̇² (4,9), the motion shaded"
 
 
 class Cubic(NamedTuple):
@@ -35,11 +45,18 @@ class Cubic(NamedTuple):
         return self.u3 if self.u3 is not None and self.u3 <= self.u[-1] else None
 
     def heights(self) -> tuple[float, float]:
-        """Return the range of f(u) to show: the hump over the band, and as much below it."""
-        last = self.u1 if self.u3_in_view is None else self.u3_in_view
-        inside = (self.u >= self.u2) & (self.u <= last)
-        most = float(np.abs(self.f[inside]).max(initial=0.0)) or float(np.abs(self.f).max())
-        return -1.3 * most, 1.3 * most
+        """Return the range of f(u) to show: the hump over the band, and what is about as deep."""
+        hump = float(self.f[self._within(self.u1)].max(initial=0.0))
+        if hump <= 0.0:
+            most = float(np.abs(self.f).max())
+            return -1.1 * most, 0.35 * most
+        depth = -float(self.f[self._within(self.u3_in_view or self.u1)].min(initial=0.0))
+        return -min(max(1.3 * depth, 0.6 * hump), 1.4 * hump), 1.3 * hump
+
+    def _within(self, last: float) -> NDArray[np.bool_]:
+        """Return which samples are between the lowest root and another."""
+        inside: NDArray[np.bool_] = (self.u >= self.u2) & (self.u <= last)
+        return inside
 
 
 def cubic_curve(motion: Motion) -> Cubic:
@@ -48,10 +65,10 @@ def cubic_curve(motion: Motion) -> Cubic:
     assert motion.u2 is not None
     u1, u2, u3 = float(motion.u1), float(motion.u2), motion.u3
     band = u1 - u2
-    near = u3 is not None and u3 - u1 <= max(4.0 * band, 0.0 if band else 2.0)
+    near = u3 is not None and u3 - u1 <= NEAR * band if band else 2.0
     right = u3 if near and u3 is not None else u1
     width = right - u2 or 0.4
-    u = np.linspace(u2 - 0.5 * width, right + 0.5 * width, 801)
+    u = np.linspace(u2 - 0.4 * width, right + 0.4 * width, 801)
     f = (u - u1) * (u - u2)
     if u3 is None:
         start = start_of(motion)
@@ -63,16 +80,22 @@ def cubic_curve(motion: Motion) -> Cubic:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw f(u), its roots, and the band in which the motion takes place."""
-    draw_on([panel.subplots()], motion, request, look)
+    head(panel, TITLE)
+    _draw_cubic(panel.subplots(), motion, request, look)
 
 
 def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the picture on one axes."""
-    cubic, (axes,) = cubic_curve(motion), places
-    axes.set_title("The cubic f(u) = u̇² (4,9), the motion shaded")
-    axes.set(xlabel="u = cos ϑ", ylabel=request.label("f(u) (1/time²)"))
+    places[0].set_title(TITLE, pad=points(18))  # above the names of the poles
+    _draw_cubic(places[0], motion, request, look)
+
+
+def _draw_cubic(axes: Axes, motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw f(u), the band, the poles and the roots."""
+    cubic = cubic_curve(motion)
+    axes.set(ylabel=request.label("f(u) (1/time²)"))
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
-    axes.axhline(0.0, color=look.quiet, lw=0.9)
+    axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     if cubic.u2 < cubic.u1:
         axes.axvspan(cubic.u2, cubic.u1, color=look.faint, zorder=0)
     inside = (cubic.u >= cubic.u2) & (cubic.u <= cubic.u1)
@@ -80,34 +103,56 @@ def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: 
         cubic.u, 0.0, cubic.f, where=inside, color=look.lines[0], alpha=0.3, linewidth=0
     )
     axes.plot(cubic.u, cubic.f, color=look.lines[0])
-    for pole in (-1, 1):
+    for pole, name in POLES.items():
         if cubic.u[0] <= pole <= cubic.u[-1]:
-            axes.axvline(pole, color=look.quiet, lw=1.0, ls=(0, (4, 3)))
+            axes.axvline(pole, color=look.quiet, lw=points(1.0), ls=(0, (4, 3)), zorder=0.5)
+            axes.annotate(
+                *(name, (pole, 1.0), (0, 2)),
+                xycoords=axes.get_xaxis_transform(),
+                textcoords="offset points",
+                ha="center",
+                size="small",
+                color=look.quiet,
+            )
     _draw_roots(axes, cubic, look)
     axes.ticklabel_format(axis="x", useOffset=False)
     axes.locator_params(axis="x", nbins=6)
 
 
 def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:
-    """Draw the roots, labelled where the curve leaves room, and an arrow to a u3 out of view."""
-    double = cubic.u1 == cubic.u2
-    roots = [("u₁ = u₂", cubic.u1, "right", 8)]
-    if not double:
-        roots = [("u₁", cubic.u1, "right", -18), ("u₂", cubic.u2, "right", 8)]
-    if cubic.u3_in_view is not None:
-        roots.append(("u₃", cubic.u3_in_view, "left", -18))
-    elif cubic.u3 is not None:
-        text = f"u₃ = {cubic.u3:.6g} →"
-        corner = axes.transAxes
-        axes.text(0.99, 0.93, text, transform=corner, ha="right", size="small", color=look.lines[1])
-    for name, root, side, height in roots:
+    """Draw the roots, named where the curve leaves room; their values stand below the picture."""
+    known = {"u₁": cubic.u1, "u₂": cubic.u2}
+    if cubic.u1 == cubic.u2:
+        known = {"u₁ = u₂": cubic.u1}
+    seen = known | ({"u₃": cubic.u3_in_view} if cubic.u3_in_view is not None else {})
+    axes.plot(list(seen.values()), [0.0] * len(seen), "o", ms=points(7), color=look.lines[1])
+    for name, root, (right, above) in _named(seen, float(np.ptp(cubic.u))):
         axes.annotate(
-            f"{name} = {root:.7g}".replace("-", "−"),
-            (root, 0.0),
-            (-8 if side == "right" else 8, height),
+            *(name, (root, 0.0), (points(7 if right else -7), points(8 if above else -8))),
             textcoords="offset points",
-            ha=side,
-            size="small",
+            ha="left" if right else "right",
+            va="bottom" if above else "top",
             color=look.lines[1],
         )
-    axes.plot([root[1] for root in roots], [0.0] * len(roots), "o", ms=7, color=look.lines[1])
+    values = [f"{name} = {number_text(root)}" for name, root in known.items()]
+    if cubic.u3 is not None:
+        beyond = "" if cubic.u3_in_view is not None else ", out of sight"
+        values.append(f"u₃ = {number_text(cubic.u3)}{beyond}")
+    axes.set_xlabel(f"u = cos ϑ\n{',   '.join(values)}", fontsize="small")
+
+
+def _named(
+    roots: Mapping[str, float], window: float
+) -> Iterator[tuple[str, float, tuple[bool, bool]]]:
+    """Yield each name, its root, and whether it stands to the right of it and above the axis.
+
+    f(u) rises through u2 and u3 and falls through u1, so that the upper left of u2, the lower left
+    of u1 and the lower right of u3 are free.  Names that would touch are written together.
+    """
+    free = {"u₁": (False, False), "u₂": (False, True), "u₃": (True, False)}
+    together = {"u₁", "u₃"} <= set(roots) and roots["u₃"] - roots["u₁"] < TOUCHING * window
+    for name, root in roots.items():
+        if name == "u₁" and together:
+            yield "u₁, u₃" if roots["u₃"] > root else "u₁ = u₃", root, free[name]
+        elif name != "u₃" or not together:
+            yield name, root, free.get(name, (False, True))

@@ -21,7 +21,12 @@ from ..elliptic.complete import complete_k
 from ..errors import LagtopError
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from .motion_facts import nutation_period, periods_since_highest, separatrix_swing
+from .motion_facts import (
+    nutation_period,
+    periods_since_highest,
+    separatrix_swing,
+    swings_in_a_plane,
+)
 
 PHASES = 48
 """Samples per half period, before `refined` adds where a curve is steep."""
@@ -53,6 +58,20 @@ def turn_span(motion: Motion) -> float:
     if not nutation:
         return span(motion, 1)
     return min(max(turn / nutation if turn else 3.0, 3.0), 40.0) * nutation
+
+
+def sphere_span(motion: Motion) -> float:
+    """Return the time of a path on the globe: about one turn of the precession.
+
+    A top that swings in a plane comes back along the same arc, and a fast one hardly precesses
+    while it nods: they are shown for one and three nutation periods.
+    """
+    nutation, turn = nutation_period(motion), turn_span(motion)
+    if nutation and swings_in_a_plane(motion):
+        return nutation
+    if nutation and abs(motion.mean_precession_rate or 1.0) * turn < math.radians(20):
+        return 3 * nutation
+    return turn
 
 
 def checked_span(motion: Motion, t_max: Number | None) -> float | None:

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from .style import LIGHT, figure_bytes, scale, styled
+from .files import About, figure_bytes
+from .style import LIGHT, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,7 +52,9 @@ def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
     with styled(LIGHT, 0.9):
         figure = Figure(figsize=(10 if with_steps else 7.5, 4.6), layout="constrained")
         draw_error_panels(figure, curves, limit)
-        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150)
+        names = ", ".join(curve.name for curve in curves)
+        about = About("lagtop compare: error over time", f"Errors of {names} in radians.")
+        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
 
 
 def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float) -> None:

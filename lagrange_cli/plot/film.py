@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
@@ -15,19 +17,86 @@ from matplotlib.figure import Figure
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..motion.solve import Motion
-from .curves import span, turn_span
+from .curves import MOST_PERIODS, span, turn_span
+from .globe import Limits, draw_globe
+from .motion_facts import nutation_period
 from .page import Page, check_pixels
 from .request import Progress, no_progress
-from .sphere import axis_path, draw_globe
-from .style import scale, styled
-from .view import best_view, runs, seen_top
+from .sphere import axis_path
+from .style import points, scale, styled
+from .view import runs, seen_top, side_view, view_from
 
 WRITERS = {".gif": PillowWriter, ".mp4": FFMpegWriter}
 """What writes each kind of file, by the ending of its name."""
 
-FRAMES, FRAMES_PER_SECOND = 144, 24
+FRAMES_PER_SECOND, SECONDS = 25.0, 6.0
+"""How fast and how long a film is where nothing is asked for."""
+MOST_FRAMES_PER_SECOND, MOST_FRAMES = 60.0, 3000
+ALIASED = math.pi / 3
+"""The lid repeats after 120 degrees: faster than half of it per frame, its spin cannot be seen."""
 USUAL_SIZE = 4.8, 5.0
 """Width and height in inches."""
+
+
+class Pace(NamedTuple):
+    """How a film runs."""
+
+    fps: float
+    """Frames per second."""
+    frames: int
+    t_max: float
+    """Time of the motion that the whole film shows."""
+
+    @property
+    def speed(self) -> float:
+        """Time of the motion that one second of the film shows."""
+        return self.t_max * self.fps / self.frames
+
+
+def film_pace(
+    motion: Motion,
+    name: str,
+    *,
+    t_max: float | None = None,
+    fps: float | None = None,
+    duration: float | None = None,
+    speed: float | None = None,
+) -> Pace:
+    """Return how a film runs that lasts `duration` seconds and shows `speed` of time in each.
+
+    A GIF counts hundredths of a second, so its frames per second are the nearest that it has.
+    Raises LagtopError for t_max, duration and speed together, for a number out of its range, and
+    for so much time that the path would be a blot.
+    """
+    if t_max and duration and speed:
+        raise LagtopError("speed must be left out where t_max and duration are given", "speed")
+    fps = FRAMES_PER_SECOND if fps is None else fps
+    if not 1.0 <= fps <= MOST_FRAMES_PER_SECOND:
+        raise LagtopError(f"fps must be in [1, {MOST_FRAMES_PER_SECOND:g}], got {fps:g}", "fps")
+    if Path(name).suffix.lower() == ".gif":
+        fps = 100.0 / max(2, round(100.0 / fps))
+    if speed is not None and not speed > 0:
+        raise LagtopError(f"speed must be > 0, got {speed:g}", "speed")
+    if duration is None:
+        duration = t_max / speed if t_max and speed else SECONDS
+    if not 2 / fps <= duration <= MOST_FRAMES / fps:
+        bounds = f"[{2 / fps:.3g}, {MOST_FRAMES / fps:.6g}] seconds"
+        raise LagtopError(
+            f"duration must be in {bounds} at {fps:.3g} frames per second, got {duration:g}",
+            "duration",
+        )
+    if t_max is None:
+        t_max = film_span(motion) if speed is None else _checked_speed(motion, speed, duration)
+    return Pace(fps, round(fps * duration), t_max)
+
+
+def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
+    """Return the time that a film shows.  Raises LagtopError where its path would be a blot."""
+    nutation = nutation_period(motion)
+    if nutation and speed * duration > MOST_PERIODS * nutation:
+        most = f"{MOST_PERIODS * nutation / duration:.6g} ({MOST_PERIODS} nutation periods)"
+        raise LagtopError(f"speed must be at most {most}, got {speed:g}", "speed")
+    return speed * duration
 
 
 def check_film(page: Page, name: str, dpi: float) -> None:
@@ -47,16 +116,19 @@ def check_film(page: Page, name: str, dpi: float) -> None:
     check_pixels(dpi, page.size or USUAL_SIZE)
 
 
-def film_bytes(page: Page, name: str, dpi: float, progress: Progress = no_progress) -> bytes:
+def film_bytes(
+    page: Page, name: str, dpi: float, pace: Pace | None = None, progress: Progress = no_progress
+) -> bytes:
     """Return the film as a GIF or an MP4, as `name` ends.  Raises LagtopError as `check_film`."""
     check_film(page, name, dpi)
+    pace = pace or film_pace(page.motion, name, t_max=page.request.t_max)
     suffix = Path(name).suffix.lower()
-    writer = WRITERS[suffix](fps=FRAMES_PER_SECOND)
+    writer = WRITERS[suffix](fps=pace.fps)
     with styled(page.look), tempfile.TemporaryDirectory() as folder:
-        film = Film(page)
+        film = Film(page, pace)
         path = Path(folder) / f"film{suffix}"
         with writer.saving(film.figure, str(path), dpi):
-            for frames in progress((range(i, i + 1) for i in range(FRAMES)), FRAMES):
+            for frames in progress((range(i, i + 1) for i in range(pace.frames)), pace.frames):
                 for i in frames:
                     film.show(i)
                     writer.grab_frame()
@@ -71,23 +143,33 @@ def film_span(motion: Motion) -> float:
 class Film:
     """The figure of a film and its moving parts."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, pace: Pace) -> None:
         motion, look, request = page.motion, page.look, page.request
-        t_max = request.t_max or film_span(motion)
         self.figure, self.look = Figure(figsize=page.size or USUAL_SIZE), look
-        self.path = axis_path(motion, t_max)
-        self.times = np.linspace(0.0, t_max, FRAMES)
-        self.angles = motion.angles(self.times, wrap=True)
-        self.view = best_view(self.path.axis)
+        self.path = axis_path(motion, pace.t_max)
+        self.times = np.linspace(0.0, pace.t_max, pace.frames)
+        self.angles = motion.angles(self.times)
+        self.view = view_from(*request.view) if request.view else side_view(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        draw_globe(self.axes, self.view, self.path, request, look)
+        limits = Limits(self.path.least, self.path.greatest)
+        draw_globe(self.axes, self.view, limits, request, look)
         self.body = PolyCollection([], zorder=2, linewidths=0.3)
         self.axes.add_collection(self.body)
-        (self.rim,) = self.axes.plot([], [], color=look.ink, lw=0.9, zorder=2.5)
+        (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=2.5)
         (self.far,) = self.axes.plot([], [], color=scale(look)(0.35), lw=1.2, alpha=0.45)
         (self.near,) = self.axes.plot([], [], color=scale(look)(0.35), lw=2.2, zorder=3)
         (self.axle,) = self.axes.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
         self.clock = self.axes.text(0.03, 0.95, "", transform=self.axes.transAxes)
+        self.axes.text(
+            0.03, 0.02, self._time_scale(pace), size="small", transform=self.axes.transAxes
+        )
+
+    def _time_scale(self, pace: Pace) -> str:
+        """Return how time and spin are shown, for the foot of the picture."""
+        text = f"1 second shows {pace.speed:.3g} of time t"
+        turned = np.abs(np.diff(self.angles.phi))
+        fast = turned.max(initial=0.0) > ALIASED
+        return text + "; the spin is too fast for these frames" * bool(fast)
 
     def show(self, i: int) -> None:
         """Bring the figure to frame i."""

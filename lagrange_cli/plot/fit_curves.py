@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from .style import LIGHT, figure_bytes, styled
+from .files import About, figure_bytes
+from .style import LIGHT, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,7 +36,9 @@ def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
     with styled(LIGHT, 0.9):
         figure = Figure(figsize=(7.5, 1.0 + 3.0 * len(curves)), layout="constrained")
         draw_fit_panels(figure, curves, unit)
-        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150)
+        names = ", ".join(curve.name for curve in curves)
+        about = About("lagtop fit", f"Data, the motion that was found, and what is left: {names}")
+        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
 
 
 def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) -> None:

@@ -56,7 +56,7 @@ _ROWS = [
     Kind("remainders", "remainders", "spin and precession less their mean growth", (7, 5), True, 2),
     Kind("cubic", "cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
     Kind("phase", "phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
-    Kind("map", "key_map", "a key of the record over two inputs", (6.8, 5.0), False),
+    Kind("map", "map_picture", "a key of the record over two inputs", (6.8, 5.0), False),
 ]
 
 KINDS = {kind.name: kind for kind in _ROWS}

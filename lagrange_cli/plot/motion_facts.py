@@ -100,6 +100,27 @@ def _time_of_highest(motion: Motion, T: float, *, falls: bool) -> float:
     return last
 
 
+def swings_in_a_plane(motion: Motion) -> bool:
+    """Return whether the top is a plane pendulum, whose axis comes back along the same arc."""
+    top = motion.top
+    return not top.r0 and not (top.psidot0 and start_of(motion).u ** 2 < 1)
+
+
+def motion_in_words(motion: Motion) -> str:
+    """Return how a top moves, in a few words: its path, and its regime where that says more.
+
+    Upright tops and hanging ones are stable or unstable.
+    """
+    regime, remark = motion.regime, motion.remark or ""
+    if regime in (Regime.SLEEPING, Regime.HANGING):
+        return f"{regime.value}, {'unstable' if 'unstable' in remark else 'stable'}"
+    if regime is Regime.SEPARATRIX:
+        return "separatrix, rises to upright for ever"
+    if regime is Regime.REGULAR:
+        return f"{motion.path} path" if motion.path else regime.value
+    return regime.value
+
+
 class SeparatrixSwing(NamedTuple):
     """The one swing of a top on the separatrix: u = u2 + (1 - u2) tanh^2(speed (t - lowest))."""
 

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from matplotlib.figure import Figure, FigureBase, SubFigure
 
 from ..errors import LagtopError, NothingToDrawError
+from ..motion.record import KEYS
 from ..motion.solve import Motion
+from .files import About, figure_bytes
 from .kinds import KINDS
+from .motion_facts import motion_in_words
 from .request import PlotRequest
-from .style import POINTS, Look, figure_bytes, styled
+from .style import DARK, POINTS, Look, number_text, styled
 
-NUMBERS_WIDTH, PANEL = 3.1, (5.8, 5.0)
+NUMBERS_WIDTH, PANEL = 3.7, (5.8, 5.0)
 """Width of the column of numbers, and width and height of one panel among several (inches)."""
+
+ALONE = 0.7
+"""Power of its size by which the letters of a single picture shrink: readable at 3.5 inches."""
+
+REMARK_WIDTH = 52
+"""Letters in a line of the remark, below the numbers."""
 
 LEAST_DPI, MOST_DPI = 20.0, 1000.0
 """Least and greatest pixels per inch of any picture."""
@@ -43,19 +53,42 @@ class Page(NamedTuple):
     def lettering(self) -> float:
         """Return the size of the letters: 1, and less on a page that is smaller than usual."""
         pairs = zip(self.inches(), self.usual_inches(), strict=True)
-        return min(1.0, *(length / usual for length, usual in pairs))
+        size = min(1.0, *(length / usual for length, usual in pairs))
+        return size**ALONE if len(self.kinds) == 1 else size
 
     def usual_inches(self) -> tuple[float, float]:
         """Return the width and height that the kinds need."""
         if len(self.kinds) == 1:
             return KINDS[self.kinds[0]].size
         rows, columns = self.grid()
-        return NUMBERS_WIDTH + PANEL[0] * columns, PANEL[1] * rows
+        return NUMBERS_WIDTH * self.request.numbers + PANEL[0] * columns, PANEL[1] * rows
 
     def grid(self) -> tuple[int, int]:
         """Return the rows and columns of panels."""
         columns = math.ceil(math.sqrt(len(self.kinds)))
         return math.ceil(len(self.kinds) / columns), columns
+
+    def about(self) -> About:
+        """Return what the page shows, in words, and the command that draws it."""
+        motion, request = self.motion, self.request
+        inputs = motion.top.inputs(radians=request.radians)
+        listed = ", ".join(f"{name} = {value!r}" for name, value in inputs.items())
+        text = f"Lagrange top, {motion_in_words(motion)} ({motion.regime.value}): {listed}"
+        return About(f"Lagrange top: {', '.join(self.kinds)}", text, self.command())
+
+    def command(self) -> str:
+        """Return the command that draws the page again, without the name of a scene file."""
+        motion, request = self.motion, self.request
+        inputs = motion.top.inputs(radians=request.radians)
+        scene = [
+            f"--{name.partition('_')[0]} {value!r}"
+            for name, value in inputs.items()
+            if value or not name.endswith("dot0")
+        ]
+        size = [f"--size {self.size[0]:g}x{self.size[1]:g}"] if self.size else []
+        dark = ["--dark"] if self.look is DARK else []
+        words = [*self.kinds, *scene, *request.options(), *dark, *size]
+        return f"lagtop plot {' '.join(words)} -o picture.svg"
 
     def check_dpi(self, dpi: float, fmt: str) -> None:
         """Raise LagtopError where the pixels per inch do not suit the page.
@@ -88,10 +121,12 @@ def draw_page(figure: Figure, page: Page) -> None:
         _draw(page.kinds[0], figure.subfigures(1, 1, squeeze=False)[0, 0], page)
         return
     rows, columns = page.grid()
-    widths = NUMBERS_WIDTH, columns * PANEL[0]
-    sides = figure.subfigures(1, 2, squeeze=False, width_ratios=widths)[0]
-    _write_numbers(sides[0], page)
-    panels = sides[1].subfigures(rows, columns, squeeze=False, wspace=0.04, hspace=0.04)
+    right: FigureBase = figure
+    if page.request.numbers:
+        widths = NUMBERS_WIDTH, columns * PANEL[0]
+        left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=widths)[0]
+        _write_numbers(left, page)
+    panels = right.subfigures(rows, columns, squeeze=False, wspace=0.04, hspace=0.04)
     for kind, panel in zip(page.kinds, panels.flat, strict=False):
         try:
             _draw(kind, panel, page)
@@ -104,17 +139,27 @@ def _draw(kind: str, panel: SubFigure, page: Page) -> None:
 
 
 def _write_numbers(panel: SubFigure, page: Page) -> None:
-    """Write the record, to seven digits, a line for each of up to 38 keys."""
-    points = min(9.0 * page.lettering(), 0.0242 * 72 * page.inches()[1] * 0.8)
-    record = page.motion.record(radians=page.request.radians)
-    shown = {key: value for key, value in record.items() if value is not None and key != "remark"}
+    """Write the record: a line for each key, with its symbol and its unit, and the remark."""
+    radians = page.request.radians
+    record = page.motion.record(radians=radians)
+    remark = textwrap.wrap(str(record.pop("remark") or ""), REMARK_WIDTH)
+    shown = {key: value for key, value in record.items() if value is not None}
+    step = min(0.0242, 0.95 / (len(shown) + len(remark) + 1.5))
+    size = min(8.5 * page.lettering(), step * 72 * page.inches()[1] * 0.8)
+    panel.text(0.04, 0.985, "lagtop", va="top", size="x-large")
     height = 0.955
-    panel.text(0.05, 0.985, "lagtop", va="top", size="x-large")
-    for key, value in shown.items():
-        height -= 0.0242
-        text = value if isinstance(value, str) else f"{float(value):.7g}"
-        panel.text(0.05, height, key, va="top", size=points, color=page.look.quiet)
-        panel.text(0.97, height, text, va="top", ha="right", size=points)
+    for name, value in shown.items():
+        height -= step
+        key = KEYS.get(name.replace("_rad", "_deg"))
+        symbol = key.symbol if key and key.symbol != name else ""
+        unit = page.request.unit_of(key) if key else ""
+        text = value if isinstance(value, str) else f"{number_text(float(value))} {unit}".rstrip()
+        for x, word, colour in ((0.04, symbol, page.look.ink), (0.2, name, page.look.quiet)):
+            panel.text(x, height, word, va="top", size=size, color=colour)
+        panel.text(0.98, height, text, va="top", ha="right", size=size)
+    for line in remark:
+        height -= step
+        panel.text(0.04, height - step / 2, line, va="top", size=size)
 
 
 def page_bytes(page: Page, fmt: str, dpi: float) -> bytes:
@@ -128,7 +173,7 @@ def page_bytes(page: Page, fmt: str, dpi: float) -> bytes:
         figure = Figure(figsize=page.inches(), layout="constrained")
         draw_page(figure, page)
         _settle_layout(figure)
-        return figure_bytes(figure, fmt, dpi)
+        return figure_bytes(figure, fmt, dpi, page.about())
 
 
 def _settle_layout(figure: Figure) -> None:

@@ -16,9 +16,14 @@ from matplotlib.figure import SubFigure
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
 from .curves import PHASES, phase_times, refined, span
-from .motion_facts import columns_at
+from .motion_facts import columns_at, motion_in_words
 from .request import PlotRequest
-from .style import Look, mark_start
+from .style import Look, head, mark_start, points
+
+SEPARATRIX = (
+    "separatrix: the way of a top that starts upright with this spin\n"
+    "(other starts may cross it: they have another momentum about the vertical)"
+)
 
 
 class PhasePortrait(NamedTuple):
@@ -43,12 +48,10 @@ def phase_portrait(motion: Motion) -> PhasePortrait:
     start = float(theta[0]), float(motion.top.thetadot0)
     a, b = float(motion.a), float(motion.b)
     if not b * b < 2 * a:
-        reason = "no torque" if a == 0 else f"λ = {b * b / (2 * a):.3g} ≥ 1"
-        why = f"no separatrix: upright it is stable, {reason}"
+        reason = "without torque" if a == 0 else f"as C²r₀² = {b * b / (2 * a):.3g} · 4Amgs"
+        why = f"no separatrix: upright it is stable with this spin, {reason}"
         return PhasePortrait(theta, rate, start, None, why)
-    return PhasePortrait(
-        theta, rate, start, separatrix(a, b), "separatrix: an upright start with this spin"
-    )
+    return PhasePortrait(theta, rate, start, separatrix(a, b), SEPARATRIX)
 
 
 def separatrix(a: float, b: float) -> tuple[Array, Array]:
@@ -69,24 +72,34 @@ def separatrix(a: float, b: float) -> tuple[Array, Array]:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the nutation in the plane of tilt and tilt rate, and the separatrix."""
-    draw_on([panel.subplots()], motion, request, look)
-    panel.legend(loc="outside lower center", ncols=3, fontsize="small")
+    head(panel, _title(motion))
+    _draw_portrait(panel.subplots(), motion, request, look)
+    panel.legend(loc="outside lower left", fontsize="small")
 
 
 def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the picture on one axes, without the legend."""
-    (axes,), portrait, factor = places, phase_portrait(motion), request.per_radian
-    axes.set_title("Nutation in the phase plane")
+    places[0].set_title(_title(motion))
+    _draw_portrait(places[0], motion, request, look)
+
+
+def _title(motion: Motion) -> str:
+    return f"Nutation in the phase plane: {motion_in_words(motion)}"
+
+
+def _draw_portrait(axes: Axes, motion: Motion, request: PlotRequest, look: Look) -> None:
+    """Draw the orbit, its start and the separatrix."""
+    portrait, factor = phase_portrait(motion), request.per_radian
     axes.set(
         xlabel=f"tilt ϑ ({request.angle_unit})", ylabel=request.label("tilt rate ϑ̇ (rad/time)")
     )
     axes.locator_params(axis="x", nbins=5)
-    axes.axhline(0.0, color=look.quiet, lw=0.9)
+    axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     axes.plot(portrait.theta * factor, portrait.rate, color=look.lines[0], label="this motion")
     mark_start(axes, portrait.start[0] * factor, portrait.start[1], look)
     theta, rate = portrait.separatrix or (np.empty(0), np.empty(0))
     both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
-    dashes = {"lw": 1.4, "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
+    dashes = {"lw": points(1.4), "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
     axes.plot(*both, color=look.lines[1], label=portrait.why, **dashes)
     axes.ticklabel_format(axis="x", useOffset=False)
     axes.margins(0.06)

@@ -11,12 +11,15 @@ from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
 from ..errors import NothingToDrawError
+from ..motion.regime import Regime
 from ..motion.solve import Motion
 from .angles import finish_time_axes
 from .curves import phase_times, refined, span
 from .motion_facts import nutation_period
 from .request import PlotRequest
-from .style import Look
+from .style import Look, head, points
+
+TITLE = "Spin and precession less their mean growth, (6,4), (7,4)"
 
 
 class Remainders(NamedTuple):
@@ -33,8 +36,8 @@ def remainder_curves(motion: Motion, t_max: float) -> Remainders:
     Raises NothingToDrawError where the tilt has no period, so that both are 0 or undefined.
     """
     if nutation_period(motion) is None or motion.mean_precession_rate is None:
-        regime = motion.regime.value
-        raise NothingToDrawError(f"no remainders: the tilt has no period ({regime})")
+        reason = "never comes back" if motion.regime is Regime.SEPARATRIX else "stays as it is"
+        raise NothingToDrawError(f"no remainders: the tilt {reason} ({motion.regime.value})")
 
     def remainders(t: Array) -> Array:
         waves = motion.table(t, ["dphi", "dpsi"])
@@ -48,13 +51,16 @@ def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> 
     """Draw what is left of spin and precession when their mean growth is taken off."""
     curves = _wanted_curves(motion, request)  # before the axes: an empty picture has none
     axes = panel.subplots(2, sharex=True)
+    head(panel, TITLE)
     _draw_curves(axes, curves, motion, request, look)
     panel.align_ylabels(axes)
 
 
 def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the picture on two axes, which share the time."""
-    _draw_curves(places, _wanted_curves(motion, request), motion, request, look)
+    curves = _wanted_curves(motion, request)
+    places[0].set_title(TITLE)
+    _draw_curves(places, curves, motion, request, look)
 
 
 def _wanted_curves(motion: Motion, request: PlotRequest) -> Remainders:
@@ -65,9 +71,8 @@ def _draw_curves(
     axes: Sequence[Axes], curves: Remainders, motion: Motion, request: PlotRequest, look: Look
 ) -> None:
     rows = ("Δφ", curves.spin), ("Δψ", curves.precession)
-    axes[0].set_title("Spin and precession less their mean growth, (6,4), (7,4)")
     for ax, (symbol, remainder), colour in zip(axes, rows, look.lines[1:], strict=True):
-        ax.axhline(0.0, color=look.quiet, lw=0.9)
+        ax.axhline(0.0, color=look.quiet, lw=points(0.9))
         ax.plot(curves.t, remainder * request.per_radian, color=colour)
         ax.set_ylabel(f"{symbol} ({request.angle_unit})")
     finish_time_axes(axes, motion, curves.t, request)

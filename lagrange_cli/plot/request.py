@@ -9,8 +9,12 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+    from ..motion.quantity import Key
 
 P = TypeVar("P")
+
+MAP_KEY = "mean_precession_rate"
+"""The key that a map shows where none is asked for."""
 
 
 class Progress(Protocol):
@@ -34,6 +38,12 @@ class InputRange(NamedTuple):
     logarithmic: bool = False
     """Whether the values grow by equal factors and not by equal steps."""
 
+    def text(self) -> str:
+        """Return the range as it is written on the command line."""
+        first, last = (repr(float(self.values[i])) for i in (0, -1))
+        steps = "log:" if self.logarithmic else ""
+        return f"{self.name}={steps}{first}:{last}:{self.values.size}"
+
 
 class PlotRequest(NamedTuple):
     """What a picture of a motion should show."""
@@ -42,7 +52,7 @@ class PlotRequest(NamedTuple):
     """Last time of the pictures over time; by default each picture takes what suits it."""
     radians: bool = False
     """Whether angles are shown in radians and not in degrees."""
-    key: str = "mean_precession_rate"
+    key: str = MAP_KEY
     """Key of the record that a map shows."""
     x: InputRange | None = None
     """Horizontal axis of a map; by default the spin."""
@@ -50,12 +60,28 @@ class PlotRequest(NamedTuple):
     """Vertical axis of a map; by default the tilt."""
     unit: Callable[[str], str] = str
     """Names a unit such as `rad/time` in the units of the inputs."""
+    view: tuple[float, float] | None = None
+    """Azimuth and elevation (radians) of the eye; by default the view that a path faces most."""
+    limits: tuple[float, float] | None = None
+    """Ends of the colours of a map; by default all but the outermost values are within."""
+    numbers: bool = True
+    """Whether the numbers of the scene stand beside several pictures."""
     progress: Progress = no_progress
     """What may show the progress of a map."""
 
     def label(self, text: str) -> str:
         """Return a label whose unit stands between brackets, in the units of the inputs."""
         return re.sub(r"\((.*?)\)", lambda inside: f"({self.unit(inside[1])})", text)
+
+    @property
+    def time_label(self) -> str:
+        """The label of an axis of time."""
+        unit = self.unit("time")
+        return f"time t ({'unit of the inputs' if unit == 'time' else unit})"
+
+    def unit_of(self, key: Key) -> str:
+        """Return the unit of a key of the record, in the units in use."""
+        return self.angle_unit if key.unit == "angle" else self.unit(key.unit)
 
     @property
     def angle_unit(self) -> str:
@@ -66,3 +92,16 @@ class PlotRequest(NamedTuple):
     def per_radian(self) -> float:
         """The size of one radian in the unit of angles."""
         return 1.0 if self.radians else 180 / math.pi
+
+    def options(self) -> list[str]:
+        """Return what differs from the usual, as options of the command."""
+        given = {
+            "--t-max": self.t_max and repr(self.t_max),
+            "--key": self.key if self.key != MAP_KEY else None,
+            "--x": self.x and self.x.text(),
+            "--y": self.y and self.y.text(),
+            "--view": self.view and ",".join(f"{x * self.per_radian:.10g}" for x in self.view),
+            "--range": self.limits and ":".join(map(repr, self.limits)),
+        }
+        flags = ["--rad"] * self.radians + ["--no-numbers"] * (not self.numbers)
+        return [f"{name} {text}" for name, text in given.items() if text] + flags

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,17 +15,28 @@ from matplotlib.figure import SubFigure
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
 from .angles import angle_curves
-from .curves import highest_times, phase_times, refined, span, turn_span
-from .motion_facts import axis_at
+from .curves import highest_times, phase_times, refined, span, sphere_span
+from .globe import Limits, draw_globe
+from .motion_facts import axis_at, motion_in_words, nutation_period
 from .request import PlotRequest
-from .style import Look, mark_start, scale
-from .view import Near, View, best_view, parallel, runs
+from .style import Look, head, mark_start, points, scale
+from .view import Near, View, best_view, runs, view_from
 
 NARROW = math.radians(6.0)
 """A band of tilts that a circle on the globe hides: it is shown magnified as well."""
 
+NODS_MAGNIFIED = 3
+"""Nutation periods of a narrow path that are shown magnified."""
+
 PIECES = 160
 """Steps of the colour along a path."""
+
+
+ARROWS = 0.12, 0.45, 0.8
+"""Parts of the length of a path at which an arrowhead shows which way it is run."""
+
+USUAL_NODS = 6
+"""Nutation periods up to which a path has its full width: more of them are drawn finer."""
 
 
 class AxisPath(NamedTuple):
@@ -42,6 +53,11 @@ class AxisPath(NamedTuple):
     """`cusped`, `looping`, `wavy`, or None where the tilt does not swing."""
     highest: Array
     """The axis where it is highest, shape (m, 3): the cusps of a cusped path."""
+
+    @property
+    def moves(self) -> bool:
+        """Whether the axis goes anywhere."""
+        return bool(np.ptp(self.axis, axis=0).max() > 1e-12)
 
 
 def axis_path(motion: Motion, t_max: float) -> AxisPath:
@@ -60,88 +76,79 @@ def axis_path(motion: Motion, t_max: float) -> AxisPath:
 
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the globe with the path on it, and under it a piece of a narrow path, magnified."""
-    path = axis_path(motion, request.t_max or turn_span(motion))
+    path = axis_path(motion, request.t_max or sphere_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
+    head(panel, _title(motion))
     axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
     lines = _draw_sphere(axes[0], path, motion, request, look)
-    bar = panel.colorbar(lines, ax=axes[0], shrink=0.7, pad=0.02, aspect=28)
-    bar.outline.set_visible(False)
-    bar.set_label("time t")
     if narrow:
         _draw_magnified(axes[1], motion, path, request, look)
+    if path.moves:
+        bar = panel.colorbar(lines, ax=axes, shrink=0.7, pad=0.02, aspect=28)
+        bar.outline.set_visible(False)
+        bar.set_label(request.time_label)
+    handles, labels = axes[0].get_legend_handles_labels()
+    panel.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small")
 
 
 def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the globe with the path on one axes, without a bar for the colours of time."""
-    path = axis_path(motion, request.t_max or turn_span(motion))
+    path = axis_path(motion, request.t_max or sphere_span(motion))
+    places[0].set_title(_title(motion))
     _draw_sphere(places[0], path, motion, request, look)
+    places[0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize="small")
+
+
+def _title(motion: Motion) -> str:
+    return f"Figure axis on the unit sphere: {motion_in_words(motion)}"
 
 
 def _draw_sphere(
     axes: Axes, path: AxisPath, motion: Motion, request: PlotRequest, look: Look
 ) -> LineCollection:
     """Draw the globe with the path, and return the path on the near side, coloured by time."""
-    view = best_view(path.axis)
-    axes.set_title(f"Figure axis on the unit sphere: {path.path or motion.regime.value}")
-    draw_globe(axes, view, path, request, look)
-    return _draw_path(axes, view, path, look)
+    view = view_from(*request.view) if request.view else best_view(path.axis)
+    draw_globe(axes, view, Limits(path.least, path.greatest), request, look)
+    return _draw_path(axes, view, path, motion, look)
 
 
-def draw_globe(axes: Axes, view: View, path: AxisPath, request: PlotRequest, look: Look) -> None:
-    """Draw outline, equator, vertical and the limiting circles; far sides dashed and paler."""
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.set(xlim=(-1.06, 1.06), ylim=(-1.06, 1.24))
-    outline = np.linspace(0.0, 2 * math.pi, 361)
-    axes.fill(np.cos(outline), np.sin(outline), facecolor=look.faint, alpha=0.55, zorder=0)
-    axes.plot(np.cos(outline), np.sin(outline), color=look.quiet, lw=1.0, zorder=1)
-    _draw_circle(axes, view, math.pi / 2, color=look.quiet, lw=0.6)
-    for tilt, colour, label in (
-        (path.least, look.lines[0], "ϑ min"),
-        (path.greatest, look.lines[1], "ϑ max"),
-    ):
-        _draw_circle(axes, view, tilt, color=colour, lw=1.2)
-        angle = f"{tilt:.4g} rad" if request.radians else f"{math.degrees(tilt):.4g}°"
-        axes.plot([], [], color=colour, lw=1.2, label=f"{label} {angle}")
-    hidden = view.toward[2] < 0
-    feet = np.array([[0.0, 0.0, 1 / view.up[2] if hidden else 1.0], [0.0, 0.0, 1.32]])
-    x, y = view.project(feet)
-    axes.plot(x, y, color=look.quiet, lw=1.0, zorder=4)
-    axes.annotate("z", (x[1], y[1]), (5, -8), textcoords="offset points", color=look.quiet)
+def _draw_path(
+    axes: Axes, view: View, path: AxisPath, motion: Motion, look: Look
+) -> LineCollection:
+    """Draw the path, coloured by time, paler on the far side, with its start and direction.
 
-
-def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
-    """Draw the circle of a tilt, its far side dashed and paler."""
-    circle = parallel(tilt)
-    x, y = view.project(circle)
-    for part, near in runs(view.faces(circle)):
-        fade: dict[str, Any] = (
-            {"zorder": 2} if near else {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1}
-        )
-        axes.plot(x[part], y[part], **(line | fade))
-
-
-def _draw_path(axes: Axes, view: View, path: AxisPath, look: Look) -> LineCollection:
-    """Draw the path, coloured by time and paler on the far side, with its start and a legend."""
+    Returns the lines to which a bar of colours belongs.
+    """
     x, y = view.project(path.axis)
     near = view.faces(path.axis)
-    colours = scale(look)
     for side, alpha, width in ((False, 0.35, 1.2), (True, 1.0, 2.2)):
-        pieces, times = _pieces(path.t, np.stack([x, y], axis=1), near, side)
-        lines = LineCollection(
-            pieces, cmap=colours, linewidths=width, alpha=alpha, capstyle="round"
+        lines = _coloured(path.t, np.stack([x, y], axis=1), near, look, side=side)
+        lines.set(
+            alpha=alpha, linewidths=points(width * _fineness(motion, path)), zorder=3 if side else 1
         )
-        lines.set_array(times)
-        lines.set_clim(path.t[0], path.t[-1])
-        lines.set_zorder(3 if side else 1)
         axes.add_collection(lines)
-    mark_start(axes, x[0], y[0], look)
-    axes.legend(loc="lower left", fontsize="small", borderaxespad=0, handlelength=1.4)
+    mark_start(axes, x[0], y[0], look, "start" if path.moves else "the axis stays here")
+    _draw_direction(axes, view, path, motion, look)
     lines.set_alpha(None)
     return lines
 
 
-def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array], Array]:
+def _fineness(motion: Motion, path: AxisPath) -> float:
+    """Return the width of a path over the usual one: a long one must not become a blot."""
+    T = nutation_period(motion)
+    return max(0.35, math.sqrt(min(1.0, USUAL_NODS * T / path.t[-1]))) if T else 1.0
+
+
+def _coloured(t: Array, places: Array, near: Near, look: Look, *, side: bool) -> LineCollection:
+    """Return the parts of a curve on one side of the globe, coloured by time."""
+    pieces, times = _pieces(t, places, near, side)
+    lines = LineCollection(pieces, cmap=scale(look), capstyle="round")
+    lines.set_array(times)
+    lines.set_clim(t[0], t[-1])
+    return lines
+
+
+def _pieces(t: Array, places: Array, near: Near, side: bool) -> tuple[list[Array], Array]:
     """Return the parts of the curve on one side, cut into pieces of one colour, and their times."""
     step = max((t[-1] - t[0]) / PIECES, 1e-300)
     pieces, times = [], []
@@ -152,21 +159,59 @@ def _pieces(t: Array, points: Array, near: Near, side: bool) -> tuple[list[Array
         bounds = [0, *cuts.tolist(), t[part].size - 1]
         for first, last in pairwise(bounds):
             if last > first:
-                pieces.append(points[part][first : last + 1])
+                pieces.append(places[part][first : last + 1])
                 times.append((t[part][first] + t[part][last]) / 2)
     return pieces, np.array(times)
+
+
+def _draw_direction(axes: Axes, view: View, path: AxisPath, motion: Motion, look: Look) -> None:
+    """Draw arrowheads along the near side of a path; beside a tiny one, an arc that it follows."""
+    course = path.axis
+    shown = np.stack(view.project(course), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown, axis=0), axis=1))])
+    whole, colour = float(along[-1]), scale(look)
+    if whole < 0.3 and motion.mean_precession_rate:
+        tilt, start = (path.least + path.greatest) / 2, math.atan2(course[0, 1], course[0, 0])
+        turn = start + math.copysign(1.0, motion.mean_precession_rate) * np.linspace(0.15, 0.8, 40)
+        arc = [math.sin(tilt) * np.cos(turn), math.sin(tilt) * np.sin(turn)]
+        course = np.stack([*arc, np.full(turn.size, math.cos(tilt))], axis=1)
+        x, y = view.project(course)
+        axes.plot(x, y, color=look.ink, lw=points(1.6), zorder=3)
+        _arrowhead(axes, (x[-2], y[-2]), (x[-1], y[-1]), look.ink)
+    elif whole >= 0.3:
+        near = view.faces(course)
+        for part in ARROWS:
+            last = int(np.searchsorted(along, part * whole))
+            first = int(np.searchsorted(along, part * whole - 0.02))
+            if first < last and near[first : last + 1].all():
+                time = (path.t[last] - path.t[0]) / (path.t[-1] - path.t[0])
+                _arrowhead(axes, shown[last - 1], shown[last], colour(float(time)))
+
+
+def _arrowhead(axes: Axes, first: object, last: object, colour: object) -> None:
+    """Draw the head of an arrow at the last of two points."""
+    how = {"arrowstyle": "-|>,head_length=0.5,head_width=0.28", "mutation_scale": points(13)}
+    how |= {"color": colour, "linewidth": 0, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", last, first, arrowprops=how, zorder=5)  # type: ignore[arg-type]
 
 
 def _draw_magnified(
     axes: Axes, motion: Motion, path: AxisPath, request: PlotRequest, look: Look
 ) -> None:
-    """Draw two nods unrolled; a degree of precession is as long as it is on the sphere."""
-    nods = angle_curves(motion, min(span(motion, 2), path.t[-1]))
+    """Draw some nods unrolled, coloured as on the globe.
+
+    A degree of precession is as long as it is on the sphere.
+    """
+    nods = angle_curves(motion, min(span(motion, NODS_MAGNIFIED), path.t[-1]))
     x, y = nods.psi * request.per_radian, nods.theta * request.per_radian
     axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
-    axes.plot(x, y, color=scale(look)(0.0))
+    lines = _coloured(nods.t, np.stack([x, y], axis=1), np.ones(x.size, bool), look, side=True)
+    lines.set(clim=(path.t[0], path.t[-1]), linewidths=points(2.0))
+    axes.add_collection(lines)
+    axes.autoscale_view()
     mark_start(axes, x[0], y[0], look)
-    axes.set_title("the first two nods, magnified", fontsize="medium")
+    whole = nods.t[-1] == path.t[-1]
+    axes.set_title("the same path, magnified" if whole else "its beginning, magnified")
     unit = request.angle_unit
     axes.set(xlabel=f"precession ψ ({unit})", ylabel=f"tilt ϑ ({unit})")
     axes.ticklabel_format(useOffset=False)

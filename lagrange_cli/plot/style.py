@@ -1,4 +1,4 @@
-"""The look of pictures, light and dark, and the way they become files.
+"""The look of pictures, light and dark: one style for all of them.
 
 The colours of lines are Okabe and Ito's, made to be told apart by every kind of colour vision; time
 and keys are coloured by viridis, whose lightness grows evenly, cut where it would fade into the
@@ -7,23 +7,21 @@ background.  A test simulates the three kinds of colour blindness.
 
 from __future__ import annotations
 
-import io
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
-
-from ..errors import CannotWriteError, LagtopError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
-    from matplotlib.figure import Figure
+    from matplotlib.figure import FigureBase
 
 
 POINTS = 11.0
 """Size of ordinary letters on a page of the usual size."""
+
+FONTS = ["DejaVu Sans", "Verdana", "Arial"]
+"""The first comes with matplotlib, and has Greek; the others are for readers of an SVG."""
 
 
 class Look(NamedTuple):
@@ -46,54 +44,6 @@ LIGHT = Look(
 DARK = Look(
     "#14181d", "#ececec", "#9a9fa5", "#252c34", ("#56b4e9", "#e69f00", "#cc79a7"), (0.25, 1)
 )
-
-
-METADATA: dict[str, dict[str, Any]] = {
-    "png": {"Software": None},
-    "svg": {"Date": None, "Creator": None},
-    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-}
-"""What matplotlib would add to each kind of file, and with it the day and the version."""
-
-
-REPORT_KINDS = (".svg", ".png")
-"""The kinds of file that the picture of a report may have."""
-
-
-def require_matplotlib() -> None:
-    """Raise LagtopError, with the remedy, where matplotlib is missing."""
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise LagtopError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
-
-
-def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for a kind of file that is not drawn, or that is the report itself.
-
-    Raises LagtopError where matplotlib is missing, too, and CannotWriteError where there is no such
-    directory.
-    """
-    if path is None:
-        return
-    if Path(path).suffix.lower() not in REPORT_KINDS:
-        raise LagtopError(f"plot must end in {' or '.join(REPORT_KINDS)}, got {path!r}", "plot")
-    if Path(path).resolve() == Path(output).resolve():
-        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
-    require_matplotlib()
-    if not Path(path).resolve().parent.is_dir():
-        raise CannotWriteError(f"cannot write {path}: no such directory")
-
-
-def figure_bytes(figure: Figure, fmt: str, dpi: float) -> bytes:
-    """Return the figure as `png`, `svg` or `pdf`: the same bytes for the same figure."""
-    import matplotlib
-
-    buffer = io.BytesIO()
-    os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # or the fonts in a PDF would carry the day
-    with matplotlib.rc_context({"svg.hashsalt": "lagtop"}):  # names inside the file do not change
-        figure.savefig(buffer, format=fmt, dpi=dpi, metadata=METADATA[fmt])
-    return buffer.getvalue()
 
 
 def chosen_look(dark: bool) -> Look:
@@ -131,7 +81,9 @@ def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
         "figure.constrained_layout.h_pad": 0.042 * size,
         "figure.constrained_layout.w_pad": 0.042 * size,
         "figure.facecolor": look.paper,
-        "font.family": "DejaVu Sans",  # comes with matplotlib, and has Greek
+        "figure.titlesize": 12.0 * size,
+        "font.family": "sans-serif",
+        "font.sans-serif": FONTS,
         "font.size": POINTS * size,
         "hatch.color": look.quiet,
         "legend.frameon": False,
@@ -153,6 +105,27 @@ def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
     }
 
 
+def points(length: float) -> float:
+    """Return a length in points on the page that is being drawn, where letters may be small."""
+    import matplotlib
+
+    return length * float(matplotlib.rcParams["font.size"]) / POINTS
+
+
+def head(panel: FigureBase, title: str) -> None:
+    """Write the title of a picture at its upper left."""
+    panel.suptitle(title, x=0.012, ha="left")
+
+
+def number_text(value: float) -> str:
+    """Return a number to seven digits; one that they do not tell from 1 or -1 by its distance."""
+    shown = f"{value:.7g}"
+    if shown in {"1", "-1"} and abs(value) != 1:
+        beyond = abs(value) - 1
+        shown = f"{shown} {'+' if (beyond > 0) == (value > 0) else '-'} {abs(beyond):.2g}"
+    return shown.replace("-", "−")
+
+
 def scale(look: Look) -> Colormap:
     """Return the colours that stand for the size of a quantity."""
     import numpy as np
@@ -164,6 +137,11 @@ def scale(look: Look) -> Colormap:
 
 def mark_start(axes: Axes, x: float, y: float, look: Look, label: str = "start") -> None:
     """Draw a ring at one point."""
-    axes.plot(
-        x, y, "o", ms=7, mfc=look.paper, mec=look.ink, mew=1.6, zorder=6, label=label, ls="none"
-    )
+    ring: dict[str, Any] = {
+        "ms": points(7),
+        "mfc": look.paper,
+        "mec": look.ink,
+        "mew": points(1.6),
+        "zorder": 6,
+    }
+    axes.plot(x, y, "o", ls="none", label=label, **ring)

@@ -49,19 +49,35 @@ def view_from(azimuth: float, elevation: float) -> View:
 
 def best_view(path: Array) -> View:
     """Return the view, from above or below, that a path faces most, with its start in sight."""
-    start = math.atan2(path[0, 1], path[0, 0])
-    views = [
-        view_from(start + math.radians(azimuth), math.radians(elevation))
-        for elevation in (25, -25)
-        for azimuth in sorted(range(-180, 180, 15), key=lambda degrees: abs(degrees - 30))
-    ]
 
     def shown(view: View) -> float:
         """Return how well the path is seen."""
         turned = (path @ view.toward).mean()
         return float(view.faces(path).mean() + 0.5 * turned + view.faces(path[:1])[0])
 
-    return max(views, key=lambda view: round(shown(view), 2))
+    return max(_views(path, 25), key=lambda view: round(shown(view), 2))
+
+
+def side_view(path: Array) -> View:
+    """Return the view in which a top on this path is seen from the side, and its lid a little."""
+
+    def shown(view: View) -> float:
+        """Return the mean length of the axis on the page, and how often the lid is in sight."""
+        facing = path @ view.toward
+        length = np.sqrt(np.maximum(1.0 - facing**2, 0.0))
+        return float(length.mean() + 0.3 * (facing > 0).mean() + 0.1 * (facing[0] > 0))
+
+    return max(_views(path, 15), key=lambda view: round(shown(view), 2))
+
+
+def _views(path: Array, elevation: float) -> list[View]:
+    """Return views at all azimuths, those near the start of a path first, from above and below."""
+    start = math.atan2(path[0, 1], path[0, 0])
+    return [
+        view_from(start + math.radians(azimuth), math.radians(height))
+        for height in (elevation, -elevation)
+        for azimuth in sorted(range(-180, 180, 15), key=lambda degrees: abs(degrees - 30))
+    ]
 
 
 def parallel(tilt: float) -> Array:

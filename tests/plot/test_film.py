@@ -61,7 +61,7 @@ def test_the_spin_is_seen_on_the_lid() -> None:
 def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
     page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.0), LIGHT)
     with styled(LIGHT):
-        moving = film.Film(page)
+        moving = film.Film(page, film.Pace(24.0, 144, 1.0))
         for i in (0, 71, 143):
             moving.show(i)
             theta, _, psi = page.motion.angles(moving.times[i])
@@ -78,13 +78,13 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
 
 
 @pytest.mark.slow
-def test_a_film(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_film(lagtop: Lagtop, tmp_path: Path) -> None:
     from PIL import Image, ImageChops
 
-    monkeypatch.setattr(film, "FRAMES", 5)
     files = [tmp_path / "a.gif", tmp_path / "b.gif"]
     for file in files:
-        assert lagtop("plot", "--animate", file, "--dpi", "40").output == ""
+        line = ["--dpi", "40", "--fps", 10, "--duration", 0.5]
+        assert lagtop("plot", "--animate", file, *line).output == ""
     frames = []
     with Image.open(files[0]) as shown:
         assert getattr(shown, "n_frames", 1) == 5
@@ -99,10 +99,9 @@ def test_a_film(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(2.0, 2.0), (2.0, 50.0), (50.0, 2.0)])
-def test_the_smallest_films(size: tuple[float, float], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film, "FRAMES", 2)
+def test_the_smallest_films(size: tuple[float, float]) -> None:
     page = Page(solve(Top()), ["sphere"], PlotRequest(), LIGHT, size)
-    assert film.film_bytes(page, "x.gif", 20).startswith(b"GIF8")
+    assert film.film_bytes(page, "x.gif", 20, film.Pace(25.0, 2, 1.0)).startswith(b"GIF8")
 
 
 def test_mp4_needs_ffmpeg(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

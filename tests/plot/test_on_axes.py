@@ -54,7 +54,7 @@ def test_every_kind_has_its_function() -> None:
 
 def test_a_map_of_ones_own() -> None:
     (axes,) = draw("map", key="T_nutation", **MAP)
-    assert axes.get_title() == "T_nutation"
+    assert axes.get_title() == "Periods: of the nutation, T (5,1)"
     figure = axes.get_figure()
     assert figure is not None
     assert len(figure.axes) == 2  # the bar

@@ -63,7 +63,7 @@ def test_the_angles_are_drawn_as_they_are(radians: bool) -> None:
         t, shown = (np.asarray(x) for x in curve.get_data())
         assert (t[0], t[-1]) == (0.0, 1.0)
         assert shown == pytest.approx(scene.angles(t)[i] * factor, rel=1e-15)
-        means = [line for line in axes.lines if line.get_linewidth() == 0.9]
+        means = [line for line in axes.lines if line.get_linestyle() == "--"]
         assert len(means) == (rate is not None)
         if rate is not None:
             end = np.asarray(means[0].get_ydata())[-1]
@@ -74,9 +74,11 @@ def test_the_angles_are_drawn_as_they_are(radians: bool) -> None:
 
 
 def test_a_vertical_top_has_no_precession_to_draw() -> None:
-    axes = drawn(regime_motion("sleeping"), ["angles"]).axes[2]
-    assert not axes.lines
-    assert [text.get_text() for text in axes.texts] == ["not defined: all is spin"]
+    figure = drawn(regime_motion("sleeping"), ["angles"])
+    assert len(figure.axes) == 2
+    assert (
+        figure.axes[1].get_title("left") == "mean 50 rad/time; all is spin: there is no precession"
+    )
 
 
 @pytest.mark.parametrize("scene", [(50.0, 30.0), (-50.0, 30.0), (20.0, 120.0)])
@@ -106,7 +108,9 @@ def test_remainders_need_a_period(name: str) -> None:
     if nutation_period(scene):
         assert np.ptp(remainder_curves(scene, span(scene, 1)).spin) < 2 * math.pi
         return
-    with pytest.raises(NothingToDrawError, match=r"^no remainders: the tilt has no period \("):
+    with pytest.raises(
+        NothingToDrawError, match=r"^no remainders: the tilt (stays as it is|never comes back) \("
+    ):
         remainder_curves(scene, 1.0)
 
 
@@ -170,7 +174,7 @@ def test_the_orbit_in_the_phase_plane_keeps_the_energy(path: Path) -> None:
     assert portrait.rate[1] > 0  # released from rest it falls
     stable = (scene.b**2) / (2 * scene.a) >= 1
     assert (portrait.separatrix is None) == stable
-    assert ("≥ 1" in portrait.why) == stable
+    assert portrait.why.startswith("no separatrix: upright it is stable") == stable
     u, top = np.cos(portrait.theta), scene.top
     around = float(top.psidot0) * math.sin(portrait.start[0]) ** 2
     beta = around + scene.b * u[0]
@@ -301,15 +305,16 @@ def test_the_drawn_path_is_the_path() -> None:
 
 
 def test_a_narrow_path_is_magnified() -> None:
-    """The inset shows the first two nods in the angles themselves."""
+    """The inset shows the first nods in the angles themselves."""
     assert len(drawn(solve(Top()), ["sphere"]).axes) == 2  # the globe and the bar of colours
     scene = solve(Top(r0=1000.0))
     T = nutation_period(scene)
     assert T
     _, inset, _ = drawn(scene, ["sphere"]).axes
-    psi, theta = (np.asarray(x) for x in inset.lines[0].get_data())
+    (lines,) = (x for x in inset.collections if isinstance(x, LineCollection))
+    psi, theta = np.concatenate([np.asarray(piece) for piece in lines.get_segments()]).T
     assert theta[0] == pytest.approx(30)
     assert theta.max() == pytest.approx(scene.theta_max_deg, abs=1e-12)
-    assert psi[-1] == pytest.approx(np.degrees(scene.angles(2 * T).psi), rel=1e-12)
-    start = [float(np.asarray(x)[0]) for x in inset.lines[1].get_data()]
+    assert psi[-1] == pytest.approx(np.degrees(scene.angles(3 * T).psi), rel=1e-12)
+    start = [float(np.asarray(x)[0]) for x in inset.lines[0].get_data()]
     assert start == [psi[0], theta[0]]

@@ -1,0 +1,95 @@
+"""The way of a figure into a file that carries what it shows: fonts, texts and metadata.
+
+Text stays text in SVG, and PDF embeds TrueType outlines (Type 42), which journals ask for.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..errors import CannotWriteError, LagtopError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+REPORT_KINDS = (".svg", ".png")
+"""The kinds of file that the picture of a report may have."""
+
+_FONTS = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "lagtop"}
+
+
+class About(NamedTuple):
+    """What a picture shows, in words: the metadata of its file."""
+
+    title: str
+    text: str
+    """The scene, in a sentence for those who cannot see the picture."""
+    command: str = ""
+    """The command line that draws the picture."""
+
+    def fields(self, fmt: str) -> dict[str, str | None]:
+        """Return the metadata of a kind of file, without the day and the version."""
+        if fmt == "svg":
+            whole = f"{self.text}\n{self.command}".strip()
+            return {"Title": self.title, "Description": whole, "Creator": "lagtop", "Date": None}
+        if fmt == "pdf":
+            return {
+                "Title": self.title,
+                "Subject": self.text,
+                "Keywords": self.command,
+                "Creator": "lagtop",
+                "Producer": None,
+                "CreationDate": None,
+            }
+        return {
+            "Title": self.title,
+            "Description": self.text,
+            "Comment": self.command,
+            "Software": "lagtop",
+        }
+
+
+def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
+    """Return the figure as `png`, `svg` or `pdf`: the same bytes for the same figure."""
+    import matplotlib
+
+    buffer = io.BytesIO()
+    os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # or the fonts in a PDF would carry the day
+    with matplotlib.rc_context(_FONTS):  # type: ignore[arg-type]  # the stub lists every key
+        figure.savefig(buffer, format=fmt, dpi=dpi, metadata=about.fields(fmt))
+    return _described(buffer.getvalue(), about) if fmt == "svg" else buffer.getvalue()
+
+
+def _described(svg: bytes, about: About) -> bytes:
+    """Return the SVG with the description that screen readers look for, after its title."""
+    end = b"</title>"
+    return svg.replace(end, end + f"\n <desc>{escape(about.text)}</desc>".encode(), 1)
+
+
+def check_plot(path: str | None, output: str) -> None:
+    """Raise LagtopError for a kind of file that is not drawn, or that is the report itself.
+
+    Raises LagtopError where matplotlib is missing, too, and CannotWriteError where there is no such
+    directory.
+    """
+    if path is None:
+        return
+    if Path(path).suffix.lower() not in REPORT_KINDS:
+        raise LagtopError(f"plot must end in {' or '.join(REPORT_KINDS)}, got {path!r}", "plot")
+    if Path(path).resolve() == Path(output).resolve():
+        raise LagtopError(f"plot must not be the file of the report, got {path!r}", "plot")
+    require_matplotlib()
+    if not Path(path).resolve().parent.is_dir():
+        raise CannotWriteError(f"cannot write {path}: no such directory")
+
+
+def require_matplotlib() -> None:
+    """Raise LagtopError, with the remedy, where matplotlib is missing."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise LagtopError("pictures need matplotlib: pip install 'lagtop[plot]'") from None

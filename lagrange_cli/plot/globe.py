@@ -1,0 +1,112 @@
+"""The globe on which pictures and films show a motion: outline, axes of space, limiting circles."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..arithmetic.types import Array
+from .request import PlotRequest
+from .style import Look, number_text, points
+from .view import View, parallel, runs
+
+TIP, NAME = 1.24, 0.1
+"""Length of the axes of space in radii of the globe, and the distance of their names from there."""
+SAME_PLACE = 0.13
+"""Distance at which the names of two axes would touch: they are then written together."""
+INSEPARABLE = math.radians(0.8)
+"""Two circles of nearer tilts than this are one line on the globe."""
+
+
+class Limits(NamedTuple):
+    """The least and the greatest tilt (radians)."""
+
+    least: float
+    greatest: float
+
+    def text(self, radians: bool) -> tuple[str, str]:
+        """Return both as texts with their unit."""
+        one, other = (
+            f"{number_text(float(f'{tilt:.4g}'))} rad"
+            if radians
+            else f"{number_text(float(f'{math.degrees(tilt):.4g}'))}°"
+            for tilt in self
+        )
+        return one, other
+
+
+def draw_globe(axes: Axes, view: View, limits: Limits, request: PlotRequest, look: Look) -> None:
+    """Draw outline, equator, axes of space and limiting circles; far sides dashed and paler."""
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    around = np.linspace(0.0, 2 * math.pi, 361)
+    axes.fill(np.cos(around), np.sin(around), facecolor=look.faint, alpha=0.55, zorder=0)
+    axes.plot(np.cos(around), np.sin(around), color=look.quiet, lw=points(1.0), zorder=1)
+    _draw_circle(axes, view, math.pi / 2, color=look.quiet, lw=points(0.6))
+    _draw_frame(axes, view, look)
+    least, greatest = limits.text(request.radians)
+    if limits.greatest == limits.least:
+        _draw_limit(axes, view, limits.least, look.lines[0], f"tilt ϑ = {least}")
+    elif limits.greatest - limits.least < INSEPARABLE:
+        _draw_limit(
+            axes, view, limits.greatest, look.lines[0], f"tilt ϑ from {least} to {greatest}"
+        )
+    else:
+        _draw_limit(axes, view, limits.least, look.lines[0], f"ϑ min {least}")
+        _draw_limit(axes, view, limits.greatest, look.lines[1], f"ϑ max {greatest}")
+
+
+def _draw_limit(axes: Axes, view: View, tilt: float, colour: str, label: str) -> None:
+    """Draw the circle of a limiting tilt, or a dot where that circle is a pole."""
+    if math.sin(tilt) > 1e-3:
+        _draw_circle(axes, view, tilt, color=colour, lw=points(1.2))
+        axes.plot([], [], color=colour, lw=points(1.2), label=label)
+        return
+    pole = np.array([[0.0, 0.0, math.cos(tilt)]])
+    dot: dict[str, Any] = {"color": colour, "ms": points(5), "ls": "none", "label": label}
+    axes.plot(*view.project(pole), "o", alpha=1.0 if view.faces(pole)[0] else 0.45, zorder=2, **dot)
+
+
+def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
+    """Draw the circle of a tilt, its far side dashed and paler."""
+    circle = parallel(tilt)
+    x, y = view.project(circle)
+    for part, near in runs(view.faces(circle)):
+        fade: dict[str, Any] = (
+            {"zorder": 2} if near else {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1}
+        )
+        axes.plot(x[part], y[part], **(line | fade))
+
+
+def _draw_frame(axes: Axes, view: View, look: Look) -> None:
+    """Draw the axes of space from the sphere outwards, behind it dashed, and their names."""
+    names: dict[tuple[float, float], str] = {}
+    for name, direction in zip("xyz", np.eye(3), strict=True):
+        x, y = (float(length[0]) for length in view.project(direction[None]))
+        length = math.hypot(x, y)
+        in_sight = 1.0 if direction @ view.toward >= 0 else 1.0 / max(length, 1.0 / TIP)
+        for first, last, fade in ((1.0, in_sight, True), (in_sight, TIP, False)):
+            if last - first > 1e-9:
+                dashes: dict[str, Any] = {"alpha": 0.5, "ls": (0, (3, 3))} if fade else {}
+                ends = [first * x, last * x], [first * y, last * y]
+                layer = 0.5 if fade else 4
+                axes.plot(*ends, color=look.quiet, lw=points(1.0), zorder=layer, **dashes)
+        out_x, out_y = (x / length, y / length) if length > 0.05 else (0.7, 0.7)
+        place = TIP * x + NAME * out_x, TIP * y + NAME * out_y
+        near = [other for other in names if math.dist(place, other) < SAME_PLACE]
+        if near:
+            names[near[0]] += f", {name}"
+        else:
+            names[place] = name
+    for (x, y), name in names.items():
+        axes.text(x, y, name, color=look.quiet, ha="center", va="center", zorder=4)
+    across, upward = np.array(list(names)).T
+    axes.set(xlim=_room(across), ylim=_room(upward))
+
+
+def _room(names: Array) -> tuple[float, float]:
+    """Return the ends of an axis of the page that shows the globe and the names about it."""
+    return min(-1.06, float(names.min()) - 0.1), max(1.06, float(names.max()) + 0.1)
