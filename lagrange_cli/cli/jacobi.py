@@ -127,7 +127,7 @@ def command(
     F(phi, k) and E(phi, k) of every phi, which is in degrees and may be any number.
 
     Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param,
-    u and a real v less whole periods; of at most 24 real functions each is the nearest double.  u
+    u and a real v less whole periods; in small tables it is the nearest double.  u
     and a real v go up to 2^50 periods, an imaginary v up to K'; what is beyond is refused.  An
     empty cell is a pole.
 
@@ -213,12 +213,11 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactCompl
 def _write_rows(
     arguments: Points, request: Request, digits: int | None, fmt: str, output: str
 ) -> None:
-    from ..elliptic.function_table import digit_rows, rows
-    from ..elliptic.proved_digits import are_few
+    from ..elliptic.function_table import blocks, digit_rows
 
-    if digits is None and not are_few(arguments.count, 4 * len(request.families)):
-        header, blocks = rows(arguments, request)
-        parts = with_progress(blocks, arguments.count, 3_000_000)
+    if digits is None:
+        header, found = blocks(arguments, request)
+        parts = with_progress(found, arguments.count, 3_000_000)
         write_table(header, parts, fmt, output)
     else:
         header, lines = digit_rows(arguments, request, digits)
@@ -229,12 +228,10 @@ def _write_rows(
 def _write_integrals(
     modulus: ModulusInput, amplitudes: Points, digits: int | None, fmt: str, output: str
 ) -> None:
-    from ..elliptic.amplitude_table import digit_rows, header, rows
-    from ..elliptic.proved_digits import are_few
+    from ..elliptic.amplitude_table import blocks, digit_rows, header
 
-    if digits is None and not are_few(amplitudes.count, 2):
-        blocks = rows(amplitudes, modulus)
-        parts = with_progress(blocks, amplitudes.count, 3_000_000)
+    if digits is None:
+        parts = with_progress(blocks(amplitudes, modulus), amplitudes.count, 3_000_000)
         write_table(header(modulus), parts, fmt, output)
     else:
         lines = digit_rows(amplitudes, modulus, digits)

@@ -14,7 +14,7 @@ from ..arithmetic.protocol import FunctionArithmetic, Value
 from .incomplete import e_of, f_of, in_degrees, in_radians
 from .modulus import Modulus
 from .modulus_input import ModulusInput
-from .proved_digits import Settled
+from .proved_digits import Settled, small_or_large
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -55,6 +55,17 @@ def rows(amplitudes: Points, modulus_input: ModulusInput) -> Iterator[Array]:
         return together + 0.0  # no -0
 
     return (block(phi) for phi in amplitudes.blocks())
+
+
+def blocks(
+    amplitudes: Points, modulus_input: ModulusInput
+) -> Iterator[Array | list[list[NumberText]]]:
+    """Return what `rows` does, as texts without NumPy where the table is small."""
+    return small_or_large(
+        2 * amplitudes.count,
+        lambda: list(digit_rows(amplitudes, modulus_input)),
+        lambda: rows(amplitudes, modulus_input),
+    )
 
 
 def digit_rows(

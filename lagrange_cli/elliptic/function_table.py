@@ -22,7 +22,7 @@ from .known_values import known_values, put_exact_values
 from .modulus import Modulus
 from .modulus_input import ModulusInput
 from .periods import Complex, Periods, of_quarters
-from .proved_digits import Settled
+from .proved_digits import Settled, small_or_large
 from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
 from .third_kind import ThirdKind, check_near, check_parameter, third_kind
 
@@ -209,6 +209,23 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
 
     header = list(columns(np.array(arguments.bounds())))
     return header, (block(u) for u in arguments.blocks())
+
+
+def blocks(
+    arguments: Points, request: Request
+) -> tuple[list[str], Iterator[Array | list[list[NumberText]]]]:
+    """Return what `rows` does, as texts without NumPy where the table is small."""
+    header: list[str] = []
+
+    def small() -> list[list[NumberText]]:
+        header[:], lines = digit_rows(arguments, request)
+        return list(lines)
+
+    def large() -> Iterator[Array]:
+        header[:], arrays = rows(arguments, request)
+        return arrays
+
+    return header, small_or_large(4 * len(request.families) * arguments.count, small, large)
 
 
 def digit_rows(

@@ -8,15 +8,19 @@ few digits: it has to be known from its formula.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 from functools import cache
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.correct_rounding import TooFewDigitsError, precisions
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
+
+if TYPE_CHECKING:
+    from ..arithmetic.types import Array
 
 _GUARD = 8
 """Digits that must agree beyond those that are printed."""
@@ -25,9 +29,20 @@ _FEW = 24
 """Numbers that are computed in many digits in the time that NumPy takes to load."""
 
 
-def are_few(rows: int, columns: int) -> bool:
-    """Return whether a table of doubles is so small that it is made sooner without NumPy."""
-    return rows * columns <= _FEW
+_MOST_FOR_DOUBLES = 120
+
+
+def small_or_large(
+    numbers: int, small: Callable[[], list[list[NumberText]]], large: Callable[[], Iterator[Array]]
+) -> Iterator[Array | list[list[NumberText]]]:
+    """Return blocks of a table of doubles, made without NumPy where that is sooner.
+
+    So it is with few numbers, unless something cancels and they take many digits.
+    """
+    if numbers <= _FEW:
+        with suppress(TooFewDigitsError):
+            return iter([small()])
+    return large()
 
 
 class Settled:
@@ -53,10 +68,11 @@ class Settled:
         """Return numbers written out, all digits right; texts and None as they are.
 
         `known` are the names of the numbers that may be 0 or not finite (which makes an empty
-        text).  Raises LagtopError where the digits do not settle.
+        text).  Raises LagtopError where the digits do not settle and, without `digits`,
+        TooFewDigitsError where they take longer than arrays would.
         """
         wanted = self.digits + _GUARD
-        most = 20 * wanted + 4000
+        most = _MOST_FOR_DOUBLES if self.in_doubles else 20 * wanted + 4000
         previous: dict[str, Any] | None = None
         for working in precisions(wanted + 15, most):
             ar = self.context(working)
@@ -70,6 +86,8 @@ class Settled:
             if texts == previous:
                 return {name: self._rounded(ar, value) for name, value in values.items()}
             previous = texts
+        if self.in_doubles:
+            raise TooFewDigitsError
         raise LagtopError(f"{self.digits} digits did not settle with {most} to work with")
 
     def _rounded(self, ar: ManyDigits, value: Any) -> Any:

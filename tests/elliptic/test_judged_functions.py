@@ -19,7 +19,7 @@ from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
-from lagrange_cli.elliptic.function_table import Request, digit_rows, rows
+from lagrange_cli.elliptic.function_table import Request, blocks, digit_rows, rows
 from lagrange_cli.elliptic.modulus_input import ModulusInput
 
 FAMILIES = ("theta", "zeta", "omega", "pi")
@@ -143,6 +143,15 @@ def misrounded(case: Case, judge: Judge) -> Iterator[str]:
             shown = float(cells[column])
             if abs(ball(shown) - exact.value) > ball(math.ulp(shown)) / 2:
                 yield column
+
+
+def test_what_takes_many_digits_is_left_to_arrays() -> None:
+    """Omega at 1e-300 is the difference of two numbers that agree in 300 digits."""
+    request = Request(ModulusInput("k", Fraction(4, 5)), ("omega",), Fraction(3, 10))
+    for u, is_array in (("0.5", False), ("1e-300", True)):
+        header, found = blocks(ListedPoints([Fraction(u)]), request)
+        assert header == ["u", "omega01", "omega00", "omega11"]
+        assert isinstance(next(found), np.ndarray) == is_array
 
 
 @pytest.mark.parametrize("seed", range(3))
