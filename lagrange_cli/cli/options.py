@@ -228,9 +228,7 @@ def input_options(
     with_defaults: bool = True,
 ) -> Callable[[F], F]:
     """Add the options for the inputs of a top, maybe with their defaults, --units and --rad."""
-    from ..inputs.top import Top  # not for commands without a top
-
-    defaults = Top().inputs()
+    from ..inputs.top import EXAMPLE  # not for commands without a top
 
     def decorate(command: F) -> F:
         if units:
@@ -241,7 +239,7 @@ def input_options(
         )
         for option, text in reversed(_SCENE_OPTIONS):
             name = option[2:].replace("-", "_")
-            default = defaults.get(f"{name}_deg", defaults.get(name))
+            default = EXAMPLE.get(f"{name}_deg", EXAMPLE.get(name))
             is_shown = with_defaults and default is not None
             shown = f"{text}  [default: {default:g}]" if is_shown else text
             command = click.option(option, name, type=kind, help=shown)(command)

@@ -11,7 +11,7 @@ from ..arithmetic.decimals import decimals, own_context
 from ..arithmetic.exact_cosine import Cosine
 from ..arithmetic.numbers import Number
 from ..errors import LagtopError
-from .top import EXAMPLE
+from .top import EXAMPLE, overridden
 
 EXACT_DIGITS = 1100
 """Digits of an irrational number that has to stand as a fraction: more than any output shows."""
@@ -23,7 +23,7 @@ def as_solved(given: Mapping[str, Number]) -> dict[str, Number]:
     Each is a double, the one nearest to the exact value, unless it comes from a fraction.  Raises
     LagtopError for an A_cm that is negative.
     """
-    inputs = EXAMPLE | dict(given)
+    inputs = overridden(EXAMPLE, given)
     for measured, solved, formula in (("A_cm", "A", moment), ("phidot0", "r0", spin)):
         if measured in given:
             inputs[solved] = formula(inputs)
@@ -47,8 +47,6 @@ def spin(inputs: Mapping[str, Number]) -> Number:
     """
     phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
     degrees, radians = inputs.get("theta0_deg"), inputs.get("theta0_rad")
-    if degrees is None and radians is None:
-        degrees = 30
     keeps = is_exact(*(x for x in (inputs["phidot0"], inputs["psidot0"], degrees, radians) if x))
     cosine = Cosine(*(None if x is None else Fraction(x) for x in (degrees, radians)))
     if not 0 <= (degrees or 0) <= 180 or not 0 <= (radians or 0) <= 4:

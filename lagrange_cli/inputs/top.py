@@ -31,8 +31,8 @@ _DIGITS_SHOWN = own_context(50, [])
 
 BODY = {"m": 1587.0, "A": 39032.0, "C": 17458.0, "s": 4.0, "g": 981.0}
 """The body of the worked example of Chrapan (1952), section 8, in CGS."""
-EXAMPLE = {**BODY, "r0": 50.0, "thetadot0": 0.0, "psidot0": 0.0}
-"""What stands where nothing is given, and a tilt of 30 degrees."""
+EXAMPLE = {**BODY, "r0": 50.0, "theta0_deg": 30.0, "thetadot0": 0.0, "psidot0": 0.0}
+"""What stands where nothing is given."""
 _SAME = {"A_cm": "A", "phidot0": "r0"} | dict.fromkeys(("theta0_deg", "theta0_rad"), "theta0")
 """What an input is that may be given in several ways."""
 
@@ -111,9 +111,8 @@ class Top(Values):
             from .measured import as_solved  # for few tops only
 
             given = as_solved(given)
-        if theta0_deg is None and theta0_rad is None:
-            given["theta0_deg"] = 30.0
-        super().__init__(*({**EXAMPLE, **given}.get(name) for name in self.fields))
+        inputs = overridden(EXAMPLE, given)
+        super().__init__(*map(inputs.get, self.fields))
         _check_ranges(self)
         if missing:
             from .mixed_body import warn_of  # for few tops only
