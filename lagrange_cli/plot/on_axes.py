@@ -8,7 +8,7 @@ paper is.  They raise LagtopError for a time out of range, and where there is no
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypedDict, Unpack
 
 from matplotlib.axes import Axes
 
@@ -23,55 +23,42 @@ from .style import chosen_look
 Places: TypeAlias = Axes | Sequence[Axes] | None
 
 
-def draw_sphere(
-    motion: Motion,
-    ax: Places = None,
-    *,
-    t_max: float | None = None,
-    radians: bool = False,
-    dark: bool = False,
-) -> list[Axes]:
+class OverTime(TypedDict, total=False):
+    """What can be asked of a picture over time."""
+
+    t_max: float | None
+    radians: bool
+    dark: bool
+
+
+def draw_sphere(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
     """Draw the path of the figure axis on the unit sphere, and return the axes.
 
     A colour bar for the time takes the last of their collections.
     """
-    return _drawn("sphere", motion, ax, PlotRequest(t_max=t_max, radians=radians), dark)
+    return _drawn("sphere", motion, ax, **shown)
 
 
-def draw_angles(
-    motion: Motion,
-    ax: Places = None,
-    *,
-    t_max: float | None = None,
-    radians: bool = False,
-    dark: bool = False,
-) -> list[Axes]:
+def draw_angles(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
     """Draw tilt, spin and precession over time on three axes, and return these."""
-    return _drawn("angles", motion, ax, PlotRequest(t_max=t_max, radians=radians), dark)
+    return _drawn("angles", motion, ax, **shown)
 
 
-def draw_remainders(
-    motion: Motion,
-    ax: Places = None,
-    *,
-    t_max: float | None = None,
-    radians: bool = False,
-    dark: bool = False,
-) -> list[Axes]:
+def draw_remainders(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
     """Draw spin and precession less their mean growth on two axes, and return these."""
-    return _drawn("remainders", motion, ax, PlotRequest(t_max=t_max, radians=radians), dark)
+    return _drawn("remainders", motion, ax, **shown)
 
 
 def draw_cubic(motion: Motion, ax: Places = None, *, dark: bool = False) -> list[Axes]:
     """Draw f(u) with its roots and the band of the motion, and return the axes."""
-    return _drawn("cubic", motion, ax, PlotRequest(), dark)
+    return _drawn("cubic", motion, ax, dark=dark)
 
 
 def draw_phase(
     motion: Motion, ax: Places = None, *, radians: bool = False, dark: bool = False
 ) -> list[Axes]:
     """Draw tilt rate against tilt, and the separatrix, and return the axes."""
-    return _drawn("phase", motion, ax, PlotRequest(radians=radians), dark)
+    return _drawn("phase", motion, ax, radians=radians, dark=dark)
 
 
 def draw_map(
@@ -88,14 +75,22 @@ def draw_map(
     Ranges are texts such as `r0=5:120:80`.
     """
     over = [parse_input_range(name, text) if text else None for name, text in (("x", x), ("y", y))]
-    return _drawn("map", motion, ax, PlotRequest(key=key, x=over[0], y=over[1]), dark)
+    return _drawn("map", motion, ax, key=key, x=over[0], y=over[1], dark=dark)
 
 
-def _drawn(name: str, motion: Motion, ax: Places, request: PlotRequest, dark: bool) -> list[Axes]:
+def _drawn(
+    name: str,
+    motion: Motion,
+    ax: Places,
+    *,
+    t_max: float | None = None,
+    dark: bool = False,
+    **wanted: Any,
+) -> list[Axes]:
     """Draw a kind of picture, and return the axes it is on."""
-    kind, t_max = KINDS[name], checked_span(motion, request.t_max)
+    kind, request = KINDS[name], PlotRequest(t_max=checked_span(motion, t_max), **wanted)
     places = _places(ax, kind.axes)
-    kind.draw_on(places, motion, request._replace(t_max=t_max), chosen_look(dark))
+    kind.draw_on(places, motion, request, chosen_look(dark))
     return places
 
 

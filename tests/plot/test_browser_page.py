@@ -268,6 +268,22 @@ def test_hands_and_keys_turn_the_view(browser: Browser) -> None:
     assert eye() == start
 
 
+def test_two_fingers_come_nearer(browser: Browser) -> None:
+    browser.command("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+
+    def fingers(kind: str, *places: int) -> None:
+        points = [{"x": 600 + x, "y": 400, "id": i} for i, x in enumerate(places)]
+        browser.command("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    fingers("touchStart", -40, 40)
+    fingers("touchMove", -80, 80)
+    fingers("touchEnd")
+    browser.command("Emulation.setTouchEmulationEnabled", {"enabled": False})
+    browser.settle()
+    assert browser.ask("return page.camera.zoom") == pytest.approx(2, rel=0.1)
+    assert browser.complaints() == []
+
+
 def test_every_example_is_shown(browser: Browser) -> None:
     seen = browser.ask(
         """return [...at.examples.options].map((option) => {
