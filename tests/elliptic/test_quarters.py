@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import random
 from fractions import Fraction
 from typing import Any
@@ -139,6 +140,21 @@ def test_digits_of_a_third_of_a_quarter() -> None:
     for name, text in zip(header, next(iter(texts)), strict=True):
         exact, _ = exact_values(judge, Fraction(1, 3))[name]
         assert float(abs((ball(Fraction(text)) - exact) / exact).mid()) < 5.01e-40, name
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_small_tables_of_multiples_have_the_nearest_doubles(seed: int) -> None:
+    """Without NumPy am, sn, cn, dn and the theta functions are rounded once."""
+    rng = random.Random(f"few {seed}")
+    for _ in range(4):
+        judge, request, factor = random_request(rng)
+        header, texts = digit_rows(ListedPoints([factor]), request)
+        cells = dict(zip(header, map(float, next(texts)), strict=True))
+        for name, (exact, _) in exact_values(judge, factor).items():
+            if exact.contains(0):
+                assert cells[name] == 0, name
+            else:
+                assert abs(ball(cells[name]) - exact) <= ball(math.ulp(cells[name])) / 2, name
 
 
 @pytest.mark.parametrize(
