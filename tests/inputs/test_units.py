@@ -281,5 +281,21 @@ def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> N
     units.meaning_of.cache_clear()
 
 
+def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, solved: Any) -> None:
+    rest = ["--C", "4000g*cm^2", "--s", "3cm", "--g", "9.81m/s^2"]
+    found = solved("--m", "350(2) g", "--A-cm", "5350 ± 1 % g*cm^2", *rest, "--theta0", "30(1)deg")
+    assert (found["m"], found["m_std"], found["theta0_deg_std"]) == (0.35, 0.002, 1.0)
+    slopes = 5.35e-6, 0.03**2 * 0.002  # of A by A_cm and by m
+    assert found["A_std"] == pytest.approx(math.hypot(*slopes), rel=1e-12)
+    path = tmp_path / "scene.toml"
+    path.write_text('m = "350(2) g"\nA_cm = "5350+/-1% g*cm^2"\ntheta0 = "30(1) deg"\n')
+    assert solved(path, *rest) == found
+    assert lagtop("plot", path, *rest, "-o", tmp_path / "x.svg", "angles").exit_code == 0
+    path.write_text('r0 = "50(1)"\n')
+    assert solved(path)["r0_std"] == 1
+    path.write_text('theta0 = "30(1)"\n')
+    assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: theta0 must have a unit between")
+
+
 def test_json_has_units_only_where_inputs_have(lagtop: Lagtop) -> None:
     assert "units" not in json.loads(lagtop("solve", "--format", "json").stdout)
