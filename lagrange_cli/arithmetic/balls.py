@@ -7,6 +7,7 @@ TooFewDigitsError where a decision hangs on it, and the next precision is tried.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from decimal import Decimal
@@ -51,21 +52,21 @@ class Ball:
         return f"Ball({self.arb})"
 
     def __add__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb + _plain(other))
+        return Ball(self.arb + (other.arb if isinstance(other, Ball) else other))
 
     def __mul__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb * _plain(other))
+        return Ball(self.arb * (other.arb if isinstance(other, Ball) else other))
 
     __radd__, __rmul__ = __add__, __mul__
 
     def __sub__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb - _plain(other))
+        return Ball(self.arb - (other.arb if isinstance(other, Ball) else other))
 
     def __rsub__(self, other: int) -> Ball:
         return Ball(other - self.arb)
 
     def __truediv__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb / _plain(other))
+        return Ball(self.arb / (other.arb if isinstance(other, Ball) else other))
 
     def __rtruediv__(self, other: int) -> Ball:
         return Ball(other / self.arb)
@@ -105,6 +106,18 @@ class Ball:
     def middle(self) -> Ball:
         """Return the centre of the ball, which is exact."""
         return Ball(self.arb.mid())
+
+    def radius(self) -> Ball:
+        """Return the radius of the ball, which is exact."""
+        return Ball(self.arb.rad())
+
+    def least_size(self) -> Ball:
+        """Return a number, exact, that all in the ball are at least in size."""
+        return Ball(self.arb.abs_lower())
+
+    def greatest_size(self) -> float:
+        """Return a double that all in the ball are at most in size."""
+        return math.nextafter(float(self.arb.abs_upper()), math.inf)
 
     def holds(self, other: Ball) -> bool:
         """Return whether all of another ball is within this one."""
@@ -240,6 +253,23 @@ class Balls:
     def widened(x: Ball, remainder: Callable[[], Ball]) -> Ball:
         """Return a ball that holds all numbers at most a remainder away from x."""
         return Ball(x.arb + arb(0, remainder().arb.abs_upper()))
+
+
+def near_largest_root(c2: arb, c1: arb, c0: arb, bound: arb) -> arb:
+    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, all of them real.
+
+    Laguerre's method falls to it from a bound above, three times as many digits at each step, but
+    for a double root.  The point is exact, and proves nothing.
+    """
+    x, least = bound, arb(2) ** (4 - ctx.prec)
+    for _ in range(4 * ctx.prec):
+        value, slope = ((x + c2) * x + c1) * x + c0, (3 * x + 2 * c2) * x + c1
+        curved = 4 * slope * slope - 12 * value * (3 * x + c2)
+        step = (3 * value / (slope + arb(curved.mid()).nonnegative_part().sqrt())).mid()
+        x = (x - step).mid()
+        if not step > least * abs(x):
+            break
+    return x
 
 
 @lru_cache(maxsize=16)

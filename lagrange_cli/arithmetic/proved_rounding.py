@@ -69,33 +69,49 @@ def proved(
     precision leaves a number open, `exactly` is asked: it may know it.  Raises LagtopError where
     20 000 bits do not decide.
     """
+    found = rounded(what, enclosure, rounding, digits=digits, more=more, exactly=exactly)
+    return None if found is None else about(*found)
+
+
+def rounded(
+    what: str,
+    enclosure: Callable[[int], Ball | None],
+    rounding: Callable[[Decimal | Fraction], T],
+    *,
+    digits: int = 0,
+    more: int = 0,
+    exactly: Callable[[], Fraction | None] = lambda: None,
+) -> tuple[T, Decimal | Fraction, Decimal | Fraction] | None:
+    """Return what `proved` does, with the ends of the enclosure instead of the distance to them."""
     known: Fraction | None = None
     asked = False
 
-    def rounded(bits: int) -> Proved[T] | None:
+    def attempt(bits: int) -> tuple[T, Decimal | Fraction, Decimal | Fraction] | None:
         nonlocal known, asked
         if known is not None:
-            return about(rounding(known), known)
+            return rounding(known), known, known
         try:
             ball = enclosure(bits)
-            return None if ball is None else _rounded(ball, bits, rounding)
+            return None if ball is None else _alike(ball, bits, rounding)
         except TooFewDigitsError:
             known, asked = (known if asked else exactly()), True
             raise
 
-    return decided(what, rounded, digits, more)
+    return decided(what, attempt, digits, more)
 
 
-def _rounded(ball: Ball, bits: int, rounding: Callable[[Decimal | Fraction], T]) -> Proved[T]:
-    """Return what both ends of a ball are rounded to.
+def _alike(
+    ball: Ball, bits: int, rounding: Callable[[Decimal | Fraction], T]
+) -> tuple[T, Decimal, Decimal]:
+    """Return what both ends of a ball are rounded to, and the ends.
 
-    Raises TooFewDigitsError where they differ.
+    Raises TooFewDigitsError where they are rounded differently.
     """
     low, high = ball.ends(bits // 3 + 5)
     value = rounding(low)
     if value != rounding(high):
         raise TooFewDigitsError
-    return about(value, low, high)
+    return value, low, high
 
 
 def about(value: T, *ends: Decimal | Fraction) -> Proved[T]:

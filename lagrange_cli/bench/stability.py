@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, fields
+from typing import Any
 
 from ..inputs.names import check_names
 from ..output.findings import Field, Findings, short
@@ -46,6 +47,8 @@ class StratumRow(Errors):
     dop853_failed: int | None
     worst_case: str
     """A command line that shows the worst number."""
+    proved_units: float | None
+    """The worst of the angles and the quaternion, where errors are proved bounds."""
 
 
 def _hundredths(error: float) -> str:
@@ -53,6 +56,10 @@ def _hundredths(error: float) -> str:
 
 
 FINE = "fine"
+PROVED = (
+    "enclosures in balls (Arb): every error is an upper bound that is proved; `proved` is the "
+    "worst of the angles and the quaternion"
+)
 FIELDS = [
     Field("stratum", "stratum", is_text=True, names_the_row=True),
     Field("scenes", "scenes"),
@@ -63,12 +70,14 @@ FIELDS = [
     Field("energy_eps", "energy", short),
     Field("Lz_eps", "Lz", short),
     Field("verdict", "verdict", is_text=True),
+    Field("proved_units"),
     Field("scipy_units", "scipy.special", short),
     Field("scipy_failed", "failed"),
     Field("dop853_units", "DOP853", short),
     Field("dop853_failed", "failed"),
     Field("worst_case"),
 ]
+PROVED_FIELD = Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}")
 
 
 def chosen_strata(names: Sequence[str] | None) -> list[str]:
@@ -77,18 +86,35 @@ def chosen_strata(names: Sequence[str] | None) -> list[str]:
 
 
 def run_battery(
-    strata: Sequence[str], samples: int, seed: int, steps: Steps, jobs: int = 1
+    strata: Sequence[str],
+    samples: int,
+    seed: int,
+    steps: Steps,
+    jobs: int = 1,
+    *,
+    certify: bool = False,
 ) -> Findings:
-    """Return the report on so many scenes of each stratum, judged by so many processes."""
+    """Return the report on so many scenes of each stratum, judged by so many processes.
+
+    With `certify` enclosures are the judge, and errors are proved bounds.  Raises UnavailableError
+    where these need a package that is missing.
+    """
+    if certify:
+        from . import proofs  # noqa: F401 - before any work
     cases: dict[str, list[Case]] = {name: [] for name in strata}
     scenes = [(name, seed, i) for name in strata for i in range(samples)]
-    with closing(in_order(judged, scenes, jobs)) as found:
+    with closing(in_order(proved if certify else judged, scenes, jobs)) as found:
         for name, _, _ in steps(scenes, "scenes"):
             cases[name].append(next(found))
-    stratum_rows = [stratum_row(name, of_stratum) for name, of_stratum in cases.items()]
+    stratum_rows = [
+        stratum_row(name, of_stratum, certify=certify) for name, of_stratum in cases.items()
+    ]
     agreement = max(case.agreement for of_stratum in cases.values() for case in of_stratum)
-    conditions = _conditions(samples, seed, agreement)
-    return Findings(conditions, FIELDS, stratum_rows, _conclusions(stratum_rows))
+    conditions = _conditions(samples, seed, None if certify else agreement)
+    fields_shown = FIELDS
+    if certify:
+        fields_shown = [PROVED_FIELD if x.key == PROVED_FIELD.key else x for x in FIELDS]
+    return Findings(conditions, fields_shown, stratum_rows, _conclusions(stratum_rows))
 
 
 def judged(scene: tuple[str, int, int]) -> Case:
@@ -96,7 +122,14 @@ def judged(scene: tuple[str, int, int]) -> Case:
     return judge(hard_scene(*scene, TIMES))
 
 
-def stratum_row(name: str, cases: Sequence[Case]) -> StratumRow:
+def proved(scene: tuple[str, int, int]) -> Case:
+    """Return what is proved of a scene: stratum, seed and number."""
+    from .proofs import prove
+
+    return prove(hard_scene(*scene, TIMES))
+
+
+def stratum_row(name: str, cases: Sequence[Case], *, certify: bool = False) -> StratumRow:
     """Return the worst of each error over the cases of a stratum."""
     worst = {field.name: max(getattr(x, field.name) for x in cases) for field in fields(Errors)}
     worst["worst_key"] = max(cases, key=lambda case: case.key_ulps).worst_key
@@ -113,7 +146,13 @@ def stratum_row(name: str, cases: Sequence[Case]) -> StratumRow:
         dop853_units=dop853_units,
         dop853_failed=dop853_failed,
         worst_case=worst_case.command(),
+        proved_units=_worst_units(worst) if certify else None,
     )
+
+
+def _worst_units(worst: Mapping[str, Any]) -> float:
+    units: float = max(value for name, value in worst.items() if name.endswith("_units"))
+    return units
 
 
 def worst_and_failed(errors: Sequence[float | None]) -> tuple[float | None, int | None]:
@@ -130,16 +169,23 @@ def exceeded(findings: Findings) -> bool:
     return any(row.verdict != FINE for row in findings.rows)
 
 
-def _conditions(samples: int, seed: int, agreement: float) -> dict[str, str]:
+def _conditions(samples: int, seed: int, agreement: float | None) -> dict[str, str]:
+    """Return the conditions; no `agreement` of references stands for proved bounds."""
     conditions = common_conditions() | {
         "scenes": f"{samples} per stratum, seed {seed}; each at {TIMES} times 1e-9 to 1e14 periods "
         "before or after the start, and at the doubles next to a half period on one side "
         "and to a quarter, half or whole number of periods on the other, from 1 to 1e14",
-        "reference": f"Legendre's third integral by mpmath, {DIGITS} digits; with {MORE_DIGITS} "
+        "reference": PROVED
+        if agreement is None
+        else f"Legendre's third integral by mpmath, {DIGITS} digits; with {MORE_DIGITS} "
         f"digits it differs by {agreement:.0e} units at most",
         "errors": f"worst, in units (angles, quaternion; at most {CONTRACT:g} are promised) and in "
         f"gaps between doubles (every key of the record; at most {KEY_CONTRACT:g}, the nearest)",
         "conserved": "changes of energy and Lz since the start, in eps of the sum of their terms",
+    }
+    if agreement is None:
+        return conditions
+    conditions |= {
         "peers": "scipy.special at the same times, from the roots as doubles; DOP853 on a "
         f"quaternion, angles modulo 2 pi, rtol {TIGHTEST:g}, only at {INTEGRATED_PERIODS} periods",
         "failed": f"scenes without a number, or of more than {INTEGRATOR_SECONDS:g} s to integrate",

@@ -12,6 +12,7 @@ from .options import (
     COUNT,
     FILE,
     STRATUM_NAMES,
+    certify_option,
     exclude,
     jobs_option,
     output_options,
@@ -54,6 +55,7 @@ class _ListingStrata(ExamplesFirst):
 )
 @click.option("--strata", type=STRATUM_NAMES, help="Only these, with commas between.")
 @jobs_option
+@certify_option("Errors are then upper bounds; no other methods run beside.")
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
 @click.pass_context
@@ -64,6 +66,7 @@ def command(
     seed: int,
     strata: list[str] | None,
     jobs: int | None,
+    certify: bool,
     plot: str | None,
     fmt: str,
     output: str,
@@ -86,7 +89,9 @@ def command(
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)
 
     def find() -> Findings:
-        findings = stability.run_battery(chosen, count, seed, with_steps, jobs or 1)
+        findings = stability.run_battery(
+            chosen, count, seed, with_steps, jobs or 1, certify=certify
+        )
         if plot:
             draw_stability(findings, plot)
         return findings

@@ -13,10 +13,10 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from ..arithmetic.balls import Ball, Balls, balls
+from ..arithmetic.balls import Ball, Balls, balls, near_largest_root
 from ..arithmetic.correct_rounding import TooFewDigitsError, nearest_double, text_of
 from ..arithmetic.numbers import Number
-from ..arithmetic.proved_rounding import Proved, about, decided, proved
+from ..arithmetic.proved_rounding import Proved, about, decided, proved, rounded
 from ..arithmetic.text import NumberText
 from ..errors import OutOfRangeError
 from ..inputs.top import Top
@@ -33,10 +33,10 @@ _MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate
 
 
 def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, bound: Ball) -> Ball:
-    """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0.
+    """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
-    Newton's method finds a point p near it.  If p - f(p)/f'(X) is within a ball X around p, then X
-    holds a root, and just one (Moore 1966); if f' and f'' are positive in X, they are so beyond,
+    Laguerre's method finds a point p near it.  If p - f(p)/f'(X) is within a ball X around p, then
+    X holds a root, and just one (Moore 1966); if f' and f'' are positive in X, they are so beyond,
     and no root is larger.  Raises TooFewDigitsError where these bits do not prove it.
     """
 
@@ -46,12 +46,7 @@ def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, bound: Ball) -> Ball:
     def slope(x: Ball) -> Ball:
         return (3 * x + 2 * c2) * x + c1
 
-    point, scale = bound.middle(), 0 * bound
-    for _ in range(20 * ar.bits):
-        step = (cubic(point) / slope(point)).middle()
-        if (abs(step) > 16 * ar.eps * abs(point)) is not True:
-            break
-        point = (point - step).middle()
+    point = Ball(near_largest_root(c2.arb.mid(), c1.arb.mid(), c0.arb.mid(), bound.arb.mid()))
     scale = 4 * abs(cubic(point) / slope(point)) + ar.eps * abs(point)
     around = ar.widened(point, lambda: scale)
     root = point - cubic(point) / slope(around)
@@ -144,8 +139,15 @@ class Certified:
 
         None stands where the motion has none.  Raises LagtopError where no precision tells.
         """
+        found = self.with_ends(name, digits, radians=radians)
+        return None if found is None else about(*found)
+
+    def with_ends(
+        self, name: str, digits: int | None = None, *, radians: bool = False
+    ) -> tuple[Any, Decimal | Fraction, Decimal | Fraction] | None:
+        """Return a number as `number` does, with the ends of its enclosure for the radius."""
         in_radians = radians and name.endswith("_deg")
-        return proved(
+        return rounded(
             name,
             lambda bits: self.enclosure(name, bits, radians=radians),
             rounding(name, digits),

@@ -58,14 +58,20 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
 
 
 def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
-    """Return what follows from a start on a turning point: its tilt and, for some, its cosine."""
+    """Return what follows from a start on a turning point: its tilt and, for some, its cosine.
+
+    Without torque and spin the axis goes round a great circle, and the other turning point is
+    opposite.
+    """
     facts, cosine, tilt = exact.facts, exact.cosine.rational, exact.cosine.degrees
+    opposite = facts.free and not facts.spins and not facts.steady
     keys: dict[str, Fraction] = {}
-    for end, at in (("1", starts_at_u1(exact)), ("2", starts_at_u2(exact))):
-        if at and cosine is not None:
-            keys[f"u{end}"] = cosine
-        if at and tilt is not None:
-            keys["theta_min_deg" if end == "1" else "theta_max_deg"] = tilt
+    ends = ("u1", "theta_min_deg", starts_at_u1(exact)), ("u2", "theta_max_deg", starts_at_u2(exact))
+    for (u, theta, here), (other_u, other_theta, _) in (ends, ends[::-1]):
+        if here and cosine is not None:
+            keys |= {u: cosine} | ({other_u: -cosine} if opposite else {})
+        if here and tilt is not None:
+            keys |= {theta: tilt} | ({other_theta: 180 - tilt} if opposite else {})
     if facts.at_rest and facts.regime == "no spin" and tilt is not None:
         keys["modular_angle_deg"] = 90 - tilt / 2
     return keys

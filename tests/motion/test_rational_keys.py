@@ -11,8 +11,10 @@ from fuzz_scenes import KINDS
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Motion, Top, solve
-from lagrange_cli.motion.rational_keys import rational_keys
+from lagrange_cli.motion.certified import certified
+from lagrange_cli.motion.rational_keys import known_fraction, rational_keys
 from lagrange_cli.motion.record import CANCELLING, NUMBER_KEYS
+from lagrange_cli.motion.regime import exact
 
 SMALL = Decimal("1e-50")
 SCALE_KEYS = ("r0", "psidot0", "thetadot0")
@@ -70,3 +72,21 @@ def test_zeros_are_told_and_near_misses_are_not(
     moved = solve(Top(**UNIT | inputs | {"r0": Fraction(inputs["r0"]) + Fraction("1e-100")}))
     assert rational_keys(moved.exact).get(key) != 0
     assert abs(Decimal(moved.digits(3)[key])) > 0
+
+
+@pytest.mark.parametrize(
+    ("tilt", "name"), [(35.48870519889296, "max"), (144.51129480110704, "min")]
+)
+def test_without_torque_and_spin_the_other_turning_point_is_opposite(
+    tilt: float, name: str
+) -> None:
+    """The tilt there is midway between two doubles, which no number of digits tells."""
+    start = {"m": 1, "A": 1.5, "C": 1.5, "s": 0, "g": 1, "r0": 0}
+    scene = exact(Top(**start, theta0_deg=tilt, psidot0=-2.9))
+    known = known_fraction(scene, f"theta_{name}_deg")
+    assert known == 180 - Fraction(tilt)
+    proved = certified(scene.top).number(f"theta_{name}_deg")
+    assert proved is not None
+    assert proved.value == float(known)
+    level = exact(Top(**start, theta0_deg=60, psidot0=1))
+    assert [known_fraction(level, key) for key in ("u1", "u2")] == [Fraction(1, 2), Fraction(-1, 2)]

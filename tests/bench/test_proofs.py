@@ -1,0 +1,97 @@
+"""`lagtop stability --certify`: proved bounds against the errors that the reference finds."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from conftest import Lagtop, assert_one_line
+
+from lagrange_cli import Top, solve
+from lagrange_cli.bench import battery, proofs
+from lagrange_cli.bench.hard_scenes import hard_scene
+from lagrange_cli.bench.reference import Reference, angle_units, quaternion_units
+from lagrange_cli.motion.certified import Certified
+from lagrange_cli.motion.certified_table import CertifiedTable
+
+START = {"r0": 40.0, "psidot0": 3.0, "thetadot0": 2.0}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "stratum", ["top pass", "far times", "separatrix", "units", "bottom pass", "tiny nutation"]
+)
+def test_bounds_are_the_errors_that_the_reference_finds(stratum: str) -> None:
+    """Both judges see the same scene at the same times, and share no formula."""
+    scene = hard_scene(stratum, 11, 0, 2)
+    proved, found = proofs.prove(scene), battery.judge(scene, peers=False)
+    assert proved.key_ulps == pytest.approx(found.key_ulps, abs=1e-9)
+    assert proved.key_ulps <= 0.5
+    for name in ("theta_units", "phi_units", "psi_units", "quaternion_units"):
+        assert getattr(proved, name) == pytest.approx(getattr(found, name), rel=0.01, abs=0.01)
+        assert getattr(proved, name) >= getattr(found, name) * (1 - 1e-12)
+
+
+@pytest.mark.parametrize("t", [0.3, -1e3, 1e12])
+def test_a_wrong_angle_is_seen(t: float) -> None:
+    motion = solve(Top(**START))
+    table = CertifiedTable(Certified(motion.exact), proofs.COLUMNS, radians=True)
+    values = [float(x.value) for x in table.row(Fraction(t))]
+    right = proofs.bounds_at(table, t, values)
+    assert max(right) <= 0.5
+    exact = Reference(Top(**START), 80).at(t)
+    for i in range(7):
+        wrong = [x + (1e-6 * max(1, abs(x)) if i == j else 0) for j, x in enumerate(values)]
+        bounds = proofs.bounds_at(table, t, wrong)
+        errors = *angle_units(wrong[:3], exact), quaternion_units(wrong[3:], exact)
+        assert [n for n in range(7) if bounds[n] != right[n]] == [i]
+        assert bounds[i] == pytest.approx(errors[min(i, 3)], rel=1e-3)
+    turned = [*values[:2], values[2] + 2 * math.pi, *values[3:]]
+    assert proofs.bounds_at(table, t, turned)[2] > 1e3
+    assert proofs.bounds_at(table, t, [math.nan] * 7) == [math.inf] * 7
+
+
+def test_a_key_one_double_off_is_seen() -> None:
+    motion = solve(Top(**START))
+    proved = Certified(motion.exact)
+    assert proofs.worst_key(motion, proved)[0] <= 0.5
+    motion._doubles["K"] = math.nextafter(motion.K, np.inf)
+    ulps, key = proofs.worst_key(motion, proved)
+    assert key == "K"
+    assert 0.5 < ulps < 1.5
+    motion._doubles["K"] = None
+    assert proofs.worst_key(motion, proved) == (math.inf, "K")
+
+
+def test_the_report_has_a_column_of_bounds(lagtop: Lagtop) -> None:
+    options = ("stability", "--strata", "fast", "--samples", 1, "--certify")
+    report = json.loads(lagtop(*options, "--format", "json").stdout)
+    (row,) = report["rows"]
+    units = [row[f"{name}_units"] for name in ("theta", "phi", "psi", "quaternion")]
+    assert row["proved_units"] == max(units) <= 4
+    assert row["scipy_units"] is row["dop853_units"] is None
+    assert "peers" not in report["conditions"]
+    assert "an upper bound that is proved" in report["conditions"]["reference"]
+    assert " <= " in lagtop(*options).stdout
+
+
+def test_a_broken_promise_is_told(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(battery, "CONTRACT", 1e-3)
+    result = lagtop("stability", "--strata", "fast", "--samples", 1, "--certify")
+    assert result.exit_code == 1
+    assert "Exceeded in: fast." in result.stdout
+
+
+def test_without_the_package_there_is_a_remedy(
+    lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(sys.modules["lagrange_cli.bench"], "proofs")
+    for name in ("bench.proofs", "motion.certified", "arithmetic.balls"):
+        monkeypatch.delitem(sys.modules, f"lagrange_cli.{name}")
+    monkeypatch.setitem(sys.modules, "flint", None)
+    result = lagtop("stability", "--certify", "--samples", 1)
+    assert_one_line(result, 69, "proved digits need python-flint: pip install 'lagtop[certify]'")
