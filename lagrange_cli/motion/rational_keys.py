@@ -66,7 +66,10 @@ def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
     facts, cosine, tilt = exact.facts, exact.cosine.rational, exact.cosine.degrees
     opposite = facts.free and not facts.spins and not facts.steady
     keys: dict[str, Fraction] = {}
-    ends = ("u1", "theta_min_deg", starts_at_u1(exact)), ("u2", "theta_max_deg", starts_at_u2(exact))
+    ends = (
+        ("u1", "theta_min_deg", starts_at_u1(exact)),
+        ("u2", "theta_max_deg", starts_at_u2(exact)),
+    )
     for (u, theta, here), (other_u, other_theta, _) in (ends, ends[::-1]):
         if here and cosine is not None:
             keys |= {u: cosine} | ({other_u: -cosine} if opposite else {})

@@ -110,14 +110,15 @@ def test_the_seed_and_the_samples_reach_the_battery(
 ) -> None:
     asked: list[Any] = []
 
-    def no_battery(*how: Any) -> Findings:
-        asked.append(how[:3])
+    def no_battery(*how: Any, certify: bool) -> Findings:
+        asked.append((*how[:3], certify))
         return Findings({}, stability.FIELDS, [], ["nothing"])
 
     monkeypatch.setattr(stability, "run_battery", no_battery)
-    for line in ("--seed 7 --samples 3", "--thorough", ""):
+    for line in ("--seed 7 --samples 3", "--thorough", "--certify"):
         assert lagtop("stability", "--strata", "fast", *line.split()).exit_code == 0
-    assert asked == [(["fast"], 3, 7), (["fast"], 200, 1952), (["fast"], 4, 1952)]
+    whole, few = (["fast"], 200, 1952, False), (["fast"], 4, 1952, True)
+    assert asked == [(["fast"], 3, 7, False), whole, few]
 
 
 NEAR = [0.3, -7.1]
