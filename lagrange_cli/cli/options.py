@@ -87,16 +87,6 @@ def parse_input(text: str) -> Any:
     return parse_quantity(text, parse_number)
 
 
-def parse_uncertain_input(text: str) -> Any:
-    """Return a number, one with an uncertainty, or either in a unit."""
-    if is_decimal(text.strip()):
-        return parse_number(text)
-    from ..inputs.quantity_text import parse_quantity
-    from ..inputs.uncertain import parse_uncertain
-
-    return parse_quantity(text, parse_uncertain)
-
-
 def _parse_range(text: str) -> Points:
     from ..inputs.ranges import parse_range
 
@@ -198,7 +188,6 @@ def complain(line: str) -> None:
 FILE = FileName()
 NUMBER = Parsed("number", parse_number)
 INPUT = TIME = Parsed("number", parse_input)
-UNCERTAIN = Parsed("number", parse_uncertain_input)
 COUNT = Parsed("integer", _parse_count)
 RANGE = Parsed("range", _parse_range)
 NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
@@ -250,16 +239,11 @@ def input_options(
 
 def scene_options(command: F) -> F:
     """Add the argument for a scene file and the options that override it."""
-    return _with_scene(INPUT, command)
+    return scene_argument(input_options(INPUT)(command))
 
 
-def uncertain_scene_options(command: F) -> F:
-    """Add the argument for a scene file and options that may be uncertain and override it."""
-    return _with_scene(UNCERTAIN, command)
-
-
-def _with_scene(kind: click.ParamType, command: F) -> F:  # type: ignore[type-arg]
-    command = input_options(kind)(command)
+def scene_argument(command: F) -> F:
+    """Add the argument for a scene file."""
     return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml]")(command)
 
 

@@ -21,8 +21,17 @@ from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look
 from .command import ExamplesFirst
 from .given import in_seconds
-from .options import FILE, INPUT, NUMBER, PICTURES, TIME, input_options, inputs_of, motion_of
+from .options import (
+    FILE,
+    NUMBER,
+    PICTURES,
+    TIME,
+    input_options,
+    inputs_of,
+    motion_of,
+)
 from .progress import with_progress
+from .uncertain_options import UNCERTAIN, angle_stds
 
 FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
@@ -43,13 +52,14 @@ Needs matplotlib: pip install 'lagtop[plot]'.
         lagtop plot -o top.png
         lagtop plot sample_inputs/looping-top.toml sphere -o loops.svg
         lagtop plot angles phase --r0 20 --dark -o page.pdf
+        lagtop plot angles --theta0 '30(1)' --r0 '50.0(5)' -o bands.svg
         lagtop plot map --x r0=5:120:80 --y theta0=2:178:60 --key T_nutation -o map.png
         lagtop plot sphere --view 40,15 -o from-the-side.pdf
         lagtop plot --r0 30 --animate top.gif --duration 10 --speed 0.1
     """,
 )
 @click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml] [KIND]...")
-@input_options(INPUT)
+@input_options(UNCERTAIN)
 @click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
 @click.option(
     "--key", default="mean_precession_rate", show_default=True, help="Key of the record for `map`."
@@ -150,6 +160,7 @@ def command(
         limits=ends,
         numbers=not no_numbers,
         progress=partial(with_progress, long=1000, label="tops"),
+        stds=angle_stds(found, motion),
     )
     page = Page(motion, chosen, request, chosen_look(dark), inches)
     page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))

@@ -23,9 +23,9 @@ from .options import (
     inputs_of,
     motion_of,
     output_options,
-    uncertain_scene_options,
     write_report,
 )
+from .uncertain_options import uncertain_scene_options
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -28,13 +28,13 @@ from .options import (
     jobs_option,
     motion_of,
     output_options,
-    scene_options,
 )
 from .progress import with_count, with_progress
+from .uncertain_options import angle_stds, uncertain_scene_options
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..inputs.units import System
+    from ..inputs.given import Given
     from ..motion.solve import Motion
 
 LONG, LONG_IN_DIGITS = 3_000_000, 1000
@@ -51,11 +51,12 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
         lagtop table --t-min -5 --t-max 5 --n 1e6 --rad -o angles.csv
         lagtop table --t-max 1 --columns t,axis,energy
         lagtop table --t-max 1e9 --n 3 --digits 30 --certify --format json
+        lagtop table --theta0 '30(1)' --t-max 1 --n 11
         lagtop table --tops tops.csv --t-max 1 --n 11 --jobs auto
         seq 0 0.25 2 | lagtop table --times - --format json
     """,
 )
-@scene_options
+@uncertain_scene_options
 @click.option("--t-max", type=TIME, help="Last time.  [default: one nutation period, or 1]")
 @click.option("--t-min", type=TIME, help="First time.  [default: 0]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")
@@ -107,6 +108,9 @@ def command(
     or 1 rad if that is larger, and more where an angle sweeps round next to a pole.  Spin and
     precession count on from 0 at t = 0 unless --wrap.  The times are t-min + i dt, each rounded
     once.  Where inputs have units (see lagtop solve --help) a time without one is in seconds.
+
+    Uncertain inputs (see there too) add the standard uncertainties of the angles, theta_deg_std and
+    so on, as the last columns.
     """
     from ..motion.table import DEFAULT_COLUMNS, DEFAULT_ROWS
 
@@ -134,7 +138,9 @@ def command(
     if tops is None:
         found = inputs_of(scene, rad, options)
         motion = motion_of(found, digits is not None)
-        write = _write_certified if certify else partial(_write_one, system=found.system)
+        for name, value in {"--digits": digits, "--certify": certify or None}.items():
+            exclude({name: value, "uncertain inputs": found.stds or None})
+        write = _write_certified if certify else partial(_write_one, found=found)
         write(motion, wish, digits, fmt, output)
     else:
         _write_many(tops, scene, options, wish, fmt, output)
@@ -212,7 +218,8 @@ def _write_one(
     digits: int | None,
     fmt: str,
     output: str,
-    system: System | None = None,
+    *,
+    found: Given,
 ) -> None:
     from ..motion.columns import chosen_columns
     from ..motion.table import digit_rows, rows
@@ -220,12 +227,13 @@ def _write_one(
     times, shown = wish.times(motion), {"radians": wish.radians, "wrap": wish.wrap}
     if fmt == "table" and times.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
-    header, blocks = rows(motion, times, wish.columns, **shown)
+    header, blocks = rows(motion, times, wish.columns, stds=angle_stds(found, motion), **shown)
     parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **shown)
     long = LONG if digits is None else LONG_IN_DIGITS
-    if fmt == "table" and system is not None:
-        units = [system.named(part.unit) for part in chosen_columns(wish.columns)]
-        header = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=True)]
+    if fmt == "table" and found.system is not None:
+        units = [found.system.named(part.unit) for part in chosen_columns(wish.columns)]
+        named = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
+        header = [*named, *header[len(named) :]]
     write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)
 
 
@@ -269,6 +277,7 @@ def _write_many(
         same=wish.same_times(),
         system=system,
     )
+    exclude({"--tops": tops, "uncertain inputs": given.stds or None})
     say_missing(given)
     tally = Tally()
     texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))

@@ -16,11 +16,13 @@ if TYPE_CHECKING:
 
     from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
+    from .angle_uncertainty import AngleStds
 
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256
 """Rows that settle together under --digits."""
 DEFAULT_COLUMNS = ("t", "theta", "phi", "psi")
+ANGLES = ("theta", "phi", "psi")
 
 
 def grid(
@@ -62,10 +64,12 @@ def rows(
     *,
     radians: bool = False,
     wrap: bool = False,
+    stds: AngleStds | None = None,
 ) -> tuple[list[str], Iterator[Array]]:
     """Return the header and blocks of rows; angles in degrees or radians, wrapped or not.
 
-    Raises LagtopError for an unknown column and, before the first block, for a time out of reach.
+    With `stds` the uncertainties of the angles among the columns stand last.  Raises LagtopError
+    for an unknown column and, before the first block, for a time out of reach.
     """
     import numpy as np
 
@@ -74,18 +78,23 @@ def rows(
 
     chosen, header = chosen_columns(columns), headings(columns, radians=radians)
     motion.sampler().check(times.bounds())  # none where times are read as they are needed
+    angles = [i for i, name in enumerate(ANGLES) if stds is not None and name in columns]
+    names = [f"{heading}_std" for i in angles for heading in headings([ANGLES[i]], radians=radians)]
 
     def blocks() -> Iterator[Array]:
         for t in times.blocks():
             for _, sample in samples(motion, t, chosen, wrap=wrap):
-                block = np.empty((sample.t.size, len(chosen)))
-                for column, heading, target in zip(chosen, header, block.T, strict=True):
+                block = np.empty((sample.t.size, len(chosen) + len(angles)))
+                for column, heading, target in zip(chosen, header, block.T, strict=False):
                     sample.write(column, target)
                     if heading.endswith("_deg"):
                         np.degrees(target, out=target)
+                if stds is not None:
+                    spread = stds.at(sample.t)[angles]
+                    block.T[len(chosen) :] = spread if radians else np.degrees(spread)
                 yield block
 
-    return header, blocks()
+    return [*header, *names], blocks()
 
 
 def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:

@@ -50,7 +50,8 @@ def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> 
 
 def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the picture on three axes, which share the time."""
-    places[0].set_title(TITLE)
+    bands = "" if request.stds is None else "; bands: standard uncertainty"
+    places[0].set_title(TITLE + bands)
     last = 2 if _all_is_spin(motion) else 3
     _draw_curves(places[:last], motion, request, look)
     for empty in places[last:]:
@@ -65,14 +66,18 @@ def _all_is_spin(motion: Motion) -> bool:
 def _draw_curves(axes: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw an angle on each of the axes."""
     course = angle_curves(motion, request.t_max or span(motion, 3))
+    stds = [None] * 3 if request.stds is None else request.stds.at(course.t)
     rows = [
-        ("ϑ", course.theta, None),
-        ("φ", course.phi, motion.mean_spin_rate),
-        ("ψ", course.psi, motion.mean_precession_rate),
+        ("ϑ", course.theta, None, stds[0]),
+        ("φ", course.phi, motion.mean_spin_rate, stds[1]),
+        ("ψ", course.psi, motion.mean_precession_rate, stds[2]),
     ]
-    for ax, (symbol, angle, rate), colour in zip(axes, rows, look.lines, strict=False):
+    for ax, (symbol, angle, rate, std), colour in zip(axes, rows, look.lines, strict=False):
         ax.set_ylabel(f"{symbol} ({request.angle_unit})")
         ax.plot(course.t, angle * request.per_radian, color=colour)
+        if std is not None:
+            ends = [(angle + side * std) * request.per_radian for side in (-1, 1)]
+            ax.fill_between(course.t, *ends, color=colour, alpha=0.3, linewidth=0)
         if rate is not None:
             mean = _draw_mean(ax, course.t, angle, rate, request=request, look=look)
             note = "; all is spin: there is no precession" * _all_is_spin(motion)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+    from ..motion.angle_uncertainty import AngleStds
     from ..motion.quantity import Key
 
 P = TypeVar("P")
@@ -68,6 +69,8 @@ class PlotRequest(NamedTuple):
     """Whether the numbers of the scene stand beside several pictures."""
     progress: Progress = no_progress
     """What may show the progress of a map."""
+    stds: AngleStds | None = None
+    """Uncertainties of the angles, drawn as bands."""
 
     def label(self, text: str) -> str:
         """Return a label whose unit stands between brackets, in the units of the inputs."""

@@ -7,6 +7,7 @@ import io
 import json
 import math
 import random
+from pathlib import Path
 
 import pytest
 from conftest import Lagtop
@@ -145,3 +146,45 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: object) -> None:
         file.write('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
+
+
+def test_a_table_carries_the_uncertainties_of_the_angles(lagtop: Lagtop) -> None:
+    """Columns of the table itself, an uncertainty to either side, differ by twice as much."""
+    arguments = ["--t-max", "0.6", "--n", "4", "--psidot0", "1"]
+    uncertain = ["--r0", "50.0000(2)", "--theta0", "30.0000+/-0.0001", *arguments]
+    rows = list(csv.DictReader(io.StringIO(lagtop("table", *uncertain).stdout)))
+    assert list(rows[0])[4:] == ["theta_deg_std", "phi_deg_std", "psi_deg_std"]
+    sides = [
+        [
+            list(csv.DictReader(io.StringIO(lagtop("table", *given, *arguments).stdout)))
+            for given in ([name, value - std], [name, value + std])
+        ]
+        for name, value, std in (("--r0", 50, 0.0002), ("--theta0", 30, 0.0001))
+    ]
+    for i, row in enumerate(rows):
+        for angle in ("theta_deg", "phi_deg", "psi_deg"):
+            parts = [(float(high[i][angle]) - float(low[i][angle])) / 2 for low, high in sides]
+            assert float(row[f"{angle}_std"]) == pytest.approx(math.hypot(*parts), 1e-5, 1e-12)
+
+
+def test_a_table_has_uncertainties_in_radians_and_of_chosen_angles(lagtop: Lagtop) -> None:
+    result = lagtop("table", "--theta0", "30(1)", "--columns", "t,psi,axis", "--n", 2, "--t-max", 1)
+    assert result.stdout.splitlines()[0] == "t,psi_deg,axis_x,axis_y,axis_z,psi_deg_std"
+    angles = ["--rad", "--theta0", "0.5(1)", "--columns", "theta", "--n", 2, "--t-max", 1]
+    lines = lagtop("table", *angles).stdout.splitlines()
+    assert lines[0] == "theta_rad,theta_rad_std"
+    assert float(lines[1].partition(",")[2]) == pytest.approx(0.1)
+    for other in (["--digits", 9], ["--tops", "tops.csv"], ["--certify"]):
+        refused = lagtop("table", "--theta0", "30(1)", "--t-max", 1, *other)
+        assert refused.exit_code in {2, 65}
+        assert len(refused.stderr.splitlines()) <= 2
+
+
+@pytest.mark.slow
+def test_angles_are_drawn_with_bands(lagtop: Lagtop, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    for name, tilt in (("plain", "30"), ("bands", "30(1)")):
+        path = tmp_path / f"{name}.svg"
+        assert lagtop("plot", "angles", "--theta0", tilt, "-o", path).exit_code == 0
+    plain, bands = ((tmp_path / f"{name}.svg").read_text() for name in ("plain", "bands"))
+    assert bands.count("FillBetweenPolyCollection") == 3 + plain.count("FillBetweenPolyCollection")

@@ -1,0 +1,40 @@
+"""Standard uncertainties of the angles over time, of first order by exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.types import Array
+from .angle_sensitivities import AngleDerivatives
+from .neighbourhood import PARAMETERS, by_inputs
+from .regime import Exact
+from .table import ANGLES
+
+
+class AngleStds:
+    """Uncertainties of tilt, spin and precession of a top, whose inputs are not correlated."""
+
+    def __init__(
+        self, scene: Exact, stds: Mapping[str, float], by_given: Mapping[str, Mapping[str, float]]
+    ) -> None:
+        """Take the uncertainties of the inputs as they were given; see `uncertainty.FirstOrder`."""
+        self.neighbours, solved = AngleDerivatives(scene), by_inputs(scene)
+        self.moved = np.zeros((len(stds), len(PARAMETERS)))
+        """How far one uncertainty moves each parameter."""
+        for row, (name, std) in zip(self.moved, stds.items(), strict=True):
+            for one, slope in by_given[name].items():
+                for by, factor in solved[one].items():
+                    row[PARAMETERS.index(by)] += std * slope * float(factor)
+
+    def at(self, t: Array) -> Array:
+        """Return the uncertainties in radians, of shape (3, times); NaN where there is none."""
+        with ARRAYS.working():
+            _, derivatives = self.neighbours.at(t)
+            square = np.zeros((len(ANGLES), t.size))
+            for row in self.moved:
+                used = np.flatnonzero(row)
+                square += np.einsum("p,apt->at", row[used], derivatives[:, used]) ** 2
+            return np.asarray(np.sqrt(square))
