@@ -90,19 +90,20 @@ def worst_key(motion: Motion, proofs: Certified) -> tuple[float, str]:
         if value is None or found is None:
             bounds.append((0.0 if value is found else math.inf, key))
         else:
-            bounds.append((_ulps(value, *found[1:]), key))
+            bounds.append((ulps(value, *found[1:]), key))
     return max(bounds)
 
 
-def _ulps(value: float, low: Decimal | Fraction, high: Decimal | Fraction) -> float:
+def ulps(value: float, low: Decimal | Fraction, high: Decimal | Fraction) -> float:
     """Return a bound of the distance of a double from all between two ends, in gaps there.
 
-    The gap is the one on the side of the farther end.
+    The gap is the one on the side of each end.
     """
     bounds = []
-    for end, outward in ((low, -math.inf), (high, math.inf)):
-        gap = abs(Fraction(math.nextafter(value, outward)) - Fraction(value))
-        bounds.append(math.nextafter(float(abs(Fraction(end) - Fraction(value)) / gap), math.inf))
+    for end in (Fraction(low), Fraction(high)):
+        beyond = math.nextafter(value, math.inf if end > value else -math.inf)
+        share = abs(end - Fraction(value)) / abs(Fraction(beyond) - Fraction(value))
+        bounds.append(math.nextafter(float(share), math.inf))
     return max(bounds)
 
 

@@ -67,6 +67,13 @@ def test_a_key_one_double_off_is_seen() -> None:
     assert proofs.worst_key(motion, proved) == (math.inf, "K")
 
 
+def test_a_gap_is_that_on_the_side_of_the_exact_value() -> None:
+    """Next to 1 gaps are 2^-52 above and 2^-53 below."""
+    third = Fraction(1, 3) / 2**52
+    assert proofs.ulps(1.0, 1 + third, 1 + third) == pytest.approx(1 / 3)
+    assert proofs.ulps(1.0, 1 - third, 1 - third) == pytest.approx(2 / 3)
+
+
 def test_the_report_has_a_column_of_bounds(lagtop: Lagtop) -> None:
     options = ("stability", "--strata", "fast", "--samples", 1, "--certify")
     report = json.loads(lagtop(*options, "--format", "json").stdout)
