@@ -196,6 +196,8 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     assert grid.stdout.splitlines()[1:] == [
         f"{m},{r0}," for m in (0.45359237, 0.90718474) for r0 in (2 * math.pi, 200 * math.pi)
     ]
+    even = lagtop("sweep", "--r0", "60:180:3 rpm", "--keys", "r0").stdout.split()[1:]
+    assert even == [str(2 * turns * math.pi) for turns in (1, 2, 3)]
     path = tmp_path / "tops.csv"
     path.write_text("id,m [g],theta0 [mrad],r0 [rpm]\na,350,500,480\nb,5O,500,480\n")
     rows = lagtop("sweep", path, *WORDS[2:], "--keys", "m,r0,theta0_deg,theta_min_deg", "--rad")
