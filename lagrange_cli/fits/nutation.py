@@ -27,6 +27,8 @@ _LEAST_F = 8.0
 """How many times the noise, per harmonic, a nutation must explain: what noise does by chance in the
 best of all frequencies is less.
 """
+_DIPS = 4
+"""Frequencies that are looked at closely, where what is left has a dip."""
 _AS_GOOD = 1.2
 """How much more than the least a frequency may leave that is as good: noise makes that much."""
 _EDGE = 1e-4
@@ -145,10 +147,16 @@ def _frequency(t: Array, u: Array) -> float:
     tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
     sums = np.array([left(float(x)) for x in tried])
     dips = np.flatnonzero((sums[1:-1] <= sums[:-2]) & (sums[1:-1] <= sums[2:])) + 1
-    good = dips[sums[dips] <= _AS_GOOD * sums.min()]
-    best = int(good[-1] if good.size else np.argmin(sums))  # half of it explains as much
-    around = tried[max(best - 1, 0)], tried[min(best + 1, tried.size - 1)]
-    return float(minimize_scalar(left, bounds=around, method="bounded").x)
+    deepest = dips[np.argsort(sums[dips])][:_DIPS]
+    if not deepest.size:
+        return float(tried[int(np.argmin(sums))])
+    refined = [
+        minimize_scalar(left, bounds=(tried[i - 1], tried[i + 1]), method="bounded")
+        for i in deepest.tolist()
+    ]
+    least = min(x.fun for x in refined)
+    # a half of the frequency, or a third, explains as much
+    return max(float(x.x) for x in refined if x.fun <= _AS_GOOD * least)
 
 
 def _mean_rates(recording: Recording, frequency: float) -> list[float]:

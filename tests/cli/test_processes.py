@@ -42,6 +42,8 @@ def loaded(*args: str) -> set[str]:
         ("solve --get T_nutation", set()),
         ("sweep --help", set()),
         ("compare --help", set()),
+        ("find --help", set()),
+        ("fit --help", set()),
         ("sweep --r0 1:2:3", {"numpy", "orjson"}),
         ("jacobi --k 0.8 --format json", set()),
         ("jacobi --k-prime 1e-9", {"rich"}),
