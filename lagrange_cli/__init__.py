@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .errors import LagtopError, MixedBodyWarning
+    from .fits.arrays import fit
+    from .fits.find import find
     from .inputs.given import read_scene
     from .inputs.top import Top
     from .judge.compare import compare
@@ -27,6 +29,8 @@ __all__ = [
     "__version__",
     "angle_sensitivities",
     "compare",
+    "find",
+    "fit",
     "read_scene",
     "sensitivities",
     "solve",
@@ -44,6 +48,8 @@ _MODULES = {
     "Top": "inputs.top",
     "angle_sensitivities": "motion.angle_sensitivities",
     "compare": "judge.compare",
+    "find": "fits.find",
+    "fit": "fits.arrays",
     "read_scene": "inputs.given",
     "sensitivities": "motion.sensitivities",
     "solve": "motion.solve",

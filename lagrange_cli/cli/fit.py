@@ -173,18 +173,19 @@ def command(
 def _fitted(
     groups: list[list[Recording]], known: Mapping[str, float], source: str, radians: bool
 ) -> list[Outcome]:
-    from ..fits.fit import fit
+    from ..fits.fit import fit_recordings
     from ..fits.record import outcomes
     from ..inputs.trajectory import shown_path
 
     found: list[Outcome] = []
     for group in with_steps(groups, "fits"):
-        found.extend(outcomes(fit(group, known, shown_path(source)), radians=radians))
+        found.extend(outcomes(fit_recordings(group, known, shown_path(source)), radians=radians))
     return found
 
 
 def _known(scene: str | None, fix: list[str], given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the inputs that are known, theta0 in radians.  Raises LagtopError."""
+    """Return the inputs that are known: those given, and some of the scene.  Raises LagtopError."""
+    from ..fits.known import known_inputs
     from ..inputs.given import gather
     from ..inputs.names import check_names
     from ..inputs.top import Top
@@ -197,31 +198,7 @@ def _known(scene: str | None, fix: list[str], given: Mapping[str, Any]) -> dict[
             check_names("fix", [name], [*Top.fields, "theta0"])
             raise LagtopError(f"--fix {name} must be given by an option or by --scene")
         names.append(matching[0])
-    known = {name: float(present[name]) for name in names}
-    _check(known)
-    if "A_cm" in known:
-        known["A"] = known.pop("A_cm") + known["m"] * known["s"] ** 2
-    for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
-        if key in known:
-            known["theta0"] = known.pop(key) * unit
-    return known
-
-
-def _check(known: Mapping[str, float]) -> None:
-    """Raise LagtopError for inputs that no top has, or that need others."""
-    from ..inputs.top import Top
-
-    if "phidot0" in known:
-        raise LagtopError("--phidot0 is no input of a fit: give --r0")
-    if "A_cm" in known and not {"m", "s"} <= known.keys():
-        raise LagtopError("--A-cm needs --m and --s: A = A_cm + m s^2")
-    for name in ("s", "g", "r0"):
-        if known.get(name) == 0:
-            raise LagtopError(f"--{name} must not be 0 in a fit: leave it out")
-    moment = known.get("A", known.get("A_cm", known.get("C", 1.0)))
-    others = {"m": 1.0, "s": 1.0, "g": 1.0} | ({} if "A_cm" in known else {"A": moment})
-    others |= {} if "theta0_rad" in known else {"theta0_deg": 30.0}
-    Top(**{"C": moment} | others | dict(known))  # the guards on each
+    return known_inputs({name: present[name] for name in names})
 
 
 def _in_radians(

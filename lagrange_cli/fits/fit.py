@@ -1,4 +1,4 @@
-"""`fit`: the top behind a recording, or behind several recordings of one body."""
+"""The fit: the top behind a recording, or behind several recordings of one body."""
 
 from __future__ import annotations
 
@@ -56,7 +56,9 @@ class _Case(NamedTuple):
     start: Start
 
 
-def fit(recordings: Sequence[Recording], known: Mapping[str, float], where: str = "data") -> Fit:
+def fit_recordings(
+    recordings: Sequence[Recording], known: Mapping[str, float], where: str = "data"
+) -> Fit:
     """Return the top whose motions leave least of some recordings; all are of one body.
 
     `known` are inputs by key, theta0 in radians; nothing else is taken for known.  Raises

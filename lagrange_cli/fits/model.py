@@ -6,6 +6,8 @@ The spin of a body with another rate r0 is phi + (r0 - b) t, as phi' = r0 - psi'
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
@@ -29,19 +31,7 @@ def angles_of(states: Array, t: Array) -> Array:
     `states` are of shape (tops, 5), in the order of STATE; `t` is one row of times for all, or a
     row for each.  Raises LagtopError where a state is no top.
     """
-    a, b, theta, nutation, precession = states.T
-    found = sweep_angles(
-        t,
-        m=1.0,
-        A=1.0,
-        C=1.0,
-        s=1.0,
-        g=a / 2,
-        r0=b,
-        theta0_rad=theta,
-        thetadot0=nutation,
-        psidot0=precession,
-    )
+    found = sweep_angles(t, **_inputs(*states.T))
     if wrong := [error for error in found["error"] if error]:
         raise LagtopError(str(wrong[0]))
     return np.stack([found[name] for name in ("theta", "phi", "psi")])
@@ -53,23 +43,18 @@ def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
     Angles are of shape (3, times), derivatives of shape (3, times, 5); those that do not exist are
     NaN.  Raises LagtopError where the state is no top.
     """
-    a, b, theta, nutation, precession = state.tolist()
-    top = Top(
-        m=1.0,
-        A=1.0,
-        C=1.0,
-        s=1.0,
-        g=a / 2,
-        r0=b,
-        theta0_rad=theta,
-        thetadot0=nutation,
-        psidot0=precession,
-    )
+    top = Top(**_inputs(*state.tolist()))
     with ARRAYS.working():
         angles, partials = AngleDerivatives(exact(top)).at(t)
     by = dict(zip(PARAMETERS, np.moveaxis(partials, 1, 0), strict=True))
     slopes = [by["a"], by["b"] + by["r0"], by["tilt"], by["theta_rate"], by["psi_rate"]]
     return angles, np.stack(slopes, axis=-1)
+
+
+def _inputs(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dict[str, Any]:
+    """Return the inputs of `Top` of a state, or of many."""
+    start = {"theta0_rad": theta, "thetadot0": nutation, "psidot0": precession}
+    return {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": a / 2, "r0": b, **start}
 
 
 def kept_off_the_vertical(theta: float) -> float:

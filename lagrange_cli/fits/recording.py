@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -148,30 +148,38 @@ class _Source(NamedTuple):
 
 
 def _recording(name: str, source: _Source, given: Quantities) -> Recording:
-    where = source.where
-    if len(given["t"]) < LEAST_ROWS:
-        raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {len(given['t'])}")
     kind, angles = _angles(given, source.said, source.reading.conventions)
-    if "theta" not in angles:
+    raw = Recording(name, given["t"][:, 0], 0.0, kind, angles, {})
+    return settled(replace(raw, sigma=_sigma(source, given, raw)), source.where)
+
+
+def settled(raw: Recording, where: str) -> Recording:
+    """Return a recording from its first row on, in the order of time, without empty rows.
+
+    Raises DataError for one that has too few rows, or no tilt.
+    """
+    if raw.t.size < LEAST_ROWS:
+        raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {raw.t.size}")
+    if "theta" not in raw.angles:
         raise DataError(f"{where} must have the tilt: theta, axis, quaternion or the like")
-    known = np.logical_or.reduce([np.isfinite(x) for x in angles.values()])
-    order = np.flatnonzero(known)[np.argsort(given["t"][known, 0], kind="stable")]
+    known = np.logical_or.reduce([np.isfinite(x) for x in raw.angles.values()])
+    order = np.flatnonzero(known)[np.argsort(raw.t[known], kind="stable")]
     if order.size < LEAST_ROWS:
         raise DataError(
             f"{where} must have {LEAST_ROWS} rows or more with a number, got {order.size}"
         )
-    t = given["t"][order, 0]
+    t = raw.t[order]
     if not t[-1] > t[0]:
         raise DataError(f"{where}: t must go on, got {t[0]:g} in all rows")
-    channels = Recording(name, t, 0.0, kind, angles, {}).channels
-    sigma = _sigma(source, given, channels, kind)
-    return Recording(
-        name,
-        t - t[0],
-        float(t[0]),
-        kind,
-        {key: x[order] for key, x in angles.items()},
-        {key: x[order] for key, x in sigma.items()},
+    for channel, values in raw.sigma.items():
+        if not np.all((values > 0) | np.isnan(values)):
+            raise DataError(f"{where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
+    return replace(
+        raw,
+        t=t - t[0],
+        t_start=float(t[0]),
+        angles={key: x[order] for key, x in raw.angles.items()},
+        sigma={key: x[order] for key, x in raw.sigma.items()},
     )
 
 
@@ -191,32 +199,38 @@ def _angles(
     return "angles", {}
 
 
-def _sigma(
-    source: _Source, given: Quantities, channels: Sequence[str], kind: str
-) -> dict[str, Array]:
+def _sigma(source: _Source, given: Quantities, raw: Recording) -> dict[str, Array]:
     """Return the standard deviation of each channel: of columns, or else as it was given.
 
-    Raises LagtopError where only some channels have one, or one is not positive.
+    Raises LagtopError where only some channels have one.
     """
-    found: dict[str, Array] = {}
     reading, spread = source.reading, source.spread
-    for channel in channels:
-        names = [channel] if kind == "angles" else ["attitude", "quaternion", "axis"]
+    found = spread_evenly(reading.sigma, raw)
+    for channel in raw.channels:
+        names = [channel] if raw.kind == "angles" else ["attitude", "quaternion", "axis"]
         column = next((name for name in names if name in spread), None)
         if column is not None:
             unit = spread[column]
             radians = reading.conventions.radians if unit is None else unit == "rad"
             values = given[f"{column}_std"][:, 0]
             found[channel] = values if radians else np.radians(values)
-        elif isinstance(reading.sigma, float):
-            found[channel] = np.full(len(given["t"]), reading.sigma)
-        elif reading.sigma is not None and channel in reading.sigma:
-            found[channel] = np.full(len(given["t"]), reading.sigma[channel])
-    if found and (missing := [x for x in channels if x not in found]):
+    if found and (missing := [x for x in raw.channels if x not in found]):
         raise LagtopError(
             f"sigma must be given of all angles or of none, got none of {missing[0]}", "sigma"
         )
-    for channel, values in found.items():
-        if not np.all((values > 0) | np.isnan(values)):
-            raise DataError(f"{source.where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
     return found
+
+
+def spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> dict[str, Array]:
+    """Return standard deviations that are the same in all rows, by channel.
+
+    Raises LagtopError for one of what is not there.
+    """
+    if sigma is None:
+        return {}
+    each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, float(sigma))
+    if unknown := [name for name in each if name not in raw.channels]:
+        raise LagtopError(
+            f"sigma must be of {', '.join(raw.channels)}, got {unknown[0][:60]!r}", "sigma"
+        )
+    return {name: np.full(raw.t.size, float(value)) for name, value in each.items()}

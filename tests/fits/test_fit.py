@@ -16,7 +16,7 @@ from conftest import Lagtop, assert_one_line
 from engines import Array, Body, dop853
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import Top, read_scene, solve
+from lagrange_cli import LagtopError, Top, fit, read_scene, solve
 from lagrange_cli.fits import fit as fits
 from lagrange_cli.fits.least_squares import Problem
 from lagrange_cli.fits.quality import chi2_bounds
@@ -81,7 +81,7 @@ def pulls(outcome: Outcome, top: Top) -> Array:
 
 def check(seed: int, names: tuple[str, ...]) -> Array:
     top = any_top(seed)
-    (outcome,) = outcomes(fits.fit([recorded(top, seed, names)], {}))
+    (outcome,) = outcomes(fits.fit_recordings([recorded(top, seed, names)], {}))
     low, high = chi2_bounds(outcome.fit.solution.dof)
     off = pulls(outcome, top)
     assert np.all(np.abs(off) < 4), (top, off)
@@ -113,7 +113,7 @@ def sample() -> Outcome:
     degree = math.pi / 180
     sigma = {"theta": 0.3 * degree, "psi": 0.5 * degree, "phi": degree}
     recording = read_recordings(str(SAMPLE), Reading(sigma=sigma))
-    return outcomes(fits.fit(recording, {"m": 1.587, "g": 9.81, "s": 0.04}))[0]
+    return outcomes(fits.fit_recordings(recording, {"m": 1.587, "g": 9.81, "s": 0.04}))[0]
 
 
 def test_the_recording_is_what_the_script_writes() -> None:
@@ -217,8 +217,8 @@ def test_the_axis_and_the_attitude(lagtop: Lagtop, tmp_path: Path, kind: str) ->
 def test_psi_may_count_the_other_way() -> None:
     top = any_top(4)
     recording = recorded(top, 4, ("theta", "phi", "psi"))
-    (one,) = outcomes(fits.fit([recording], {}))
-    (other,) = outcomes(fits.fit([recording.mirrored], {}))
+    (one,) = outcomes(fits.fit_recordings([recording], {}))
+    (other,) = outcomes(fits.fit_recordings([recording.mirrored], {}))
     assert one.notes() == []
     assert other.notes()[0].startswith("psi is counted the other way round")
     assert other.values["b"] == pytest.approx(one.values["b"], rel=1e-6)
@@ -229,7 +229,7 @@ def test_a_top_that_is_let_go_needs_no_precession() -> None:
     top = Top()
     recording = recorded(top, 5, ("theta",))
     known = {"psidot0": 0.0, "thetadot0": 0.0, "r0": 50.0}
-    (outcome,) = outcomes(fits.fit([recording], known))
+    (outcome,) = outcomes(fits.fit_recordings([recording], known))
     motion = solve(top)
     assert abs(outcome.values["a"] - motion.a) < 4 * outcome.deviations["a"]
     assert abs(outcome.values["b"] - motion.b) < 4 * outcome.deviations["b"]
@@ -368,7 +368,7 @@ def test_noise_alone_is_no_nutation(lagtop: Lagtop, tmp_path: Path) -> None:
         ("--fix m", 2, "--fix m must be given by an option or by --scene"),
         ("--g 0", 2, "--g must not be 0 in a fit"),
         ("--phidot0 3", 2, "--phidot0 is no input of a fit"),
-        ("--A-cm 3", 2, "--A-cm needs --m and --s"),
+        ("--A-cm 3", 2, "--A-cm must be given with m and s"),
         ("--by nothing", 2, "--by must name a column"),
         ("--together", 2, "--together needs --by"),
         ("--plot fit.gif", 2, "--plot must end in .svg or .png"),
@@ -405,3 +405,27 @@ def test_the_picture(lagtop: Lagtop, tmp_path: Path) -> None:
 )
 def test_numbers_with_their_uncertainty(value: float, deviation: float, text: str) -> None:
     assert with_uncertainty(value, deviation) == text
+
+
+def test_arrays_in_python() -> None:
+    t = np.linspace(5, 7, 120)
+    turns = motion_of(recordings.TOP, t - 5)
+    found = fit(t, quaternion=turns.as_quat(scalar_first=True), known={"theta0_deg": 41})
+    motion = solve(recordings.TOP)
+    assert found.values["a"] == pytest.approx(motion.a, rel=1e-9)
+    assert found.values["b"] == pytest.approx(motion.b, rel=1e-9)
+    assert found.values["r0"] == pytest.approx(50, rel=1e-9)
+    assert found.record()["t_start"] == 5
+    bad: list[tuple[dict[str, Any], str]] = [
+        ({"theta": [1, 2]}, "theta must have 120 rows"),
+        ({"theta": "x"}, "theta must be real numbers"),
+        ({"axis": t}, r"axis must have the shape \(n, 3\)"),
+        ({"theta": t, "axis": turns.apply([0, 0, 1])}, "fit takes angles, or an axis"),
+        ({}, "fit takes angles, or an axis, or a quaternion, got nothing"),
+        ({"theta": t, "psi": t, "known": {"mass": 1}}, "known must be among"),
+        ({"theta": t, "psi": t, "sigma": {"chi": 1}}, "sigma must be of theta, psi, got 'chi'"),
+        ({"theta": t, "psi": t, "sigma": -1}, "theta_std must be > 0, got -1"),
+    ]
+    for arguments, message in bad:
+        with pytest.raises(LagtopError, match=message):
+            fit(t, **arguments)

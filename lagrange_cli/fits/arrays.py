@@ -1,0 +1,79 @@
+"""`fit` in Python: the top behind arrays of angles, of axes or of quaternions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs import rotations
+from ..inputs.seen import ANGLES
+from .fit import fit_recordings
+from .known import known_inputs
+from .record import Outcome, outcomes
+from .recording import Recording, settled, spread_evenly
+
+
+def fit(
+    t: ArrayLike,
+    *,
+    theta: ArrayLike | None = None,
+    phi: ArrayLike | None = None,
+    psi: ArrayLike | None = None,
+    axis: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    sigma: Mapping[str, float] | float | None = None,
+    known: Mapping[str, float] | None = None,
+) -> Outcome:
+    """Return the top whose motion leaves least of a recording; its numbers are in `record()`.
+
+    Times have the shape (n,), angles too (radians, within whole turns, NaN where missing); instead
+    of them the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to space, shape
+    (n, 4).  `sigma` are standard deviations in radians, one or by channel; without it they are
+    those of what is left.  `known` are inputs by key: nothing else is taken for known.  Raises
+    LagtopError, DataError for a recording that cannot be fitted.
+    """
+    times = _numbers("t", t, ())
+    given = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
+    arrays = {
+        name: _numbers(name, x, {"axis": (3,), "quaternion": (4,)}.get(name, ()))
+        for name, x in given.items()
+        if x is not None
+    }
+    for name, x in arrays.items():
+        if len(x) != times.size:
+            raise LagtopError(f"{name} must have {times.size} rows as t has, got {len(x)}", name)
+    if not np.isfinite(times).all():
+        raise LagtopError("t must be finite numbers", "t")
+    kind, angles = _angles(arrays)
+    raw = Recording("", times, 0.0, kind, angles, {})
+    full = Recording("", times, 0.0, kind, angles, spread_evenly(sigma, raw))
+    return outcomes(fit_recordings([settled(full, "the recording")], known_inputs(known or {})))[0]
+
+
+def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return real numbers as an array of rows of this shape.  Raises LagtopError."""
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise LagtopError(f"{name} must be real numbers, got {values!r:.60}", name) from None
+    if array.shape[1:] != shape or array.ndim != 1 + len(shape):
+        wanted = ", ".join(["n", *map(str, shape)])
+        raise LagtopError(f"{name} must have the shape ({wanted}), got {array.shape}", name)
+    return array
+
+
+def _angles(arrays: Mapping[str, Array]) -> tuple[str, dict[str, Array]]:
+    """Return what is given, and the angles that are known from it.  Raises LagtopError."""
+    alone = {name: x for name, x in arrays.items() if name in ANGLES}
+    if len(arrays) != max(len(alone), 1):
+        shown = ", ".join(arrays) or "nothing"
+        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
+    if "quaternion" in arrays:
+        return "attitude", rotations.angles_of(rotations.directed(arrays["quaternion"]))
+    if "axis" in arrays:
+        return "axis", rotations.angles_of_axis(rotations.directed(arrays["axis"]))
+    return "angles", alone
