@@ -1,6 +1,7 @@
 """A headless browser for the tests of the page, and the questions they ask of it.
 
-Run as a script it prints how long frames take: `python tests/browsers.py`.
+Run as a script it prints how long frames take, and makes the picture of the README anew:
+`python tests/browsers.py`.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import ROOT
 
 Values = dict[str, Any]
 
@@ -101,6 +103,10 @@ def chromium() -> Iterator[Browser]:
         driver.quit()
 
 
+README_PICTURE = ROOT / "sample_inputs" / "images" / "view.png"
+README_FRAGMENT = "#psidot0=-4&t=0.35"
+"""The picture of the page in the README, and the scene it shows."""
+
 FRAMES = """
     const done = arguments[0];
     const { page } = window.lagtop;
@@ -124,7 +130,7 @@ FRAMES = """
 
 
 def main() -> None:
-    """Print the medians of the times that frames take, for some scenes."""
+    """Print the medians of the times that frames take, for some scenes; make the picture."""
     from lagrange_cli import Top, solve, view
 
     with chromium() as browser, tempfile.TemporaryDirectory() as folder:
@@ -134,6 +140,8 @@ def main() -> None:
             browser.open(path, fragment)
             whole, own = browser.driver.execute_async_script(FRAMES)
             print(f"{fragment:17} {whole:5.1f} ms from frame to frame, {own:4.1f} ms our own")
+        browser.open(path, README_FRAGMENT)
+        README_PICTURE.write_bytes(browser.picture())
 
 
 if __name__ == "__main__":

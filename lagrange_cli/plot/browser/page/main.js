@@ -1,6 +1,7 @@
 // The page: one scene, its motion, and all that shows it.
 
-import { Camera } from "../drawing/camera.js";
+import { onLid } from "../drawing/body.js";
+import { Camera, frameOf } from "../drawing/camera.js";
 import { curvesAt, windowOf } from "../drawing/curves.js";
 import { drawCubic } from "../drawing/cubic.js";
 import { readLook } from "../drawing/look.js";
@@ -223,4 +224,4 @@ class Page {
 
 const elements = Object.fromEntries(
   [...document.querySelectorAll("[id]")].map((element) => [element.id, element]));
-window.lagtop = { motionOf, page: new Page(elements) };
+window.lagtop = { motionOf, frameOf, onLid, page: new Page(elements) };  // for a console
