@@ -33,11 +33,12 @@ def split_unit(text: str) -> tuple[str, str]:
 
     The number part is what stands before the first letter that is not the e of an exponent; it may
     hold an uncertainty, such as `1587(2)` or `1587 +/- 0.1 %`.  A text without a digit before its
-    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end.
+    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end, so
+    that no colon and no comma follows it.
     """
     text = text.strip()
     found = _UNIT.search(text, len(_LOG) if text.startswith(_LOG) else 0)
-    if found is None or not re.search(r"\d", text[: found.start()]):
+    if found is None or set(found[0]) & {":", ","} or not re.search(r"\d", text[: found.start()]):
         return text, ""
     return text[: found.start()].rstrip(), found[0]
 

@@ -33,6 +33,8 @@ from lagrange_cli.inputs.quantity_text import Quantity, parse_quantity, split_un
         ("log:1:1e4:50 rpm", "log:1:1e4:50", "rpm"),
         ("log:1:1e4:50", "log:1:1e4:50", ""),
         ("1,2,3kg", "1,2,3", "kg"),
+        ("1kg,2kg", "1kg,2kg", ""),
+        ("0:x:2", "0:x:2", ""),
         ("nan", "nan", ""),
         ("-inf", "-inf", ""),
         ("pi/6", "pi/6", ""),
