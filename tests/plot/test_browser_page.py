@@ -371,7 +371,7 @@ def test_the_picture_is_that_of_the_readme(browser: Browser, page_file: Path) ->
     now, kept = pixels(browser.picture()), pixels(README_PICTURE.read_bytes())
     assert now.shape == kept.shape
     for name in ("space", "plots", "cubic"):
-        assert likeness(browser, name, now, kept) > 0.97, name
+        assert likeness(browser, name, now, kept) > 0.995, name
     browser.open(page_file, README_FRAGMENT.replace("0.35", "0.25"))
     assert likeness(browser, "space", pixels(browser.picture()), kept) < 0.9
     browser.open(page_file, README_FRAGMENT, dark=True)
