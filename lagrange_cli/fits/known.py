@@ -10,6 +10,7 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
 
+_INSTEAD = ("A_cm", "phidot0")
 _NOT_ZERO = ("s", "g", "r0")
 """Inputs that stand in a product, of which nothing else could be told."""
 
@@ -19,7 +20,7 @@ def known_inputs(given: Mapping[str, Any]) -> dict[str, float]:
 
     Raises LagtopError for one that no top has, that a fit cannot use, or that needs others.
     """
-    check_names("known", [*given] or ["m"], Top.fields)
+    check_names("known", [*given] or ["m"], [*Top.fields, *_INSTEAD])
     known = {name: float(x) for name, x in given.items()}
     if "phidot0" in known:
         raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
