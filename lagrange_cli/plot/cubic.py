@@ -17,10 +17,12 @@ from ..arithmetic.types import Array
 from ..motion.solve import Motion
 from .motion_facts import start_of
 from .request import PlotRequest
-from .style import Look, head, number_text, points
+from .style import Look, head, number_from_left_to_right, number_text, points
 
 NEAR = 1.5
 """The third root is shown where it is within so many widths of the band above it."""
+NARROWEST = 1e-9
+"""The least width of a window, in cosines: in a narrower one doubles would be seen as steps."""
 TOUCHING = 0.09
 """Part of the window within which the names of two roots would touch."""
 POLES = {1: "upright", -1: "hanging"}
@@ -47,8 +49,8 @@ class Cubic(NamedTuple):
     def heights(self) -> tuple[float, float]:
         """Return the range of f(u) to show: the hump over the band, and what is about as deep."""
         hump = float(self.f[self._within(self.u1)].max(initial=0.0))
-        if hump <= 0.0:
-            most = float(np.abs(self.f).max())
+        most = float(np.abs(self.f).max())
+        if hump <= 1e-3 * most:  # none that could be seen
             return -1.1 * most, 0.35 * most
         depth = -float(self.f[self._within(self.u3_in_view or self.u1)].min(initial=0.0))
         return -min(max(1.3 * depth, 0.6 * hump), 1.4 * hump), 1.3 * hump
@@ -65,9 +67,9 @@ def cubic_curve(motion: Motion) -> Cubic:
     assert motion.u2 is not None
     u1, u2, u3 = float(motion.u1), float(motion.u2), motion.u3
     band = u1 - u2
-    near = u3 is not None and u3 - u1 <= NEAR * band if band else 2.0
+    near = u3 is not None and u3 - u1 <= (NEAR * band if band else 2.0)
     right = u3 if near and u3 is not None else u1
-    width = right - u2 or 0.4
+    width = max(right - u2, NARROWEST) if right > u2 else 0.4
     u = np.linspace(u2 - 0.4 * width, right + 0.4 * width, 801)
     f = (u - u1) * (u - u2)
     if u3 is None:
@@ -106,17 +108,17 @@ def _draw_cubic(axes: Axes, motion: Motion, request: PlotRequest, look: Look) ->
     for pole, name in POLES.items():
         if cubic.u[0] <= pole <= cubic.u[-1]:
             axes.axvline(pole, color=look.quiet, lw=points(1.0), ls=(0, (4, 3)), zorder=0.5)
+            part = (pole - cubic.u[0]) / np.ptp(cubic.u)
             axes.annotate(
                 *(name, (pole, 1.0), (0, 2)),
                 xycoords=axes.get_xaxis_transform(),
                 textcoords="offset points",
-                ha="center",
+                ha="left" if part < 0.1 else "right" if part > 0.9 else "center",
                 size="small",
                 color=look.quiet,
             )
     _draw_roots(axes, cubic, look)
-    axes.ticklabel_format(axis="x", useOffset=False)
-    axes.locator_params(axis="x", nbins=6)
+    number_from_left_to_right(axes)
 
 
 def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:

@@ -34,6 +34,8 @@ FRAMES_PER_SECOND, SECONDS = 25.0, 6.0
 MOST_FRAMES_PER_SECOND, MOST_FRAMES = 60.0, 3000
 ALIASED = math.pi / 3
 """The lid repeats after 120 degrees: faster than half of it per frame, its spin cannot be seen."""
+FOOT = 0.16
+"""Height below the globe, in its radii, for the line that tells how time is shown."""
 USUAL_SIZE = 4.8, 5.0
 """Width and height in inches."""
 
@@ -153,6 +155,8 @@ class Film:
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
         limits = Limits(self.path.least, self.path.greatest)
         draw_globe(self.axes, self.view, limits, request, look)
+        low, high = self.axes.get_ylim()
+        self.axes.set_ylim(low - FOOT, high)
         self.body = PolyCollection([], zorder=2, linewidths=0.3)
         self.axes.add_collection(self.body)
         (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=2.5)

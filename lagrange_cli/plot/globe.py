@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patches import Circle
 
 from ..arithmetic.types import Array
 from .request import PlotRequest
@@ -42,9 +43,8 @@ def draw_globe(axes: Axes, view: View, limits: Limits, request: PlotRequest, loo
     """Draw outline, equator, axes of space and limiting circles; far sides dashed and paler."""
     axes.set_aspect("equal")
     axes.set_axis_off()
-    around = np.linspace(0.0, 2 * math.pi, 361)
-    axes.fill(np.cos(around), np.sin(around), facecolor=look.faint, alpha=0.55, zorder=0)
-    axes.plot(np.cos(around), np.sin(around), color=look.quiet, lw=points(1.0), zorder=1)
+    axes.add_artist(Circle((0, 0), 1, facecolor=look.faint, edgecolor="none", alpha=0.55, zorder=0))
+    axes.add_artist(Circle((0, 0), 1, fill=False, ec=look.quiet, lw=points(1.0), zorder=1))
     _draw_circle(axes, view, math.pi / 2, color=look.quiet, lw=points(0.6))
     _draw_frame(axes, view, look)
     least, greatest = limits.text(request.radians)
@@ -84,6 +84,7 @@ def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
 def _draw_frame(axes: Axes, view: View, look: Look) -> None:
     """Draw the axes of space from the sphere outwards, behind it dashed, and their names."""
     names: dict[tuple[float, float], str] = {}
+    in_front = {name for name, side in zip("xyz", view.toward, strict=True) if side >= 0}
     for name, direction in zip("xyz", np.eye(3), strict=True):
         x, y = (float(length[0]) for length in view.project(direction[None]))
         length = math.hypot(x, y)
@@ -102,7 +103,8 @@ def _draw_frame(axes: Axes, view: View, look: Look) -> None:
         else:
             names[place] = name
     for (x, y), name in names.items():
-        axes.text(x, y, name, color=look.quiet, ha="center", va="center", zorder=4)
+        layer, alpha = (4, 1.0) if math.hypot(x, y) > 1 or name in in_front else (0.5, 0.5)
+        axes.text(x, y, name, c=look.quiet, ha="center", va="center", zorder=layer, alpha=alpha)
     across, upward = np.array(list(names)).T
     axes.set(xlim=_room(across), ylim=_room(upward))
 

@@ -18,7 +18,7 @@ from ..motion.solve import Motion
 from .curves import PHASES, phase_times, refined, span
 from .motion_facts import columns_at, motion_in_words
 from .request import PlotRequest
-from .style import Look, head, mark_start, points
+from .style import Look, head, mark_start, number_from_left_to_right, points
 
 SEPARATRIX = (
     "separatrix: the way of a top that starts upright with this spin\n"
@@ -93,7 +93,6 @@ def _draw_portrait(axes: Axes, motion: Motion, request: PlotRequest, look: Look)
     axes.set(
         xlabel=f"tilt ϑ ({request.angle_unit})", ylabel=request.label("tilt rate ϑ̇ (rad/time)")
     )
-    axes.locator_params(axis="x", nbins=5)
     axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     axes.plot(portrait.theta * factor, portrait.rate, color=look.lines[0], label="this motion")
     mark_start(axes, portrait.start[0] * factor, portrait.start[1], look)
@@ -101,5 +100,5 @@ def _draw_portrait(axes: Axes, motion: Motion, request: PlotRequest, look: Look)
     both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
     dashes = {"lw": points(1.4), "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
     axes.plot(*both, color=look.lines[1], label=portrait.why, **dashes)
-    axes.ticklabel_format(axis="x", useOffset=False)
     axes.margins(0.06)
+    number_from_left_to_right(axes)

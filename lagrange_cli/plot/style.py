@@ -7,6 +7,7 @@ background.  A test simulates the three kinds of colour blindness.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
@@ -115,6 +116,18 @@ def points(length: float) -> float:
 def head(panel: FigureBase, title: str) -> None:
     """Write the title of a picture at its upper left."""
     panel.suptitle(title, x=0.012, ha="left")
+
+
+def number_from_left_to_right(axes: Axes) -> None:
+    """Write as many numbers along the horizontal axis as there is room for: few, if they are long.
+
+    They are written in full, because an offset at the corner of a picture is overlooked.
+    """
+    low, high = axes.get_xlim()
+    decimals = max(0.0, -math.log10((high - low) / 5)) if low < high else 0.0
+    count = next(n for n, most in ((6, 4), (4, 6), (3, 8), (2, math.inf)) if decimals <= most)
+    axes.ticklabel_format(axis="x", useOffset=False)
+    axes.locator_params(axis="x", nbins=count)
 
 
 def number_text(value: float) -> str:
