@@ -11,7 +11,9 @@ from scenes import EVERY_KIND as SCENES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.balls import balls
-from lagrange_cli.motion.certified import certified
+from lagrange_cli.arithmetic.correct_rounding import TooFewDigitsError
+from lagrange_cli.motion import certified as module
+from lagrange_cli.motion.certified import certified, largest_root
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 
@@ -67,3 +69,20 @@ def test_radians_and_inputs_have_radii() -> None:
 def test_a_number_beyond_doubles_is_said() -> None:
     with pytest.raises(LagtopError, match=r"within 1\.8e308"):
         certified(Top(m=1e100, s=1e100, g=1e100, A=1e-80, C=1e-80)).record()
+
+
+@pytest.mark.parametrize(("near", "proved"), [(5, True), (5.0001, True), (2, False), (1, False)])
+def test_the_root_is_proved_to_be_the_largest(
+    near: float, proved: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Start from a point next to another root of (x - 1)(x - 2)(x - 5)."""
+    ar = balls(200)
+    with ar.working():
+        c2, c1, c0, bound, point = (ar.convert(x) for x in (-8, 17, -10, 100, near))
+        assert largest_root(ar, c2, c1, c0, bound).arb.contains(5)
+        monkeypatch.setattr(module, "near_largest_root", lambda *_: point.arb)
+        if proved:
+            assert largest_root(ar, c2, c1, c0, bound).arb.contains(5)
+        else:
+            with pytest.raises(TooFewDigitsError):
+                largest_root(ar, c2, c1, c0, bound)

@@ -61,14 +61,16 @@ def test_digits_are_those_of_the_program(name: str, wrap: bool) -> None:
 
 def test_rates_are_those_of_the_judge() -> None:
     scene = UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.75, "psidot0": 0.5}
-    table = CertifiedTable(certified(Top(**scene)), ["phidot", "psidot", "u", "axis"])
+    columns = ["phidot", "psidot", "u", "axis", "quaternion"]
+    table = CertifiedTable(certified(Top(**scene)), columns)
     state = Judge(scene).at(0.375)
-    phidot, psidot, u, *axis = (x.value for x in table.row(Fraction(3, 8)))
+    phidot, psidot, u, *rest = (x.value for x in table.row(Fraction(3, 8)))
+    axis, (w, x, y, z) = rest[:3], rest[3:]
     assert phidot == float(state.phi_rate.mid())
     assert psidot == float(state.psi_rate.mid())
     assert u == pytest.approx(float(state.theta.cos().mid()), abs=1e-16)
-    assert axis[2] == u
-    assert axis[0] ** 2 + axis[1] ** 2 + u**2 == pytest.approx(1, abs=3e-16)
+    turned = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]
+    assert axis == pytest.approx(turned, abs=4e-16)
     waves = CertifiedTable(certified(Top(**scene)), ["dphi", "dpsi"], radians=True)
     remainders = Judge(scene)._raised(
         lambda motion: motion.remainders(Fraction(3, 8)), lambda _: True, 200
