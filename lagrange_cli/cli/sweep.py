@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 def _parse_values(text: str) -> Any:
     from ..inputs.quantity_text import parse_quantity
-    from ..inputs.ranges import parse_values
+    from ..inputs.ranges import parse_uncertain_values
 
-    return parse_quantity(text, parse_values)
+    return parse_quantity(text, parse_uncertain_values)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -51,6 +51,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
     examples="""
         lagtop sweep --r0 10:200:1000 --theta0 5,10,30 > tops.csv
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
+        lagtop sweep --r0 10:100:10 --m '1587(2)' --keys r0,T_nutation
         lagtop sweep tops.csv --format ndjson -o solved.ndjson
         jq -c .top log.json | lagtop sweep - --keys T_nutation,error
         lagtop sweep --r0 10:200:1e5 --jobs auto -o solved.csv
@@ -106,6 +107,9 @@ def command(
     comes from the options and the scene; other columns are carried through.  A heading may have a
     unit, as in m [g], if all have one.  A top that cannot be
     solved has its `error` in its row, and the exit code is 1.
+
+    Where inputs of all tops are uncertain (see lagtop solve --help), the standard uncertainty of
+    each number is its KEY_std, a column of its own.
 
     A folder of --parts belongs to one sweep: any number of runs, shards among them, may fill it,
     and a run that was killed is resumed by the same command.

@@ -10,7 +10,7 @@ from ..errors import AbsentError, LagtopError
 from ..inputs.names import check_names
 from ..inputs.uncertain import by_given
 from ..motion.record import NUMBER_KEYS, unit_name
-from ..motion.uncertainty import FirstOrder
+from ..motion.uncertainty import PER_RADIAN, FirstOrder, stds_of
 from ..output.findings import Field, Findings
 from ..output.uncertain_text import uncertain_text
 from .options import complain, exclude
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.solve import Motion
 
-_PER_RADIAN = 57.29577951308232
 _LONG = 300_000
 """Samples that are known to take longer than a moment."""
 
@@ -72,23 +71,6 @@ def first_order(found: Given, motion: Motion) -> FirstOrder:
     return FirstOrder(motion.top, found.stds, by_given(motion.top, found.inputs.keys()))
 
 
-def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
-    """Return `KEY_std` for every number of a record, in its units."""
-    stds = {}
-    for name, value in record.items():
-        if isinstance(value, str) or name in {"regime", "path", "remark"}:
-            continue
-        degrees = f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
-        tilt = {"theta0_deg", "theta0_rad"} & uncertain.by_given.keys()
-        key = tilt.pop() if degrees == "theta0_deg" else degrees
-        std = None if value is None else uncertain.std(key)
-        scale = 1.0
-        if key != name:  # the other unit of an angle
-            scale = 1 / _PER_RADIAN if name.endswith("_rad") else _PER_RADIAN
-        stds[f"{name}_std"] = None if std is None else std * scale
-    return stds
-
-
 def shown_with(record: Mapping[str, Any], stds: Mapping[str, float | None]) -> dict[str, Any]:
     """Return a record in which numbers are written with their uncertainties, for a table."""
     shown = dict(record)
@@ -111,7 +93,7 @@ def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
     if whole is None:
         raise AbsentError(f"no uncertainty of first order: {uncertain.sensitivities.reasons[name]}")
     given = {x: float(found.inputs[x]) for x in found.stds}
-    scale = 1 / _PER_RADIAN if key != name else 1.0
+    scale = 1 / PER_RADIAN if key != name else 1.0
     lines = [
         line._replace(sensitivity=line.sensitivity * scale, contribution=line.contribution * scale)
         for line in uncertain.budget(name, value, given)
@@ -145,7 +127,7 @@ def sampled(
     uncertain = first_order(found, motion)
     numbers = {}
     for key, value in motion.numbers().items():
-        scale = 1 / _PER_RADIAN if radians and key.endswith("_deg") else 1.0
+        scale = 1 / PER_RADIAN if radians and key.endswith("_deg") else 1.0
         if value is not None and (std := uncertain.std(key)) != 0:
             numbers[key] = value * scale, None if std is None else std * scale
 

@@ -14,6 +14,7 @@ from .block import InputArrays
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+    from .uncertain import Uncertain
 
 
 def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
@@ -43,6 +44,17 @@ def parse_values(text: str) -> Points:
     if ":" in text:
         return parse_range(text)
     return ListedPoints([parse_number(part) for part in text.split(",")])
+
+
+def parse_uncertain_values(text: str) -> Points | Uncertain:
+    """Return points, or those of one uncertain number.  Raises LagtopError."""
+    from .uncertain import Uncertain, parse_uncertain
+
+    if not set(text) & set("(±/"):
+        return parse_values(text)
+    found = parse_uncertain(text)
+    assert isinstance(found, Uncertain)
+    return Uncertain(ListedPoints([found.value]), found.std)
 
 
 class Span(NamedTuple):

@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Collection
 from fractions import Fraction
+from typing import Any
 
 from ..arithmetic.text import is_decimal, parse_number
 from ..arithmetic.values import Values
@@ -27,12 +28,15 @@ _FORMS = (
 class Uncertain(Values):
     """A number and its standard uncertainty, both exact."""
 
-    value: Fraction
+    value: Any
+    """A Fraction; in a sweep what stands for such an input of all tops."""
     std: Fraction
 
     def scaled(self, factor: Fraction) -> Uncertain:
         """Return the number in another unit."""
-        return Uncertain(self.value * factor, self.std * abs(factor))
+        value = self.value
+        value = value.scaled(factor) if hasattr(value, "scaled") else value * factor
+        return Uncertain(value, self.std * abs(factor))
 
 
 def parse_uncertain(text: str) -> Fraction | Uncertain:

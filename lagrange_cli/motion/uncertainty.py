@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..inputs.top import Top
 from .sensitivities import sensitivities
+
+PER_RADIAN = 180 / math.pi
 
 
 class Contribution(NamedTuple):
@@ -72,3 +74,20 @@ class FirstOrder:
             share = part * part / (whole * whole) if whole else None
             lines.append(Contribution(name, given[name], std, slope, part, elasticity, share))
         return sorted(lines, key=lambda line: -abs(line.contribution))
+
+
+def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
+    """Return `KEY_std` for every number of a record, in its units."""
+    stds = {}
+    for name, value in record.items():
+        if isinstance(value, str) or name in {"regime", "path", "remark"}:
+            continue
+        degrees = f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
+        tilt = {"theta0_deg", "theta0_rad"} & uncertain.by_given.keys()
+        key = tilt.pop() if degrees == "theta0_deg" else degrees
+        std = None if value is None else uncertain.std(key)
+        scale = 1.0
+        if key != name:  # the other unit of an angle
+            scale = 1 / PER_RADIAN if name.endswith("_rad") else PER_RADIAN
+        stds[f"{name}_std"] = None if std is None else std * scale
+    return stds

@@ -50,6 +50,17 @@ class Sweep(NamedTuple):
     fmt: str
     until_error: bool = False
     """Whether the rows of a part end before the first top that has an error."""
+    stds: Sequence[tuple[str, float]] = ()
+    """Standard uncertainties of inputs that all tops share, by name."""
+
+    @property
+    def computed_keys(self) -> list[str]:
+        """The keys, and after them their uncertainties."""
+        if not self.stds:
+            return list(self.keys)
+        from .uncertain_rows import std_keys
+
+        return [*self.keys, *std_keys(self.keys)]
 
     def part(self, numbered: NumberedBlock) -> Part:
         """Compute one part."""
@@ -64,7 +75,11 @@ class Sweep(NamedTuple):
             columns["error"][row] = error
         rows = slice(errors[0][0] if errors and self.until_error else given.size)
         carried = [column[rows] for column in given.carried]
-        computed = runs_of([columns[key][rows] for key in self.keys])
+        if self.stds:
+            from .uncertain_rows import std_columns
+
+            columns |= std_columns(columns, tops, given.inputs, dict(self.stds))
+        computed = runs_of([columns[key][rows] for key in self.computed_keys])
         text = block_text([*carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
 

@@ -68,7 +68,8 @@ def plan(
         shared = shared_inputs(found, varying=ranges)
         told |= {"keys": chosen, "inputs": shared | {x: str(axis) for x, axis in ranges.items()}}
         told |= {"file": None, "parts": -(-grid.size // BLOCK_ROWS)}
-        sweep = Sweep(chosen, shared, chosen, radians, fmt, until_error)
+        sweep = _sweep([], chosen, shared, found.stds, (radians, fmt, until_error))
+        told |= {"uncertainties": dict(found.stds)} if found.stds else {}
         return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told, found)
     if ranges := ranges_of(axes):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
@@ -81,15 +82,29 @@ def plan(
     if "error" not in chosen:
         chosen.append("error")
     told |= {"keys": chosen, "inputs": shared, "file": digest, "parts": None}
-    header = [*source.carried, *chosen]
-    sweep = Sweep(header, shared, chosen, radians, fmt, until_error)
+    stds = {name: std for name, std in found.stds.items() if name not in file.named}
+    told |= {"uncertainties": stds} if stds else {}
+    sweep = _sweep(source.carried, chosen, shared, stds, (radians, fmt, until_error))
     blocks = (block._replace(file=source) for block in lines)
     return Plan(sweep, enumerate(blocks), 0, told, found)
+
+
+def _sweep(
+    carried: Sequence[str],
+    keys: Sequence[str],
+    shared: Mapping[str, float],
+    stds: Mapping[str, float],
+    manner: tuple[bool, str, bool],
+) -> Sweep:
+    """Return a sweep; `manner` says whether in radians, in which format, and until what."""
+    sweep = Sweep(keys, shared, keys, *manner, stds=tuple(stds.items()))
+    return sweep._replace(header=[*carried, *sweep.computed_keys])
 
 
 def ranges_of(axes: Mapping[str, Any]) -> dict[str, Points]:
     """Return the axes that have more than one value, in units or without."""
     axes = {name: getattr(axis, "number", axis) for name, axis in axes.items()}
+    axes = {name: getattr(axis, "value", axis) for name, axis in axes.items()}  # the uncertain
     return {name: axis for name, axis in axes.items() if axis.count > 1}
 
 

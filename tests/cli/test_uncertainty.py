@@ -188,3 +188,23 @@ def test_angles_are_drawn_with_bands(lagtop: Lagtop, tmp_path: Path) -> None:
         assert lagtop("plot", "angles", "--theta0", tilt, "-o", path).exit_code == 0
     plain, bands = ((tmp_path / f"{name}.svg").read_text() for name in ("plain", "bands"))
     assert bands.count("FillBetweenPolyCollection") == 3 + plain.count("FillBetweenPolyCollection")
+
+
+def test_a_sweep_has_the_uncertainties_of_solve(lagtop: Lagtop, tmp_path: Path) -> None:
+    arguments = [*BODY, "--psidot0", "1.0(1)", "--keys", "r0,T_nutation,regime,u1"]
+    rows = list(csv.DictReader(io.StringIO(lagtop("sweep", "--r0", "40:50:2", *arguments).stdout)))
+    assert list(rows[0]) == [*arguments[-1].split(","), "r0_std", "T_nutation_std", "u1_std"]
+    alone = json.loads(
+        lagtop("solve", "--r0", 40, *BODY, "--psidot0", "1.0(1)", "--format", "json").stdout
+    )
+    for key in ("r0_std", "T_nutation_std", "u1_std"):
+        assert float(rows[0][key]) == pytest.approx(alone[key], rel=1e-14)
+    tops = tmp_path / "tops.csv"
+    tops.write_text("id,s\nfirst,4\nwrong,-1\n")
+    result = lagtop("sweep", tops, *BODY, "--keys", "T_nutation,s")
+    first, wrong = csv.DictReader(io.StringIO(result.stdout))
+    assert first["s_std"] == "0.0"
+    assert 0 < float(first["T_nutation_std"]) < 1e-3
+    assert wrong["T_nutation_std"] == ""
+    assert "must be >= 0" in wrong["error"]
+    assert lagtop("sweep", "--m", "1(2").exit_code == 2
