@@ -9,7 +9,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
-from .options import FILE, scene_options, solved
+from .options import FILE, inputs_of, motion_of, scene_options
 
 
 @click.command(
@@ -41,7 +41,8 @@ def command(
         raise LagtopError(f"a page on standard output is not {why}: give -o FILE.html")
     from ..plot.browser.document import view
 
-    page = view(solved(scene, rad, False, options))
+    found = inputs_of(scene, rad, options)
+    page = view(motion_of(found, False), found.system.named if found.system else str)
     if output:
         from ..output.write import write_bytes
 

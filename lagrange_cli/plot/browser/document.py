@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 
 from ...errors import LagtopError
 from ...inputs.top import Top
@@ -19,15 +20,17 @@ LARGEST, LEAST_TILT = 1e30, 1e-12
 """Sizes of inputs, and the least tilt (degrees) from the vertical, that the page computes with."""
 
 
-def view(motion: Motion) -> Document:
+def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     """Return the page for the browser: the top in space, its curves and its record, to be turned.
 
-    The inputs are rounded to doubles, as sliders need them.  Raises LagtopError for inputs that
-    are beyond what the page computes with.
+    `unit` names mass, len and time in the units of the inputs; without it these may be any that
+    are consistent.  The inputs are rounded to doubles, as sliders need them.  Raises LagtopError
+    for inputs that are beyond what the page computes with.
     """
     parts = {
         "style": _filled(text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
         "scene": json.dumps(page_scene(motion)),
+        "units": _units_in_words(*map(unit, ("mass", "len", "time"))),
         "script": joined_script(),
     }
     return Document(_filled(text_of("index.html"), parts))
@@ -49,6 +52,12 @@ def page_scene(motion: Motion) -> dict[str, float]:
         )
     solve(Top(**scene))  # a tilt in radians may round to the vertical, where nothing precesses
     return scene
+
+
+def _units_in_words(mass: str, length: str, time: str) -> str:
+    if mass == "mass":
+        return "in any consistent units"
+    return f"in {mass}, {length} and {time}"
 
 
 def _colours(look: Look) -> str:

@@ -60,7 +60,10 @@ class Page {
   offerExamples() {
     const all = { "This scene": this.given, ...EXAMPLES };
     this.at.examples.append(...Object.keys(all).map((name) => new Option(name)));
+    const units = this.at.units.textContent;  // of the scene that was given
     this.at.examples.addEventListener("change", () => {
+      const given = all[this.at.examples.value] === this.given;
+      this.at.units.textContent = given ? units : "in any consistent units";
       this.camera.reset();
       this.show(all[this.at.examples.value], true);
       this.clock.set(0);
