@@ -233,7 +233,7 @@ def _write(found: list[Outcome], source: str, fmt: str, output: str) -> None:
 
 
 def _write_scene(outcome: Outcome, source: str, path: str) -> None:
-    from ..fits.record import scene_text
+    from ..fits.scene import scene_text
     from ..output.write import write_bytes
 
     write_bytes(path, lambda: scene_text(outcome, source).encode())

@@ -219,18 +219,6 @@ def outcomes(found: Fit, *, radians: bool = False) -> list[Outcome]:
     return [Outcome(found, i, radians=radians) for i in range(len(found.recordings))]
 
 
-def scene_text(outcome: Outcome, source: str) -> str:
-    """Return a scene file of the motion, which every command reads."""
-    lines = [
-        f"# Found by `lagtop fit` from {' '.join(source.split())}: the start is its first row, at "
-        f"t = {outcome.recording.t_start!r}.",
-        *(f"# {text}: one of them is put in." for text in outcome.untold()),
-        *(f"# Warning: {text}." for text in outcome.warnings()),
-    ]
-    lines += [f"{name} = {value!r}" for name, value in outcome.inputs().items()]
-    return "".join(f"{line}\n" for line in lines)
-
-
 def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
     """Return the angles of the motion that was found, counted as in the recording."""
     values = outcome.values

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ..output.findings import Field, Findings
-from ..output.uncertain import with_uncertainty
+from ..output.uncertain_text import uncertain_text
 from .quality import chi2_bounds
 from .record import MEANINGS, Outcome
 
@@ -41,12 +41,12 @@ def _lines(outcome: Outcome) -> Iterator[Line]:
     name = outcome.recording.name
     for key, value, deviation in outcome.found():
         scale = outcome.scale(key)
-        text = with_uncertainty(value * scale, deviation * scale)
+        text = uncertain_text(value * scale, deviation * scale)
         yield Line(name, outcome.unit(key), text, MEANINGS[key])
     for told, deviation in outcome.products():
         single = len(told.powers) == 1
         meaning = "" if single else "not to be told apart"
-        yield Line(name, told.name, with_uncertainty(told.value, deviation), meaning)
+        yield Line(name, told.name, uncertain_text(told.value, deviation), meaning)
 
 
 def _conditions(outcomes: Sequence[Outcome], source: str) -> dict[str, str]:
