@@ -59,8 +59,8 @@ def test_the_command_writes_the_page(lagtop: Lagtop, tmp_path: Path) -> None:
 
 def test_the_page_names_the_units_of_its_inputs(lagtop: Lagtop) -> None:
     assert ">in any consistent units<" in view(solve(Top()))
-    body = ["--m", "1587 g", "--A", "39032 g cm2", "--C", "17458 g cm2", "--s", "4 cm"]
-    start = ["--g", "981 cm/s2", "--r0", "50 rad/s"]
+    body = ["--m", "1587 g", "--A", "39032 g*cm^2", "--C", "17458 g*cm^2", "--s", "4 cm"]
+    start = ["--g", "981 cm/s^2", "--r0", "50 rad/s"]
     page = lagtop("view", *body, *start, "-o", "-").stdout
     assert ">in kg, m and s<" in page
     assert '"m": 1.587' in page
