@@ -112,3 +112,43 @@ def test_mp4_needs_ffmpeg(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.Mo
         "Error: --animate FILE.mp4 needs ffmpeg on the PATH (or write FILE.gif)\n"
     )
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "asked", "pace"),
+    [
+        ("x.mp4", {}, (25.0, 150)),
+        ("x.mp4", {"fps": 30.0, "duration": 2.0}, (30.0, 60)),
+        ("x.gif", {"fps": 30.0, "duration": 3.0}, (100 / 3, 100)),  # hundredths of a second
+        ("x.mp4", {"t_max": 1.0, "speed": 0.25}, (25.0, 100)),
+        ("x.mp4", {"duration": 4.0, "speed": 0.25}, (25.0, 100)),
+    ],
+)
+def test_the_pace_of_a_film(name: str, asked: dict[str, float], pace: tuple[float, int]) -> None:
+    motion = solve(Top())
+    found = film.film_pace(motion, name, **asked)
+    assert (found.fps, found.frames) == pytest.approx(pace)
+    if "speed" in asked:
+        assert found.speed == pytest.approx(asked["speed"])
+        assert found.t_max == pytest.approx(1.0)
+    else:
+        assert found.t_max == film.film_span(motion)
+
+
+@pytest.mark.parametrize("inputs", [{}, {"r0": 1000.0}, {"theta0_deg": 150.0}, {"theta0_deg": 0.0}])
+def test_the_film_sees_the_cone_from_the_side(inputs: dict[str, float]) -> None:
+    """The axis is long on the page in the mean, and the start is not straight at the eye."""
+    motion = solve(Top(**inputs))
+    axis = axis_path(motion, film.film_span(motion)).axis
+    length = np.hypot(*view.side_view(axis).project(axis))
+    assert length.mean() > 0.75
+
+
+def test_a_film_says_what_a_second_shows_and_when_the_spin_is_too_fast() -> None:
+    for r0, fast in ((50.0, False), (400.0, True)):
+        page = Page(solve(Top(r0=r0)), ["sphere"], PlotRequest(), LIGHT)
+        with styled(LIGHT):
+            shown = film.Film(page, film.Pace(50.0, 100, 1.0))
+        (foot,) = [text.get_text() for text in shown.axes.texts if "second" in text.get_text()]
+        assert foot.startswith("1 second shows 0.5 of time t")
+        assert ("too fast" in foot) == fast

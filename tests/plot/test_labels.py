@@ -86,7 +86,7 @@ def test_the_roots_and_the_poles_of_the_cubic_are_written_where_there_is_room() 
 
 @pytest.mark.slow
 def test_the_names_on_the_globe() -> None:
-    """Those of axes do not touch, from anywhere; they are out of the way of the film's words."""
+    """Names of axes do not touch, from wherever one looks, and all of them are on the page."""
     draw, limits = np.random.default_rng(7), Limits(0.5, 1.0)
     with styled(LIGHT):
         axes = Figure(figsize=(6.4, 6.0)).add_subplot()

@@ -13,20 +13,23 @@ import oracle
 import pytest
 from conftest import ROOT
 from matplotlib.collections import LineCollection
+from matplotlib.text import Annotation
 from pictures import REGIMES, drawn, regime_motion, sample_motion
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.plot.cubic import cubic_curve
-from lagrange_cli.plot.curves import span, turn_span
+from lagrange_cli.plot.curves import span, sphere_span, turn_span
 from lagrange_cli.plot.key_map import key_map, parse_input_range
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, help_lines
+from lagrange_cli.plot.map_picture import colour_limits
 from lagrange_cli.plot.motion_facts import nutation_period
 from lagrange_cli.plot.phase import phase_portrait, separatrix
 from lagrange_cli.plot.remainders import remainder_curves
 from lagrange_cli.plot.request import PlotRequest
 from lagrange_cli.plot.sphere import axis_path
+from lagrange_cli.plot.style import number_text
 from lagrange_cli.plot.view import best_view
 
 # The registry.
@@ -318,3 +321,81 @@ def test_a_narrow_path_is_magnified() -> None:
     assert psi[-1] == pytest.approx(np.degrees(scene.angles(3 * T).psi), rel=1e-12)
     start = [float(np.asarray(x)[0]) for x in inset.lines[0].get_data()]
     assert start == [psi[0], theta[0]]
+
+
+def test_the_eye_is_where_it_was_asked_to_be() -> None:
+    """From above, x points down the page and y to the right, and z at the eye."""
+    figure = drawn(solve(Top()), ["sphere"], PlotRequest(view=(0.0, math.pi / 2)))
+    texts = [text for text in figure.axes[0].texts if text.get_text()]
+    names = {text.get_text(): text.get_position() for text in texts}
+    assert names["x"] == pytest.approx((0, -1.34), abs=1e-12)
+    assert names["y"] == pytest.approx((1.34, 0), abs=1e-12)
+    assert math.hypot(*names["z"]) < 0.2
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("r0", [50.0, 1000.0])
+def test_arrows_run_with_the_motion(sign: int, r0: float) -> None:
+    """Each points the way the axis turns about the vertical, which is that of the spin."""
+    motion = solve(Top(r0=sign * r0))
+    above = PlotRequest(view=(0.0, math.pi / 2))
+    axes = drawn(motion, ["sphere"], above).axes[0]
+    arrows = [x for x in axes.texts if isinstance(x, Annotation) and x.arrow_patch is not None]
+    assert arrows
+    for arrow in arrows:
+        (x0, y0), (x1, y1) = arrow.xyann, arrow.xy
+        assert (x0 * y1 - y0 * x1) * sign > 0
+
+
+@pytest.mark.parametrize(
+    ("inputs", "words"),
+    [
+        ({}, "cusped path"),
+        ({"theta0_deg": 0}, "sleeping, unstable"),
+        ({"theta0_deg": 0, "r0": 80}, "sleeping, stable"),
+        ({"theta0_deg": 180}, "hanging, stable"),
+    ],
+)
+def test_the_globe_says_how_the_top_moves(inputs: dict[str, float], words: str) -> None:
+    panel = drawn(solve(Top(**inputs)), ["sphere"]).subfigs[0]
+    assert panel.get_suptitle() == f"Figure axis on the unit sphere: {words}"
+
+
+def test_a_swing_in_a_plane_is_shown_once() -> None:
+    motion = solve(Top(r0=0))
+    assert sphere_span(motion) == nutation_period(motion)
+    assert sphere_span(solve(Top())) == turn_span(solve(Top()))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.25, "0.25"),
+        (1.0, "1"),
+        (1 - 2**-40, "1 − 9.1e−13"),
+        (-1 + 2**-40, "−1 + 9.1e−13"),
+        (1 + 2**-40, "1 + 9.1e−13"),
+        (-1 - 2**-40, "−1 − 9.1e−13"),
+    ],
+)
+def test_numbers_beside_one_say_by_how_much(value: float, text: str) -> None:
+    assert number_text(value) == text
+
+
+def test_a_peak_does_not_take_all_the_colours() -> None:
+    values = np.append(np.linspace(1.0, 2.0, 999), 1e6)
+    low, high = colour_limits(values)
+    assert (low, high) == pytest.approx((1.01, 1.99), abs=0.01)
+    assert colour_limits(np.full(9, 3.0)) == (1.5, 4.5)
+
+
+def test_a_map_in_radians_with_its_own_colours() -> None:
+    x, y = parse_input_range("x", "r0=20:100:4"), parse_input_range("y", "theta0=0.2:1.5:3")
+    asked = PlotRequest(x=x, y=y, radians=True, key="theta_max_rad", limits=(0.5, 2.0))
+    figure = drawn(solve(Top()), ["map"], asked)
+    axes, bar = figure.axes
+    mesh: Any = axes.collections[0]
+    exact = np.radians(solve(Top(r0=20.0, theta0_rad=0.2)).theta_max_deg or 0)
+    assert np.asarray(mesh.get_array()).reshape(3, 4)[0, 0] == pytest.approx(exact, rel=1e-14)
+    assert mesh.get_clim() == (0.5, 2.0)
+    assert (axes.get_ylabel(), bar.get_ylabel()) == ("tilt ϑ₀ (rad)", "theta_max_rad (rad)")
