@@ -26,7 +26,7 @@ from .record import NUMBER_KEYS
 from .regime import Exact, Regime, exact
 
 _NAN = Decimal("NaN")
-_SPARE, _CANCELLED = 4, Decimal("1e-20")
+_SPARE, _CANCELLED, _NOISY = 4, Decimal("1e-20"), 10**7
 _MEANS = frozenset("mean_spin_rate mean_precession_rate T_spin T_precession".split())
 _OF_THE_START = frozenset("spin_rate_start precession_rate_start".split())
 _AFTER_REST = frozenset("amplitude_deg alpha".split())
@@ -110,7 +110,24 @@ class Partials:
                 partials.append(beside[i])
             else:
                 partials.append((value.partials or none)[i])
-        return partials
+        return self._without_noise(partials, value.value)
+
+    def _without_noise(self, partials: list[Decimal], value: Decimal) -> list[Decimal]:
+        """Return derivatives, 0 where a parameter of its usual size would move the last digits."""
+        with self.near.ar.working():
+            least = abs(value) * self.near.ar.plain.eps * _NOISY
+            pairs = zip(partials, self._sizes, strict=True)
+            return [x if x.is_nan() or abs(x) * size > least else Decimal(0) for x, size in pairs]
+
+    @cached_property
+    def _sizes(self) -> list[Decimal]:
+        """How large the parameters are as a rule: rates and their squares, and a radian."""
+        state = self.near.moved
+        with self.near.ar.working():
+            rates = state.r0, state.b, state.theta_rate, state.psi_rate
+            rate = state.a.value.sqrt() + sum(abs(x.value) for x in rates)
+            radian = Decimal(1 if self.exact.top.theta0_deg is None else 60)
+            return [rate * rate, rate, rate, radian, rate, rate]
 
     def reason(self, key: str) -> str:
         """Return why a key has no derivative along some parameters."""

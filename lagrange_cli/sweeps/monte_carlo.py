@@ -74,11 +74,13 @@ def propagate(
     """Return the distributions of keys of the record, and the regimes of the samples.
 
     `numbers` has the value and the uncertainty of first order of each key.  Raises LagtopError for
-    a number of samples that is none, and where no sample is a top.
+    a number of samples or a seed that is none, and where no sample is a top.
     """
     if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
         limits = f"[{LEAST_SAMPLES}, {MOST_SAMPLES}]"
         raise LagtopError(f"samples must be in {limits}, got {samples}", "samples")
+    if seed is not None and seed < 0:
+        raise LagtopError(f"seed must be >= 0, got {seed}", "seed")
     rng = np.random.default_rng(seed)
     keys = [unit_name(key, radians=radians) for key in numbers]
     columns: dict[str, list[Array]] = {key: [] for key in keys}

@@ -120,6 +120,7 @@ def test_a_budget_adds_up(lagtop: Lagtop) -> None:
         (["--theta0", "30(1)", "--budget", "T"], "--budget must be among a, b"),
         (["--theta0", "30(1)", "--samples", "5"], "--samples must be in [100, 1000000], got 5"),
         (["--theta0", "30(1)", "--seed", "5"], "--seed is that of random tops"),
+        (["--theta0", "30(1)", "--samples", "200", "--seed", "-1"], "--seed must be >= 0, got -1"),
     ],
 )
 def test_what_does_not_go_together_is_a_line(

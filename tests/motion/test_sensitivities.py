@@ -90,6 +90,13 @@ def test_what_has_a_kink_says_so() -> None:
     assert abs(behind - ahead) > 1
 
 
+def test_what_does_not_depend_on_an_input_has_the_derivative_0() -> None:
+    """After release from rest psi'(T/2) = a/b = 2mgs/(C r0), whatever the tilt and A are."""
+    row = sensitivities(Top()).derivatives["precession_rate_half"]
+    assert row["theta0_deg"] == row["A"] == 0.0
+    assert row["m"] == pytest.approx(solve(Top()).precession_rate_half / Top().m, rel=1e-15)
+
+
 def test_an_unknown_key_or_input_is_named() -> None:
     with pytest.raises(LagtopError, match="did you mean 'T_nutation'"):
         sensitivities(Top(), ["T_nutatoin"])
