@@ -126,9 +126,10 @@ def test_examples_of_the_help_run(example: str, folder: Path) -> None:
 def test_the_examples_are_so_many() -> None:
     counts = {command.name: len(command.examples) for command in commands()}
     assert counts == {
-        **{"main": 3, "solve": 11, "table": 7, "sweep": 8, "find": 5, "compare": 5, "plot": 5},
-        **{"view": 3, "jacobi": 9, "eta": 6, "bench": 5, "stability": 4},
+        **{"main": 3, "solve": 14, "table": 8, "sweep": 9, "find": 5, "fit": 5},
+        **{"compare": 5, "plot": 7, "view": 3, "jacobi": 9, "eta": 6, "bench": 5},
+        **{"stability": 4},
     }
-    assert len(EXAMPLES) == 68 + 3
+    assert len(EXAMPLES) == 80 + 3
     lines = [line for command in commands() for line in command.examples]
     assert all(any(long in line for line in lines) for long in SHORTER)
