@@ -64,7 +64,7 @@ def _positive(value: float) -> float:
         lagtop fit sample_inputs/recording.csv --sigma theta=0.3,psi=0.5,phi=1 --m 1.587 --g 9.81
         lagtop fit sample_inputs/recording.csv --format json
         lagtop fit sample_inputs/recording.csv --g 9.81 -o fitted.toml
-        lagtop table --t-max 2 --n 200 --columns t,axis | lagtop fit - --sigma 0.1
+        lagtop table --t-max 2 --n 200 --columns t,axis | lagtop fit -
     """,
 )
 @click.argument("recording", type=FILE)

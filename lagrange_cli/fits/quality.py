@@ -13,6 +13,8 @@ _BEYOND = 0.00135
 """Probability beyond each bound of chi^2: that of three standard deviations."""
 _DEVIATIONS = 3.0
 """Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
+_ROUNDING = 1e-11
+"""Radians that are left of data without noise."""
 
 
 class Remainder(NamedTuple):
@@ -26,8 +28,8 @@ class Remainder(NamedTuple):
 
     @property
     def is_noise(self) -> bool:
-        """Whether the correlation is within three standard deviations of 0."""
-        return abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
+        """Whether the correlation is within three standard deviations of 0; roundings count too."""
+        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
 
 
 def remainder(left: list[Array]) -> Remainder:

@@ -21,6 +21,8 @@ _BODY = ("a", "b", "r0")
 FAILED = "failed"
 _FAR, _MUCH = 0.2, 3.0
 """A fit that leaves more of the tilt, over its variation and over its noise, has failed."""
+_SURE = 4.0
+"""Standard deviations from which on b is not 0."""
 MEANINGS = {
     "a": "2mgs/A (4,4)",
     "b": "C r0/A (4,5)",
@@ -156,7 +158,8 @@ class Outcome:
                     f"{left.lag1:.2f}, noise by {3 / math.sqrt(left.rows):.2f} at most"
                 )
         ratio = self.values["b"] / self.values["r0"] if self.values["r0"] else 1.0
-        if not 0 < ratio <= 2:
+        spins = abs(self.values["b"]) > _SURE * self.deviations["b"]
+        if spins and not 0 < ratio <= 2:
             found.append(f"C/A = {ratio:.3g} is that of no rigid body, 0 to 2")
         return found
 
