@@ -23,7 +23,7 @@ PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
 
 FIRST_DIGITS = 40
 _AGREED, _NOISE = Decimal("1e-22"), Decimal("1e-36")
-"""How well two precisions agree, of each derivative and beside the largest one."""
+"""How well two precisions agree, of each derivative and beside the largest one and the value."""
 
 
 class Neighbourhood(Values):
@@ -180,7 +180,7 @@ def _agree(gaps: Gaps[Dual], others: Gaps[Dual]) -> bool:
         if abs(x.value - y.value) > _AGREED * abs(x.value):
             return False
         ours, theirs = x.partials or (), y.partials or ()
-        noise = _NOISE * max(map(abs, ours), default=Decimal(0))
+        noise = _NOISE * max(map(abs, (x.value, *ours)))
         if any(abs(p - q) > _AGREED * abs(p) + noise for p, q in zip(ours, theirs, strict=True)):
             return False
     return True

@@ -26,7 +26,7 @@ from .record import NUMBER_KEYS
 from .regime import Exact, Regime, exact
 
 _NAN = Decimal("NaN")
-_SPARE, _CANCELLED, _NOISY = 4, Decimal("1e-20"), 10**7
+_SPARE, _NOISY = 4, 10**7
 _MEANS = frozenset("mean_spin_rate mean_precession_rate T_spin T_precession".split())
 _OF_THE_START = frozenset("spin_rate_start precession_rate_start".split())
 _AFTER_REST = frozenset("amplitude_deg alpha".split())
@@ -60,16 +60,17 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
     for key, row in found.items():
         if row is not None:
             with partials.near.ar.working():
-                derivatives[key] = {name: chained(row, by) for name, by in chain.items()}
+                noise = partials.near.ar.plain.eps * _NOISY
+                derivatives[key] = {name: chained(row, by, noise) for name, by in chain.items()}
     missing = (key for key, row in derivatives.items() if any(map(math.isnan, row.values())))
     reasons = {key: partials.reason(key) for key in missing}
     return Sensitivities(top, tuple(chain), derivatives, reasons)
 
 
-def chained(partials: list[Decimal], by: dict[str, Fraction]) -> float:
+def chained(partials: list[Decimal], by: dict[str, Fraction], noise: Decimal) -> float:
     """Return the derivative by an input, from those by the parameters that hang on it.
 
-    What is left of parts that cancel is 0.
+    What is left of parts that cancel is 0 below the `noise`, relative to them.
     """
     terms = [
         partial * by[name].numerator / by[name].denominator
@@ -77,7 +78,7 @@ def chained(partials: list[Decimal], by: dict[str, Fraction]) -> float:
         if name in by
     ]
     total, size = sum(terms, Decimal(0)), sum(map(abs, terms), Decimal(0))
-    cancelled = size.is_finite() and abs(total) <= _CANCELLED * size
+    cancelled = size.is_finite() and abs(total) <= noise * size
     return 0.0 if cancelled else float(total)
 
 

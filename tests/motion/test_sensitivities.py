@@ -90,6 +90,16 @@ def test_what_has_a_kink_says_so() -> None:
     assert abs(behind - ahead) > 1
 
 
+def test_a_pendulum_that_turns_over_has_derivatives() -> None:
+    """The axis passes over both poles, where the judge of the others decides nothing."""
+    top = Top(**UNIT | {"r0": 0, "theta0_deg": 160, "thetadot0": 3})
+    found = sensitivities(top).derivatives
+    ahead, behind = (solve(top.replace(thetadot0=3 + side * 1e-5)).T_nutation for side in (1, -1))
+    assert found["T_nutation"]["thetadot0"] == pytest.approx((ahead - behind) / 2e-5, rel=1e-8)
+    assert found["theta_max_deg"]["m"] == 0.0
+    assert math.isnan(found["mean_spin_rate"]["r0"])
+
+
 def test_what_does_not_depend_on_an_input_has_the_derivative_0() -> None:
     """After release from rest psi'(T/2) = a/b = 2mgs/(C r0), whatever the tilt and A are."""
     row = sensitivities(Top()).derivatives["precession_rate_half"]
