@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_UP, Decimal
+from decimal import ROUND_UP, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
@@ -119,15 +119,13 @@ def about(value: T, *ends: Decimal | Fraction) -> Proved[T]:
 
     The distance is rounded up to two digits, and so far that the double that is read is no less.
     """
-    printed = Decimal(value)
-    away = max(abs(_OUTWARDS.subtract(_as_decimal(end, printed), printed)) for end in ends)
+    away = max(distance(end, value) for end in ends)
     return Proved(value, text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec))
 
 
-def _as_decimal(end: Decimal | Fraction, printed: Decimal) -> Decimal:
-    """Return an end of an enclosure, a fraction rounded away from what is printed."""
+def distance(end: Decimal | Fraction, value: float | NumberText) -> Decimal:
+    """Return the distance of two numbers in 20 digits, rounded up."""
     if isinstance(end, Decimal):
-        return end
-    context = own_context(1200, [])
-    context.rounding = ROUND_CEILING if end > printed else ROUND_FLOOR
-    return context.divide(Decimal(end.numerator), Decimal(end.denominator))
+        return _OUTWARDS.subtract(end, Decimal(value)).copy_abs()
+    away = abs(end - Fraction(value))
+    return _OUTWARDS.divide(Decimal(away.numerator), Decimal(away.denominator))

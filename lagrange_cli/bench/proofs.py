@@ -17,7 +17,7 @@ import mpmath
 from ..arithmetic.balls import Ball
 from ..arithmetic.correct_rounding import TooFewDigitsError
 from ..arithmetic.points import ListedPoints
-from ..arithmetic.proved_rounding import decided
+from ..arithmetic.proved_rounding import decided, distance
 from ..inputs.top import Top
 from ..motion.certified import Certified
 from ..motion.certified_table import BallSample, CertifiedTable
@@ -100,10 +100,10 @@ def ulps(value: float, low: Decimal | Fraction, high: Decimal | Fraction) -> flo
     The gap is the one on the side of each end.
     """
     bounds = []
-    for end in (Fraction(low), Fraction(high)):
+    for end in (low, high):
         beyond = math.nextafter(value, math.inf if end > value else -math.inf)
-        share = abs(end - Fraction(value)) / abs(Fraction(beyond) - Fraction(value))
-        bounds.append(math.nextafter(float(share), math.inf))
+        share = float(distance(end, value)) / abs(beyond - value)
+        bounds.append(share * (1 + 2.0**-50))  # two roundings
     return max(bounds)
 
 

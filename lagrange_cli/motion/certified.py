@@ -123,10 +123,12 @@ class Certified:
         if name in self.kind_class.lacks:
             return None
         kind = self.kind(bits)
-        rate = _MEAN_RATES.get(name)
-        if rate is not None and known_fraction(self.exact, rate) == 0:
-            return None
-        value: Ball | None = getattr(source_of(name, kind, self.exact), name)
+        try:
+            value: Ball | None = getattr(source_of(name, kind, self.exact), name)
+        except TooFewDigitsError:
+            if name in _MEAN_RATES and known_fraction(self.exact, _MEAN_RATES[name]) == 0:
+                return None
+            raise
         if value is None or not (radians and name.endswith("_deg")):
             return value
         with kind.ar.working():

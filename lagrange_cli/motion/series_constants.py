@@ -109,7 +109,7 @@ def nutating_spinor(motion: Nutating[R]) -> Spinor[R]:
     ar: Any = motion.ar
     with ar.working():
         constants = theta_constants(motion, periods_since_top(motion), _direction(motion))
-        terms = 4 + math.isqrt(int(ar.digits * math.log(10) / math.pi))  # nome <= exp(-pi)
+        terms = 2 + math.isqrt(int(ar.digits * math.log(10) / math.pi))  # nome <= exp(-pi)
         series = theta_series(ar, constants, terms)
 
     def position(t: R) -> tuple[R, R, R, R, R]:
