@@ -32,7 +32,7 @@ PIECES = 160
 """Steps of the colour along a path."""
 
 
-ARROWS = 0.12, 0.45, 0.8
+ARROWS = 0.1, 0.28, 0.46, 0.64, 0.82
 """Parts of the length of a path at which an arrowhead shows which way it is run."""
 
 USUAL_NODS = 6
