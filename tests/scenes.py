@@ -81,6 +81,7 @@ EVERY_KIND: dict[str, dict[str, Any]] = {
     "over the bottom": UNIT | {"theta0_deg": 60, "psidot0": -2, "r0": 1, "thetadot0": 0.7},
     "pendulum": UNIT | {"theta0_deg": 60, "r0": 0},
     "whirling": UNIT | {"theta0_deg": 60, "r0": 0, "thetadot0": -3},
+    "over both poles, level": UNIT | {"theta0_deg": 90, "r0": 0, "thetadot0": -2, "g": 1e-11},
     "from the upper pole": UNIT | {"theta0_deg": 0, "r0": 1, "thetadot0": 1},
     "from the lower pole": UNIT | {"theta0_deg": 180, "r0": 1, "thetadot0": -1},
     "cusp": UNIT | {"theta0_deg": 60, "r0": 2, "psidot0": 0.5, "thetadot0": 0.75},

@@ -47,7 +47,7 @@ def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, bound: Ball) -> Ball:
         return (3 * x + 2 * c2) * x + c1
 
     point = Ball(near_largest_root(c2.arb.mid(), c1.arb.mid(), c0.arb.mid(), bound.arb.mid()))
-    scale = 4 * abs(cubic(point) / slope(point)) + ar.eps * abs(point)
+    scale = 4 * abs(cubic(point) / slope(point)) + 16 * ar.eps * abs(point)
     around = ar.widened(point, lambda: scale)
     root = point - cubic(point) / slope(around)
     if not (around.holds(root) and slope(around) > 0 and 3 * around + c2 > 0):
