@@ -104,7 +104,7 @@ def command(
     All inputs or none may have units (pip install 'lagtop[units]'); the output is then in SI, or in
     --units cgs, and JSON names them.
 
-    An input may be uncertain: '1587(2)', '1587+/-2', '1587±2' or '1587 +/- 0.1 %'.  Then numbers
+    An input may be uncertain: '1587(2)', '1587+/-2' or '1587 +/- 0.1 %'.  Then numbers
     are shown with their standard uncertainties, of first order by exact derivatives; JSON and CSV
     have them as KEY_std after the record.
     """
@@ -118,7 +118,9 @@ def command(
     )
     if keys is not None:
         exclude({"--get": keys, "--format": fmt if given("fmt") else None})
-        values = list(dict.fromkeys(key.removesuffix("_std") for key in keys))
+        values = [key.removesuffix("_std") for key in keys]
+        if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
+            values = list(dict.fromkeys(values))
         known = record_keys(radians=rad)
         check_names("get", values, known if set(values) <= {*known} else all_keys(radians=rad))
     if seed is not None and samples is None:
