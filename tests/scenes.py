@@ -81,7 +81,10 @@ EVERY_KIND: dict[str, dict[str, Any]] = {
     "over the bottom": UNIT | {"theta0_deg": 60, "psidot0": -2, "r0": 1, "thetadot0": 0.7},
     "pendulum": UNIT | {"theta0_deg": 60, "r0": 0},
     "whirling": UNIT | {"theta0_deg": 60, "r0": 0, "thetadot0": -3},
-    "over both poles, level": UNIT | {"theta0_deg": 90, "r0": 0, "thetadot0": -2, "g": 1e-11},
+    "over both poles, level": {
+        **{"m": 1, "A": 0.768156916037697, "C": 1.536313832075394, "s": 1},
+        **{"g": 9.568216420867499e-12, "r0": 0, "theta0_deg": 90, "thetadot0": -1.0977044923273465},
+    },
     "from the upper pole": UNIT | {"theta0_deg": 0, "r0": 1, "thetadot0": 1},
     "from the lower pole": UNIT | {"theta0_deg": 180, "r0": 1, "thetadot0": -1},
     "cusp": UNIT | {"theta0_deg": 60, "r0": 2, "psidot0": 0.5, "thetadot0": 0.75},
