@@ -17,8 +17,13 @@ from scipy.integrate import solve_ivp
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.fits.body import INPUTS, completed, told_of
+from lagrange_cli.fits.conditions import read_conditions
 from lagrange_cli.fits.find import find
 from lagrange_cli.fits.invert import invert
+from lagrange_cli.fits.roots import roots
+from lagrange_cli.fits.search import Search
+from lagrange_cli.fits.slopes import number_slopes
+from lagrange_cli.inputs.ranges import parse_span
 
 
 @pytest.mark.parametrize(
@@ -217,3 +222,29 @@ def test_what_cannot_be_told_apart_is_named() -> None:
     assert names == ["C*r0", "m*s"]
     names = [x.name for x in told_of({"a": 100.0, "b": 20.0, "r0": 50.0}, {"g": 9.81, "m": 1.5})]
     assert names == ["C/A", "r0", "s/A"]
+
+
+@pytest.mark.parametrize("off", [-12, 12])
+def test_the_last_bits_are_walked(monkeypatch: pytest.MonkeyPatch, off: int) -> None:
+    exact = math.sqrt(2)
+    wrong = exact + off * math.ulp(exact)
+    monkeypatch.setattr("scipy.optimize.brentq", lambda *_, **__: wrong)
+    x = np.array([1.0, 2.0])
+    assert roots(lambda at: at - exact, x, x - exact) == [exact]
+    assert roots(lambda at: exact - at, x, exact - x) == [exact]
+
+
+@pytest.mark.parametrize("radians", [False, True])
+@pytest.mark.parametrize("key", ["T_nutation", "theta_max", "phi_half"])
+def test_slopes_are_those_of_the_numbers(key: str, radians: bool) -> None:
+    conditions = read_conditions([f"{key}=1", "mean_spin_rate=1"], radians=radians)
+    tilt = ("theta0_rad", "1:2") if radians else ("theta0_deg", "60:80")
+    spans = {"r0": parse_span("30:60"), tilt[0]: parse_span(tilt[1])}
+    fixed = {"m": 1587.0, "A": 39032.0, "C": 17458.0, "s": 4.0, "g": 981.0, "psidot0": 3.0}
+    search = Search(fixed, spans, conditions, radians)
+    point = np.array([45.0, 1.3 if radians else 70.0])
+    slopes = number_slopes(search, point)
+    for i, step in enumerate((1e-4, 1e-5)):
+        shift = np.eye(2)[i] * step
+        change = search.swept(np.stack([point + shift, point - shift]))
+        assert slopes[:, i] == pytest.approx((change[0] - change[1]) / (2 * step), rel=1e-5)
