@@ -10,6 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ..arithmetic.exact_cosine import Polynomial, U
+from .half_rates import vanishing_half_rates
 from .record import NUMBER_KEYS
 from .regime import Exact
 
@@ -136,8 +137,8 @@ def _quarter_is_level(exact: Exact, energy: Polynomial, beta: Polynomial) -> boo
 
 
 def _half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are known: after release from rest psi' = a/b (4,7)."""
-    facts, a, b = exact.facts, exact.a, exact.b
+    """Return the rates at T/2 that are known."""
+    facts = exact.facts
     below = facts.over_bottom and starts_at_u1(exact)
     above = facts.upper_root == 1 and starts_at_u2(exact)
     if below or above:  # on a pole, where no rate has a meaning
@@ -148,10 +149,16 @@ def _half_rates(exact: Exact) -> dict[str, Fraction]:
         return {"precession_rate_half": Fraction(0)}
     if facts.free:
         return _free_half_rates(exact)
-    if not (facts.at_rest and facts.spins):
-        return {}
+    if not facts.at_rest:
+        return vanishing_half_rates(exact)
+    return _half_rates_after_rest(exact) if facts.spins else {}
+
+
+def _half_rates_after_rest(exact: Exact) -> dict[str, Fraction]:
+    """Return psi'(T/2) = a/b (4,7), and phi'(T/2) = r0 - (a/b) u2 where it is 0."""
+    a, b = exact.a, exact.b
     keys = {"precession_rate_half": a / b}
-    level = exact.r0 * b / a  # the u2 at which phi' = r0 - (a/b) u2 is 0
+    level = exact.r0 * b / a  # the u2 at which phi' is 0
     if abs(level) <= 1 and exact.cosine.vanishes(
         level * level - b * b / a * level + b * b / a * U - 1
     ):

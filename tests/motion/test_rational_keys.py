@@ -74,6 +74,53 @@ def test_zeros_are_told_and_near_misses_are_not(
     assert abs(Decimal(moved.digits(3)[key])) > 0
 
 
+HALF = {"m": 2, "A": 1, "C": 1, "s": 1, "g": 1, "theta0_deg": 90, "thetadot0": 2}
+
+
+@pytest.mark.parametrize(
+    ("inputs", "key", "other"),
+    [
+        ({"r0": 1, "psidot0": 2}, "spin_rate_half", 2.0),
+        ({"r0": -1, "psidot0": -2}, "spin_rate_half", -2.0),
+        ({"r0": 2, "psidot0": 1}, "precession_rate_half", 2.0),
+        ({"A": 2, "C": 2, "g": 2, "r0": 2, "psidot0": 1}, "precession_rate_half", 2.0),
+    ],
+)
+def test_rates_that_vanish_half_a_period_after_a_start_with_rates(
+    inputs: dict[str, float], key: str, other: float
+) -> None:
+    """No number of digits tells the 0: `solve` ended with an error.  By hand u3 = 2, u(T/2) = 1/2.
+
+    A start that is off by 1e-100 has no 0.
+    """
+    motion = solve(Top(**HALF | inputs))
+    keys = ["spin_rate_half", "precession_rate_half"]
+    rates = {name: getattr(motion, name) for name in keys}
+    assert motion.u3 == 2
+    assert rates.pop(key) == 0
+    assert [*rates.values()] == [other]
+    moved = solve(Top(**HALF | inputs | {"thetadot0": 2 + Fraction("1e-100")}))
+    assert rational_keys(moved.exact).get(key) is None
+    assert abs(Decimal(moved.digits(3)[key])) > 0
+
+
+@pytest.mark.parametrize(
+    ("inputs", "key", "value"),
+    [
+        ({"r0": 1, "psidot0": 2, "thetadot0": 1}, "precession_rate_half", 1.8660254037844386),
+        ({"r0": 2, "psidot0": 1, "thetadot0": 1}, "spin_rate_half", 1.8660254037844386),
+    ],
+)
+def test_a_rate_that_would_vanish_with_another_root_for_u3_does_not(
+    inputs: dict[str, float], key: str, value: float
+) -> None:
+    """Here u1 = 1/2 in the place of u3 makes the rate 0; by hand the rate is 1 + sqrt(3)/2."""
+    motion = solve(Top(**HALF | inputs))
+    assert motion.u1 == 0.5
+    assert rational_keys(motion.exact).get(key) is None
+    assert getattr(motion, key) == value
+
+
 @pytest.mark.parametrize(
     ("tilt", "name"), [(35.48870519889296, "max"), (144.51129480110704, "min")]
 )
