@@ -248,3 +248,12 @@ def test_slopes_are_those_of_the_numbers(key: str, radians: bool) -> None:
         shift = np.eye(2)[i] * step
         change = search.swept(np.stack([point + shift, point - shift]))
         assert slopes[:, i] == pytest.approx((change[0] - change[1]) / (2 * step), rel=1e-5)
+
+
+@pytest.mark.parametrize(("relation", "holds"), [("<", 1), ("<=", 3), (">", 4), (">=", 6)])
+def test_bounds_hold_or_not(relation: str, holds: int) -> None:
+    """Each bit of `holds` is for a number below the limit, on it and above it."""
+    (bound,) = read_conditions([f"r0{relation}2"]).bounds
+    found = [bound.holds({"r0": x}) for x in (1.0, 2.0, 3.0)]
+    assert found == [bool(holds & bit) for bit in (1, 2, 4)]
+    assert not bound.holds({"r0": None})
