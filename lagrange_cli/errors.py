@@ -69,7 +69,7 @@ class NothingToDrawError(LagtopError):
 
 
 class UnavailableError(LagtopError):
-    """A cluster or a method of computing that cannot be had now."""
+    """A cluster, a method of computing or a package that cannot be had now."""
 
     exit_code = 69
 

@@ -106,7 +106,7 @@ def main(ctx: click.Context) -> None:
       1   tops with an error, a number that does not exist, a promise exceeded
       2   bad usage or a bad value
       65  a file that is read holds bad data
-      69  a cluster or a method is not available
+      69  a cluster, a method or a package is not available
       74  the output cannot be written
 
     \b

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
-from ..errors import DataError, LagtopError
+from ..errors import DataError, UnavailableError
 from .trajectory import Block
 from .trajectory_columns import quantities_in
 from .trajectory_text import parts
@@ -155,7 +155,7 @@ class ParquetTable(_Numbers):
             import pyarrow as pa
             from pyarrow import parquet
         except ImportError:
-            raise LagtopError(
+            raise UnavailableError(
                 f"{name}: Parquet needs pyarrow: pip install 'lagtop[parquet]'"
             ) from None
         try:

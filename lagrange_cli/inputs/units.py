@@ -15,7 +15,7 @@ from ..arithmetic.decimals import pi_to
 from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
 from ..arithmetic.values import Values
-from ..errors import LagtopError
+from ..errors import LagtopError, UnavailableError
 from .measured import EXACT_DIGITS
 from .quantity_text import TILT, Quantity
 from .top import BODY
@@ -187,7 +187,7 @@ def _meaning(key: str, value: Quantity[Any], example: str) -> Meaning:
     try:
         return meaning_of(f"1{text}" if text.startswith("/") else text)
     except ImportError:
-        raise LagtopError(
+        raise UnavailableError(
             f"{key} must be a finite decimal number "
             f"(units need pint: pip install 'lagtop[units]'), got the unit {value.unit!r}",
             key,

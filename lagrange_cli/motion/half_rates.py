@@ -3,7 +3,8 @@
 Half a period on, sn^2 becomes cn^2/dn^2, so that u(T/2) = (u3 (u1 + u2) - u1 u2 - u0 u3)/(u3 - u0).
 With x = u3 and the sums and products of the roots of (4,9) this is N(x)/M(x), and a rate (4,7),
 (4,8) is 0 where a polynomial P(x) is.  It is 0 at some root of the cubic just if the product of its
-values at all three is 0, which is a polynomial in cos(theta0); digits then tell at which root.
+values at all three is 0, which is a polynomial in cos(theta0); digits tell first whether it may be
+0 at u3.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from ..arithmetic.decimals import Decimals, decimals
 from ..arithmetic.exact_cosine import Polynomial, U
 from .regime import Exact
 
+HALF_RATES = ("spin_rate_half", "precession_rate_half")
 _DIGITS, _ZERO = 80, Decimal("1e-60")
 
 InU3 = list[Polynomial]
@@ -22,7 +24,9 @@ InU3 = list[Polynomial]
 
 
 def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are 0, for a top with torque, by key."""
+    """Return the rates at T/2 that are 0 for a top with torque that does not start at rest."""
+    if exact.facts.free or exact.facts.at_rest or exact.facts.steady or exact.facts.pole:
+        return {}
     a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
     beta = psi * sin2 + b * U
     energy = exact.theta_rate**2 + psi * psi * sin2 + b * b
@@ -35,23 +39,26 @@ def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
         _product([Polynomial(exact.r0)], _sum(_product(M, M), _product([Polynomial(-1)], N, N))),
         _product([Polynomial(-1)], N, momentum),
     )
-    found = {"precession_rate_half": momentum, "spin_rate_half": spin}
-    return {key: Fraction(0) for key, P in found.items() if _is_zero_at_u3(exact, P, cubic)}
+    found = zip(HALF_RATES, (spin, momentum), strict=True)
+    return {key: Fraction(0) for key, P in found if _is_zero_at_u3(exact, P, cubic)}
 
 
 def _is_zero_at_u3(exact: Exact, P: InU3, cubic: InU3) -> bool:
-    """Return whether P is exactly 0 at the greatest root of a cubic that begins with a rational."""
-    rows = [_reduced([Polynomial(0)] * shift + P, cubic) for shift in range(3)]
-    (p, q, r), (s, t, u), (v, w, x) = rows
-    product = p * (t * x - u * w) - q * (s * x - u * v) + r * (s * w - t * v)
-    if not exact.cosine.vanishes(product):
-        return False
+    """Return whether P is exactly 0 at the greatest root of a cubic that begins with a rational.
+
+    Digits come first: they are cheap, and nearly always see that it is not.
+    """
     ar = decimals(_DIGITS)
     with ar.working():
-        values, terms = (_in_digits(exact, ar, y) for y in (cubic, rows[0]))
+        values, terms = (_in_digits(exact, ar, y) for y in (cubic, P))
         root = _greatest_root(values)
         size = sum(abs(c) * abs(root) ** i for i, c in enumerate(terms))
-        return abs(_value(terms, root)) <= _ZERO * size
+        if abs(_value(terms, root)) > _ZERO * size:
+            return False
+    (p, q, r), (s, t, u), (v, w, x) = (
+        _reduced([Polynomial(0)] * shift + P, cubic) for shift in range(3)
+    )
+    return exact.cosine.vanishes(p * (t * x - u * w) - q * (s * x - u * v) + r * (s * w - t * v))
 
 
 def _product(*factors: InU3) -> InU3:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ..arithmetic.exact_cosine import Polynomial, U
-from .half_rates import vanishing_half_rates
+from .half_rates import HALF_RATES, vanishing_half_rates
 from .record import NUMBER_KEYS
 from .regime import Exact
 
@@ -21,6 +21,8 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
     `radians` is for an angle, in radians instead of degrees.
     """
     keys = rational_keys(exact)
+    if name in HALF_RATES and name not in keys:
+        keys |= vanishing_half_rates(exact)
     if name not in NUMBER_KEYS:
         from .requested import requested_fractions
 
@@ -33,7 +35,10 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
 
 
 def rational_keys(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys of a record that are known as fractions, zeros above all."""
+    """Return the keys of a record that are known as fractions, zeros above all.
+
+    Zeros of the rates at T/2 after a start with rates take longer: `half_rates` tells them.
+    """
     keys = {"a": exact.a, "b": exact.b}
     facts, cosine = exact.facts, exact.cosine.rational
     keys |= _tilt_keys(exact)
@@ -149,9 +154,7 @@ def _half_rates(exact: Exact) -> dict[str, Fraction]:
         return {"precession_rate_half": Fraction(0)}
     if facts.free:
         return _free_half_rates(exact)
-    if not facts.at_rest:
-        return vanishing_half_rates(exact)
-    return _half_rates_after_rest(exact) if facts.spins else {}
+    return _half_rates_after_rest(exact) if facts.at_rest and facts.spins else {}
 
 
 def _half_rates_after_rest(exact: Exact) -> dict[str, Fraction]:

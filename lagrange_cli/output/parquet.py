@@ -9,15 +9,15 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ..arithmetic.text import json_text
-from ..errors import LagtopError
+from ..errors import UnavailableError
 
 
 def check_parquet() -> None:
-    """Raise LagtopError where pyarrow is not installed."""
+    """Raise UnavailableError where pyarrow is not installed."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:
-        raise LagtopError(
+        raise UnavailableError(
             "format parquet needs pyarrow: pip install 'lagtop[parquet]'", "format"
         ) from None
 

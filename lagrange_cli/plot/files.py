@@ -11,7 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..errors import CannotWriteError, LagtopError
+from ..errors import CannotWriteError, LagtopError, UnavailableError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,8 +88,8 @@ def check_plot(path: str | None, output: str) -> None:
 
 
 def require_matplotlib() -> None:
-    """Raise LagtopError, with the remedy, where matplotlib is missing."""
+    """Raise UnavailableError, with the remedy, where matplotlib is missing."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise LagtopError("pictures need matplotlib: pip install 'lagtop[plot]'") from None
+        raise UnavailableError("pictures need matplotlib: pip install 'lagtop[plot]'") from None

@@ -61,7 +61,9 @@ def _client(address: str) -> Client:
     try:
         from distributed import Client
     except ImportError:
-        raise LagtopError("dask needs distributed: pip install 'lagtop[cluster]'", "dask") from None
+        raise UnavailableError(
+            "dask needs distributed: pip install 'lagtop[cluster]'", "dask"
+        ) from None
     for name in (
         "distributed",
         "distributed.client",

@@ -235,7 +235,7 @@ def test_bad_input_is_one_line(line: str, lagtop: Lagtop) -> None:
 def test_plots_without_matplotlib(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     result = lagtop("bench", "--plot", "x.svg")
-    assert result.exit_code == 2
+    assert result.exit_code == 69
     assert result.stderr == "Error: pictures need matplotlib: pip install 'lagtop[plot]'\n"
 
 

@@ -75,6 +75,7 @@ def test_any_text_is_a_number_or_one_clear_error(text: str) -> None:
         assert isinstance(number, Fraction)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(r0=spins, theta0=tilts, psidot0=st.floats(-1e3, 1e3), thetadot0=st.floats(-1e3, 1e3))
 def test_every_start_gives_numbers_or_one_clear_error(
