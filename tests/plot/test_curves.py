@@ -176,7 +176,7 @@ def test_pictures_ask_a_motion_only_what_everybody_sees() -> None:
 
     Nothing of how a motion is solved.
     """
-    asked = {"solve", "record", "regime", "angle_uncertainty"}
+    asked = {"solve", "record", "quantity", "regime", "angle_uncertainty"}
     for path in (ROOT / "lagrange_cli" / "plot").glob("*.py"):
         if path.stem == "motion_facts":
             continue
