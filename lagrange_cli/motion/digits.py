@@ -11,6 +11,7 @@ from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, 
 from ..arithmetic.decimals import Decimals
 from ..arithmetic.numbers import Number
 from ..arithmetic.text import NumberText
+from .regime import Regime
 from .solve import Motion
 
 
@@ -70,6 +71,7 @@ class DigitTable:
         kind = self.motion.settled_kind(working)
         ar = cast(Decimals, kind.ar)
         spinor, (tilt_sin, tilt_cos) = kind.spinor(), (kind.state.sin_half, kind.state.cos_half)
+        falls_to_0 = self.motion.regime is Regime.SEPARATRIX  # and keeps its digits, as 1/cosh does
 
         def angles(time: Number) -> list[Decimal]:
             with ar.working():
@@ -78,7 +80,8 @@ class DigitTable:
                     at = spinor(t)
                     theta, phi, psi = 2 * ar.atan2(at.y, at.x), at.phi, at.psi
                     noise = at.size * ar.eps * 1000
-                    if any(0 < abs(angle) < noise for angle in (theta, phi, psi)):
+                    doubtful = (phi, psi) if falls_to_0 else (theta, phi, psi)
+                    if any(0 < abs(angle) < noise for angle in doubtful):
                         raise TooFewDigitsError
                 else:
                     theta, phi, psi = 2 * ar.atan2(tilt_sin, tilt_cos), t, t

@@ -223,3 +223,16 @@ def test_the_separatrix() -> None:
     (row,) = rows_of(spinning, [0.7], 20, radians=True)
     angles = solve(spinning).angles(0.7)
     assert list(map(float, row[1:])) == pytest.approx(list(map(float, angles)), rel=1e-15)
+
+
+@pytest.mark.parametrize("t", [10, 1000, 10_000, 10**12])
+def test_a_tilt_that_falls_to_0_on_the_separatrix_keeps_its_digits(t: int) -> None:
+    """A pendulum by the textbook: sin(theta/2) = 1/cosh(sqrt(a/2) t - asinh 1)."""
+    motion = solve(Top(m=1, A=1, C=1, s=1, g=2, r0=0, theta0_deg=90, thetadot0=2))
+    assert motion.regime == "separatrix"
+    ((_, theta, phi, psi),) = rows_in_digits(motion, [t], 30, radians=True)
+    with mpmath.workdps(60):
+        exact = 2 * mpmath.asin(mpmath.sech(mpmath.sqrt(2) * t - mpmath.asinh(1)))
+        assert abs(mpmath.mpf(theta) / exact - 1) < 1e-29
+        assert abs(mpmath.mpf(phi) / mpmath.pi - 1) < 1e-29
+    assert phi == psi
