@@ -177,9 +177,9 @@ def _report(outcome: Any, samples: int, seed: int | None) -> Findings:
 _SAMPLE_FIELDS = [
     Field("key", "key", is_text=True, names_the_row=True),
     Field("value", "value", _figures),
-    Field("std", "uncertainty", _figures),
-    Field("sampled_mean", "mean", _figures),
-    Field("sampled_std", "std", _figures),
+    Field("first_order_std", "first-order std", _figures),
+    Field("sampled_mean", "sampled mean", _figures),
+    Field("sampled_std", "sampled std", _figures),
     Field("q2_5", "2.5 %", _figures),
     Field("q16", "16 %", _figures),
     Field("q50", "50 %", _figures),

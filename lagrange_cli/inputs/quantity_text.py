@@ -33,14 +33,17 @@ def split_unit(text: str) -> tuple[str, str]:
 
     The number part is what stands before the first letter that is not the e of an exponent; it may
     hold an uncertainty, such as `1587(2)` or `1587 +/- 0.1 %`.  A text without a digit before its
-    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end, so
-    that no colon and no comma follows it.
+    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end,
+    behind a number: no colon and no comma follows it or precedes it.
     """
     text = text.strip()
     found = _UNIT.search(text, len(_LOG) if text.startswith(_LOG) else 0)
-    if found is None or set(found[0]) & {":", ","} or not re.search(r"\d", text[: found.start()]):
+    if found is None:
         return text, ""
-    return text[: found.start()].rstrip(), found[0]
+    number, unit = text[: found.start()].rstrip(), found[0]
+    if set(unit) & {":", ","} or number.endswith((":", ",")) or not re.search(r"\d", number):
+        return text, ""
+    return number, unit
 
 
 def parse_quantity(text: str, parse: Callable[[str], V]) -> V | Quantity[V]:

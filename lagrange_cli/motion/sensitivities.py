@@ -1,7 +1,7 @@
 """Exact derivatives of the record: how each number answers to a small change of each input.
 
 The formulas of the record are evaluated in dual numbers.  Where a motion is degenerate a number may
-have a kink or leap; then it has no derivative along some inputs, and `Sensitivities.reason` says
+have a kink or leap; then it has no derivative along some inputs, and `Sensitivities.reasons` says
 why.  Equation numbers are Chrapan's.
 """
 

@@ -40,7 +40,7 @@ class Spread(NamedTuple):
 
     key: str
     value: float
-    std: float | None
+    first_order_std: float | None
     """Uncertainty of first order; None where there is no derivative."""
     sampled_mean: float
     sampled_std: float

@@ -132,6 +132,16 @@ def test_what_does_not_go_together_is_a_line(
     assert result.stdout == ""
 
 
+def test_a_report_on_samples_tells_both_uncertainties_apart(lagtop: Lagtop) -> None:
+    arguments = ["--r0", "50(1)", "--samples", "100", "--seed", "1"]
+    row, *_ = csv.DictReader(io.StringIO(lagtop("solve", *arguments, "--format", "csv").stdout))
+    assert "std" not in row
+    assert {"first_order_std", "sampled_std"} <= row.keys()
+    shown = lagtop("solve", *arguments).stdout
+    assert "first-order std" in shown
+    assert "sampled std" in shown
+
+
 def test_a_number_without_an_uncertainty_is_named(lagtop: Lagtop) -> None:
     result = lagtop("solve", "--theta0", "0(1)", "--get", "u1")
     assert result.stdout == "1.0\n"
