@@ -230,8 +230,10 @@ def _write_one(
     header, blocks = rows(motion, times, wish.columns, stds=angle_stds(found, motion), **shown)
     parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **shown)
     long = LONG if digits is None else LONG_IN_DIGITS
-    if fmt == "table" and found.system is not None:
-        units = [found.system.named(part.unit) for part in chosen_columns(wish.columns)]
+    if fmt == "table":
+        units = [part.unit for part in chosen_columns(wish.columns)]
+        if found.system is not None:
+            units = [found.system.named(unit) for unit in units]
         named = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
         header = [*named, *header[len(named) :]]
     write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)

@@ -76,8 +76,6 @@ class System(Values):
             "mass": self.mass,
             "len": self.length,
             "time": "s",
-            "energy": f"{self.mass} {self.length}²/s²",
-            "momentum": f"{self.mass} {self.length}²/s",
         }
         return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
 

@@ -110,7 +110,7 @@ def _sentence(judgement: Judgement, limit: float) -> str:
         DRIFTS: f"drifts, {most}{_drift(judgement)}",
         OFF: f"off from the start by {judgement.error_start:.1e} {unit}, {most}",
         ANOTHER: f"moves like another top, {most}",
-        LOST: f"lost at t = {judgement.lost_at}" + (f", {most} before" if most else ""),
+        LOST: f"lost at t = {judgement.lost_at}" + (f", {most} elsewhere" if most else ""),
     }
     return told[judgement.verdict] + "."
 

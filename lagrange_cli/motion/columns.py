@@ -63,7 +63,7 @@ COLUMNS: dict[str, Column] = {
     "q": _one("angular velocity about the body's y axis", SWING | TURN, "q", "q", "rad/time"),
     "r": _one("angular velocity about the figure axis", NOTHING, "r", "r", "rad/time"),
     "moment": _one(
-        "moment of the weight about the line of nodes", TILT, "moment", "moment", "energy"
+        "moment of the weight about the line of nodes", TILT, "moment", "moment", "mass len²/time²"
     ),
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
@@ -77,13 +77,15 @@ COLUMNS: dict[str, Column] = {
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
         [Part(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE) for part in "wxyz"],
     ),
-    "energy": _one("energy; constant but for rounding", SWING, "energy", "energy", "energy"),
+    "energy": _one(
+        "energy; constant but for rounding", SWING, "energy", "energy", "mass len²/time²"
+    ),
     "Lz": _one(
         "vertical angular momentum; constant but for rounding",
         TILT,
         "vertical_momentum",
         "Lz",
-        "momentum",
+        "mass len²/time",
     ),
 }
 

@@ -115,7 +115,8 @@ def _style(group: str) -> str:
 def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) -> bytes:
     """Return a column per name and a line per row."""
     cells = list(zip(*rows, strict=True)) or [()] * len(names)
-    columns = [Column(name, column) for name, column in zip(names, cells, strict=True)]
+    headings = [spelt(name, view) for name in names]
+    columns = [Column(name, column) for name, column in zip(headings, cells, strict=True)]
     return _encoded(_folded(columns[:1], columns[1:], view), view)
 
 
