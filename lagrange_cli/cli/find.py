@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -28,9 +27,10 @@ if TYPE_CHECKING:
 
 
 def _parse_input(text: str) -> Any:
+    from ..inputs.quantity_text import parse_quantity
     from ..inputs.ranges import parse_number_or_span
 
-    return parse_number_or_span(text)
+    return parse_quantity(text, parse_number_or_span)
 
 
 @click.command(
@@ -74,9 +74,10 @@ def command(
 ) -> None:
     """Tops whose records have wanted numbers.
 
-    An input that is a range from:to (or log:from:to) is unknown, up to three of them; there are as
-    many conditions KEY=NUMBER.  regime=WORD, path=WORD and bounds such as KEY<NUMBER leave out what
-    does not keep them; an angle may leave out its unit.
+    An input that is a range from:to (or log:from:to) is unknown, up to three of them; a unit stands
+    once, at the end: --r0 '400:600 rpm'.  There are as many conditions KEY=NUMBER, which with units
+    are in SI.  regime=WORD, path=WORD and bounds such as KEY<NUMBER leave out what does not keep
+    them; an angle may leave out its unit.
 
     With one unknown all solutions are found that the scan brackets, each to its last bit.  With
     several, those to which its best points lead.  The exit code is 1 where there is none.
@@ -110,19 +111,12 @@ def _found(
     count: int | None,
     radians: bool,
 ) -> list[Motion]:
-    from ..fits.conditions import read_conditions
     from ..fits.find import look
-    from ..fits.search import Search
-    from ..inputs.given import gather
-    from ..sweeps.plan import shared_inputs
+    from ..fits.search import search_of
 
-    fixed = {name: x for name, x in inputs.items() if isinstance(x, Fraction)}
-    spans = {name: x for name, x in inputs.items() if name not in fixed}
-    wanted = read_conditions(conditions, radians=radians)
-    given = gather(fixed, scenes[0] if scenes else None, varying=spans)
-    shared = shared_inputs(given, varying=spans)
-    known = {name: x for name, x in shared.items() if name not in spans}
-    found = look(Search(known, spans, wanted, radians).check(), count, _watched)
+    scene = scenes[0] if scenes else None
+    search, given = search_of(inputs, conditions, scene=scene, radians=radians)
+    found = look(search, count, _watched)
     say_missing(given)
     complain(f"{len(found.motions)} found; {found.looked}")
     return found.motions
@@ -140,9 +134,12 @@ def _inverted(
     from ..fits.body import INPUTS
     from ..fits.invert import invert
     from ..inputs.given import gather
+    from ..inputs.ranges import Span
 
-    if wrong := [x for x in inputs if x not in INPUTS or not isinstance(inputs[x], Fraction)]:
-        raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got {wrong[0]}")
+    for name, x in inputs.items():
+        if name not in INPUTS or isinstance(getattr(x, "number", x), Span):
+            option = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
+            raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got --{option}")
     found = gather(inputs, scenes[0] if scenes else None).inputs
     given = {name: float(x) for name, x in found.items() if name in INPUTS}
     return invert(conditions, radians=radians, known=given)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import Number
 from ..errors import AbsentError, LagtopError
-from ..inputs.ranges import Span, parse_span
-from ..inputs.top import Top
+from ..inputs.mixed_body import warn_of
+from ..inputs.names import check_names
+from ..inputs.ranges import parse_span
+from ..inputs.top import INPUTS
 from ..motion.solve import Motion, solve
-from .conditions import read_conditions
 from .roots import roots
-from .search import Scan, Search, Watch, scan
+from .search import Scan, Search, Watch, scan, search_of
 from .several import solutions
 
 
@@ -36,22 +36,23 @@ def find(
     what does not keep them.  What a scan of `count` values of each unknown brackets is found; each
     unknown is right to its last bit.  The list may be empty.  Raises LagtopError.
     """
-    spans = {name: parse_span(x) for name, x in inputs.items() if isinstance(x, str)}
-    fixed = {name: x for name, x in inputs.items() if name not in spans}
-    search = Search(
-        _completed(fixed, spans), spans, read_conditions(conditions, radians=radians), radians
-    )
+    check_names("inputs", list(inputs) or ["m"], INPUTS)
+    given = {name: _read(name, x) for name, x in inputs.items() if x is not None}
+    search, found = search_of(given, conditions, radians=radians)
+    if found.missing:
+        warn_of(found.missing, stacklevel=3)
     try:
-        return look(search.check(), count).motions
+        return look(search, count).motions
     except AbsentError:
         return []
 
 
-def _completed(fixed: Mapping[str, Number], spans: Mapping[str, Span]) -> dict[str, float]:
-    """Return known inputs over those of the worked example, without what is unknown."""
-    start = {name: float(span.first) for name, span in spans.items()}
-    given = Top(**({"theta0_deg": 30.0} | dict(fixed) | start)).as_dict()
-    return {name: float(x) for name, x in given.items() if x is not None and name not in spans}
+def _read(name: str, value: Any) -> Any:
+    """Return a number as it is, and the range that a text stands for."""
+    try:
+        return parse_span(value) if isinstance(value, str) else value
+    except LagtopError as error:
+        raise LagtopError(f"{name} {error}", name) from None
 
 
 def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found:

@@ -43,5 +43,4 @@ def _guard(known: Mapping[str, float]) -> None:
     moment = known.get("A", known.get("A_cm", known.get("C", 1.0)))
     others = {"m": 1.0, "s": 1.0, "g": 1.0, "C": moment}
     others |= {} if "A_cm" in known else {"A": moment}
-    others |= {} if "theta0_rad" in known else {"theta0_deg": 30.0}
     Top(**others | dict(known))

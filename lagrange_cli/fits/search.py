@@ -9,11 +9,13 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.given import Given, gather
 from ..inputs.ranges import Product, Span
 from ..inputs.top import Top, overridden
 from ..motion.solve import solve
+from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
-from .conditions import Conditions
+from .conditions import Conditions, read_conditions
 
 COUNTS = {1: 1000, 2: 60, 3: 20}
 """Values of each unknown in a scan, by the number of unknowns."""
@@ -80,6 +82,26 @@ class Search(NamedTuple):
                 f"{unknown}: {', '.join(self.spans)}"
             )
         return self
+
+
+def search_of(
+    inputs: Mapping[str, Any],
+    conditions: Sequence[str],
+    *,
+    scene: str | None = None,
+    radians: bool = False,
+) -> tuple[Search, Given]:
+    """Return a search, and what is given of the top: by inputs and by a scene file, if any.
+
+    An input is a number or a `Span`, or a `Quantity` of one of these.  Raises LagtopError.
+    """
+    wanted = read_conditions(conditions, radians=radians)
+    given = gather(inputs, scene)
+    spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
+    known = {name: x for name, x in given.inputs.items() if name not in spans}
+    shared = shared_inputs(given.replace(inputs=known), varying=spans)
+    fixed = {name: x for name, x in shared.items() if name not in spans}
+    return Search(fixed, spans, wanted, radians).check(), given
 
 
 class Scan(NamedTuple):

@@ -124,8 +124,14 @@ def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
 
 
 def nearest(key: str, value: Number) -> float:
-    """Return the double nearest to an input.  Raises LagtopError beyond all doubles."""
+    """Return the double nearest to an input.
+
+    Raises LagtopError beyond all doubles, and for what is no real number.
+    """
     try:
         return float(value)
+    except (TypeError, ValueError):
+        shown = repr(value)[:60]
+        raise LagtopError(f"{key} must be a real number, got {shown}", key) from None
     except OverflowError:
         raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None

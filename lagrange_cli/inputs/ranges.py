@@ -71,6 +71,10 @@ class Span(NamedTuple):
             return LogPoints(self.first, self.last, count)
         return EvenPoints(self.first, (self.last - self.first) / (count - 1), count)
 
+    def scaled(self, factor: Fraction) -> Span:
+        """Return the values times a factor > 0."""
+        return self._replace(first=self.first * factor, last=self.last * factor)
+
     def __str__(self) -> str:
         return f"{float(self.first):g} to {float(self.last):g}"
 

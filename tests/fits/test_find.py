@@ -7,6 +7,7 @@ import io
 import json
 import math
 import random
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ import pytest
 from conftest import Lagtop, assert_one_line
 from scipy.integrate import solve_ivp
 
-from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli import LagtopError, MixedBodyWarning, Top, solve
 from lagrange_cli.fits.body import INPUTS, completed, told_of
 from lagrange_cli.fits.conditions import read_conditions
 from lagrange_cli.fits.find import find
@@ -95,14 +96,46 @@ def test_filters_and_bounds() -> None:
         (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),
         (["T_nutation=nan"], {"r0": "1:2"}, "the value of T_nutation must be a finite"),
         (["T_nut=3"], {"r0": "1:2"}, "did you mean .T_nutation"),
-        (["T_nutation=1"], {"r0": "2:1"}, "must be a range whose first end is the smaller one"),
+        (["T_nutation=1"], {"r0": "2:1"}, "r0 must be a range whose first end is the smaller one"),
         (["T_nutation=1"], {"r0": "log:-1:1"}, "must have two ends of one sign"),
         (["T_nutation=1"], {"mass": "1:2"}, "mass"),
+        (["T_nutation=1"], {"r0": "1:2", "m": [3]}, "m must be a real number"),
+        (["T_nutation=1"], {"A": "1:2", "C": [3]}, "C must be a real number"),
+        (["T_nutation=1"], {"r0": "1:2", "phidot0": 3}, "phidot0 and r0 are both given"),
     ],
 )
 def test_bad_searches(conditions: list[str], unknowns: dict[str, Any], message: str) -> None:
     with pytest.raises((LagtopError, TypeError), match=message):
         find(conditions, **unknowns)
+
+
+@pytest.mark.parametrize("tilt", [0.5, "0.1:1"])
+def test_a_tilt_may_be_in_radians(tilt: Any) -> None:
+    wanted = solve(Top(theta0_rad=0.5)).T_precession
+    other: dict[str, Any] = {} if tilt == "0.1:1" else {"r0": "40:60"}
+    motions = find([f"T_precession={wanted!r}"], theta0_rad=tilt, count=20, **other)
+    assert any(abs(float(x.top.r0) - 50) < 1e-9 for x in motions)
+    assert any(abs(float(x.top.theta0_rad or 0) - 0.5) < 1e-9 for x in motions)
+
+
+def test_inputs_that_were_not_given_are_said_where_find_is_called() -> None:
+    with pytest.warns(MixedBodyWarning, match="A, C, s and g are those") as said:
+        find(["T_nutation=0.45"], m=1600, r0="10:60", count=20)
+    assert [x.filename for x in said] == [__file__]
+
+
+def test_ranges_with_units(lagtop: Lagtop, tmp_path: Path) -> None:
+    wanted = ("T_nutation=0.45", "--scan", 20, "--keys", "r0")
+    plain = lagtop("find", "--r0", "10:60", *wanted)
+    scene = tmp_path / "units.toml"
+    scene.write_text('m = "1587 g"\nA = "39032 g cm^2"\nC = "17458 g cm^2"\ns = "4 cm"\n')
+    united = lagtop("find", scene, "--g", "9.81 m/s^2", "--r0", "600:3600 deg/s", *wanted)
+    assert united.exit_code == 0, united.stderr
+    rates = [list(map(float, x.stdout.split()[1:])) for x in (plain, united)]
+    assert rates[1] == pytest.approx([x for x in rates[0] if 10.4 < x < 63], rel=1e-12)
+    assert rates[1]
+    bare = lagtop("find", scene, "--g", "9.81 m/s^2", "--r0", "10:60", *wanted)
+    assert_one_line(bare, 2, "--r0 must have a unit such as")
 
 
 def test_the_command_writes_records(lagtop: Lagtop) -> None:
@@ -134,7 +167,8 @@ def test_where_there_is_none_the_nearest_is_named(lagtop: Lagtop) -> None:
         ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
         ("a.toml b.toml", 2, "find takes one scene"),
         ("--from theta_min=3", 2, "--from must have theta_min=.. theta_max=.."),
-        ("--from --r0 1:2", 2, "--from goes with numbers for"),
+        ("--from --r0 1:2", 2, "--from goes with numbers for C r0 m s g A, got --r0"),
+        ("--from --theta0 3", 2, "--from goes with numbers for C r0 m s g A, got --theta0"),
         ("--from --scan 9", 2, "--from and --scan exclude each other"),
     ],
 )
