@@ -24,7 +24,11 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 
 _MODULI = 400
-"""Moduli of the scan; they are denser at both ends."""
+"""Moduli in the middle of the scan; they are denser at both ends."""
+_INNER = (1 - np.cos(np.linspace(0, math.pi, _MODULI + 1)[1:-1])) / 2
+_OUTER = 10.0 ** np.arange(-20, -4.9, 0.5)
+_SHARES = np.concatenate([_OUTER, _INNER, 1 - _OUTER[12:][::-1]])
+"""Where k^2 is looked for, of its greatest value: fast tops are near 0, slow ones near 1."""
 
 SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Signs of beta + b and of beta - b."""
@@ -120,9 +124,8 @@ def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
     """Return the tops that have a nutation and a mean precession rate."""
     from scipy.optimize import brentq
 
-    most, found = nutation.most_m, []
-    phases = np.linspace(0, math.pi, _MODULI + 1)[1:-1]
-    moduli = most * (1 - np.cos(phases)) / 2
+    found: list[Candidates] = []
+    moduli = nutation.most_m * _SHARES
     for signs in SIGNS:
 
         def off(m: float, signs: tuple[int, int] = signs) -> float:

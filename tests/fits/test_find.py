@@ -196,6 +196,29 @@ def test_turning_points_give_a_and_b(seed: int) -> None:
     assert best.b == pytest.approx(b, rel=1e-11)
 
 
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {"r0": 200.0},
+        {"r0": 20_000.0},
+        {"m": 1, "A": 1, "C": 0.21, "s": 1, "g": 5.38, "r0": 1.15, "theta0_deg": 154.8}
+        | {"thetadot0": -1.3, "psidot0": 2.6},
+    ],
+)
+def test_turning_points_of_fast_tops_and_of_slow_ones(inputs: dict[str, float]) -> None:
+    """Here k^2 is near 0 or near its end; both ends of the scan were left out.
+
+    A swing of 1e-4 degrees has lost six digits.
+    """
+    seen = solve(Top(**inputs))
+    keys = ["theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate"]
+    motions = invert([f"{key}={getattr(seen, key)!r}" for key in keys])
+    assert any(
+        x.a == pytest.approx(seen.a, rel=1e-9) and x.b == pytest.approx(seen.b, rel=1e-9)
+        for x in motions
+    )
+
+
 def test_turning_points_of_a_top_that_started_moving() -> None:
     """Judged by Euler's equations in theta and psi, integrated by scipy."""
     a, b, theta, psi_rate = 200.0, -15.0, 0.7, 4.0
