@@ -25,6 +25,7 @@ from .options import (
     write_report,
 )
 from .progress import with_progress
+from .reading_options import reading_options
 
 if TYPE_CHECKING:
     from ..inputs.seen import Quantities
@@ -41,12 +42,6 @@ def _write_names(formatter: click.HelpFormatter) -> None:
 
     with formatter.section("Columns of a trajectory, by name"):
         formatter.write_dl(list(shown_quantities().items()))
-
-
-def _parse_sequence(text: str) -> str:
-    from ..inputs.seen import euler_sequence
-
-    return euler_sequence(text)
 
 
 def _parse_steps(text: str) -> list[float]:
@@ -74,25 +69,7 @@ def _parse_steps(text: str) -> list[float]:
 )
 @click.option("--scene", type=FILE, metavar="FILE", help="Scene file; options win over it.")
 @input_options(INPUT)
-@click.option(
-    "--columns",
-    type=NAMES,
-    help="Names of all columns from the left, whatever the files say; quaternion, matrix, axis and "
-    "the like stand for all of their parts, and _ leaves a column out.",
-)
-@click.option(
-    "--quaternion",
-    type=click.Choice(["wxyz", "xyzw"]),
-    help="Order of a quaternion whose names do not tell.  [default: what the first row proves]",
-)
-@click.option(
-    "--euler",
-    type=Parsed("sequence", _parse_sequence),
-    default="xyz",
-    show_default=True,
-    metavar="SEQUENCE",
-    help="Axes of `euler`, as scipy writes them: xyz about those of space, XYZ of the body.",
-)
+@reading_options(quaternion=None)
 @click.option(
     "--rates",
     type=click.Choice(["body", "space"]),

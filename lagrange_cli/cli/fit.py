@@ -24,6 +24,7 @@ from .options import (
     write_report,
 )
 from .progress import with_steps
+from .reading_options import reading_options
 
 if TYPE_CHECKING:
     from ..fits.record import Outcome
@@ -71,7 +72,7 @@ def _positive(value: float) -> float:
 @click.option(
     "--scene", type=FILE, metavar="FILE", help="Scene file, of which --fix takes what is known."
 )
-@input_options(INPUT, units=False, with_defaults=False)
+@input_options(INPUT, units=False, whole=False)
 @click.option(
     "--fix",
     type=NAMES,
@@ -87,25 +88,7 @@ def _positive(value: float) -> float:
 @click.option(
     "--together", is_flag=True, help="The recordings of --by are of one body: a and C/A are shared."
 )
-@click.option(
-    "--columns",
-    type=NAMES,
-    help="Names of all columns from the left, whatever the file says; _ leaves a column out.",
-)
-@click.option(
-    "--quaternion",
-    type=click.Choice(["wxyz", "xyzw"]),
-    default="wxyz",
-    show_default=True,
-    help="Order of a quaternion whose names do not tell.",
-)
-@click.option(
-    "--euler",
-    default="xyz",
-    show_default=True,
-    metavar="SEQUENCE",
-    help="Axes of `euler`, as scipy writes them.",
-)
+@reading_options(quaternion="wxyz")
 @click.option(
     "--plot",
     type=FILE,
@@ -142,7 +125,7 @@ def command(
     those of the scene that --fix names.  What cannot be told apart is named.
 
     -o FILE.toml writes a scene that every other command reads, beside the report.  The exit code
-    is 1 where a fit has failed.
+    is 1 where a fit has failed, and no scene is written then.
     """
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings
@@ -161,12 +144,15 @@ def command(
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]
     found = _fitted(groups, known, recording, rad)
-    if scene_path:
+    failed = any(outcome.verdict == FAILED for outcome in found)
+    if scene_path and not failed:
         _write_scene(found[0], recording, scene_path)
     if plot:
         _draw(found, plot, rad)
     _write(found, recording, fmt, "-" if scene_path else output)
-    if any(outcome.verdict == FAILED for outcome in found):
+    if failed:
+        if scene_path:
+            complain(f"Warning: {scene_path} is not written: the fit has failed")
         ctx.exit(1)
 
 
@@ -227,9 +213,12 @@ def _write(found: list[Outcome], source: str, fmt: str, output: str) -> None:
         keys = list(dict.fromkeys(key for record in records for key in record))
         columns = [[record.get(key) for record in records] for key in keys]
         write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)
-    for record in records:
-        if record["remark"]:
-            complain(f"Note: {record['remark']}")
+    for outcome in found:
+        name = f"{outcome.recording.name}: " if outcome.recording.name else ""
+        notes = [*outcome.notes(), *outcome.untold()]
+        for word, texts in (("Note", notes), ("Warning", outcome.warnings())):
+            if texts:
+                complain(f"{word}: {name}{'; '.join(texts)}")
 
 
 def _write_scene(outcome: Outcome, source: str, path: str) -> None:

@@ -214,9 +214,9 @@ def input_options(
     kind: click.ParamType,  # type: ignore[type-arg]
     *,
     units: bool = True,
-    with_defaults: bool = True,
+    whole: bool = True,
 ) -> Callable[[F], F]:
-    """Add the options for the inputs of a top, maybe with their defaults, --units and --rad."""
+    """Add options for the inputs of a top, or of one not known in whole, --units and --rad."""
     from ..inputs.top import EXAMPLE  # not for commands without a top
 
     def decorate(command: F) -> F:
@@ -226,11 +226,11 @@ def input_options(
         command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
             command
         )
-        for option, text in reversed(_SCENE_OPTIONS):
+        offered = [x for x in _SCENE_OPTIONS if whole or x[0] != "--phidot0"]  # of a whole start
+        for option, text in reversed(offered):
             name = option[2:].replace("-", "_")
             default = EXAMPLE.get(f"{name}_deg", EXAMPLE.get(name))
-            is_shown = with_defaults and default is not None
-            shown = f"{text}  [default: {default:g}]" if is_shown else text
+            shown = f"{text}  [default: {default:g}]" if whole and default is not None else text
             command = click.option(option, name, type=kind, help=shown)(command)
         return command
 

@@ -369,7 +369,8 @@ def test_noise_alone_is_no_nutation(lagtop: Lagtop, tmp_path: Path) -> None:
         ("--sigma theta=1", 2, "--sigma must be given of all angles or of none"),
         ("--fix m", 2, "--fix m must be given by an option or by --scene"),
         ("--g 0", 2, "--g must not be 0 in a fit"),
-        ("--phidot0 3", 2, "--phidot0 is no input of a fit"),
+        ("--phidot0 3", 2, "No such option"),
+        ("--euler foo", 2, "--euler must be three axes"),
         ("--A-cm 3", 2, "--A-cm must be given with m and s"),
         ("--by nothing", 2, "--by must name a column"),
         ("--together", 2, "--together needs --by"),
@@ -379,6 +380,22 @@ def test_noise_alone_is_no_nutation(lagtop: Lagtop, tmp_path: Path) -> None:
 )
 def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:
     assert_one_line(lagtop("fit", SAMPLE, *words.split()), code, message)
+
+
+def test_a_failed_fit_leaves_no_scene(
+    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Outcome, "verdict", property(lambda _: FAILED))
+    monkeypatch.setattr(Outcome, "warnings", lambda _: ["it has failed"])
+    path = tmp_path / "fitted.toml"
+    result = lagtop("fit", SAMPLE, "--format", "csv", "-o", path)
+    assert (result.exit_code, path.exists()) == (1, False)
+    notes, *warnings = result.stderr.splitlines()
+    assert notes.startswith("Note: C and A only as C/A; ")
+    assert warnings == [
+        "Warning: it has failed",
+        f"Warning: {path} is not written: the fit has failed",
+    ]
 
 
 def test_theta_alone_needs_a_start(lagtop: Lagtop, tmp_path: Path) -> None:
