@@ -3,14 +3,14 @@
 | code | meaning |
 |---|---|
 | 0 | fine |
-| 1 | done, but some tops have an error, a number does not exist, or a promise is exceeded |
+| 1 | some tops have an error, a number does not exist, nothing was found, or a promise was broken |
 | 2 | bad usage or a bad value |
-| 65 | a file that is read holds bad data |
-| 69 | a cluster or a method is not available |
+| 65 | bad data in a file |
+| 69 | a cluster, a method or a package is not available |
 | 74 | the output cannot be written |
-| 128 + N | ended by the signal N, such as 130 for Ctrl-C and 141 for a reader that went away |
+| 128 + N | ended by the signal N |
 
-A command ends with 0 where all is fine.
+N is 2 for Ctrl-C and 13 for a reader that went away.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class SomeFailedError(LagtopError):
 
 
 class AbsentError(LagtopError):
-    """A number that was asked for and that the regime of the top does not have."""
+    """A number that was asked for does not exist, or nothing was found."""
 
     exit_code = 1
 
@@ -69,7 +69,7 @@ class NothingToDrawError(LagtopError):
 
 
 class UnavailableError(LagtopError):
-    """A cluster, a method of computing or a package that cannot be had now."""
+    """A cluster, a method or a package is not available."""
 
     exit_code = 69
 

@@ -103,10 +103,6 @@ class Ball:
         right = _plain(other)
         return True if self.arb >= right else False if self.arb < right else OPEN
 
-    def middle(self) -> Ball:
-        """Return the centre of the ball, which is exact."""
-        return Ball(self.arb.mid())
-
     def radius(self) -> Ball:
         """Return the radius of the ball, which is exact."""
         return Ball(self.arb.rad())

@@ -1,20 +1,37 @@
-"""A command of ours: help with its examples first, and errors that name options."""
+"""A command of ours: help with its examples first, errors that name options, lines of complaint."""
 
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import __version__
 from ..errors import LagtopError
-from ..output.terminal import spelt, view_of
+from ..output.terminal import has_colours, one_line, spelt, view_of
 
 if TYPE_CHECKING:
     from ..motion.quantity import Key
     from ..output.layouts import Layout, Line
+
+_COLOURS = {"Error": "red", "Warning": "yellow"}
+
+
+def complain(line: str) -> None:
+    """Write one line to standard error, if there is one that takes it, safe for any terminal.
+
+    A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
+    """
+    line = one_line(line)
+    word, colon, rest = line.partition(":")
+    if word in _COLOURS and sys.stderr is not None and has_colours(sys.stderr):
+        line = click.style(word + colon, fg=_COLOURS[word]) + rest
+    with suppress(OSError):
+        click.echo(line, err=True)
 
 
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:

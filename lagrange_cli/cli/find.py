@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst, write_keys
+from .command import ExamplesFirst, complain, write_keys
 from .given import say_missing
 from .options import (
     COUNT,
     KEY_NAMES,
     Parsed,
     by_key,
-    complain,
     exclude,
     input_options,
     output_options,

@@ -11,14 +11,13 @@ import click
 
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst
+from .command import ExamplesFirst, complain
 from .options import (
     FILE,
     INPUT,
     NAMES,
     Parsed,
     by_key,
-    complain,
     input_options,
     output_options,
     write_report,

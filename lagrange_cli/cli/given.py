@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from .options import complain
+from .command import complain
 
 if TYPE_CHECKING:
     from ..inputs.given import Given

@@ -11,8 +11,7 @@ import click
 
 from ..errors import CannotWriteError, LagtopError
 from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interrupts
-from .command import ExamplesFirst
-from .options import complain
+from .command import ExamplesFirst, complain
 
 COMMANDS = [
     *("solve", "table", "sweep", "find", "fit", "compare", "plot", "view"),
@@ -103,11 +102,13 @@ def main(ctx: click.Context) -> None:
     \b
     Exit codes:
       0   fine
-      1   tops with an error, a number that does not exist, a promise exceeded
+      1   some tops have an error, a number does not exist, nothing was found, or a promise
+          was broken
       2   bad usage or a bad value
-      65  a file that is read holds bad data
+      65  bad data in a file
       69  a cluster, a method or a package is not available
       74  the output cannot be written
+      128 + N  ended by the signal N
 
     \b
     Completion, in ~/.bashrc (in ~/.zshrc with zsh_source):

@@ -11,7 +11,7 @@ from ..arithmetic.exact_complex import ExactComplex, looks_complex, parse_comple
 from ..errors import LagtopError
 from ..output.layouts import JACOBI
 from ..output.write import write_record, write_table
-from .command import ExamplesFirst
+from .command import ExamplesFirst, complain
 from .jacobi_complex import complex_points, is_real, write_complex
 from .options import (
     COUNT,
@@ -19,7 +19,6 @@ from .options import (
     NUMBER,
     RANGE,
     Parsed,
-    complain,
     digits_option,
     exclude,
     listed,

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from fractions import Fraction
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from ..arithmetic.text import is_decimal, parse_number
 from ..errors import LagtopError
-from ..output.terminal import has_colours, one_line
+from .command import complain
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from ..output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
-_COLOURS = {"Error": "red", "Warning": "yellow"}
 
 F = TypeVar("F", bound=Callable[..., Any])
 V = TypeVar("V")
@@ -154,7 +152,7 @@ def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Poin
     return grid or (ListedPoints(list(single)) if single else None)
 
 
-def given(name: str) -> bool:
+def on_command_line(name: str) -> bool:
     """Return whether an option of the command that runs stands on the command line."""
     from click.core import ParameterSource
 
@@ -170,19 +168,6 @@ def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Finding
         for name, text in findings.conditions.items():
             complain(f"{name}: {text}")
     return findings
-
-
-def complain(line: str) -> None:
-    """Write one line to standard error, if there is one that takes it, safe for any terminal.
-
-    A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
-    """
-    line = one_line(line)
-    word, colon, rest = line.partition(":")
-    if word in _COLOURS and sys.stderr is not None and has_colours(sys.stderr):
-        line = click.style(word + colon, fg=_COLOURS[word]) + rest
-    with suppress(OSError):
-        click.echo(line, err=True)
 
 
 FILE = FileName()
@@ -276,8 +261,14 @@ def digits_option(most: int) -> Callable[[F], F]:
 
 def certify_option(more: str) -> Callable[[F], F]:
     """Add the flag --certify, with what the command writes then."""
+
+    def check(_: click.Context, __: click.Parameter, wanted: bool) -> bool:
+        if wanted:
+            import_module("..arithmetic.balls", __package__)  # UnavailableError without flint
+        return wanted
+
     text = f"Prove every printed digit in ball arithmetic (extra certify).  {more}"
-    return click.option("--certify", is_flag=True, help=text)
+    return click.option("--certify", is_flag=True, callback=check, help=text)
 
 
 def output_options(*formats: str) -> Callable[[F], F]:

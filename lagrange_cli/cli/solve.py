@@ -10,18 +10,25 @@ from ..errors import AbsentError, LagtopError
 from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_values
-from .command import ExamplesFirst, chain_layout, in_units, top_layout, units_of, write_keys
+from .command import (
+    ExamplesFirst,
+    chain_layout,
+    complain,
+    in_units,
+    top_layout,
+    units_of,
+    write_keys,
+)
 from .options import (
     COUNT,
     KEY_NAMES,
     MOST_RECORD_DIGITS,
     certify_option,
-    complain,
     digits_option,
     exclude,
-    given,
     inputs_of,
     motion_of,
+    on_command_line,
     output_options,
     write_report,
 )
@@ -117,7 +124,7 @@ def command(
         }
     )
     if keys is not None:
-        exclude({"--get": keys, "--format": fmt if given("fmt") else None})
+        exclude({"--get": keys, "--format": fmt if on_command_line("fmt") else None})
         values = [key.removesuffix("_std") for key in keys]
         if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
             values = list(dict.fromkeys(values))

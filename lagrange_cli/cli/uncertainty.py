@@ -13,7 +13,8 @@ from ..motion.record import NUMBER_KEYS, unit_name
 from ..motion.uncertainty import PER_RADIAN, FirstOrder, stds_of
 from ..output.findings import Field, Findings
 from ..output.uncertain_text import uncertain_text
-from .options import complain, exclude
+from .command import complain
+from .options import exclude
 from .progress import with_progress
 
 if TYPE_CHECKING:

@@ -117,13 +117,6 @@ def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Comp
 
 
 @in_arithmetic
-def theta_of(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
-    """Return Theta_ij(v) = theta_ij(v/2K), which keeps its digits at large real v."""
-    series = _checked(ar, ij, modulus)
-    return theta_at(ar, ij, in_periods(ar, v, series), series)
-
-
-@in_arithmetic
 def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
     """Return Z_ij(v) = d log theta_ij(v/2K)/dv of section 1; Z_01 is Jacobi's Zeta function.
 

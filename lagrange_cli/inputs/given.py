@@ -43,7 +43,7 @@ class Given(Values):
         kept = {key: x for key, x in self.inputs.items() if key not in without}
         numbers = overridden(self.body, kept).items()
         try:
-            return Top(**{key: x if exact else nearest(key, x) for key, x in numbers})
+            return Top(**{key: x if exact else checked_double(key, x) for key, x in numbers})
         except LagtopError as error:
             raise self.blame(_not_given(error, self.missing)) from None
 
@@ -123,7 +123,7 @@ def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
     return LagtopError(f"{error} (this is with {which}: give the whole body)", error.key)
 
 
-def nearest(key: str, value: Number) -> float:
+def checked_double(key: str, value: Number) -> float:
     """Return the double nearest to an input.
 
     Raises LagtopError beyond all doubles, and for what is no real number.

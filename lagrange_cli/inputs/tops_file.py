@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from ..arithmetic.text import json_text, parse_number
 from ..errors import DataError, LagtopError
 from .block import InputArrays
-from .given import Given, nearest
+from .given import Given, checked_double
 from .headings import check_header, check_spelling, heading
 from .quantity_text import Quantity
 from .top import INPUTS, from_example, one_of_each, overridden
@@ -175,7 +175,7 @@ def _double(name: str, text: str, factor: Fraction | None = None) -> float:
     if not text.strip():
         raise LagtopError(f"{name} must be a number, got an empty cell")
     try:
-        return nearest(name, parse_number(text) * (1 if factor is None else factor))
+        return checked_double(name, parse_number(text) * (1 if factor is None else factor))
     except LagtopError as error:
         raise LagtopError(f"{name} {error}") from None
 

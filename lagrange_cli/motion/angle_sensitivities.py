@@ -63,7 +63,7 @@ def angle_sensitivities(
         for part in blocks(flat.size):
             angles[:, part], partials = neighbours.at(flat[part])
             for i, name in enumerate(names):
-                found[:, part, i] = chained(partials, chain[name])
+                found[:, part, i] = _chained_arrays(partials, chain[name])
     shape = times.shape
     return AngleSensitivities(
         tuple(names),
@@ -72,7 +72,7 @@ def angle_sensitivities(
     )
 
 
-def chained(partials: Array, by: dict[str, Fraction]) -> Array:
+def _chained_arrays(partials: Array, by: dict[str, Fraction]) -> Array:
     """Return the derivatives by an input from those by the parameters that hang on it."""
     total = np.zeros_like(partials[:, 0])
     for i, name in enumerate(PARAMETERS):

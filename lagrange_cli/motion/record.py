@@ -40,6 +40,8 @@ _NUMBERS = dict(
 
 NUMBER_KEYS = list(_NUMBERS)
 """The numbers of a record, in its order: `regime` precedes, `path` and `remark` follow them."""
+TEXT_KEYS = ("regime", "path", "remark")
+"""The keys of a record that hold words."""
 CANCELLING = {name for name, key in _NUMBERS.items() if key.cancels}
 KEYS = (
     _INPUTS

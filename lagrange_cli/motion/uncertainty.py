@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..inputs.top import Top
+from .record import TEXT_KEYS
 from .sensitivities import sensitivities
 
 PER_RADIAN = 180 / math.pi
@@ -80,7 +81,7 @@ def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float
     """Return `KEY_std` for every number of a record, in its units."""
     stds = {}
     for name, value in record.items():
-        if isinstance(value, str) or name in {"regime", "path", "remark"}:
+        if isinstance(value, str) or name in TEXT_KEYS:
             continue
         degrees = f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
         tilt = {"theta0_deg", "theta0_rad"} & uncertain.by_given.keys()

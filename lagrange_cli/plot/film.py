@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
 from .curves import MOST_PERIODS, span, turn_span
 from .globe import Limits, draw_globe
@@ -120,15 +120,15 @@ def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
 def check_film(page: Page, name: str, dpi: float) -> None:
     """Raise LagtopError where a film cannot be made.
 
-    The reasons are a name that ends neither in .gif nor in .mp4, an .mp4 without ffmpeg, and pixels
-    per inch that do not suit the size.
+    The reasons are a name that ends neither in .gif nor in .mp4, an .mp4 without ffmpeg (it is an
+    UnavailableError), and pixels per inch that do not suit the size.
     """
     suffix = Path(name).suffix.lower()
     if suffix not in WRITERS:
         wanted = " or ".join(WRITERS)
         raise LagtopError(f"animate must be a file that ends in {wanted}, got {name!r}", "animate")
     if suffix == ".mp4" and not shutil.which("ffmpeg"):
-        raise LagtopError(
+        raise UnavailableError(
             "animate FILE.mp4 needs ffmpeg on the PATH (or write FILE.gif)", "animate"
         )
     check_pixels(dpi, page.size or USUAL_SIZE)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from .. import __version__
 from ..arithmetic.points import Points
 from ..errors import LagtopError
-from ..inputs.given import Given, gather, nearest
+from ..inputs.given import Given, checked_double, gather
 from ..inputs.ranges import Product
 from ..inputs.top import INPUTS, overridden
 from ..inputs.tops_file import open_tops
@@ -121,7 +121,7 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
     }
     top = found.replace(inputs=numbers).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
-    return overridden(inputs, {name: nearest(name, x) for name, x in numbers.items()})
+    return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})
 
 
 def _digested(path: str) -> tuple[BufferedIOBase | None, str]:

@@ -35,8 +35,6 @@ Column = Array | NDArray[np.object_]
 BLOCK_ROWS = 1 << 12
 """Tops that are computed together: their arrays stay in the cache."""
 
-_TEXT_KEYS = ("regime", "path", "remark")
-
 
 def record_keys(*, radians: bool = False) -> list[str]:
     """Return the keys of a record, and `error`."""
@@ -90,7 +88,7 @@ def together(inputs: Mapping[str, ArrayLike]) -> Sequence[Array]:
 
 def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:
     """Return columns for so many tops, to be filled."""
-    texts = {*_TEXT_KEYS, "error"}
+    texts = {*motion_record.TEXT_KEYS, "error"}
     return {key: np.empty(count, dtype=object if key in texts else np.float64) for key in keys}
 
 
@@ -156,8 +154,8 @@ class _Block:
         tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
         given = tops._asdict() | tilt
         known = motion_record.record_keys(radians=radians)
-        others = {*given, *_TEXT_KEYS, "error"}
-        self.texts = [key for key in columns if key in _TEXT_KEYS]
+        others = {*given, *motion_record.TEXT_KEYS, "error"}
+        self.texts = [key for key in columns if key in motion_record.TEXT_KEYS]
         self.numbers = [key for key in columns if key in known and key not in others]
         self.requested = [key for key in columns if key not in known and key not in others]
         for key, column in self.columns.items():

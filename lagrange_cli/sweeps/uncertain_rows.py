@@ -10,16 +10,17 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..inputs.uncertain import by_given
+from ..motion.record import TEXT_KEYS
 from ..motion.uncertainty import FirstOrder, stds_of
 from .records import Column
 from .top_arrays import TopArrays
 
-WORDS = frozenset({"regime", "path", "remark", "error"})
+_TEXTS = frozenset({*TEXT_KEYS, "error"})
 
 
 def std_keys(keys: Sequence[str]) -> list[str]:
     """Return the names of the uncertainties of those keys that are numbers."""
-    return [f"{key}_std" for key in keys if key not in WORDS]
+    return [f"{key}_std" for key in keys if key not in _TEXTS]
 
 
 def std_columns(

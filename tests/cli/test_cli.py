@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -392,6 +393,16 @@ def test_every_error_is_of_one_family_and_says_its_exit_code() -> None:
         **{"SomeFailedError": 1, "AbsentError": 1, "NothingToDrawError": 2, "OutOfRangeError": 2},
     }
     assert LagtopError.exit_code == 2
+
+
+def test_the_exit_codes_have_one_wording(lagtop: Lagtop) -> None:
+    rows = re.findall(r"(?m)^\| ([\d +N]+) \| (.*) \|$", str(errors.__doc__))
+    assert len(rows) == 7
+    shown = " ".join(lagtop("--help").stdout.split())
+    written = " ".join((ROOT / "README.md").read_text().split())
+    for code, meaning in rows:
+        assert f"{code} {meaning}" in shown
+        assert f"{code} {meaning}" in written
 
 
 def test_version(lagtop: Lagtop) -> None:

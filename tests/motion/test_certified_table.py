@@ -138,5 +138,6 @@ def test_without_the_package_there_is_a_remedy(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.delitem(sys.modules, "lagrange_cli.arithmetic.balls")
     monkeypatch.setitem(sys.modules, "flint", None)
+    monkeypatch.setattr("lagrange_cli.motion.solve.solve", None)  # nothing is computed before
     result = lagtop(command, "--certify")
     assert_one_line(result, 69, "proved digits need python-flint: pip install 'lagtop[certify]'")

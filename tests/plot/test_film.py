@@ -107,7 +107,7 @@ def test_the_smallest_films(size: tuple[float, float]) -> None:
 def test_mp4_needs_ffmpeg(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     result = lagtop("plot", "--animate", tmp_path / "x.mp4")
-    assert result.exit_code == 2
+    assert result.exit_code == 69
     assert result.stderr == (
         "Error: --animate FILE.mp4 needs ffmpeg on the PATH (or write FILE.gif)\n"
     )
