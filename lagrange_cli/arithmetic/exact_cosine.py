@@ -102,7 +102,7 @@ class Cosine(Values):
     def fraction(self, polynomial: Polynomial) -> Fraction | None:
         """Return a polynomial here where it is known as a fraction: 0, or of a rational cosine."""
         if self.rational is not None:
-            return Fraction(_value([Fraction(x) for x in polynomial.coefficients], self.rational))
+            return Fraction(value_at([Fraction(x) for x in polynomial.coefficients], self.rational))
         return Fraction(0) if self.vanishes(polynomial) else None
 
     def sign(self, polynomial: Polynomial) -> int:
@@ -117,7 +117,7 @@ class Cosine(Values):
         try:
             coefficients = [float(x) for x in polynomial.coefficients]
             size = sum(map(abs, coefficients))
-            value = _value(coefficients, math.cos(self._in_radians()))
+            value = value_at(coefficients, math.cos(self._in_radians()))
         except OverflowError:
             return None
         if not abs(value) > _CERTAIN * size or size < _SMALL:
@@ -132,7 +132,7 @@ class Cosine(Values):
             return True
         rational = self.rational
         if rational is not None:
-            return not _value(coefficients, rational)
+            return not value_at(coefficients, rational)
         if self.degrees is None or len(coefficients) == 1:
             return False
         n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
@@ -146,7 +146,7 @@ class Cosine(Values):
         while True:
             ar = decimals(digits)
             with ar.working():
-                value = _value([ar.convert(x / size) for x in coefficients], self.value(ar))
+                value = value_at([ar.convert(x / size) for x in coefficients], self.value(ar))
                 if abs(value) > 1000 * ar.eps:
                     return 1 if value > 0 else -1
             digits *= 2
@@ -163,8 +163,8 @@ class Cosine(Values):
         return ar.sin(ar.convert(90 - self.degrees) * ar.pi / 180)
 
 
-def _value(coefficients: Sequence[N], x: N) -> N:
-    """Return the polynomial at x."""
+def value_at(coefficients: Sequence[N], x: N) -> N:
+    """Return the polynomial with these coefficients, the lowest power first, at x."""
     return reduce(lambda value, coefficient: value * x + coefficient, reversed(coefficients))
 
 

@@ -13,7 +13,8 @@ from decimal import Decimal
 from fractions import Fraction
 
 from ..arithmetic.decimals import Decimals, decimals
-from ..arithmetic.exact_cosine import Polynomial, U
+from ..arithmetic.exact_cosine import Polynomial, U, value_at
+from .gaps import largest_root
 from .regime import Exact
 
 HALF_RATES = ("spin_rate_half", "precession_rate_half")
@@ -51,9 +52,10 @@ def _is_zero_at_u3(exact: Exact, P: InU3, cubic: InU3) -> bool:
     ar = decimals(_DIGITS)
     with ar.working():
         values, terms = (_in_digits(exact, ar, y) for y in (cubic, P))
-        root = _greatest_root(values)
+        c0, c1, c2, one = (c / values[3] for c in values)
+        root = largest_root(ar, c2, c1, c0, 1 + max(map(abs, (c0, c1, c2, one))))
         size = sum(abs(c) * abs(root) ** i for i, c in enumerate(terms))
-        if abs(_value(terms, root)) > _ZERO * size:
+        if abs(value_at(terms, root)) > _ZERO * size:
             return False
     (p, q, r), (s, t, u), (v, w, x) = (
         _reduced([Polynomial(0)] * shift + P, cubic) for shift in range(3)
@@ -91,23 +93,4 @@ def _reduced(P: InU3, cubic: InU3) -> InU3:
 
 def _in_digits(exact: Exact, ar: Decimals, P: InU3) -> list[Decimal]:
     cosine = exact.cosine.value(ar)
-    return [_value([ar.convert(Fraction(x)) for x in y.coefficients], cosine) for y in P]
-
-
-def _value(coefficients: list[Decimal], x: Decimal) -> Decimal:
-    value = Decimal(0)
-    for coefficient in reversed(coefficients):
-        value = value * x + coefficient
-    return value
-
-
-def _greatest_root(cubic: list[Decimal]) -> Decimal:
-    """Return the greatest root by Newton's method from above, where it converges from one side."""
-    slopes = [i * c for i, c in enumerate(cubic)][1:]
-    x = 1 + max(abs(c / cubic[3]) for c in cubic)
-    for _ in range(1000):
-        step = _value(cubic, x) / _value(slopes, x)
-        if not step > abs(x) * Decimal(10) ** (5 - _DIGITS):
-            break
-        x -= step
-    return x
+    return [value_at([ar.convert(Fraction(x)) for x in y.coefficients], cosine) for y in P]
