@@ -9,7 +9,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, complain, write_keys
-from .given import say_missing
+from .given import is_scene, say_missing
 from .options import (
     COUNT,
     KEY_NAMES,
@@ -91,7 +91,7 @@ def command(
     chosen = record_keys(radians=rad)
     if keys is not None:
         chosen = check_names("keys", keys, all_keys(radians=rad))
-    scenes = [word for word in words if word.endswith(".toml")]
+    scenes = [word for word in words if is_scene(word)]
     conditions = [word for word in words if word not in scenes]
     if len(scenes) > 1:
         raise LagtopError(f"find takes one scene, got {' '.join(scenes)}")

@@ -23,6 +23,14 @@ def in_seconds(options: Mapping[str, Any], **times: Any) -> tuple[dict[str, Any]
     return {**options, "units": options.get("units") or "si"}, converted(times, None)
 
 
+def is_scene(word: str) -> bool:
+    """Return whether a word among others, such as conditions or kinds of picture, names a scene.
+
+    That is one that ends in `.toml`, or one with a dot or a slash that compares nothing.
+    """
+    return word.endswith(".toml") or (bool(set(word) & set("./")) and not set(word) & set("=<>"))
+
+
 def say_missing(found: Given) -> None:
     """Name the inputs of the body that are those of the worked example, where others are given."""
     if found.missing:

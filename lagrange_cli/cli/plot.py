@@ -20,7 +20,7 @@ from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look
 from .command import ExamplesFirst
-from .given import in_seconds
+from .given import in_seconds, is_scene
 from .options import (
     FILE,
     NUMBER,
@@ -183,7 +183,7 @@ def _scene_and_kinds(words: Sequence[str]) -> tuple[str | None, tuple[str, ...]]
     """Return the scene file among the words, if any, and the kinds of picture."""
     known = (*KINDS, SHEET)
     scenes = [word for word in words if word not in known]
-    for word in scenes[1:] or [word for word in scenes if not re.search(r"[./]", word)]:
+    for word in scenes[1:] or [word for word in scenes if not is_scene(word)]:
         check_names("KIND", [word], known)
     kinds = [kind for word in words for kind in (ON_THE_SHEET if word == SHEET else [word])]
     chosen = tuple(dict.fromkeys(kind for kind in kinds if kind in KINDS))

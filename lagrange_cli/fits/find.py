@@ -14,7 +14,7 @@ from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
 from ..motion.solve import Motion, solve
 from .roots import roots
-from .search import Scan, Search, Watch, scan, search_of
+from .search import Scan, Search, Watch, scan_of, search_of
 from .several import solutions
 
 
@@ -27,14 +27,14 @@ class Found(NamedTuple):
 
 
 def find(
-    conditions: Sequence[str], *, count: int | None = None, radians: bool = False, **inputs: Any
+    conditions: Sequence[str], *, scan: int | None = None, radians: bool = False, **inputs: Any
 ) -> list[Motion]:
     """Return the motions that keep all conditions, such as `find(["T_precession=2"], r0="10:200")`.
 
     An input is a number, or a text `[log:]from:to` where it is unknown; there are up to three
     unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER leave out
-    what does not keep them.  What a scan of `count` values of each unknown brackets is found; each
-    unknown is right to its last bit.  The list may be empty.  Raises LagtopError.
+    what does not keep them.  Found is what a `scan` of so many values of each unknown
+    brackets; each unknown is right to its last bit.  The list may be empty.  Raises LagtopError.
     """
     check_names("inputs", list(inputs) or ["m"], INPUTS)
     given = {name: _read(name, x) for name, x in inputs.items() if x is not None}
@@ -42,7 +42,7 @@ def find(
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:
-        return look(search, count).motions
+        return look(search, scan).motions
     except AbsentError:
         return []
 
@@ -60,7 +60,7 @@ def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found
 
     Raises AbsentError, which says how near the scan came, where there is none.
     """
-    grid = scan(search, count, watch)
+    grid = scan_of(search, count, watch)
     if len(search.spans) == 1:
         points = [[x] for x in _roots(search, grid)]
     else:

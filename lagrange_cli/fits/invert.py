@@ -30,14 +30,20 @@ def invert(
     numbers = _numbers(seen, radians)
     unit = 1.0 if radians else math.pi / 180
     least, greatest, period, rate = (numbers[unit_name(key, radians=radians)] for key in _SEEN)
-    nutation = Nutation(least * unit, greatest * unit, period).checked()
-    found = with_mean_rate(nutation, rate)
+    nutation = Nutation(least * unit, greatest * unit, period).checked(radians=radians)
+    known = known or {}
+    for name, value in known.items():
+        if not value:
+            raise LagtopError(f"{name} must not be 0 in a top that nods: leave it out", name)
+    spin = known.get("r0")  # of the sign of b
+    found = [x for x in with_mean_rate(nutation, rate) if spin is None or spin * float(x.b) > 0]
     if not found:
         raise AbsentError(
             f"no top nods between these tilts in this time and precesses by {rate:g} on average"
+            + ("" if spin is None else f" with r0 = {spin:g}")
         )
     tops = [top_of(nutation, one, numbers.get(_SPIN)) for one in found]
-    return [solve(_of_body(top, known or {}, _SPIN in numbers)) for top in tops]
+    return [solve(_of_body(top, known, _SPIN in numbers)) for top in tops]
 
 
 def _numbers(seen: Sequence[str], radians: bool) -> Mapping[str, float]:
@@ -57,4 +63,20 @@ def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
     a, b, r0 = 2 * float(top.g), float(top.C) * float(top.r0), float(top.r0)
     numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
     inputs = completed(numbers, known, told_of(numbers, known))
+    given = ", ".join(f"{name} = {value:g}" for name, value in known.items())
+    if not _moves_so(inputs, numbers):
+        raise LagtopError(f"{given} must leave the motion open, which has other numbers: give less")
+    ratio = inputs["C"] / inputs["A"]
+    if not 0 < ratio <= 2:
+        raise LagtopError(
+            f"the motion with {given} must be that of a body with 0 < C/A <= 2, "
+            f"got C/A = {ratio:.6g}"
+        )
     return top.replace(**inputs)
+
+
+def _moves_so(inputs: Mapping[str, float], numbers: Mapping[str, float]) -> bool:
+    """Return whether a body has these numbers of a (4,4), b (4,5) and r0 but for rounding."""
+    m, A, C, s, g, r0 = (inputs[name] for name in ("m", "A", "C", "s", "g", "r0"))
+    has = {"a": 2 * m * g * s / A, "b": C * r0 / A, "r0": r0}
+    return all(math.isclose(has[name], x, rel_tol=1e-9) for name, x in numbers.items())

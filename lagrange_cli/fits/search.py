@@ -74,7 +74,7 @@ class Search(NamedTuple):
         if not 1 <= unknown <= max(COUNTS):
             raise LagtopError(
                 f"find needs 1 to {max(COUNTS)} unknown inputs, each a range from:to such as "
-                f"--r0 10:200, got {unknown}"
+                f"10:200, got {unknown}"
             )
         if numbers != unknown:
             raise LagtopError(
@@ -114,7 +114,7 @@ class Scan(NamedTuple):
     """What the numbers that are wanted are there, in the same shape; NaN for none."""
 
 
-def scan(search: Search, count: int | None, watch: Watch = iter) -> Scan:
+def scan_of(search: Search, count: int | None, watch: Watch = iter) -> Scan:
     """Compute the tops on a grid of so many values of each unknown.
 
     Raises LagtopError for a count that is too small, or too large together.

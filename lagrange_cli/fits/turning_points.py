@@ -41,12 +41,16 @@ class Nutation(NamedTuple):
     theta_max: float
     period: float
 
-    def checked(self) -> Nutation:
-        """Return the nutation.  Raises LagtopError for one that no top has."""
+    def checked(self, *, radians: bool = False) -> Nutation:
+        """Return the nutation.
+
+        Raises LagtopError for one that no top has, with its tilts in degrees or in radians.
+        """
         if not 0 < self.theta_min < self.theta_max < math.pi:
-            shown = f"{math.degrees(self.theta_min):g} and {math.degrees(self.theta_max):g} degrees"
+            most, unit = ("pi", 1.0) if radians else ("180 degrees", 180 / math.pi)
             raise LagtopError(
-                f"theta_min and theta_max must be 0 < theta_min < theta_max < 180, got {shown}"
+                f"theta_min and theta_max must be 0 < theta_min < theta_max < {most}, "
+                f"got {self.theta_min * unit:g} and {self.theta_max * unit:g}"
             )
         if not 0 < self.period < math.inf:
             raise LagtopError(f"T_nutation must be > 0, got {self.period:g}")

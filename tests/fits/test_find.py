@@ -44,7 +44,7 @@ def test_an_unknown_is_right_to_its_last_bit(key: str, wanted: float, found: int
 
 def test_a_pair_of_roots_between_two_points_is_found() -> None:
     least = min(find(["T_nutation=0.4525"], r0="10:200"), key=lambda x: float(x.top.r0))
-    assert len(find(["T_nutation=0.4525"], r0="10:200", count=7)) == 2
+    assert len(find(["T_nutation=0.4525"], r0="10:200", scan=7)) == 2
     assert 30 < float(least.top.r0) < 40
 
 
@@ -90,7 +90,8 @@ def test_filters_and_bounds() -> None:
 @pytest.mark.parametrize(
     ("conditions", "unknowns", "message"),
     [
-        (["T_nutation=0.4"], {}, "find needs 1 to 3 unknown inputs"),
+        (["T_nutation=0.4"], {}, "find needs 1 to 3 unknown inputs, each a .* such as 10:200, got"),
+        (["T_nutation=0.4"], {"r0": "1:2", "scan": 2}, "scan must be 3 or more values"),
         ([], {"r0": "1:2"}, "find needs as many conditions"),
         (["T_nutation~3"], {"r0": "1:2"}, "a condition must be KEY=VALUE"),
         (["T_nutation=0.4", "path=straight"], {"r0": "1:2"}, "path= must be one of cusped"),
@@ -113,14 +114,14 @@ def test_bad_searches(conditions: list[str], unknowns: dict[str, Any], message: 
 def test_a_tilt_may_be_in_radians(tilt: Any) -> None:
     wanted = solve(Top(theta0_rad=0.5)).T_precession
     other: dict[str, Any] = {} if tilt == "0.1:1" else {"r0": "40:60"}
-    motions = find([f"T_precession={wanted!r}"], theta0_rad=tilt, count=20, **other)
+    motions = find([f"T_precession={wanted!r}"], theta0_rad=tilt, scan=20, **other)
     assert any(abs(float(x.top.r0) - 50) < 1e-9 for x in motions)
     assert any(abs(float(x.top.theta0_rad or 0) - 0.5) < 1e-9 for x in motions)
 
 
 def test_inputs_that_were_not_given_are_said_where_find_is_called() -> None:
     with pytest.warns(MixedBodyWarning, match="A, C, s and g are those") as said:
-        find(["T_nutation=0.45"], m=1600, r0="10:60", count=20)
+        find(["T_nutation=0.45"], m=1600, r0="10:60", scan=20)
     assert [x.filename for x in said] == [__file__]
 
 
@@ -165,6 +166,8 @@ def test_where_there_is_none_the_nearest_is_named(lagtop: Lagtop) -> None:
         ("--r0 200:10 T_nutation=1", 2, "--r0 must be a range whose first end"),
         ("--r0 1:2 T_nutation=1 --scan 2", 2, "--scan must be 3 or more values"),
         ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
+        ("none.scene --r0 1:2 T_nutation=0.5", 65, "none.scene: No such file"),
+        ("a=b/none.toml --r0 1:2 T_nutation=0.5", 65, "a=b/none.toml: No such file"),
         ("a.toml b.toml", 2, "find takes one scene"),
         ("--from theta_min=3", 2, "--from must have theta_min=.. theta_max=.."),
         ("--from --r0 1:2", 2, "--from goes with numbers for C r0 m s g A, got --r0"),
@@ -272,6 +275,35 @@ def test_the_body_that_is_made_moves_as_seen(known: tuple[str, ...], spins: bool
     for product in told:
         value = math.prod(true[name] ** float(n) for name, n in product.powers.items())
         assert product.value == pytest.approx(value, rel=1e-13)
+
+
+def test_a_body_that_cannot_be_is_said_of_what_was_given() -> None:
+    seen = ["theta_min=30", "theta_max=60", "T_nutation=0.4", "mean_precession_rate=5"]
+    with pytest.raises(LagtopError, match=r"with A = 2, r0 = 3 .* 0 < C/A <= 2, got C/A = \d"):
+        invert(seen, known={"A": 2.0, "r0": 3.0})
+
+
+def test_known_inputs_do_not_change_the_motion() -> None:
+    seen = ["theta_min=30", "theta_max=60", "T_nutation=0.4", "mean_precession_rate=5"]
+    (motion,) = invert(seen, known={"r0": 50.0})
+    assert motion.mean_precession_rate == pytest.approx(5, rel=1e-12)
+    for known, message in (
+        ({"r0": 0.0}, "r0 must not be 0"),
+        ({"r0": -50.0}, "no top nods .* with r0 = -50"),  # the other spin precesses by -5
+        ({"g": 0.0}, "g must not be 0"),
+        ({"A": 2.0, "C": 1.0, "r0": 3.0}, "A = 2, C = 1, r0 = 3 must leave the motion open"),
+    ):
+        with pytest.raises(LagtopError, match=message):
+            invert(seen, known=known)
+
+
+@pytest.mark.parametrize(
+    ("radians", "message"), [(False, "180 degrees, got 60 and 30"), (True, "pi, got 60 and 30")]
+)
+def test_tilts_are_refused_in_their_own_unit(radians: bool, message: str) -> None:
+    seen = ["theta_min=60", "theta_max=30", "T_nutation=0.4", "mean_precession_rate=5"]
+    with pytest.raises(LagtopError, match=f"theta_min < theta_max < {message}"):
+        invert(seen, radians=radians)
 
 
 def test_what_cannot_be_told_apart_is_named() -> None:
