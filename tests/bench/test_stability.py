@@ -89,7 +89,7 @@ def test_report_is_repeatable_in_every_format(
     first = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent_steps)
     second = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent_steps)
     assert first.rows == second.rows
-    monkeypatch.setattr(stability, "run_battery", lambda *_: second)
+    monkeypatch.setattr(stability, "run_battery", lambda *_, **__: second)
     picture = tmp_path / "error.svg"
     shown = lagtop("stability", *FEW, "--format", "json", "--plot", picture)
     assert shown.exit_code == stability.exceeded(second)

@@ -455,10 +455,10 @@ RUBBISH = ["text", "nan", "inf", "1e999", "--", "1,5", '"', "", "1_0", "\u0663",
 
 @pytest.mark.slow
 def test_a_large_file_with_rubbish_in_it(tmp_path: Path, lagtop: Lagtop) -> None:
-    """1e5 rows, one in a hundred broken in a way of its own, CRLF, a BOM and blank lines."""
+    """2e4 rows, one in a hundred broken in a way of its own, CRLF, a BOM and blank lines."""
     rng = random.Random(3)
     lines, bad = ["\ufeffid,m,r0,theta0_deg"], {}
-    for i in range(100_000):
+    for i in range(20_000):
         cells = [str(i), "1587", repr(rng.uniform(-100, 100)), repr(rng.uniform(1, 179))]
         if rng.random() < 0.01:
             kind = rng.randrange(4)
@@ -478,13 +478,15 @@ def test_a_large_file_with_rubbish_in_it(tmp_path: Path, lagtop: Lagtop) -> None
     file.write_bytes("\r\n".join(lines).encode())
     result = lagtop("sweep", file, "--keys", "r0,theta0_deg,mean_precession_rate")
     assert result.exit_code == 1
-    assert result.stderr.startswith(f"Error: {len(bad)} of 100000 tops have an error")
+    warned, error = result.stderr.splitlines()  # m alone is half a body
+    assert warned.startswith("Warning: A, C, s and g are those of the worked example")
+    assert error.startswith(f"Error: {len(bad)} of 20000 tops have an error")
     rows = table(result.stdout)
     assert {i: row["error"].partition(":")[0] for i, row in enumerate(rows) if row["error"]} == {
         i: f"line {line}" for i, line in bad.items()
     }
     good = [row for row in rows if not row["error"]]
-    assert [int(row["id"]) for row in good] == [i for i in range(100_000) if i not in bad]
+    assert [int(row["id"]) for row in good] == [i for i in range(20_000) if i not in bad]
     for row in rng.sample(good, 100):
         top = Top(r0=float(row["r0"]), theta0_deg=float(row["theta0_deg"]))
         rate = float(row["mean_precession_rate"])
