@@ -101,7 +101,7 @@ def test_report_is_repeatable_in_every_format(
     for one, other in zip(lines, whole["rows"], strict=True):
         assert {key: ("" if value is None else str(value)) for key, value in other.items()} == one
     assert "scenes: 2 per stratum" in listed.stderr
-    assert "<!-- bottom pass -->" in picture.read_text()
+    assert ">bottom pass<" in picture.read_text()
     assert "Worst cases:\nbottom pass: lagtop " in lagtop("stability", *FEW).stdout
 
 
