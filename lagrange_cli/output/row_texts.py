@@ -19,7 +19,7 @@ none; or lists of texts and JSON values."""
 
 _FEW = 8
 """Numbers per row up to which an array is written as one text, and not row by row."""
-_CELLS_AT_ONCE = 1 << 13
+_CELLS_AT_ONCE = 1 << 14
 """Cells of a block that are in memory together: in the cache."""
 
 
