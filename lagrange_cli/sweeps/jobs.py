@@ -9,19 +9,20 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
-from itertools import chain, repeat
 from threading import Thread
 from typing import TypeVar
 
 from ..errors import LagtopError, UnavailableError
 
 MOST_JOBS = 1024
-_AHEAD = 3
-"""Items that are handed out per process: so none waits, and memory does not grow with the work."""
+_HANDED_OUT = 2
+"""Items that each other process has: one that it works at, and the next."""
+_AHEAD = 4
+"""Results per process that may wait for an earlier one: memory does not grow with the work."""
 
 T = TypeVar("T")
 P = TypeVar("P")
@@ -41,19 +42,19 @@ def parse_jobs(text: str) -> int:
 
 
 def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator[P, None, None]:
-    """Yield what the work makes of each item, in their order.
+    """Yield what the work makes of each item, in their order; this process is one of the `jobs`.
 
-    With more than one of the `jobs`, the work and its results must be picklable.  Raises
-    UnavailableError where a process is lost, and what the work raises.
+    With more than one, the work and its results must be picklable.  Raises UnavailableError where
+    a process is lost, and what the work raises.
     """
     if jobs == 1:
         yield from map(work, items)
         return
     pool = ProcessPoolExecutor(
-        jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_start_worker
+        jobs - 1, mp_context=multiprocessing.get_context("spawn"), initializer=_start_worker
     )
     try:
-        with closing(_gathered(pool, work, items, _AHEAD * jobs)) as results:
+        with closing(_shared(pool, work, iter(items), jobs)) as results:
             yield from results
     except BrokenProcessPool:
         raise UnavailableError(
@@ -63,18 +64,30 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _gathered(
-    pool: ProcessPoolExecutor, work: Callable[[T], P], items: Iterable[T], most: int
+def _shared(
+    pool: ProcessPoolExecutor, work: Callable[[T], P], items: Iterator[T], jobs: int
 ) -> Generator[P, None, None]:
-    """Yield the results in order, with so many items under way at a time."""
-    waiting: deque[Future[P]] = deque()
-    for item in chain(((x,) for x in items), repeat(None)):
-        if item is not None:
-            waiting.append(pool.submit(work, *item))
-        elif not waiting:
-            return
-        if item is None or len(waiting) >= most:
-            yield waiting.popleft().result()
+    """Yield the results in order; what no other process has room for is done in this one."""
+    started = pool.submit(_start_work, work)
+    for item in items:  # a process takes longer to start than most items to be done
+        yield work(item)
+        if started.done():
+            break
+    results: deque[Future[P]] = deque()
+    for item in items:
+        if sum(not result.done() for result in results) < _HANDED_OUT * (jobs - 1):
+            results.append(pool.submit(work, item))
+        else:
+            results.append(Future())
+            results[-1].set_result(work(item))
+        while results and (results[0].done() or len(results) >= _AHEAD * jobs):
+            yield results.popleft().result()
+    while results:
+        yield results.popleft().result()
+
+
+def _start_work(work: Callable[[T], P]) -> None:
+    """Do nothing: to hand the work over has loaded what it needs."""
 
 
 def _start_worker() -> None:
