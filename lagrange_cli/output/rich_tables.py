@@ -49,6 +49,13 @@ class Column(NamedTuple):
         lines = (line for cell in (self.heading, *self.cells) for line in cell.split("\n"))
         return max(map(cell_len, lines))
 
+    def flush_right(self) -> Column:
+        """Return the column with heading and cells that end at the same place, if it is numeric."""
+        if not self.numeric:
+            return self
+        heading, *cells = _flush_right([self.heading, *self.cells])
+        return self._replace(heading=heading, cells=cells)
+
     def cut_into_lines(self, width: int) -> Column:
         """Return the column with every cell in lines of at most `width` characters."""
         return self._replace(cells=["\n".join(_chunks(cell, width)) for cell in self.cells])
@@ -82,11 +89,13 @@ def _cells(record: Mapping[str, Any], line: Line, angle: str, view: View) -> lis
 
 def _record(groups: Mapping[str, list[list[str]]]) -> Table:
     """Return five columns.  A group is one row of many lines: rich takes its time for each cell."""
-    headings = ("Symbol", "Name", "Value", "Unit", "Equation")
-    table = _empty((heading, heading == "Value") for heading in headings)
-    for group, lines in groups.items():
-        symbols, names, *rest = ("\n".join(cells) for cells in zip(*lines, strict=True))
-        values, *rest = rest
+    texts = {
+        group: ["\n".join(cells) for cells in zip(*lines, strict=True)]
+        for group, lines in groups.items()
+    }
+    heading, *numbers = _flush_right(["Value", *(columns[2] for columns in texts.values())])
+    table = _empty(["Symbol", "Name", heading, "Unit", "Equation"])
+    for (group, (symbols, names, _, *rest)), values in zip(texts.items(), numbers, strict=True):
         name_cell = Text.assemble((f"{group}\n", _HEADING), names)
         value_cell = Text(f"\n{values}", _style(group))
         table.add_row(f"\n{symbols}", name_cell, value_cell, *(f"\n{cells}" for cells in rest))
@@ -98,7 +107,7 @@ def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
     every = [line for lines in groups.values() for line in lines]
     beside = [Column("", [line[i] for line in every]).width() for i in (0, 3, 4)]
     room = max(width - sum(max(used, len("Equation")) for used in beside) - 3 * _GAP, 12)
-    table = _empty((heading, False) for heading in ("Symbol", "Name, value", "Unit", "Equation"))
+    table = _empty(["Symbol", "Name, value", "Unit", "Equation"])
     for group, lines in groups.items():
         table.add_row("", Text(group, _HEADING), "", "")
         for symbol, name, value, unit, equation in lines:
@@ -167,18 +176,26 @@ def _blocks(
 
 
 def _filled_table(columns: Sequence[Column]) -> Table:
-    table = _empty((column.heading, column.numeric) for column in columns)
+    columns = [column.flush_right() for column in columns]
+    table = _empty([column.heading for column in columns])
     for row in zip(*(column.cells for column in columns), strict=True):
         table.add_row(*row)
     return table
 
 
-def _empty(columns: Iterable[tuple[str, bool]]) -> Table:
-    """Return a table without rows; each column by its heading, and whether it holds numbers."""
+def _empty(headings: Iterable[str]) -> Table:
+    """Return a table without rows.  Texts stay as they are: for rich to align them takes longer."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for heading, numeric in columns:
-        table.add_column(heading, justify="right" if numeric else "left", no_wrap=True)
+    for heading in headings:
+        table.add_column(heading, overflow="ignore", no_wrap=True)
     return table
+
+
+def _flush_right(texts: Sequence[str]) -> list[str]:
+    """Return texts of one or more lines, every line filled with spaces on its left."""
+    lines = [text.split("\n") for text in texts]
+    width = max(len(line) for text in lines for line in text)
+    return ["\n".join(line.rjust(width) for line in text) for text in lines]
 
 
 def _chunks(text: str, width: int) -> list[str]:
@@ -219,7 +236,7 @@ def _drawn(table: Table | Text, view: View) -> str:
         highlight=False,
         markup=False,
         emoji=False,
-    ).print(table)
+    ).print(table, crop=False)
     lines = [line.rstrip() for line in file.getvalue().splitlines()]
     return "\n".join(lines).strip("\n") + "\n"
 
