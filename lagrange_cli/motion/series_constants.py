@@ -7,7 +7,7 @@ doubles; its constants are those of the motion in many digits, rounded once.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
@@ -282,7 +282,8 @@ def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
     size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE
 
     def scaled(polynomial: Polynomial, size: Any) -> Polynomial:
-        return _trimmed([coefficient / size for coefficient in polynomial], greatest)
+        count = needed([abs(x) for x in polynomial], greatest, _NEGLIGIBLE)
+        return [float(x / size) for x in polynomial[:count]]
 
     def component(c: Component) -> Component:
         return Component(scaled(c.real, size), scaled(c.imag, size), c.even)
@@ -290,9 +291,9 @@ def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
     return Frame(component(frame.x), component(frame.y), scaled(frame.rate, size**4))
 
 
-def _trimmed(polynomial: Polynomial, greatest: Decimal) -> Polynomial:
-    """Return the coefficients that matter beside the first, up to the greatest argument."""
-    kept, least = list(polynomial), _NEGLIGIBLE * abs(polynomial[0])
-    while len(kept) > 2 and abs(kept[-1]) * greatest ** (len(kept) - 1) <= least:
-        del kept[-1]
-    return [float(coefficient) for coefficient in kept]
+def needed(sizes: Sequence[Decimal], greatest: Decimal, negligible: Decimal) -> int:
+    """Return how many coefficients, two at least, matter beside the first to an argument."""
+    count = len(sizes)
+    while count > 2 and sizes[count - 1] * greatest ** (count - 1) <= negligible * sizes[0]:
+        count -= 1
+    return count

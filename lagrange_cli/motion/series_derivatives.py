@@ -26,7 +26,7 @@ from ..elliptic.modulus import Modulus
 from .attitude import Growths, growths
 from .kinds import Nutating
 from .neighbourhood import PARAMETERS
-from .series_constants import theta_constants
+from .series_constants import needed, theta_constants
 from .theta_series import Component, Polynomial, evaluate, theta_series
 
 _NEGLIGIBLE = Decimal(2) ** -100
@@ -247,10 +247,8 @@ def _component(component: Rows, z: Array, hyperbolic: bool) -> list[tuple[Array,
 
 def _kept(polynomial: Polynomial, greatest: Decimal) -> Polynomial:
     """Return the coefficients that matter beside the first, up to the greatest argument."""
-    kept, least = list(polynomial), _NEGLIGIBLE * abs(polynomial[0].value)
-    while len(kept) > 2 and abs(kept[-1].value) * greatest ** (len(kept) - 1) <= least:
-        del kept[-1]
-    return kept
+    sizes = [abs(x.value) for x in polynomial]
+    return polynomial[: needed(sizes, greatest, _NEGLIGIBLE)]
 
 
 def _rows(polynomial: Polynomial) -> Array:
