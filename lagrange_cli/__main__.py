@@ -13,11 +13,9 @@ def main() -> None:
     """Run the command line; Ctrl-C during its imports ends it as a signal, without a traceback."""
     if signal.getsignal(signal.SIGINT) == signal.default_int_handler:  # it may be ignored instead
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    gc.disable()  # imports leave no garbage: to look for it takes 4 % of `lagtop solve`
+    gc.disable()  # until the command is loaded: imports leave no garbage, see `LagtopGroup`
     from .cli.group import main as run
 
-    gc.freeze()
-    gc.enable()
     run(prog_name="lagtop")
 
 

@@ -23,6 +23,9 @@ else:
             return cls
 
 
+_SET = object.__setattr__
+
+
 @dataclass_transform(frozen_default=True)
 class Values:
     """Values that cannot be changed, one per annotated field of a class, in the order of these.
@@ -38,14 +41,20 @@ class Values:
         cls.fields = (*cls.fields, *cls.__annotations__)
 
     def __init__(self, *values: Any, **named: Any) -> None:
+        if named or len(values) != len(self.fields):
+            values = self._completed(values, named)
+        for name, value in zip(self.fields, values, strict=True):
+            _SET(self, name, value)
+
+    def _completed(self, values: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
+        """Return a value for each field, the default where none is given.
+
+        Raises TypeError for others than the fields, AttributeError where one has no default.
+        """
         given = dict(zip(self.fields, values, strict=False)) | named
         if len(given) < len(values) + len(named) or not given.keys() <= set(self.fields):
             raise TypeError(f"the fields of {type(self).__name__} are {', '.join(self.fields)}")
-        for name in self.fields:
-            if name not in given:
-                given[name] = getattr(self, name)  # the default, or an AttributeError
-        for name, value in given.items():
-            object.__setattr__(self, name, value)
+        return tuple(given[x] if x in given else getattr(self, x) for x in self.fields)
 
     def __iter__(self) -> Iterator[Any]:
         """Yield the values in the order of the fields."""

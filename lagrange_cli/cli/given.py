@@ -1,4 +1,4 @@
-"""What is made and said of inputs that are given, before there is a top."""
+"""What is made and said of inputs that are given."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from .command import complain
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
+    from ..motion.angle_uncertainty import AngleStds
+    from ..motion.solve import Motion
 
 
 def in_seconds(options: Mapping[str, Any], **times: Any) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -38,3 +40,12 @@ def say_missing(found: Given) -> None:
 
         words = mixed_body.options(found.missing, units=found.system is not None)
         complain(f"Warning: {mixed_body.remark(found.missing, words)}")
+
+
+def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
+    """Return the uncertainties of the angles over time, where inputs have any."""
+    if not found.stds:
+        return None
+    from ..motion.angle_uncertainty import AngleStds  # for few tops only
+
+    return AngleStds(motion.exact, found.stds, found.inputs.keys())

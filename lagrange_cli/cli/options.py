@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -76,13 +77,17 @@ def _parse_count(text: str) -> int:
     return int(exact)
 
 
-def parse_input(text: str) -> Any:
-    """Return a number, or a number in a unit."""
+def _parse_input(text: str, *, uncertain: bool = False) -> Any:
+    """Return a number, one with an uncertainty where it may be `uncertain`, or either in a unit."""
     if is_decimal(text.strip()):
         return parse_number(text)
-    from ..inputs.quantity_text import parse_quantity  # where there may be a unit
+    from ..inputs.quantity_text import parse_quantity  # where there is more than a number
 
-    return parse_quantity(text, parse_number)
+    if not uncertain:
+        return parse_quantity(text, parse_number)
+    from ..inputs.uncertain import parse_uncertain
+
+    return parse_quantity(text, parse_uncertain)
 
 
 def _parse_range(text: str) -> Points:
@@ -172,7 +177,8 @@ def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Finding
 
 FILE = FileName()
 NUMBER = Parsed("number", parse_number)
-INPUT = TIME = Parsed("number", parse_input)
+INPUT = TIME = Parsed("number", _parse_input)
+UNCERTAIN = Parsed("number", partial(_parse_input, uncertain=True))
 COUNT = Parsed("integer", _parse_count)
 RANGE = Parsed("range", _parse_range)
 NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (

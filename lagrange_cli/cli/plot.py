@@ -20,18 +20,18 @@ from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look
 from .command import ExamplesFirst
-from .given import in_seconds, is_scene
+from .given import angle_stds, in_seconds, is_scene
 from .options import (
     FILE,
     NUMBER,
     PICTURES,
     TIME,
+    UNCERTAIN,
     input_options,
     inputs_of,
     motion_of,
 )
 from .progress import with_progress
-from .uncertain_options import UNCERTAIN, angle_stds
 
 FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import AbsentError, LagtopError
-from ..inputs.names import check_names
 from ..motion.record import all_keys, record_keys
 from ..output.write import write_record, write_values
 from .command import (
@@ -23,16 +22,18 @@ from .options import (
     COUNT,
     KEY_NAMES,
     MOST_RECORD_DIGITS,
+    UNCERTAIN,
     certify_option,
     digits_option,
     exclude,
+    input_options,
     inputs_of,
     motion_of,
     on_command_line,
     output_options,
+    scene_argument,
     write_report,
 )
-from .uncertain_options import uncertain_scene_options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,7 +64,8 @@ if TYPE_CHECKING:
         lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
     """,
 )
-@uncertain_scene_options
+@scene_argument
+@input_options(UNCERTAIN)
 @digits_option(MOST_RECORD_DIGITS)
 @click.option(
     "--derivation",
@@ -128,6 +130,8 @@ def command(
         values = [key.removesuffix("_std") for key in keys]
         if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
             values = list(dict.fromkeys(values))
+        from ..inputs.names import check_names
+
         known = record_keys(radians=rad)
         check_names("get", values, known if set(values) <= {*known} else all_keys(radians=rad))
     if seed is not None and samples is None:

@@ -13,24 +13,26 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
-from .given import in_seconds, say_missing
+from .given import angle_stds, in_seconds, say_missing
 from .options import (
     COLUMN_NAMES,
     COUNT,
     FILE,
     MOST_TABLE_DIGITS,
     TIME,
+    UNCERTAIN,
     by_key,
     certify_option,
     digits_option,
     exclude,
+    input_options,
     inputs_of,
     jobs_option,
     motion_of,
     output_options,
+    scene_argument,
 )
 from .progress import with_count, with_progress
-from .uncertain_options import angle_stds, uncertain_scene_options
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -56,7 +58,8 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
         seq 0 0.25 2 | lagtop table --times - --format json
     """,
 )
-@uncertain_scene_options
+@scene_argument
+@input_options(UNCERTAIN)
 @click.option("--t-max", type=TIME, help="Last time.  [default: one nutation period, or 1]")
 @click.option("--t-min", type=TIME, help="First time.  [default: 0]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")

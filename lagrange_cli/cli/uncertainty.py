@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
 from ..inputs.names import check_names
-from ..inputs.uncertain import by_given
 from ..motion.record import NUMBER_KEYS, unit_name
 from ..motion.uncertainty import PER_RADIAN, FirstOrder, stds_of
 from ..output.findings import Field, Findings
@@ -69,7 +68,7 @@ def with_stds(
 
 def first_order(found: Given, motion: Motion) -> FirstOrder:
     """Return the uncertainties of first order of a motion."""
-    return FirstOrder(motion.top, found.stds, by_given(motion.top, found.inputs.keys()))
+    return FirstOrder(motion.top, found.stds, found.inputs.keys())
 
 
 def shown_with(record: Mapping[str, Any], stds: Mapping[str, float | None]) -> dict[str, Any]:

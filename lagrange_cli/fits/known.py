@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import LagtopError
+from ..inputs.measured import moment
 from ..inputs.names import check_names
 from ..inputs.top import Top
 
@@ -31,7 +32,8 @@ def known_inputs(given: Mapping[str, Any]) -> dict[str, float]:
             raise LagtopError(f"{name} must not be 0 in a fit: leave it out", name)
     _guard(known)
     if "A_cm" in known:
-        known["A"] = known.pop("A_cm") + known["m"] * known["s"] ** 2
+        known["A"] = float(moment(known))
+        del known["A_cm"]
     for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
         if key in known:
             known["theta0"] = known.pop(key) * unit

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Mapping
 from decimal import Decimal
 from fractions import Fraction
 
@@ -11,7 +12,7 @@ from ..arithmetic.decimals import decimals, own_context
 from ..arithmetic.exact_cosine import Cosine
 from ..arithmetic.numbers import Number
 from ..errors import LagtopError
-from .top import EXAMPLE, overridden
+from .top import EXAMPLE, Top, overridden
 
 EXACT_DIGITS = 1100
 """Digits of an irrational number that has to stand as a fraction: more than any output shows."""
@@ -66,6 +67,29 @@ def spin(inputs: Mapping[str, Number]) -> Number:
     in_full = own_context(EXACT_DIGITS, [])
     rounded = correctly_rounded("r0", value_in, in_full.plus, first=EXACT_DIGITS + 20)
     return Fraction(rounded or 0)
+
+
+def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, float]]:
+    """Return the derivatives of the inputs of a solved top by those that were given.
+
+    These are the same but for A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
+    """
+    tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
+    angle = float(top.theta0_rad or 0) if top.theta0_deg is None else math.radians(top.theta0_deg)
+    arc = 1.0 if top.theta0_deg is None else math.pi / 180
+    m, s, psi_rate = float(top.m), float(top.s), float(top.psidot0)
+    names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
+    chain = {name: {name: 1.0} for name in names}
+    if "A_cm" in given:
+        del chain["A"]
+        chain["A_cm"] = {"A": 1.0}
+        chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
+    if "phidot0" in given:
+        del chain["r0"]
+        chain["phidot0"] = {"r0": 1.0}
+        chain["psidot0"]["r0"] = math.cos(angle)
+        chain[tilt]["r0"] = -psi_rate * math.sin(angle) * arc
+    return chain
 
 
 def is_exact(*inputs: Number) -> bool:

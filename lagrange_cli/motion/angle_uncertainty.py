@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
+from ..inputs.measured import by_given
 from .angle_sensitivities import AngleDerivatives
 from .neighbourhood import PARAMETERS, by_inputs
 from .regime import Exact
@@ -17,15 +18,14 @@ from .table import ANGLES
 class AngleStds:
     """Uncertainties of tilt, spin and precession of a top, whose inputs are not correlated."""
 
-    def __init__(
-        self, scene: Exact, stds: Mapping[str, float], by_given: Mapping[str, Mapping[str, float]]
-    ) -> None:
-        """Take the uncertainties of the inputs as they were given; see `uncertainty.FirstOrder`."""
+    def __init__(self, scene: Exact, stds: Mapping[str, float], given: Collection[str]) -> None:
+        """Take the uncertainties of the inputs as they were given, and the names of all inputs."""
         self.neighbours, solved = AngleDerivatives(scene), by_inputs(scene)
+        inputs = by_given(scene.top, given)
         self.moved = np.zeros((len(stds), len(PARAMETERS)))
         """How far one uncertainty moves each parameter."""
         for row, (name, std) in zip(self.moved, stds.items(), strict=True):
-            for one, slope in by_given[name].items():
+            for one, slope in inputs[name].items():
                 for by, factor in solved[one].items():
                     row[PARAMETERS.index(by)] += std * slope * float(factor)
 

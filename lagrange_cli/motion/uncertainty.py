@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
+from ..inputs.measured import by_given
 from ..inputs.top import Top
 from .record import TEXT_KEYS
 from .sensitivities import sensitivities
@@ -32,14 +33,12 @@ class Contribution(NamedTuple):
 class FirstOrder:
     """Standard uncertainties of the record of a top, whose inputs are not correlated."""
 
-    def __init__(
-        self, top: Top, stds: Mapping[str, float], by_given: Mapping[str, Mapping[str, float]]
-    ) -> None:
-        """Take the uncertainties of the inputs as they were given.
+    def __init__(self, top: Top, stds: Mapping[str, float], given: Collection[str]) -> None:
+        """Take the uncertainties of the inputs as they were given, and the names of all inputs.
 
-        `by_given` has the derivatives of the inputs of the top by those (see `inputs.uncertain`).
+        Raises LagtopError for a top that has no motion.
         """
-        self.top, self.stds, self.by_given = top, stds, by_given
+        self.top, self.stds, self.by_given = top, stds, by_given(top, given)
         self.sensitivities = sensitivities(top)
 
     def derivative(self, key: str, name: str) -> float | None:

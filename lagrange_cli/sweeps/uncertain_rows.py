@@ -9,7 +9,6 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
-from ..inputs.uncertain import by_given
 from ..motion.record import TEXT_KEYS
 from ..motion.uncertainty import FirstOrder, stds_of
 from .records import Column
@@ -40,9 +39,9 @@ def std_columns(
             continue
         inputs = {name: x[i] for name, x in zip(tops._fields, tops, strict=True)}
         top = Top(**{name: x for name, x in inputs.items() if not np.isnan(x)})
-        measured = [name for name, x in given.items() if not np.isnan(_of_row(x, i))]
+        present = [name for name, x in given.items() if not np.isnan(_of_row(x, i))]
         try:
-            uncertain = FirstOrder(top, stds, by_given(top, measured))
+            uncertain = FirstOrder(top, stds, present)
         except LagtopError:
             continue
         record = {key: columns[key][i] for key in columns if f"{key}_std" in found}

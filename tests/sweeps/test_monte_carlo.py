@@ -7,7 +7,6 @@ import pytest
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.inputs.uncertain import by_given
 from lagrange_cli.motion.uncertainty import FirstOrder
 from lagrange_cli.sweeps.monte_carlo import (
     FAILS,
@@ -24,7 +23,7 @@ def outcome(
 ) -> Outcome:
     """Return what becomes of samples of a top, of which some keys are looked at."""
     top = Top(**inputs)
-    uncertain, motion = FirstOrder(top, stds, by_given(top, inputs)), solve(top)
+    uncertain, motion = FirstOrder(top, stds, inputs), solve(top)
     numbers = {key: (getattr(motion, key), uncertain.std(key)) for key in keys}
     given = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return propagate(given, stds, numbers, samples=samples, seed=1)
