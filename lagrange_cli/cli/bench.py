@@ -9,6 +9,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
+from .given import solved
 from .options import (
     COUNT,
     FILE,
@@ -17,7 +18,6 @@ from .options import (
     exclude,
     output_options,
     scene_options,
-    solved,
     write_report,
 )
 from .progress import with_steps

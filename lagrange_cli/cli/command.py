@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -123,7 +123,7 @@ def in_units(layout: Layout, named: Callable[[str], str]) -> Layout:
     }
 
 
-def units_of(record: Mapping[str, Any], layout: Layout) -> dict[str, str]:
+def units_of(record: Collection[str], layout: Layout) -> dict[str, str]:
     """Return the units of the keys of a record that have one, by the lines of a layout."""
     units = {}
     for line in (line for lines in layout.values() for line in lines):

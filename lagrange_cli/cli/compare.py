@@ -13,6 +13,7 @@ from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst
+from .given import solved
 from .options import (
     FILE,
     INPUT,
@@ -21,7 +22,6 @@ from .options import (
     Parsed,
     input_options,
     output_options,
-    solved,
     write_report,
 )
 from .progress import with_progress

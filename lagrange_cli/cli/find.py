@@ -9,7 +9,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, complain, write_keys
-from .given import is_scene, say_missing
+from .given import is_scene, say_missing, say_unused
 from .options import (
     COUNT,
     KEY_NAMES,
@@ -117,6 +117,7 @@ def _found(
     search, given = search_of(inputs, conditions, scene=scene, radians=radians)
     found = look(search, count, _watched)
     say_missing(given)
+    say_unused(given.stds)
     complain(f"{len(found.motions)} found; {found.looked}")
     return found.motions
 
@@ -139,8 +140,9 @@ def _inverted(
         if name not in INPUTS or isinstance(getattr(x, "number", x), Span):
             option = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
             raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got --{option}")
-    found = gather(inputs, scenes[0] if scenes else None).inputs
-    given = {name: float(x) for name, x in found.items() if name in INPUTS}
+    found = gather(inputs, scenes[0] if scenes else None)
+    given = {name: float(x) for name, x in found.inputs.items() if name in INPUTS}
+    say_unused(name for name in found.stds if name in given)
     return invert(conditions, radians=radians, known=given)
 
 

@@ -12,6 +12,7 @@ import click
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain
+from .given import say_unused
 from .options import (
     FILE,
     INPUT,
@@ -28,6 +29,7 @@ from .reading_options import reading_options
 if TYPE_CHECKING:
     from ..fits.record import Outcome
     from ..fits.recording import Recording
+    from ..inputs.units import System
 
 
 def _write_names(formatter: click.HelpFormatter) -> None:
@@ -134,7 +136,7 @@ def command(
     check_plot(plot, output)
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
-    known = _known(scene, fix or [], by_key(options, radians=rad))
+    known, system = _known(scene, fix or [], by_key(options, radians=rad))
     conventions = Conventions(quaternion, euler, "body", rad).checked()
     spread = _in_radians(sigma, rad)
     recordings = read_recordings(recording, Reading(columns, conventions, by, spread))
@@ -148,7 +150,7 @@ def command(
         _write_scene(found[0], recording, scene_path)
     if plot:
         _draw(found, plot, rad)
-    _write(found, recording, fmt, "-" if scene_path else output)
+    _write(found, recording, system, fmt, "-" if scene_path else output)
     if failed:
         if scene_path:
             complain(f"Warning: {scene_path} is not written: the fit has failed")
@@ -168,14 +170,20 @@ def _fitted(
     return found
 
 
-def _known(scene: str | None, fix: list[str], given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the inputs that are known: those given, and some of the scene.  Raises LagtopError."""
+def _known(
+    scene: str | None, fix: list[str], given: Mapping[str, Any]
+) -> tuple[dict[str, float], System | None]:
+    """Return the inputs that are known, those given and some of the scene, and their units.
+
+    Raises LagtopError.
+    """
     from ..fits.known import known_inputs
     from ..inputs.given import gather
     from ..inputs.names import check_names
     from ..inputs.top import Top
 
-    present = gather(given, scene).inputs
+    found = gather(given, scene)
+    present = found.inputs
     names = [x for x in present if x in given]
     for name in fix:
         matching = [x for x in (name, f"{name}_deg", f"{name}_rad") if x in present]
@@ -183,7 +191,8 @@ def _known(scene: str | None, fix: list[str], given: Mapping[str, Any]) -> dict[
             check_names("fix", [name], [*Top.fields, "theta0"])
             raise LagtopError(f"--fix {name} must be given by an option or by --scene")
         names.append(matching[0])
-    return known_inputs({name: present[name] for name in names})
+    say_unused(name for name in names if name in found.stds)
+    return known_inputs({name: present[name] for name in names}), found.system
 
 
 def _in_radians(
@@ -195,17 +204,21 @@ def _in_radians(
     return None if sigma is None else sigma * unit
 
 
-def _write(found: list[Outcome], source: str, fmt: str, output: str) -> None:
-    """Write a report, or one record for each recording."""
+def _write(found: list[Outcome], source: str, system: System | None, fmt: str, output: str) -> None:
+    """Write a report, or one record for each recording, with units where known inputs have any."""
+    from ..fits.report import report, units_of
+
     if fmt == "table":
-        from ..fits.report import report
         from ..inputs.trajectory import shown_path
 
-        write_report(lambda: report(found, shown_path(source)), fmt, output)
+        write_report(lambda: report(found, shown_path(source), system), fmt, output)
         return
     from ..output.write import block_text, write_record, write_text_blocks
 
     records = [outcome.record() for outcome in found]
+    if system is not None and fmt == "json":
+        units = [{"units": units_of(outcome, system)} for outcome in found]
+        records = [record | unit for record, unit in zip(records, units, strict=True)]
     if len(records) == 1 and fmt == "json":
         write_record(records[0], fmt, output, dict)
     else:

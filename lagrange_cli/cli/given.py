@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .command import complain
+from .options import inputs_of, motion_of
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
@@ -40,6 +41,22 @@ def say_missing(found: Given) -> None:
 
         words = mixed_body.options(found.missing, units=found.system is not None)
         complain(f"Warning: {mixed_body.remark(found.missing, words)}")
+
+
+def say_unused(uncertain: Iterable[str]) -> None:
+    """Name inputs whose uncertainties a command does not use."""
+    if names := ", ".join(uncertain):
+        complain(f"Warning: the uncertainty of {names} is not used: solve, table and sweep use it")
+
+
+def solved(scene: str | None, rad: bool, exact: bool, options: Mapping[str, Any]) -> Motion:
+    """Return the motion of the top in a scene file, if any, and in the options, which win.
+
+    Uncertainties are not used, which a line says.
+    """
+    found = inputs_of(scene, rad, options)
+    say_unused(found.stds)
+    return motion_of(found, exact)
 
 
 def angle_stds(found: Given, motion: Motion) -> AngleStds | None:

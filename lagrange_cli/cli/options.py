@@ -102,11 +102,6 @@ def _split_names(text: str) -> list[str]:
     return split_names(text)
 
 
-def solved(scene: str | None, rad: bool, exact: bool, options: Mapping[str, Any]) -> Motion:
-    """Return the motion of the top in a scene file, if any, and in the options, which win."""
-    return motion_of(inputs_of(scene, rad, options), exact)
-
-
 def inputs_of(scene: str | None, rad: bool, options: Mapping[str, Any]) -> Given:
     """Return the inputs of a scene file, if any, and of the options, which win."""
     from ..inputs.given import gather  # not for commands without a top

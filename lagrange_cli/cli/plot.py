@@ -152,7 +152,7 @@ def command(
     request = PlotRequest(
         t_max=checked_span(motion, times["t_max"]),
         radians=rad,
-        unit=found.system.named if found.system else str,
+        system=found.system,
         key=key,
         x=parse_input_range("x", x) if x else None,
         y=parse_input_range("y", y) if y else None,

@@ -150,6 +150,8 @@ def command(
     chosen = _steps(motion, rad) if derivation else keys
     wanted = list(dict.fromkeys(key.removesuffix("_std") for key in chosen)) if chosen else None
     record = _record(motion, digits, rad, wanted, certify)
+    if found.system is not None and record.get("remark"):
+        record["remark"] = found.system.in_words(record["remark"])
     if found.stds:
         record = uncertainty.with_stds(found, motion, record, fmt == "table" and keys is None)
     if keys is not None:
@@ -174,8 +176,6 @@ def _write(
         write_record(record, fmt, output, layout)
         return
     named = in_units(layout(), system.named)
-    if record.get("remark"):
-        record = record | {"remark": system.in_words(record["remark"])}
     if fmt == "json":
         record = record | {"units": units_of(record, named)}
     write_record(record, fmt, output, lambda: named)

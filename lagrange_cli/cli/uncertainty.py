@@ -7,18 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
+from ..inputs.measured import AS_SOLVED
 from ..inputs.names import check_names
 from ..motion.record import NUMBER_KEYS, unit_name
 from ..motion.uncertainty import PER_RADIAN, FirstOrder, stds_of
-from ..output.findings import Field, Findings
+from ..output.findings import Field, Findings, with_unit
 from ..output.uncertain_text import uncertain_text
-from .command import complain
+from .command import complain, in_units, top_layout, units_of
 from .options import exclude
 from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.solve import Motion
+    from ..sweeps.monte_carlo import Outcome
 
 _LONG = 300_000
 """Samples that are known to take longer than a moment."""
@@ -93,29 +95,47 @@ def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
     if whole is None:
         raise AbsentError(f"no uncertainty of first order: {uncertain.sensitivities.reasons[name]}")
     given = {x: float(found.inputs[x]) for x in found.stds}
+    units = _units(found, [key, *given])
     scale = 1 / PER_RADIAN if key != name else 1.0
     lines = [
         line._replace(sensitivity=line.sensitivity * scale, contribution=line.contribution * scale)
         for line in uncertain.budget(name, value, given)
     ]
     result = uncertain_text(value * scale, whole * scale)
-    conclusions = [f"{key} = {result}, to first order; inputs are taken as independent."]
-    return Findings({"key": key}, _BUDGET_FIELDS, lines, conclusions)
+    shown = f"{key} = {result} {units.get(key, '')}".rstrip()
+    conclusions = [f"{shown}, to first order; inputs are taken as independent."]
+    return Findings({"key": key}, _budget_fields(units, key), lines, conclusions, units)
+
+
+def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
+    """Return the units of inputs and of keys of the record, where inputs have units."""
+    if found.system is None:
+        return {}
+    named = in_units(top_layout(), found.system.named)
+    solved = {key: AS_SOLVED.get(key, key) for key in keys}
+    units = units_of(set(solved.values()), named)
+    return {key: units[one] for key, one in solved.items() if one in units}
 
 
 def _figures(x: float) -> str:
     return f"{x:.4g}"
 
 
-_BUDGET_FIELDS = [
-    Field("input", "input", is_text=True, names_the_row=True),
-    Field("value", "value", _figures),
-    Field("std", "uncertainty", _figures),
-    Field("sensitivity", "sensitivity", _figures),
-    Field("contribution", "contribution", _figures),
-    Field("elasticity", "elasticity", _figures),
-    Field("share", "share", lambda x: f"{100 * x:.1f} %"),
-]
+def _names(key: str, units: Mapping[str, str]) -> Field:
+    """Return the column of names of inputs or keys, which a table shows with their units."""
+    return Field(key, key, lambda x: with_unit(x, units.get(x)), is_text=True, names_the_row=True)
+
+
+def _budget_fields(units: Mapping[str, str], key: str) -> list[Field]:
+    return [
+        _names("input", units),
+        Field("value", "value", _figures),
+        Field("std", "uncertainty", _figures),
+        Field("sensitivity", "sensitivity", _figures),
+        Field("contribution", with_unit("contribution", units.get(key)), _figures),
+        Field("elasticity", "elasticity", _figures),
+        Field("share", "share", lambda x: f"{100 * x:.1f} %"),
+    ]
 
 
 def sampled(
@@ -144,7 +164,8 @@ def sampled(
             radians=radians,
             steps=steps,
         )
-        return _report(outcome, samples, seed)
+        units = _units(found, [spread.key for spread in outcome.spreads])
+        return _report(outcome, samples, seed, units)
 
     return find
 
@@ -152,14 +173,14 @@ def sampled(
 def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
     """Return every input once, as it was given or as it was solved."""
     inputs = {name: float(x) for name, x in motion.top.as_dict().items() if x is not None}
-    for measured, solved in (("A_cm", "A"), ("phidot0", "r0")):
+    for measured, solved in AS_SOLVED.items():
         if measured in found.inputs:
             del inputs[solved]
             inputs[measured] = float(found.inputs[measured])
     return inputs
 
 
-def _report(outcome: Any, samples: int, seed: int | None) -> Findings:
+def _report(outcome: Outcome, samples: int, seed: int | None, units: Mapping[str, str]) -> Findings:
     from ..sweeps.monte_carlo import FAILS, OPEN
 
     conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})
@@ -171,11 +192,11 @@ def _report(outcome: Any, samples: int, seed: int | None) -> Findings:
             conclusions.append(f"First order {words} for {', '.join(keys)}.")
     if not conclusions:
         conclusions.append("First order holds for every number.")
-    return Findings(conditions, _SAMPLE_FIELDS, outcome.spreads, conclusions)
+    fields = [_names("key", units), *_SAMPLE_FIELDS]
+    return Findings(conditions, fields, outcome.spreads, conclusions, units)
 
 
 _SAMPLE_FIELDS = [
-    Field("key", "key", is_text=True, names_the_row=True),
     Field("value", "value", _figures),
     Field("first_order_std", "first-order std", _figures),
     Field("sampled_mean", "sampled mean", _figures),

@@ -9,6 +9,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst
+from .given import say_unused
 from .options import FILE, inputs_of, motion_of, scene_options
 
 
@@ -42,6 +43,7 @@ def command(
     from ..plot.browser.document import view
 
     found = inputs_of(scene, rad, options)
+    say_unused(found.stds)
     page = view(motion_of(found, False), found.system.named if found.system else str)
     if output:
         from ..output.write import write_bytes

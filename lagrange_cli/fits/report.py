@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from ..output.findings import Field, Findings
+from ..motion.record import KEYS
+from ..output.findings import Field, Findings, with_unit
 from ..output.uncertain_text import uncertain_text
 from .quality import chi2_bounds
 from .record import MEANINGS, Outcome
+
+if TYPE_CHECKING:
+    from ..inputs.units import System
 
 
 class Line(NamedTuple):
@@ -29,33 +33,58 @@ _FIELDS = [
 ]
 
 
-def report(outcomes: Sequence[Outcome], source: str) -> Findings:
-    """Return the report on the outcomes of the recordings of a file."""
-    lines = [line for outcome in outcomes for line in _lines(outcome)]
+def units_of(outcome: Outcome, system: System) -> dict[str, str]:
+    """Return the units of the keys of the record of an outcome, with the names of a system."""
+    units = {"t_start": system.named("time")}
+    for told, _ in outcome.products():
+        units[told.name] = system.unit_of(told.powers)
+    for key in outcome.record():
+        if key.endswith(("_deg", "_rad")):
+            units[key] = key[-3:]
+        elif key in KEYS:
+            units[key] = system.named(KEYS[key].unit)
+    return {key: unit for key, unit in units.items() if unit}
+
+
+def report(outcomes: Sequence[Outcome], source: str, system: System | None = None) -> Findings:
+    """Return the report on the outcomes of the recordings of a file.
+
+    Where inputs have units those of a system are named.
+    """
+    lines = [line for outcome in outcomes for line in _lines(outcome, system)]
     fields = _FIELDS if outcomes[0].recording.name else _FIELDS[1:]
     conclusions = [text for outcome in outcomes for text in _conclusions(outcome)]
-    return Findings(_conditions(outcomes, source), fields, lines, conclusions)
+    return Findings(_conditions(outcomes, source, system), fields, lines, conclusions)
 
 
-def _lines(outcome: Outcome) -> Iterator[Line]:
-    name = outcome.recording.name
+def _lines(outcome: Outcome, system: System | None) -> Iterator[Line]:
+    name, units = outcome.recording.name, units_of(outcome, system) if system else {}
     for key, value, deviation in outcome.found():
         scale = outcome.scale(key)
         text = uncertain_text(value * scale, deviation * scale)
-        yield Line(name, outcome.unit(key), text, MEANINGS[key])
+        yield Line(
+            name, with_unit(outcome.unit(key), units.get(outcome.unit(key))), text, MEANINGS[key]
+        )
     for told, deviation in outcome.products():
         single = len(told.powers) == 1
         meaning = "" if single else "not to be told apart"
-        yield Line(name, told.name, uncertain_text(told.value, deviation), meaning)
+        text = uncertain_text(told.value, deviation)
+        yield Line(name, with_unit(told.name, units.get(told.name)), text, meaning)
 
 
-def _conditions(outcomes: Sequence[Outcome], source: str) -> dict[str, str]:
+def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None) -> dict[str, str]:
     first = outcomes[0]
+    units = units_of(first, system) if system else {}
+
+    def text(name: str, value: float) -> str:
+        return f"{name} = {value:g} {units.get(name, '')}".rstrip()
+
     rows = sum(outcome.recording.t.size for outcome in outcomes)
     channels = ", ".join(first.recording.channels)
-    known = ", ".join(f"{first.unit(x)} = {y * first.scale(x):g}" for x, y in first.known.items())
+    known = ", ".join(text(first.unit(x), y * first.scale(x)) for x, y in first.known.items())
+    start = text("t_start", first.recording.t_start).replace("t_start", "t")
     return {
-        "data": f"{source}: {rows} rows of {channels}, from t = {first.recording.t_start:g}",
+        "data": f"{source}: {rows} rows of {channels}, from {start}",
         "known": known or "nothing",
         "sigma": "as given" if first.fit.sigma_known else "that of what is left",
     }

@@ -14,6 +14,8 @@ from ..arithmetic.numbers import Number
 from ..errors import LagtopError
 from .top import EXAMPLE, Top, overridden
 
+AS_SOLVED = {"A_cm": "A", "phidot0": "r0"}
+"""The inputs that are measured, and what a top has in their place."""
 EXACT_DIGITS = 1100
 """Digits of an irrational number that has to stand as a fraction: more than any output shows."""
 

@@ -48,6 +48,7 @@ _GRAMMAR = re.compile(rf"(?:1?\s*/\s*)?{_NAME}(?:\s*[*·/ ]\s*{_NAME})*")
 """Names of units with powers of one figure, times or over one another: others never reach pint."""
 _MOST_CHARACTERS = 60
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_FIGURES = {figure: raised for raised, figure in _RAISED.items()}
 _ROOTS = {"gram": 0, "meter": 1, "second": 2}
 
 
@@ -79,9 +80,26 @@ class System(Values):
         }
         return re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit)
 
+    def unit_of(self, powers: Mapping[str, Fraction]) -> str:
+        """Return the unit of a product of powers of inputs, such as `kg m²/s²`; radians are 1."""
+        sums = [
+            sum((n * DIMENSIONS[x][i] for x, n in powers.items()), Fraction()) for i in range(3)
+        ]
+        parts = list(zip((self.mass, self.length, "s"), sums, strict=True))
+        above = " ".join(_raised(name, n) for name, n in parts if n > 0)
+        below = " ".join(_raised(name, -n) for name, n in parts if n < 0)
+        if not below:
+            return above
+        return f"{above or 1}/({below})" if " " in below else f"{above or 1}/{below}"
+
     def in_words(self, remark: str) -> str:
         """Return a remark with the second after numbers and strokes."""
         return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)
+
+
+def _raised(name: str, power: Fraction) -> str:
+    """Return a power of a unit, such as `m²`."""
+    return name if power == 1 else name + str(power).translate(_FIGURES)
 
 
 CGS = System("g", "cm", Fraction(1), Fraction(1, 100))

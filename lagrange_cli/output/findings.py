@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import orjson
@@ -33,6 +33,8 @@ class Findings(NamedTuple):
     rows: Sequence[Any]
     """Objects with an attribute for every field."""
     conclusions: Sequence[str]
+    units: Mapping[str, str] = {}
+    """Units of numbers by name, where they are known."""
 
     def values(self) -> list[dict[str, Any]]:
         """Return every row by key."""
@@ -40,12 +42,19 @@ class Findings(NamedTuple):
 
     def as_json(self) -> bytes:
         """Return one JSON object, in which infinite numbers are null."""
-        whole = {
+        whole: dict[str, Any] = {
             "conditions": self.conditions,
             "rows": self.values(),
             "conclusions": self.conclusions,
         }
+        if self.units:
+            whole["units"] = self.units
         return orjson.dumps(whole, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE)
+
+
+def with_unit(text: str, unit: str | None) -> str:
+    """Return a name with its unit between brackets, where it has one and does not end in it."""
+    return f"{text} [{unit}]" if unit and not text.endswith(f"_{unit}") else text
 
 
 def short(value: float) -> str:

@@ -142,7 +142,7 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     """Write the record: a line for each key, with its symbol and its unit, and the remark."""
     radians = page.request.radians
     record = page.motion.record(radians=radians)
-    remark = textwrap.wrap(str(record.pop("remark") or ""), REMARK_WIDTH)
+    remark = textwrap.wrap(page.request.in_words(record.pop("remark") or ""), REMARK_WIDTH)
     shown = {key: value for key, value in record.items() if value is not None}
     step = min(0.0242, 0.95 / (len(shown) + len(remark) + 1.5))
     size = min(8.5 * page.lettering(), step * 72 * page.inches()[1] * 0.8)

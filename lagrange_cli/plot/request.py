@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+    from ..inputs.units import System
     from ..motion.angle_uncertainty import AngleStds
     from ..motion.quantity import Key
 
@@ -59,8 +60,8 @@ class PlotRequest(NamedTuple):
     """Horizontal axis of a map; by default the spin."""
     y: InputRange | None = None
     """Vertical axis of a map; by default the tilt."""
-    unit: Callable[[str], str] = str
-    """Names a unit such as `rad/time` in the units of the inputs."""
+    system: System | None = None
+    """The units of the inputs, where these have units."""
     view: tuple[float, float] | None = None
     """Azimuth and elevation (radians) of the eye; by default the view that a path faces most."""
     limits: tuple[float, float] | None = None
@@ -71,6 +72,14 @@ class PlotRequest(NamedTuple):
     """What may show the progress of a map."""
     stds: AngleStds | None = None
     """Uncertainties of the angles, drawn as bands."""
+
+    def unit(self, unit: str) -> str:
+        """Return a unit such as `rad/time` with the names of the units of the inputs."""
+        return self.system.named(unit) if self.system else unit
+
+    def in_words(self, remark: str) -> str:
+        """Return a remark on the motion with the names of the units of the inputs."""
+        return self.system.in_words(remark) if self.system else remark
 
     def label(self, text: str) -> str:
         """Return a label whose unit stands between brackets, in the units of the inputs."""

@@ -110,6 +110,42 @@ def test_a_budget_adds_up(lagtop: Lagtop) -> None:
     assert f"T_nutation = {uncertain_text(0.4292501244785477, whole)}" in text
 
 
+UNITS = "--m 1587(2)g --A-cm 13640g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
+
+
+def test_budgets_and_reports_on_samples_name_units(lagtop: Lagtop) -> None:
+    arguments = [*UNITS, "--r0", "50rad/s", "--psidot0", "1.0(1)rad/s"]
+    shown = lagtop("solve", *arguments, "--budget", "T_nutation").stdout
+    assert all(x in shown for x in ("m [kg]", "psidot0 [rad/s]", "contribution [s]", ") s, to"))
+    found = json.loads(
+        lagtop("solve", *arguments, "--budget", "T_nutation", "--format", "json").stdout
+    )
+    assert found["units"] == {"T_nutation": "s", "m": "kg", "psidot0": "rad/s"}
+    sampled = [*arguments, "--samples", "100", "--seed", "1"]
+    assert "mean_spin_rate [rad/s]" in lagtop("solve", *sampled).stdout
+    found = json.loads(lagtop("solve", *sampled, "--units", "cgs", "--format", "json").stdout)
+    assert (found["units"]["a"], found["units"]["theta_max_deg"]) == ("1/s²", "deg")
+    assert set(found["units"]) <= {row["key"] for row in found["rows"]}
+    plain = json.loads(lagtop("solve", "--m", "9(1)", "--budget", "a", "--format", "json").stdout)
+    assert "units" not in plain
+
+
+def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "top.toml"
+    scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
+    line = "Warning: the uncertainty of m is not used: solve, table and sweep use it\n"
+    recording = "sample_inputs/recording.csv"
+    for words in (
+        ("find", scene, "--r0", "10:200", "T_precession=2", "--keys", "r0"),
+        ("find", "--from", scene, "theta_min=30", "theta_max=60", "T_nutation=0.4"),
+        ("fit", recording, "--scene", scene, "--fix", "m"),
+        ("view", scene, "-o", tmp_path / "top.html"),
+        ("compare", recording, "--scene", scene),
+    ):
+        assert line in lagtop(*words).stderr, words
+    assert line not in lagtop("fit", recording, "--scene", scene, "--fix", "g").stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -164,6 +164,37 @@ def test_scenes_and_options_go_together(tmp_path: Path, lagtop: Lagtop) -> None:
     assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: m must have a unit as in 350g")
 
 
+def test_a_fit_names_units(lagtop: Lagtop) -> None:
+    known = ["sample_inputs/recording.csv", "--m", "1.587kg", "--g", "9.81m/s^2"]
+    shown = lagtop("fit", *known).stdout
+    words = ("from t = 3.25 s", "m = 1.587 kg", "a [1/s²]", "s/A [1/(kg m)]", "theta0_deg  ")
+    assert all(word in shown for word in words)
+    units = json.loads(lagtop("fit", *known, "--format", "json").stdout)["units"]
+    assert (units["g"], units["s/A"], units["psi_zero_deg"]) == ("m/s²", "1/(kg m)", "deg")
+    plain = lagtop("fit", known[0], "--m", "1.587", "--format", "json").stdout
+    assert "units" not in json.loads(plain)
+
+
+def test_remarks_name_units_wherever_they_stand(lagtop: Lagtop) -> None:
+    fast = [*PAPER, "--r0", "900rad/s"]
+    bare = lagtop("solve", *fast, "--get", "remark").stdout
+    assert "0.0156 s;" in bare
+    assert "0.396 rad/s" in bare
+    assert bare.strip() in lagtop("solve", *fast, "--format", "json").stdout
+    assert "0.0156 time;" in lagtop("solve", "--r0", "900", "--get", "remark").stdout
+
+
+@pytest.mark.slow
+def test_remarks_beside_pictures_name_units(lagtop: Lagtop, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    path = tmp_path / "page.svg"
+    kinds = ["angles", "cubic"]
+    assert lagtop("plot", *kinds, *PAPER, "--r0", "900rad/s", "-o", path).exit_code == 0
+    text = path.read_text(encoding="utf-8")
+    assert "0.0156 s;" in text
+    assert "time;" not in text
+
+
 def test_what_is_missing_of_a_body_is_typed_with_units(lagtop: Lagtop) -> None:
     said = lagtop("solve", "--m", "350g", "--r0", "9rpm", "--get", "A")
     assert said.stdout == "0.0039032\n"
