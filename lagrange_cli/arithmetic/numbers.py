@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
+from operator import index
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
@@ -28,6 +29,17 @@ def is_real(value: object) -> bool:
         return not isinstance(value, _NOT_REAL)
     is_scalar = not getattr(value, "ndim", 0) and not hasattr(value, "mask")
     return is_scalar and getattr(dtype, "kind", None) in {"i", "u", "f"}
+
+
+def unrounded(value: Any, nearest: float) -> Number:
+    """Return a finite real number as the double nearest to it, if it is that, or as a fraction.
+
+    A number of a kind that tells no ratio of integers is rounded.
+    """
+    exact = index(value) if hasattr(value, "__index__") else value
+    if exact == nearest or not hasattr(exact, "as_integer_ratio"):
+        return nearest
+    return Fraction(*exact.as_integer_ratio())
 
 
 def absolute(x: R) -> R:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from ..arithmetic.decimals import own_context, pi_to
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.numbers import Number, R, is_real
+from ..arithmetic.numbers import Number, R, is_real, unrounded
 from ..arithmetic.values import Over, Values
 from ..errors import LagtopError
 
@@ -55,7 +55,8 @@ class Top(Values):
 
     Any consistent units will do; an input that is not given is that of the worked example of
     Chrapan (1952), section 8, in CGS.  A MixedBodyWarning names such inputs where others of m, A,
-    C, s and g are given.  Each is a real number: int, float, Fraction, Decimal or a NumPy scalar.
+    C, s and g are given.  Each is a real number: int, float, Fraction, Decimal or a NumPy scalar,
+    taken exactly: one that is no double, such as Decimal("0.1"), is kept as a Fraction.
 
     m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
     A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
@@ -67,7 +68,8 @@ class Top(Values):
     thetadot0   nutation rate at t = 0
     psidot0     precession rate at t = 0
 
-    What A_cm and phidot0 stand for is rounded once.  Raises LagtopError for a body or a start that
+    What A_cm and phidot0 stand for is a double, rounded once, unless a Fraction is among the inputs
+    it comes from.  Raises LagtopError for a body or a start that
     cannot be.
     """
 
@@ -228,7 +230,9 @@ def _finite(name: str, value: Any) -> Number:
         raise LagtopError(f"{name} must be a real number, got {shown}", name) from None
     if not math.isfinite(nearest):
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
-    return nearest
+    if value and not nearest:
+        raise LagtopError(f"{name} must be 0 or at least 5e-324 in size, got {value!s}", name)
+    return unrounded(value, nearest)
 
 
 def _check_ranges(top: Top) -> None:

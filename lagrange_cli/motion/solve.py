@@ -140,7 +140,7 @@ class Motion:
 
         with decimals(40).working():
             given = self.top.inputs(radians=radians, ar=decimals(40))
-        inputs = {name: float(x) if isinstance(x, Decimal) else x for name, x in given.items()}
+        inputs = {name: float(x) for name, x in given.items()}
         return record_of(self, inputs, number, radians=radians, keys=keys), beyond
 
     def digits(

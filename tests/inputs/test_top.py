@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import decimal
+import json
 import math
 import pickle
 from decimal import Decimal
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic.correct_rounding import text_of
 from lagrange_cli.arithmetic.points import EvenPoints
 from lagrange_cli.inputs.ranges import parse_values
 
@@ -32,6 +34,8 @@ from lagrange_cli.inputs.ranges import parse_values
         ({"m": np.datetime64("2020-01-01")}, "m must be a real number"),
         ({"m": [1] * 1000}, "m must be a real number, got [1, 1"),
         ({"m": Decimal("sNaN")}, "m must be a real number"),
+        ({"r0": Decimal("1e-999999999")}, "r0 must be 0 or at least 5e-324 in size, got 1E-99"),
+        ({"r0": Decimal("-1e400")}, "r0 must be finite, got -inf"),
         ({"m": math.nan}, "m must be finite, got nan"),
         ({"m": 10**400}, "m must be within 1e100 in size, got 1e+400"),
         ({"m": Fraction(10**400)}, "m must be within 1e100 in size, got 1e+400"),
@@ -56,6 +60,20 @@ def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
 @pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
 def test_numbers_of_many_types(value: Any) -> None:
     assert Top(r0=value).r0 == 3
+
+
+@pytest.mark.parametrize("value", [Decimal("0.1"), 2**60 + 1, np.int64(2**60 + 1)])
+def test_what_is_no_double_is_not_rounded(value: Any) -> None:
+    exact = Fraction(value if isinstance(value, Decimal) else int(value))
+    third: Any = np.longdouble(1) / 3
+    top = Top(r0=value, thetadot0=third)
+    assert top.r0 == exact != float(value)
+    assert isinstance(top.r0, Fraction)
+    longer = np.finfo(np.longdouble).nmant > 52
+    assert (top.thetadot0 != 1 / 3) == longer
+    motion = solve(top)
+    assert motion.digits(25, keys=["r0"])["r0"] == text_of(exact, 25)
+    assert json.dumps(motion.record(keys=["r0"])) == json.dumps({"r0": float(exact)})
 
 
 def test_no_way_around_the_guards() -> None:
