@@ -5,7 +5,7 @@
 | 0 | fine |
 | 1 | some tops have an error, a number does not exist, nothing was found, or a promise was broken |
 | 2 | bad usage or a bad value |
-| 65 | bad data in a file |
+| 65 | a file cannot be read or has bad data |
 | 69 | a cluster, a method or a package is not available |
 | 74 | the output cannot be written |
 | 128 + N | ended by the signal N |
@@ -31,7 +31,7 @@ class LagtopError(ValueError):
 
 
 class DataError(LagtopError):
-    """Bad data in a file that is read, such as a list of times or a file of tops."""
+    """A file of inputs that cannot be read or has bad data: times, tops, trajectories, scenes."""
 
     exit_code = 65
 

@@ -20,6 +20,7 @@ from .options import (
     NAMES,
     NUMBER,
     Parsed,
+    exclude,
     input_options,
     output_options,
     write_report,
@@ -67,7 +68,7 @@ def _parse_steps(text: str) -> list[float]:
     type=FILE,
     metavar="TRAJECTORY...",
 )
-@click.option("--scene", type=FILE, metavar="FILE", help="Scene file; options win over it.")
+@click.option("--scene", type=FILE, metavar="FILE|-", help="Scene file; options win over it.")
 @input_options(INPUT)
 @reading_options(quaternion=None)
 @click.option(
@@ -135,6 +136,7 @@ def command(
     if max_error is not None and not max_error > 0:
         raise LagtopError(f"--max-error must be > 0, got {float(max_error)}")
     check_plot(plot, output)
+    exclude({"--scene -": scene == "-" or None, "the trajectory -": "-" in trajectories or None})
     limit = None if max_error is None else float(max_error)
     conventions = Conventions(quaternion, euler, rates, rad).checked()
     request = Request(columns, conventions, alignment(align or []), limit, steps)

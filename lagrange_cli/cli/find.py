@@ -44,7 +44,7 @@ def _parse_input(text: str) -> Any:
         lagtop find --from theta_min=30 theta_max=60 T_nutation=0.4 mean_precession_rate=5
     """,
 )
-@click.argument("words", nargs=-1, metavar="[SCENE.toml] CONDITION...")
+@click.argument("words", nargs=-1, metavar="[SCENE.toml|-] CONDITION...")
 @input_options(Parsed("number or from:to", _parse_input), units=False)
 @click.option(
     "--scan",

@@ -19,6 +19,7 @@ from .options import (
     NAMES,
     Parsed,
     by_key,
+    exclude,
     input_options,
     output_options,
     write_report,
@@ -71,7 +72,7 @@ def _positive(value: float) -> float:
 )
 @click.argument("recording", type=FILE)
 @click.option(
-    "--scene", type=FILE, metavar="FILE", help="Scene file, of which --fix takes what is known."
+    "--scene", type=FILE, metavar="FILE|-", help="Scene file, of which --fix takes what is known."
 )
 @input_options(INPUT, units=False, whole=False)
 @click.option(
@@ -134,6 +135,7 @@ def command(
     from ..plot.files import check_plot
 
     check_plot(plot, output)
+    exclude({"--scene -": scene == "-" or None, "the recording -": recording == "-" or None})
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
     known, system = _known(scene, fix or [], by_key(options, radians=rad))
@@ -162,7 +164,7 @@ def _fitted(
 ) -> list[Outcome]:
     from ..fits.fit import fit_recordings
     from ..fits.record import outcomes
-    from ..inputs.trajectory import shown_path
+    from ..inputs.files import shown_path
 
     found: list[Outcome] = []
     for group in with_steps(groups, "fits"):
@@ -209,7 +211,7 @@ def _write(found: list[Outcome], source: str, system: System | None, fmt: str, o
     from ..fits.report import report, units_of
 
     if fmt == "table":
-        from ..inputs.trajectory import shown_path
+        from ..inputs.files import shown_path
 
         write_report(lambda: report(found, shown_path(source), system), fmt, output)
         return

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from ..errors import DataError, LagtopError
+from ..inputs.files import shown_path
 from .command import complain
 from .options import inputs_of, motion_of
 
@@ -26,16 +29,40 @@ def in_seconds(options: Mapping[str, Any], **times: Any) -> tuple[dict[str, Any]
     return {**options, "units": options.get("units") or "si"}, converted(times, None)
 
 
+@contextmanager
+def blaming(times: str | None) -> Iterator[None]:
+    """Raise DataError for a time out of reach that stands in a file of times."""
+    try:
+        yield
+    except LagtopError as error:
+        if times is None or error.key != "t":
+            raise
+        raise DataError(f"{shown_path(times)}: {error}") from None
+
+
 def is_scene(word: str) -> bool:
     """Return whether a word among others, such as conditions or kinds of picture, names a scene.
 
-    That is one that ends in `.toml`, or one with a dot or a slash that compares nothing.
+    That is `-`, one that ends in `.toml`, or one with a dot or a slash that compares nothing.
     """
-    return word.endswith(".toml") or (bool(set(word) & set("./")) and not set(word) & set("=<>"))
+    return (
+        word == "-"
+        or word.endswith(".toml")
+        or (bool(set(word) & set("./")) and not set(word) & set("=<>"))
+    )
+
+
+def say_no_tops(path: str) -> None:
+    """Say that a file of tops holds none, only its header."""
+    complain(f"Warning: {shown_path(path)} holds no tops")
 
 
 def say_missing(found: Given) -> None:
-    """Name the inputs of the body that are those of the worked example, where others are given."""
+    """Name the inputs of the body that are those of the worked example, and a scene without any."""
+    if found.empty is not None:
+        complain(
+            f"Warning: {found.empty} has no inputs: what is not given is as in the worked example"
+        )
     if found.missing:
         from ..inputs import mixed_body  # for few tops only
 

@@ -113,7 +113,7 @@ def main(ctx: click.Context) -> None:
       1   some tops have an error, a number does not exist, nothing was found, or a promise
           was broken
       2   bad usage or a bad value
-      65  bad data in a file
+      65  a file cannot be read or has bad data
       69  a cluster, a method or a package is not available
       74  the output cannot be written
       128 + N  ended by the signal N

@@ -118,7 +118,7 @@ def motion_of(found: Given, exact: bool) -> Motion:
     from ..motion.solve import solve
 
     motion = solve(found.top(exact=exact))
-    if found.missing:
+    if found.missing or found.empty is not None:
         from .given import say_missing
 
         say_missing(found)
@@ -230,7 +230,7 @@ def scene_options(command: F) -> F:
 
 def scene_argument(command: F) -> F:
     """Add the argument for a scene file."""
-    return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml]")(command)
+    return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml|-]")(command)
 
 
 def _parse_jobs(text: str) -> int:

@@ -58,7 +58,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
         lagtop plot --r0 30 --animate top.gif --duration 10 --speed 0.1
     """,
 )
-@click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml] [KIND]...")
+@click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml|-] [KIND]...")
 @input_options(UNCERTAIN)
 @click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
 @click.option(

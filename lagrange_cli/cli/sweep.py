@@ -11,7 +11,7 @@ import click
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
-from .given import say_missing
+from .given import say_missing, say_no_tops
 from .options import (
     FILE,
     KEY_NAMES,
@@ -161,3 +161,5 @@ def command(
             texts = (part.text for part in passing)
             write_text_blocks(fmt, todo.sweep.header, texts, output)
     tally.check()
+    if todo.file is not None and shard is None and not tally.count:
+        say_no_tops(todo.file)

@@ -13,7 +13,7 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
-from .given import angle_stds, in_seconds, say_missing
+from .given import angle_stds, blaming, in_seconds, say_missing, say_no_tops
 from .options import (
     COLUMN_NAMES,
     COUNT,
@@ -124,7 +124,7 @@ def command(
         raise LagtopError("--jobs shares out many tops: it needs --tops")
     exclude({"--tops": tops, "--digits": digits})
     exclude({"--tops": tops, "--certify": certify or None})
-    stdin = {"--tops -": tops, "--times -": times}
+    stdin = {"the scene -": scene, "--tops -": tops, "--times -": times}
     exclude({name: True if path == "-" else None for name, path in stdin.items()})
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
@@ -144,7 +144,8 @@ def command(
         for name, value in {"--digits": digits, "--certify": certify or None}.items():
             exclude({name: value, "uncertain inputs": found.stds or None})
         write = _write_certified if certify else partial(_write_one, found=found)
-        write(motion, wish, digits, fmt, output)
+        with blaming(times):
+            write(motion, wish, digits, fmt, output)
     else:
         _write_many(tops, scene, options, wish, fmt, output)
 
@@ -288,3 +289,5 @@ def _write_many(
     texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))
     write_text_blocks(fmt, tables.header, with_count(texts, "blocks"), output)
     tally.check()
+    if not tally.count:
+        say_no_tops(tops)

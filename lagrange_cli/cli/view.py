@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from fractions import Fraction
+from pathlib import PurePath
 
 import click
 
@@ -40,6 +41,9 @@ def command(
     if output == "-" and (opens or sys.stdout.isatty()):
         why = "to open" if opens else "for a terminal"
         raise LagtopError(f"a page on standard output is not {why}: give -o FILE.html")
+    suffix = PurePath(output or "").suffix
+    if suffix.lower() not in {"", ".html", ".htm"}:
+        raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
     from ..plot.browser.document import view
 
     found = inputs_of(scene, rad, options)

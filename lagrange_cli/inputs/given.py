@@ -33,6 +33,8 @@ class Given(Values):
     """Names the file, and the line, in an error about an input that stands in a scene file."""
     stds: Mapping[str, float] = MappingProxyType({})
     """Standard uncertainties of the inputs that have one, in these units."""
+    empty: str | None = None
+    """The name of the scene file, where it has no inputs."""
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.
@@ -90,7 +92,8 @@ def gather(
     inputs = {name: x.value if name in stds else x for name, x in inputs.items()}
     known = {name: _if_one(x) for name, x in inputs.items()}
     missing = from_example(dict.fromkeys(varying) | known)
-    return Given(inputs, others, body, units, missing, blame, stds)
+    empty = file.name if file is not None and not file.inputs else None
+    return Given(inputs, others, body, units, missing, blame, stds, empty)
 
 
 def _if_one(value: Any) -> Any:

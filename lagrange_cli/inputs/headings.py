@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
+from fractions import Fraction
+from typing import Any
 
-from ..errors import DataError, LagtopError
-from .quantity_text import TILT
+from ..errors import DataError, LagtopError, UnavailableError
+from .quantity_text import TILT, Quantity
 from .top import INPUTS
 
 
@@ -42,3 +44,32 @@ def check_header(columns: Sequence[str], known: Collection[str], name: str) -> N
             f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "
             f"got {','.join(columns)[:60]!r}"
         )
+
+
+def units_of(
+    headings: Sequence[tuple[str, str]], known: Collection[str], name: str
+) -> dict[str, Any]:
+    """Return what 1 means in each column of an input: a `Quantity` where its heading has a unit.
+
+    Raises DataError for a unit that is none of its input, UnavailableError where pint is missing.
+    """
+    found: dict[str, Any] = {}
+    for column, unit in headings:
+        if column in known:
+            found[column] = Quantity(Fraction(1), unit) if unit else Fraction(1)
+            _check_unit(column, found[column], name)
+    return found
+
+
+def _check_unit(column: str, meaning: Any, name: str) -> None:
+    if not isinstance(meaning, Quantity):
+        return
+    from .units import converted
+
+    try:
+        converted({column: meaning}, None)
+    except UnavailableError:
+        raise
+    except LagtopError as error:
+        place = f"{name}, heading {column} [{meaning.unit}]"
+        raise DataError(f"{place}: {error}") from None

@@ -8,7 +8,8 @@ from fractions import Fraction
 from typing import Any
 
 from ..arithmetic.text import parse_number
-from ..errors import LagtopError, SceneError
+from ..errors import DataError, LagtopError, SceneError
+from .files import opened, shown_path
 from .names import suggestion
 from .quantity_text import TILT, Quantity, parse_quantity
 from .top import INPUTS
@@ -23,20 +24,21 @@ class SceneFile:
     """A scene file that has been read: its inputs, and where in it an input stands."""
 
     def __init__(self, path: str) -> None:
-        """Read a file.  Raises SceneError."""
-        self.path, self.text = path, ""
+        """Read a file, or standard input for `-`.  Raises SceneError."""
+        self.name, self.text = shown_path(path), ""
         try:
-            with open(path, "rb") as file:
+            with opened(path) as file:
                 raw = file.read(_MOST_BYTES + 1)
-            if len(raw) > _MOST_BYTES:
-                raise OSError(None, "more than 64 KiB is no scene file")
+        except DataError as error:
+            raise SceneError(str(error)) from None
+        if len(raw) > _MOST_BYTES:
+            raise SceneError(f"{self.name}: more than 64 KiB is no scene file")
+        try:
             self.text = raw.decode("utf-8-sig")
             _check_dots(self.text)
             table = tomllib.loads(self.text, parse_float=_parsed)
-        except OSError as error:
-            raise SceneError(f"{path or 'the scene file'}: {error.strerror}") from None
         except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
-            raise SceneError(f"{path}: not a TOML file: {error}") from None
+            raise SceneError(f"{self.name}: not a TOML file: {error}") from None
         self.inputs = {key: self._number(key, value) for key, value in table.items()}
 
     def _number(self, key: str, value: object) -> Any:
@@ -78,7 +80,7 @@ class SceneFile:
         pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(error.key or "")}\b""")
         numbered = enumerate(self.text.splitlines(), 1)
         line = next((i for i, text in numbered if error.key and pattern.match(text)), None)
-        place = f"{self.path}, line {line}" if line else self.path
+        place = f"{self.name}, line {line}" if line else self.name
         return SceneError(f"{place}: {error}", error.key)
 
 

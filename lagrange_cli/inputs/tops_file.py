@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import math
-import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
@@ -20,9 +19,9 @@ from typing import Any, NamedTuple
 from ..arithmetic.text import json_text, parse_number
 from ..errors import DataError, LagtopError
 from .block import InputArrays
-from .given import Given, checked_double
-from .headings import check_header, check_spelling, heading
-from .quantity_text import Quantity
+from .files import opened, shown_path
+from .given import Given, checked_double, gather
+from .headings import check_header, check_spelling, heading, units_of
 from .top import INPUTS, from_example, one_of_each, overridden
 
 
@@ -79,6 +78,8 @@ class Lines(NamedTuple):
 class TopsFile(NamedTuple):
     """The way to read the lines of a file, the same for all of its blocks."""
 
+    name: str
+    """What the file is called in messages."""
     columns: Sequence[str] | None
     """The header of a CSV file; None for JSON lines."""
     carried: Sequence[str]
@@ -92,18 +93,31 @@ class TopsFile(NamedTuple):
     factors: Mapping[str, Fraction] = MappingProxyType({})
     """What the numbers of a column are multiplied with, where its heading has a unit."""
 
-    def in_units(self, found: Given) -> TopsFile:
-        """Return the way to read the file in the units of what was given beside it.
+    def among(
+        self, inputs: Mapping[str, Any], scene: str | None, system: str | None
+    ) -> tuple[Given, TopsFile]:
+        """Return what is given beside the file, and the way to read the file in the units of that.
 
-        Raises LagtopError for JSON lines where these have units.
+        Raises DataError for a heading that lacks a unit, LagtopError for JSON lines where other
+        inputs have units, and otherwise as `gather` does.
         """
-        if self.columns is None:
-            if found.system is not None:
-                raise LagtopError(
-                    "JSON lines have no units: take CSV with headings such as m [g], or inputs "
-                    "without units"
-                )
-            return self
+        try:
+            found = gather(inputs, scene, system=system, varying=self.named, others=self.units)
+        except LagtopError as error:
+            if isinstance(self.units.get(error.key or ""), Fraction):  # a heading without a unit
+                raise DataError(f"{self.name}, heading {error.key}: {error}") from None
+            raise
+        if self.columns is not None:
+            return found, self._in_units(found)
+        if found.system is not None:
+            raise LagtopError(
+                f"{self.name}: JSON lines have no units: take CSV with headings such as m [g], or "
+                "inputs without units"
+            )
+        return found, self
+
+    def _in_units(self, found: Given) -> TopsFile:
+        assert self.columns is not None
         keys = dict(zip(self.units, found.others, strict=True))
         factors = {keys[x]: found.others[keys[x]] for x in keys if hasattr(self.units[x], "unit")}
         return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
@@ -208,18 +222,18 @@ def open_tops(
     """Return the way to read a file (standard input for `-`), and its lines, `size` at a time.
 
     Columns whose names are in `computed` are neither read nor carried through.  A `stream` that is
-    open already is read in place of the path.  Raises LagtopError for a file that cannot be read,
-    DataError for one that has neither a header nor an object.
+    open already is read in place of the path.  Raises DataError for a file that cannot be read, for
+    one that has neither a header nor an object, and for a heading whose unit is wrong.
     """
-    name = "standard input" if path == "-" else path
-    lines = _lines(path, name, stream)
+    name = shown_path(path)
+    lines = _lines(path, stream)
     start, first = next(((i, raw) for i, raw in lines if raw.strip()), (1, b""))
     first = first.removeprefix(b"\xef\xbb\xbf")
     if first.lstrip().startswith(b"{"):
         head = [(start, first), *islice(lines, size - 1)]
         carried = [x for x in _names(raw for _, raw in head) if x not in computed]
         check_spelling(carried, name)
-        file = TopsFile(None, carried, frozenset(computed), _named(raw for _, raw in head))
+        file = TopsFile(name, None, carried, frozenset(computed), _named(raw for _, raw in head))
         return file, _blocks(file, chain(head, lines), size)
     try:
         headings = [heading(cell.strip()) for cell in split_cells(_decoded(first))]
@@ -230,24 +244,14 @@ def open_tops(
     carried = [x for x in columns if x not in known and x not in computed]
     check_spelling(carried, name)
     check_header(columns, known, name)
-    units = {
-        column: Quantity(Fraction(1), unit) if unit else Fraction(1)
-        for column, unit in headings
-        if column in known
-    }
-    file = TopsFile(columns, carried, frozenset(computed), set(columns) & set(INPUTS), units)
+    units = units_of(headings, known, name)
+    file = TopsFile(name, columns, carried, frozenset(computed), set(columns) & set(INPUTS), units)
     return file, _blocks(file, lines, size)
 
 
-def _lines(path: str, name: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
-    try:
-        if stream is None and path == "-":
-            yield from enumerate(sys.stdin.buffer if sys.stdin else (), 1)
-            return
-        with stream or open(path, "rb") as file:
-            yield from enumerate(file, 1)
-    except OSError as error:
-        raise LagtopError(f"{name}: {error.strerror}") from None
+def _lines(path: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
+    with stream or opened(path) as file:
+        yield from enumerate(file, 1)
 
 
 def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:

@@ -6,13 +6,13 @@ with a row per line.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from io import BufferedReader
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, cast
 
 from ..errors import DataError, LagtopError
+from .files import opened, shown_path
 from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
 from .words import Words
 
@@ -153,27 +153,16 @@ class Clock:
 def open_trajectory(path: str, columns: Sequence[str] | None = None) -> Iterator[Trajectory]:
     """Open the trajectory of a file, or of standard input for `-`.
 
-    `columns` name all columns from the left, whatever the file says.  Raises LagtopError for a file
-    that cannot be read, DataError for one that holds no trajectory.
+    `columns` name all columns from the left, whatever the file says.  Raises DataError for a file
+    that cannot be read or holds no trajectory.
     """
-    try:
-        with _stream(path) as stream:
-            peeked = BufferedReader(cast(Any, stream))
-            try:
-                kind = _MAGIC.get(peeked.peek(4)[:4])
-                yield Trajectory(path, _reader(kind)(peeked, shown_path(path)), columns)
-            finally:
-                peeked.detach()
-    except OSError as error:
-        raise LagtopError(f"{shown_path(path)}: {error.strerror or error}") from None
-
-
-def _stream(path: str) -> Any:
-    if path == "-":
-        from io import BytesIO
-
-        return nullcontext(sys.stdin.buffer if sys.stdin else BytesIO())
-    return open(path, "rb")
+    with opened(path) as stream:
+        peeked = BufferedReader(cast(Any, stream))
+        try:
+            kind = _MAGIC.get(peeked.peek(4)[:4])
+            yield Trajectory(path, _reader(kind)(peeked, shown_path(path)), columns)
+        finally:
+            peeked.detach()
 
 
 def _reader(kind: str | None) -> Callable[[BinaryIO, str], Table]:
@@ -189,8 +178,3 @@ def _reader(kind: str | None) -> Callable[[BinaryIO, str], Table]:
         "npz": arrays.read_npz,
     }
     return readers[kind]
-
-
-def shown_path(path: str) -> str:
-    """Return what a file is called in messages."""
-    return "standard input" if path == "-" else path

@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..errors import DataError, LagtopError
+from ..inputs.files import shown_path
 from ..inputs.seen import Conventions, Quantities
-from ..inputs.trajectory import Trajectory, open_trajectory, shown_path
+from ..inputs.trajectory import Trajectory, open_trajectory
 from ..motion.solve import Motion
 from .alignment import Alignment
 from .compare import settled
@@ -44,7 +45,7 @@ def compare_files(
 ) -> Comparison:
     """Return the judgements of the trajectories in files, and how they converge.
 
-    Raises LagtopError for a bad request or a file that cannot be read, DataError for a bad one.
+    Raises LagtopError for a bad request, DataError for a file that cannot be read or is bad.
     """
     if paths.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")

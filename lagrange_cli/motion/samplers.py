@@ -90,9 +90,9 @@ class Sampler:
         """Return what is needed of the attitude at a block of times, in arrays of a workspace."""
         raise NotImplementedError
 
-    def check(self, t: ArrayLike) -> None:
-        """Raise LagtopError where a time is not finite or names no phase."""
-        check_times(times_of(t), self.max_time)
+    def check(self, t: ArrayLike, name: str = "t") -> None:
+        """Raise LagtopError, by the `name` of the argument, where a time names no phase."""
+        check_times(times_of(t), self.max_time, name)
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,9 @@ def rows(
     from .sample import samples
 
     chosen, header = chosen_columns(columns), headings(columns, radians=radians)
-    motion.sampler().check(times.bounds())  # none where times are read as they are needed
+    ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
+    for name, end in zip(ends, times.bounds(), strict=False):  # none where times are read later
+        motion.sampler().check(end, name)
     angles = [i for i, name in enumerate(ANGLES) if stds is not None and name in columns]
     names = [f"{heading}_std" for i in angles for heading in headings([ANGLES[i]], radians=radians)]
 

@@ -23,12 +23,15 @@ def times_of(t: ArrayLike) -> Array:
         raise LagtopError(f"t must be real numbers, got {repr(t)[:60]}", "t") from None
 
 
-def check_times(times: Array, most: float) -> None:
-    """Raise LagtopError where a time is not finite or beyond the last that names a phase."""
+def check_times(times: Array, most: float, name: str = "t") -> None:
+    """Raise LagtopError where a time is not finite or beyond the last that names a phase.
+
+    `name` is that of the argument.
+    """
     limit = min(most, MAX_TIME)
     if not times.size or (times.min() >= -limit and times.max() <= limit):
         return
     bad = times[~(np.abs(times) <= limit)]
     raise LagtopError(
-        f"t must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", "t"
+        f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from hashlib import file_digest
 from io import BufferedIOBase
@@ -14,6 +13,7 @@ from typing import Any, NamedTuple
 from .. import __version__
 from ..arithmetic.points import Points
 from ..errors import LagtopError
+from ..inputs.files import opened
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.ranges import Product
 from ..inputs.top import INPUTS, overridden
@@ -33,6 +33,8 @@ class Plan(NamedTuple):
     """What decides about the bytes of the parts, for the folder they are written to."""
     given: Given
     """What all tops share, and what of it nobody gave."""
+    file: str | None = None
+    """The file of tops, if there is one."""
 
 
 def plan(
@@ -76,8 +78,7 @@ def plan(
     stream, digest = _digested(tables[0]) if described else (None, "")
     computed = {*known, *record_keys(radians=not radians), *chosen}
     file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
-    found = gather(axes, scene, system=system, varying=file.named, others=file.units)
-    source = file.in_units(found)
+    found, source = file.among(axes, scene, system)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     if "error" not in chosen:
         chosen.append("error")
@@ -86,7 +87,7 @@ def plan(
     told |= {"uncertainties": stds} if stds else {}
     sweep = _sweep(source.carried, chosen, shared, stds, (radians, fmt, until_error))
     blocks = (block._replace(file=source) for block in lines)
-    return Plan(sweep, enumerate(blocks), 0, told, found)
+    return Plan(sweep, enumerate(blocks), 0, told, found, tables[0])
 
 
 def _sweep(
@@ -126,16 +127,12 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
 
 def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
     """Return the digest of a file, and a copy of it on disk where it is standard input."""
-    if path != "-":
-        try:
-            with open(path, "rb") as file:
-                return None, _digest(file)
-        except OSError as error:
-            raise LagtopError(f"{path}: {error.strerror}") from None
-    with TemporaryFile() as copy:
-        if sys.stdin:
-            copyfileobj(sys.stdin.buffer, copy)
-        return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(copy)
+    with opened(path) as file:
+        if path != "-":
+            return None, _digest(file)
+        with TemporaryFile() as copy:
+            copyfileobj(file, copy)
+            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(copy)
 
 
 def _digest(stream: BufferedIOBase) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.given import Given, gather
+from ..inputs.given import Given
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.solve import Motion, solve
@@ -129,15 +129,14 @@ def open_tables(
 
     What a row lacks comes from `inputs` by key, and from a scene file.  The lines are fewer where a
     top has many rows, or nobody knows how many.  `same` are the times where they are those of all
-    tops.  Raises LagtopError if the file cannot be read.
+    tops.  Raises DataError for a file that cannot be read, LagtopError for bad inputs.
     """
     at_once = 1 if not rows_per_top else min(max(_ROWS_PER_TASK // rows_per_top, 1), _TOPS_AT_ONCE)
     file, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
     block = (
         None if same is None or same.count > _ROWS_PER_TASK else np.concatenate([*same.blocks()])
     )
-    given = gather(inputs, scene, system=system, varying=file.named, others=file.units)
-    source = file.in_units(given)
+    given, source = file.among(inputs, scene, system)
     shared = shared_inputs(given)
     tables = Tables(source, shared, columns, times, radians, wrap, fmt, block)
     return tables, (some._replace(file=source) for some in lines), given

@@ -243,8 +243,8 @@ BAD_TIMES = {
     "--n 2e9": "at most 1e9 rows",
     "--n 3 --dt 1": "--n and --dt exclude each other: leave one out",
     "--times x --n 3": "--times and --n exclude each other",
-    "--times nowhere.txt": "--times nowhere.txt: No such file or directory",
-    "--t-max 1e30": "t must be finite and within 2^50 periods",
+    "--t-max 1e300": "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1e+300",
+    "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
     "--format table --n 20000": "--format table shows at most 10000 rows, got 20000",
 }
 

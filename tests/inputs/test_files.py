@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import LAGTOP, ROOT, Lagtop
+from conftest import LAGTOP, ROOT, Lagtop, assert_one_line
 
 import lagrange_cli
 from lagrange_cli import LagtopError, Top
@@ -89,6 +89,71 @@ def test_dots_in_comments_are_free(tmp_path: Path) -> None:
     assert read_scene(scene(tmp_path, f"# {'.' * 500}\nr0 = 2.5  # spin...\n")) == Top(r0=2.5)
 
 
+def test_a_scene_on_standard_input(lagtop: Lagtop) -> None:
+    text = "r0 = 40\n"
+    assert lagtop("solve", "-", "--get", "r0", input=text).stdout == "40.0\n"
+    assert lagtop("table", "-", "--n", "1", "--columns", "r", input=text).stdout == "r\n40.0\n"
+    found = lagtop("find", "-", "--theta0", "20:60", "T_nutation=0.45", "--keys", "r0", input=text)
+    assert found.stdout.splitlines()[:2] == ["r0", "40.0"]
+    wrong = lagtop("solve", "-", input="r0 = 1\nspin = 2\n")
+    assert_one_line(wrong, 65, "standard input, line 2: unknown key 'spin'")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["table", "-", "--times", "-"],
+        ["table", "-", "--tops", "-"],
+        ["compare", "-", "--scene", "-"],
+        ["fit", "-", "--scene", "-"],
+    ],
+)
+def test_standard_input_is_read_once(words: list[str], lagtop: Lagtop) -> None:
+    result = lagtop(*words, input="r0 = 1\n")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "exclude each other" in result.stderr
+
+
+def test_a_scene_without_inputs_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = scene(tmp_path, "# nothing yet\n")
+    for words in (["solve", path, "--get", "r0"], ["sweep", path, "--keys", "r0"]):
+        result = lagtop(*words)
+        assert result.exit_code == 0
+        assert result.stderr == (
+            f"Warning: {path} has no inputs: what is not given is as in the worked example\n"
+        )
+
+
+MISSING = [
+    "solve FILE.toml",
+    "table FILE.toml",
+    "sweep FILE.toml",
+    "plot FILE.toml cubic -o x.png",
+    "view FILE.toml -o x.html",
+    "find FILE.toml --r0 1:2 T_nutation=1",
+    "bench FILE.toml",
+    "compare FILE.csv",
+    "compare x.csv --scene FILE.toml",
+    "fit FILE.csv",
+    "fit x.csv --scene FILE.toml --fix m",
+    "sweep FILE.csv",
+    "sweep FILE.csv --parts x",
+    "table --tops FILE.csv",
+    "table --times FILE.txt",
+]
+
+
+@pytest.mark.parametrize("line", MISSING)
+def test_a_file_that_cannot_be_read_ends_with_65(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lagtop: Lagtop
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = next(word for word in line.split() if word.startswith("FILE"))
+    assert_one_line(lagtop(*line.split()), 65, f"{name}: No such file or directory")
+    Path(name).mkdir()
+    assert_one_line(lagtop(*line.split()), 65, f"{name}: Is a directory")
+
+
 # Times
 
 
@@ -136,8 +201,8 @@ def test_a_time_out_of_reach_late_in_the_file(tmp_path: Path, lagtop: Lagtop) ->
     path = tmp_path / "times.txt"
     path.write_text("1\n" * (2 * POINTS_AT_ONCE) + "1e30\n")
     result = lagtop("table", "--times", path)
-    assert result.exit_code == 2
-    assert "t must be finite and within 2^50 periods" in result.stderr
+    assert result.exit_code == 65
+    assert f"{path}: t must be finite and within 2^50 periods" in result.stderr
 
 
 PEAK = """if True:
@@ -162,6 +227,41 @@ def test_the_memory_for_times_does_not_grow(tmp_path: Path) -> None:
 
 
 # Tops
+
+
+def test_a_file_without_tops_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
+    path = tmp_path / "tops.csv"
+    path.write_text("r0\n")
+    for words, header in (
+        (["sweep", path, "--keys", "k"], "k,error\n"),
+        (["sweep", path, "--keys", "k", "--format", "json"], "[]\n"),
+        (["table", "--tops", path, "--columns", "u"], "line,u,error\n"),
+    ):
+        result = lagtop(*words)
+        assert (result.exit_code, result.stdout) == (0, header)
+        assert result.stderr == f"Warning: {path} holds no tops\n"
+    shard = lagtop("sweep", path, "--shard", "2/2")
+    assert (shard.exit_code, shard.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        (
+            "m [xyz],A [kg m^2]",
+            "heading m [xyz]: m must have a unit as in 350g, got",
+        ),
+        ("m [m],r0 [rpm]", "heading m [m]: m must have a unit as in 350g, got the unit 'm'"),
+        ("m [g],r0", "heading r0: r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
+    ],
+)
+def test_a_bad_unit_in_a_heading_is_bad_data_of_the_file(
+    header: str, message: str, tmp_path: Path, lagtop: Lagtop
+) -> None:
+    path = tmp_path / "tops.csv"
+    path.write_text(f"{header}\n1,1\n")
+    assert_one_line(lagtop("sweep", path, "--m", "3g"), 65, f"{path}, {message}")
+    assert_one_line(lagtop("table", "--tops", path), 65, f"{path}, {message}")
 
 
 def test_a_key_that_comes_after_the_first_lines_is_refused(tmp_path: Path) -> None:

@@ -180,7 +180,7 @@ def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ("arguments", "code", "message"),
     [
         ([], 2, "Missing argument 'TRAJECTORY...'."),
-        (["nowhere.csv"], 2, "nowhere.csv: No such file or directory"),
+        (["nowhere.csv"], 65, "nowhere.csv: No such file or directory"),
         (["-", "-"], 2, "standard input can be read once, got - twice"),
         (["a.csv", "--steps", "1,2"], 2, "--steps must be as many as trajectories, 1, got 2"),
         (["a.csv", "--steps", "-1"], 2, "--steps must be > 0, got -1.0"),

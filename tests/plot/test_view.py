@@ -94,6 +94,7 @@ def test_the_command_opens_the_page(
 REFUSED = [
     ("", 2, "nothing to do: give -o FILE.html or --open"),
     ("--open -o -", 2, "a page on standard output is not to open"),
+    ("-o x.png", 2, "-o must be a file that ends in .html, got 'x.png': a page is HTML"),
     ("nowhere.toml -o x.html", 65, "nowhere.toml: No such file"),
     ("--r0 1e40 -o x.html", 2, "--r0 must be from 1e-30 to 1e30 for a page, got 1e+40"),
     ("--m 1e-40 --A 1 --C 1 --s 1 --g 1 -o x.html", 2, "--m must be from 1e-30 to 1e30 for a"),
