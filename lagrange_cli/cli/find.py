@@ -78,8 +78,9 @@ def command(
     are in SI.  regime=WORD, path=WORD and bounds such as KEY<NUMBER leave out what does not keep
     them; an angle may leave out its unit.
 
-    With one unknown all solutions are found that the scan brackets, each to its last bit.  With
-    several, those to which its best points lead.  The exit code is 1 where there is none.
+    With one unknown all solutions are found that the scan brackets: each is the double whose number
+    comes nearest to the wanted one, but where that number hardly changes, others do as well.  With
+    several, those are found to which its best points lead.  The exit code is 1 where there is none.
 
     With --from inputs of the body, and a scene, may be given too; what these numbers cannot tell of
     it is 1, or such that C = A.  The tops start at their least tilt.

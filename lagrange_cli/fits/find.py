@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.text import double_text
+from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError
 from ..inputs.mixed_body import warn_of
 from ..inputs.names import check_names
@@ -16,6 +18,9 @@ from ..motion.solve import Motion, solve
 from .roots import roots
 from .search import Scan, Search, Watch, scan_of, search_of
 from .several import solutions
+
+_SWEPT = 2.0**-48
+"""What a number of a sweep may be off, over its size, and a little more."""
 
 
 class Found(NamedTuple):
@@ -33,8 +38,10 @@ def find(
 
     An input is a number, or a text `[log:]from:to` where it is unknown; there are up to three
     unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER leave out
-    what does not keep them.  Found is what a `scan` of so many values of each unknown
-    brackets; each unknown is right to its last bit.  The list may be empty.  Raises LagtopError.
+    what does not keep them.  Found is what a `scan` of so many values of each unknown brackets.
+    One unknown is the double whose number comes nearest to the wanted one: where that number hardly
+    changes, other doubles do as well.  The list may be empty.  Raises LagtopError, also where the
+    number is the wanted one in a whole range.
     """
     check_names("inputs", list(inputs) or ["m"], INPUTS)
     given = {name: _read(name, x) for name, x in inputs.items() if x is not None}
@@ -80,12 +87,26 @@ def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found
 
 
 def _roots(search: Search, grid: Scan) -> list[float]:
-    wanted = float(search.wanted[0])
-    return roots(
-        lambda x: float(search.numbers([x])[0]) - wanted,
-        grid.values[:, 0],
-        grid.numbers[:, 0] - wanted,
-    )
+    wanted, x = float(search.wanted[0]), grid.values[:, 0]
+
+    def off(at: float) -> float:
+        return float(search.numbers([at])[0]) - wanted
+
+    _refuse_plateaus(search, x, grid.numbers[:, 0] - wanted, off)
+    return roots(off, x, grid.numbers[:, 0] - wanted)
+
+
+def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], float]) -> None:
+    """Raise LagtopError where neighbouring values of the scan all have the wanted number."""
+    near = np.abs(y) <= _SWEPT * np.abs(search.wanted[0])
+    for i in np.flatnonzero(near[:-2] & near[1:-1] & near[2:]).tolist():
+        if not any(map(off, x[i : i + 3].tolist())):
+            last = i + int(np.argmin([*near[i:], False])) - 1
+            name = next(iter(search.spans))
+            raise LagtopError(
+                f"every {name} from {x[i]:g} to {x[last]:g} has {_wanted(search)}, which does not "
+                f"tell {name}: take another condition, or another unknown"
+            )
 
 
 def _looked(search: Search, grid: Scan) -> str:
@@ -109,8 +130,10 @@ def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
     off = np.abs(grid.numbers - search.wanted) / np.where(size > 0, size, 1.0)
     nearest = int(np.nanargmin(np.where(known, np.linalg.norm(off, axis=1), np.nan)))
     reached = ", ".join(
-        f"{key} = {value:.6g}"
-        for key, value in zip(search.conditions.numbers, grid.numbers[nearest], strict=True)
+        f"{key} = {_short(value, wanted)}"
+        for (key, wanted), value in zip(
+            search.conditions.numbers.items(), grid.numbers[nearest].tolist(), strict=True
+        )
     )
     where = ", ".join(
         f"{name} = {value:.6g}"
@@ -128,5 +151,12 @@ def _error(search: Search, grid: Scan) -> str:
     return ""
 
 
+def _short(value: float, wanted: float) -> str:
+    """Return a number in six digits, or in all where six do not tell it from the wanted one."""
+    text = f"{value:.6g}"
+    return double_text(value) if text == f"{wanted:.6g}" else text
+
+
 def _wanted(search: Search) -> str:
-    return ", ".join(f"{key}={value:g}" for key, value in search.conditions.numbers.items())
+    numbers = search.conditions.numbers.items()
+    return ", ".join(f"{key}={double_text(value).removesuffix('.0')}" for key, value in numbers)

@@ -1,7 +1,8 @@
-"""Where one number of the record, as a function of one input, has a wanted value: to the last bit.
+"""Where one number of the record, as a function of one input, has a wanted value.
 
-Each evaluation is by `solve`, whose numbers are the nearest doubles: that of two neighbouring
-doubles which comes nearer is all that doubles can have.
+Each evaluation is by `solve`, whose numbers are the nearest doubles: of neighbouring doubles the
+one is taken whose number comes nearest.  Where the number hardly changes with the input, many
+doubles have the same one, and a root may be that many last bits off.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _STEPS = 64
 
 
 def roots(function: Function, x: Array, y: Array) -> list[float]:
-    """Return the roots that values y at points x bracket, each to the last bit it can have.
+    """Return the roots that values y at points x bracket, each as near as its numbers can tell.
 
     A pair of roots between two points is found where the function has an extremum there.
     """

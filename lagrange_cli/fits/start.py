@@ -14,10 +14,10 @@ from .model import angles_of, kept_off_the_vertical
 from .nutation import Shown
 from .recording import Recording
 from .residuals import residuals
-from .turning_points import SIGNS, Candidates, Nutation, candidates, with_mean_rate
+from .turning_points import SIGNS, Candidates, Nutation, candidates, shares, with_mean_rate
 
-_GRID = 25
-"""Moduli that are tried, with all signs, where no mean precession tells."""
+_GRID = shares(25, 1e-3, 1e-8, 1)
+"""Moduli that are tried, with all signs, as shares of the greatest where no mean rate tells."""
 _NEAREST = 3
 """Tops that are tried for a mean precession that no top has."""
 _MOST_ROWS = 4000
@@ -66,8 +66,7 @@ def _near(shown: Shown) -> list[Shown]:
 
 def _grid(shown: Shown) -> Candidates:
     """Return tops of many moduli, with all signs."""
-    phases = np.linspace(0, math.pi, _GRID + 2)[1:-1]
-    moduli = shown.nutation.most_m * (1 - np.cos(phases)) / 2
+    moduli = shown.nutation.most_m * _GRID
     parts = [candidates(shown.nutation, moduli, signs) for signs in SIGNS]
     return Candidates(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 

@@ -23,13 +23,6 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 
-_MODULI = 400
-"""Moduli in the middle of the scan; they are denser at both ends."""
-_INNER = (1 - np.cos(np.linspace(0, math.pi, _MODULI + 1)[1:-1])) / 2
-_OUTER = 10.0 ** np.arange(-20, -4.9, 0.5)
-_SHARES = np.concatenate([_OUTER, _INNER, 1 - _OUTER[12:][::-1]])
-"""Where k^2 is looked for, of its greatest value: fast tops are near 0, slow ones near 1."""
-
 SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Signs of beta + b and of beta - b."""
 
@@ -95,6 +88,20 @@ class Candidates(NamedTuple):
         return Candidates(*(x[index] for x in self))
 
 
+def shares(inner: int, low: float, high: float, per_decade: int) -> Array:
+    """Return where k^2 is looked for, as shares of its greatest value, from `low` to 1 - `high`.
+
+    Fast tops are next to 0 and slow ones next to 1: outside the `inner` shares there are so many
+    per power of ten.
+    """
+    middle = (1 - np.cos(np.linspace(0, math.pi, inner + 2)[1:-1])) / 2
+    ends = [
+        10.0 ** np.arange(math.log10(end), math.log10(middle[0]), 1 / per_decade)
+        for end in (low, high)
+    ]
+    return np.concatenate([ends[0], middle, 1 - ends[1][::-1]])
+
+
 def candidates(nutation: Nutation, m: Array, signs: tuple[int, int]) -> Candidates:
     """Return the tops with these moduli; `signs` are those of beta + b and of beta - b."""
     from scipy.special import ellipk
@@ -129,7 +136,7 @@ def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
     from scipy.optimize import brentq
 
     found: list[Candidates] = []
-    moduli = nutation.most_m * _SHARES
+    moduli = nutation.most_m * shares(399, 1e-20, 1e-14, 2)
     for signs in SIGNS:
 
         def off(m: float, signs: tuple[int, int] = signs) -> float:

@@ -31,7 +31,7 @@ from lagrange_cli.inputs.ranges import parse_span
     ("key", "wanted", "found"),
     [("T_precession", 2.0, 1), ("T_nutation", 0.45, 2), ("theta_max_deg", 90.0, 1)],
 )
-def test_an_unknown_is_right_to_its_last_bit(key: str, wanted: float, found: int) -> None:
+def test_no_neighbour_of_an_unknown_comes_nearer(key: str, wanted: float, found: int) -> None:
     motions = find([f"{key}={wanted}"], r0="10:200")
     assert len(motions) == found
     for motion in motions:
@@ -40,6 +40,32 @@ def test_an_unknown_is_right_to_its_last_bit(key: str, wanted: float, found: int
         off = [abs(oracle.constants(oracle.Scene(r0=x), 30)[key] - wanted) for x in near]
         # half an ulp of the number is all that a comparison of doubles can see
         assert off[0] <= min(off) + math.ulp(wanted) / 2
+
+
+@pytest.mark.parametrize(
+    ("line", "where"),
+    [
+        ("--theta0 30:60 spin_rate_start=50", "every theta0_deg from 30 to 60 has"),
+        (
+            "--m 1:1e4 theta_min_deg=30",
+            "every m from 1 to 10000 has theta_min_deg=30, which",
+        ),
+        ("--theta0 1e-3:1 b=22.363701578192252", "every theta0_deg from 0.001 to 1 has b=22.3637"),
+        (
+            "--psidot0 -5:5 path=wavy r0=50",
+            "every psidot0 from -5 to 5 has r0=50, which does",
+        ),
+    ],
+)
+def test_a_plateau_is_no_list_of_solutions(line: str, where: str, lagtop: Lagtop) -> None:
+    result = lagtop("find", *line.split())
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert where in result.stderr.splitlines()[-1]
+
+
+def test_what_is_nearest_differs_from_what_is_wanted(lagtop: Lagtop) -> None:
+    result = lagtop("find", "--psidot0", "1:2", "a=319.0914121746259")
+    assert "nearest to a=319.0914121746259 is a = 319.09141217462593 at psidot0" in result.stderr
 
 
 def test_a_pair_of_roots_between_two_points_is_found() -> None:

@@ -25,6 +25,7 @@ from lagrange_cli.fits.quality import chi2_bounds
 from lagrange_cli.fits.record import FAILED, Outcome, outcomes
 from lagrange_cli.fits.recording import Reading, Recording, read_recordings
 from lagrange_cli.fits.residuals import residuals
+from lagrange_cli.fits.turning_points import Nutation, candidates, top_of
 
 NOISE = math.radians(0.5)
 SAMPLE = recordings.PATH
@@ -254,6 +255,18 @@ def trials(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
+def test_a_start_next_to_an_upright_root_is_found() -> None:
+    """Without psi nothing tells the modulus, and u3 = 1 is at an end of what it may be."""
+    nutation, t = Nutation(1.5, 1.52, 1.0), np.linspace(0, 60, 300)
+    exact = candidates(nutation, np.array(nutation.most_m * (1 - 1e-6)), (1, 1))
+    top = top_of(nutation, exact).replace(C=0.7, r0=float(exact.b) / 0.7)
+    angles, rng = solve(top).angles(t), np.random.default_rng(1)
+    theta, phi = (x + 1e-4 * rng.standard_normal(t.size) for x in (angles.theta, angles.phi))
+    found = fit(t, theta=theta, phi=phi)
+    assert found.verdict == "good"
+    assert found.record()["a"] == pytest.approx(float(exact.a), rel=1e-4)
+
+
 def test_several_recordings_in_one_file(lagtop: Lagtop, tmp_path: Path) -> None:
     path = trials(tmp_path)
     options = ("fit", path, "--by", "trial", "--sigma", 0.5, "--format", "json")
