@@ -169,8 +169,9 @@ class Balls:
     @staticmethod
     def convert(value: float | Fraction) -> Ball:
         """Return a ball that holds an exact value."""
-        exact = Fraction(value)
-        return Ball(arb(fmpq(exact.numerator, exact.denominator)))
+        if isinstance(value, Fraction):
+            return Ball(arb(fmpq(value.numerator, value.denominator)))
+        return Ball(arb(value))
 
     @staticmethod
     def sqrt(x: Ball | int) -> Ball:
@@ -221,7 +222,9 @@ class Balls:
         if not (x.arb.is_finite() and x.arb.rad() <= 0.25):
             raise TooFewDigitsError
         mantissa, exponent = (int(part) for part in x.arb.mid().man_exp())
-        return round(Fraction(mantissa) * Fraction(2) ** exponent)
+        if exponent >= 0:
+            return mantissa << exponent
+        return (2 * mantissa + (1 << -exponent)) >> (1 - exponent)
 
     @staticmethod
     def ceiling(x: Ball) -> int:

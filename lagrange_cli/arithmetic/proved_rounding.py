@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 T = TypeVar("T", float, NumberText)
 S = TypeVar("S")
 
-FIRST_BITS, MOST_BITS = 128, 20_000
+FIRST_BITS, MOST_BITS = 192, 20_000
 """Where the search for enough bits begins and where it ends; a thousand digits are 3322 bits."""
 _GUARD_BITS = 48
 _OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])

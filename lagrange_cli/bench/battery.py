@@ -35,6 +35,9 @@ KEY_CONTRACT = 0.5 + 1e-9
 DIGITS, MORE_DIGITS = 80, 110
 """Digits of the reference, and of the one that it is checked against."""
 
+CONSERVED = ("energy", "Lz")
+"""The columns whose changes are told."""
+
 INTEGRATOR = "DOP853-quaternion"
 INTEGRATED_PERIODS, INTEGRATOR_SECONDS = (0.7, 2.3, 4.9), 2.0
 """The integrator would never reach the far times: it has times of its own, near the start."""
@@ -100,6 +103,40 @@ class Case(Errors):
         return f"lagtop bench --methods lagtop {options} --n 1 --t-max {self.worst_time!r}"
 
 
+def case_of(
+    top: Top,
+    times: Sequence[float],
+    units: Sequence[Sequence[float]],
+    key: tuple[float, str],
+    conserved: tuple[float, float],
+    *,
+    scipy: float | None = None,
+    integrated: float | None = None,
+    agreement: float = 0.0,
+) -> Case:
+    """Return a case from its errors: a row of `units` per time, the three angles and quaternion.
+
+    `key` is the worst error of a key and its name, `conserved` the changes of energy and Lz.
+    """
+    theta, phi, psi, attitude = (max(errors) for errors in zip(*units, strict=True))
+    return Case(
+        theta_units=theta,
+        phi_units=phi,
+        psi_units=psi,
+        quaternion_units=attitude,
+        key_ulps=key[0],
+        worst_key=key[1],
+        energy_eps=conserved[0],
+        Lz_eps=conserved[1],
+        top=top,
+        worst_time=times[int(np.argmax([max(errors[:3]) for errors in units]))],
+        worst_attitude_time=times[int(np.argmax([errors[3] for errors in units]))],
+        scipy=scipy,
+        integrated=integrated,
+        agreement=agreement,
+    )
+
+
 def judge(scene: HardScene, *, peers: bool = True) -> Case:
     """Return what one scene shows, with the errors of other methods or without."""
     top = Top(**scene.inputs)
@@ -107,30 +144,29 @@ def judge(scene: HardScene, *, peers: bool = True) -> Case:
     times = np.array(scene.times(reference.T))
     exact = [reference.at(t) for t in times.tolist()]
     angles = _angle_errors(list(zip(*motion.angles(times), strict=True)), exact)
-    theta, phi, psi = (max(errors) for errors in zip(*angles, strict=True))
+    values = tabulated(motion, times.tolist(), ("quaternion", *CONSERVED))
     attitudes = [
-        quaternion_units(parts, true)
-        for parts, true in zip(_columns(motion, times, "quaternion").tolist(), exact, strict=True)
+        quaternion_units(parts[:4], true)
+        for parts, true in zip(values[1:].tolist(), exact, strict=True)
     ]
-    ulps, key = worst_key(motion, reference)
     again = Reference(top, MORE_DIGITS).at(times[0].item())
-    energy_eps, Lz_eps = conserved_changes(motion, times)
-    return Case(
-        theta_units=theta,
-        phi_units=phi,
-        psi_units=psi,
-        quaternion_units=max(attitudes),
-        key_ulps=ulps,
-        worst_key=key,
-        energy_eps=energy_eps,
-        Lz_eps=Lz_eps,
-        top=top,
-        worst_time=float(times[int(np.argmax([max(errors) for errors in angles]))]),
-        worst_attitude_time=float(times[int(np.argmax(attitudes))]),
+    return case_of(
+        top,
+        times.tolist(),
+        [(*errors, attitude) for errors, attitude in zip(angles, attitudes, strict=True)],
+        worst_key(motion, reference),
+        conserved_changes(top, values[:, -2:]),
         scipy=peer_units(CLOSED_FORMS["scipy.special"], top, times, exact) if peers else None,
         integrated=_integrated(top, reference) if peers else None,
         agreement=max(angle_units(again[:3], exact[0])),
     )
+
+
+def tabulated(motion: Motion, times: Sequence[float], columns: Sequence[str]) -> Array:
+    """Return columns of `lagtop table`, angles in radians: a row for the start and one per time."""
+    points = ListedPoints([Fraction(t) for t in (0.0, *times)])
+    _, blocks = rows(motion, points, columns, radians=True)
+    return np.concatenate(list(blocks))
 
 
 def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
@@ -148,9 +184,12 @@ def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
     return max(errors)
 
 
-def conserved_changes(motion: Motion, times: Array) -> tuple[float, float]:
-    """Return the changes of energy and Lz since t = 0, in eps of the sum of their terms."""
-    top, tilt = motion.top, motion.top.tilt(DOUBLES)
+def conserved_changes(top: Top, values: Array) -> tuple[float, float]:
+    """Return the changes of energy and Lz, the columns of `values`, since its first row, t = 0.
+
+    They are in eps of the sum of the terms.
+    """
+    tilt = top.tilt(DOUBLES)
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
     around = float(top.psidot0) * tilt.sin
     swing = float(top.thetadot0) ** 2 + around**2 + a * (1 + abs(tilt.cos))
@@ -159,7 +198,6 @@ def conserved_changes(motion: Motion, times: Array) -> tuple[float, float]:
         float(top.A) * swing / 2 + momentum * abs(float(top.r0)) / 2,
         float(top.A) * abs(around) * tilt.sin + 2 * momentum,
     )
-    values = _columns(motion, np.concatenate(([0.0], times)), "energy", "Lz")
     energy, Lz = (np.max(abs(values - values[0]), axis=0) / (EPS * np.array(sizes))).tolist()
     return energy, Lz
 
@@ -192,9 +230,3 @@ def _angle_errors(
 ) -> list[tuple[float, float, float]]:
     pairs = zip(computed, exact, strict=True)
     return [angle_units(angles, true, whole_turns=whole_turns) for angles, true in pairs]
-
-
-def _columns(motion: Motion, times: Array, *columns: str) -> Array:
-    """Return columns of `lagtop table`, a row per time."""
-    _, blocks = rows(motion, ListedPoints([Fraction(t) for t in times.tolist()]), columns)
-    return np.concatenate(list(blocks))

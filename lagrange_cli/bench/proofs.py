@@ -9,67 +9,43 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import Decimal
 from fractions import Fraction
 
 import mpmath
 
-from ..arithmetic.balls import Ball
+from ..arithmetic.balls import Ball, Balls
 from ..arithmetic.correct_rounding import TooFewDigitsError
-from ..arithmetic.points import ListedPoints
-from ..arithmetic.proved_rounding import decided, distance
+from ..arithmetic.proved_rounding import decided
 from ..inputs.top import Top
 from ..motion.certified import Certified
-from ..motion.certified_table import BallSample, CertifiedTable
+from ..motion.certified_sample import BallSample, sample_at
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
-from ..motion.table import rows
-from .battery import Case, conserved_changes
+from .battery import CONSERVED, Case, case_of, conserved_changes, tabulated
 from .hard_scenes import HardScene
 from .reference import Many
 
 COLUMNS = ("theta", "phi", "psi", "quaternion")
 _NARROW = 2**10
 """One over the radius of a ball, in units, that tells an error to three digits."""
-_DIGITS = 50
+_DIGITS = 40
 """Digits of the period that times are counted in."""
 
 
 def prove(scene: HardScene) -> Case:
     """Return what is proved of a scene: upper bounds of its errors."""
-    import numpy as np
-
     top = Top(**scene.inputs)
     motion = solve(top)
     proofs = Certified(motion.exact)
     with mpmath.workdps(_DIGITS):
         times = scene.times(_period(proofs))
-    _, blocks = rows(motion, ListedPoints([Fraction(t) for t in times]), COLUMNS, radians=True)
-    table = CertifiedTable(proofs, COLUMNS, radians=True)
-    bounds = [
-        bounds_at(table, t, values)
-        for t, values in zip(times, np.concatenate(list(blocks)).tolist(), strict=True)
-    ]
-    theta, phi, psi, *parts = (max(errors) for errors in zip(*bounds, strict=True))
-    worst = [max(errors[:3]) for errors in bounds], [max(errors[3:]) for errors in bounds]
-    ulps, key = worst_key(motion, proofs)
-    energy_eps, Lz_eps = conserved_changes(motion, np.array(times))
-    return Case(
-        theta_units=theta,
-        phi_units=phi,
-        psi_units=psi,
-        quaternion_units=max(parts),
-        key_ulps=ulps,
-        worst_key=key,
-        energy_eps=energy_eps,
-        Lz_eps=Lz_eps,
-        top=top,
-        worst_time=times[int(np.argmax(worst[0]))],
-        worst_attitude_time=times[int(np.argmax(worst[1]))],
-        scipy=None,
-        integrated=None,
-        agreement=0.0,
-    )
+    values = tabulated(motion, times, (*COLUMNS, *CONSERVED))
+    units = []
+    for t, row in zip(times, values[1:].tolist(), strict=True):
+        *angles, w, x, y, z = bounds_at(proofs, t, row[:7])
+        units.append((*angles, max(w, x, y, z)))
+    changes = conserved_changes(top, values[:, -2:])
+    return case_of(top, times, units, worst_key(motion, proofs), changes)
 
 
 def _period(proofs: Certified) -> Many:
@@ -84,30 +60,30 @@ def worst_key(motion: Motion, proofs: Certified) -> tuple[float, str]:
 
     One where the motion has none, or the other way round, is infinitely wrong.
     """
-    bounds = []
-    for key in NUMBER_KEYS:
-        value, found = getattr(motion, key), proofs.with_ends(key)
-        if value is None or found is None:
-            bounds.append((0.0 if value is found else math.inf, key))
-        else:
-            bounds.append((ulps(value, *found[1:]), key))
-    return max(bounds)
+    return max((_key_bound(proofs, key, getattr(motion, key)), key) for key in NUMBER_KEYS)
 
 
-def ulps(value: float, low: Decimal | Fraction, high: Decimal | Fraction) -> float:
-    """Return a bound of the distance of a double from all between two ends, in gaps there.
+def _key_bound(proofs: Certified, key: str, value: float | None) -> float:
+    def bound(exact: Ball | None) -> float:
+        if value is None or exact is None:
+            return 0.0 if value is None and exact is None else math.inf
+        return ulps(value, exact)
 
-    The gap is the one on the side of each end.
+    return proofs.judged(key, bound)
+
+
+def ulps(value: float, exact: Ball) -> float:
+    """Return a bound of the distance of a double from all in a ball, in gaps between doubles.
+
+    The gap is the one on the side of the ball.  Raises TooFewDigitsError where that is not sharp.
     """
-    bounds = []
-    for end in (low, high):
-        beyond = math.nextafter(value, math.inf if end > value else -math.inf)
-        share = float(distance(end, value)) / abs(beyond - value)
-        bounds.append(share * (1 + 2.0**-50))  # two roundings
-    return max(bounds)
+    above, below = (abs(math.nextafter(value, x) - value) for x in (math.inf, -math.inf))
+    away = exact - Balls.convert(value)
+    gap = above if (away > 0) is True else below if (away < 0) is True else min(above, below)
+    return _bound(away, Balls.convert(gap))
 
 
-def bounds_at(table: CertifiedTable, t: float, computed: Sequence[float]) -> list[float]:
+def bounds_at(proofs: Certified, t: float, computed: Sequence[float]) -> list[float]:
     """Return upper bounds of the errors of the angles and of the quaternion at a time, in units.
 
     Raises LagtopError where no precision makes an enclosure small beside its unit.
@@ -115,35 +91,38 @@ def bounds_at(table: CertifiedTable, t: float, computed: Sequence[float]) -> lis
     time = Fraction(t)
 
     def bounds(bits: int) -> list[float]:
-        sample = table.sample(time, bits)
+        sample = sample_at(proofs, time, bits)
         with sample.ar.working():
-            return _bounds(sample, computed, sample.ar.convert(time))
+            return _bounds(sample, computed)
 
     return decided(f"the error at t = {t}", bounds)
 
 
-def _bounds(sample: BallSample, computed: Sequence[float], time: Ball) -> list[float]:
+def _bounds(sample: BallSample, computed: Sequence[float]) -> list[float]:
     if not all(map(math.isfinite, computed)):
         return [math.inf] * len(computed)
+    angles = [sample.theta(), sample.phi(), sample.psi()]
+    exact = [*angles, *(getattr(sample, f"quaternion_{part}")() for part in "wxyz")]
+    return [
+        _bound(ball - Balls.convert(value), size / 2**52)
+        for ball, value, size in zip(exact, computed, _sizes(sample, angles), strict=True)
+    ]
+
+
+def _sizes(sample: BallSample, angles: Sequence[Ball]) -> list[Ball]:
+    """Return lower bounds of the units of the angles and of the quaternion's parts, over 2^-52."""
     period = sample.kind.T_nutation
     assert period is not None
-    tau = time - period * sample.ar.nint(time / period)
-    across, r0 = sample.psi_rate() * sample.sine(), sample.kind.r0
-    theta_rate = _theta_rate(sample)
+    tau = sample.t - period * sample.ar.nint(sample.t / period)
+    square, across, r0 = sample.nutation_square, sample.across, sample.kind.r0
+    theta_rate = sample.ar.sqrt(square) if (square > 0) is True else 0 * square
     turning = sample.ar.sqrt(theta_rate * theta_rate + across * across + r0 * r0) / 2
-    angles = sample.theta(), sample.phi(), sample.psi()
-    pairs = [
-        (exact, _larger(exact.least_size(), 1) + (tau * rate).least_size())
-        for exact, rate in zip(
-            angles, (theta_rate, sample.phi_rate(), sample.psi_rate()), strict=True
-        )
+    rates = theta_rate, sample.phi_rate(), sample.psi_rate()
+    sizes = [
+        _larger(angle.least_size(), 1) + (tau * rate).least_size()
+        for angle, rate in zip(angles, rates, strict=True)
     ]
-    spread = 1 + (tau * turning).least_size()
-    pairs += [(getattr(sample, f"quaternion_{part}")(), spread) for part in "wxyz"]
-    return [
-        _bound(exact - sample.ar.convert(value), size / 2**52)
-        for value, (exact, size) in zip(computed, pairs, strict=True)
-    ]
+    return [*sizes, *[1 + (tau * turning).least_size()] * 4]
 
 
 def _larger(size: Ball, least: int) -> Ball:
@@ -156,12 +135,3 @@ def _bound(error: Ball, unit: Ball) -> float:
     if not error.radius() * _NARROW < unit:
         raise TooFewDigitsError
     return (error / unit).greatest_size()
-
-
-def _theta_rate(sample: BallSample) -> Ball:
-    """Return the least size that the rate of the tilt can have, by the energy (4,2)."""
-    state, across = sample.kind.state, sample.psi_rate() * sample.sine()
-    around = state.psi_rate * state.sin
-    energy = state.theta_rate * state.theta_rate + around * around
-    square = energy + state.a * (state.cos - sample.cosine()) - across * across
-    return sample.ar.sqrt(square).least_size() if (square > 0) is True else 0 * square

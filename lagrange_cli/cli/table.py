@@ -85,7 +85,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 @jobs_option
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
-@certify_option("Of the columns thetadot, p, q, moment, energy and Lz cannot be proved.")
+@certify_option("CSV and JSON have KEY_radius after the columns.")
 @output_options("csv", "json", "table", "parquet", "npy")
 def command(
     scene: str | None,

@@ -28,7 +28,7 @@ _SMALL = 1e-290
 """Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
 
 
-Polynomial = tuple[Value, ...]
+Coefficients = tuple[Value, ...]
 """Coefficients, the lowest power first."""
 Functions = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
@@ -70,8 +70,8 @@ class _Series(NamedTuple):
     """Half periods per unit of u, 1/(2K)."""
     stretch: Value
     """Argument y per half period."""
-    above: Polynomial
-    below: Polynomial
+    above: Coefficients
+    below: Coefficients
     q: Value
     """The nome in use."""
 
@@ -90,7 +90,7 @@ def _series(modulus: Modulus) -> _Series:
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
-def _circular(q: Value, root: Value) -> tuple[Polynomial, Polynomial]:
+def _circular(q: Value, root: Value) -> tuple[Coefficients, Coefficients]:
     """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
@@ -99,7 +99,7 @@ def _circular(q: Value, root: Value) -> tuple[Polynomial, Polynomial]:
     return above, tuple(root * c for c in below)
 
 
-def _hyperbolic(q: Value) -> tuple[Polynomial, Polynomial]:
+def _hyperbolic(q: Value) -> tuple[Coefficients, Coefficients]:
     """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
     q2 = q * q
     q4 = q2 * q2

@@ -25,6 +25,7 @@ from .kinds import Kind, Nutating, fast_remark, kind_of
 from .rational_keys import known_fraction
 from .record import record_of, source_of, unit_name
 from .regime import Exact, Regime, exact
+from .spinors import Spinor
 
 S = TypeVar("S")
 
@@ -62,6 +63,7 @@ class Certified:
         self.exact, self.top = scene, scene.top
         self.kind_class = kind_of(scene.facts)
         self._kinds: dict[int, Kind[Ball]] = {}
+        self._spinors: dict[int, Spinor[Ball]] = {}
 
     @property
     def regime(self) -> Regime:
@@ -107,6 +109,12 @@ class Certified:
             self._kinds[bits] = self.kind_class(ar, facts, start, gaps)
         return self._kinds[bits]
 
+    def spinor(self, bits: int) -> Spinor[Ball]:
+        """Return the attitude as a function of time.  Raises as `kind`."""
+        if bits not in self._spinors:
+            self._spinors[bits] = self.kind(bits).spinor()
+        return self._spinors[bits]
+
     def decide(self, what: str, ask: Callable[[Kind[Ball]], S], digits: int = 0) -> S:
         """Return what is asked of the motion, at the first precision that decides it.
 
@@ -133,6 +141,26 @@ class Certified:
             return value
         with kind.ar.working():
             return value * kind.degree
+
+    def judged(self, name: str, judge: Callable[[Ball | None], S]) -> S:
+        """Return what a judge says of a number, at the first precision at which it does.
+
+        It is asked with an enclosure or, where that says too little, with a ball about the fraction
+        that the number is known to be.  Raises LagtopError where it never says anything.
+        """
+
+        def with_bits(bits: int) -> S:
+            ar = balls(bits)
+            with ar.working():
+                try:
+                    return judge(self.enclosure(name, bits))
+                except TooFewDigitsError:
+                    known = known_fraction(self.exact, name)
+                    if known is None:
+                        raise
+                    return judge(ar.convert(known))
+
+        return decided(name, with_bits)
 
     def number(
         self, name: str, digits: int | None = None, *, radians: bool = False

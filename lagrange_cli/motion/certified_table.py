@@ -1,8 +1,6 @@
 """Proved columns of one motion over time: enclosures of the attitude, rounded to what is printed.
 
-The attitude is that of the theta series in balls (`series_constants`), whose remainders are proved
-in `theta_series`, so that the unwrapped turns are proved with it.  A column here has the name of a
-method of `sample.Sample`, of which it is the exact value.
+The numbers are those of `certified_sample`, rounded where both ends of a ball round alike.
 """
 
 from __future__ import annotations
@@ -10,140 +8,25 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import partial
 from itertools import islice
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.balls import Ball
 from ..arithmetic.numbers import Number
 from ..arithmetic.proved_rounding import Proved, about, proved
 from ..arithmetic.text import NumberText, double_text
-from ..errors import LagtopError
 from .certified import Certified, rounding
-from .columns import COLUMNS, Part, chosen_columns, name_of
-from .kinds import Constant, Kind, Separatrix
-from .rational_keys import known_fraction
-from .series_constants import Attitude, Spinor
+from .certified_sample import BallSample, sample_at
+from .columns import Part, chosen_columns, name_of
+from .rational_columns import known_column
 from .table import headings
 
 if TYPE_CHECKING:
-    from ..arithmetic.balls import Balls
+    from ..arithmetic.balls import Ball
     from ..arithmetic.points import Points
 
 ROWS = 64
 """Rows that settle together."""
-
-
-class BallSample:
-    """A motion at one time in balls; a quantity is computed when it is asked for."""
-
-    def __init__(self, kind: Kind[Ball], t: Ball, at: Attitude[Ball], *, wrap: bool) -> None:
-        self.kind, self.t, self.at, self.wrap = kind, t, at, wrap
-        self.ar = cast("Balls", kind.ar)
-
-    def theta(self) -> Ball:
-        """Return the tilt."""
-        return 2 * self.ar.atan2(self.at.y, self.at.x)
-
-    def phi(self) -> Ball:
-        """Return the spin."""
-        return self._angle(self.at.phi)
-
-    def psi(self) -> Ball:
-        """Return the precession."""
-        return self._angle(self.at.psi)
-
-    def _angle(self, angle: Ball) -> Ball:
-        """Return an angle as it stands, or in (-pi, pi]."""
-        if not self.wrap:
-            return angle
-        ar, pi = self.ar, self.ar.pi
-        if self.kind.facts.plane:  # half turns, where both ends belong to pi
-            return pi * (ar.nint(angle / pi) % 2)
-        return angle - 2 * pi * ar.ceiling(angle / (2 * pi) - 1 / ar.convert(2))
-
-    @cached_property
-    def growths(self) -> tuple[Ball, Ball]:
-        """Mean growth of spin and precession, on the separatrix in infinite time."""
-        kind = self.kind
-        if isinstance(kind, Separatrix):
-            return kind.state.spin_drift * self.t, kind.b / 2 * self.t
-        return kind.mean_spin_rate * self.t, kind.mean_precession_rate * self.t
-
-    def phi_remainder(self) -> Ball:
-        """Return the spin less its mean growth (6,4)."""
-        constant = isinstance(self.kind, Constant)
-        return 0 * self.t if constant else self.at.phi - self.growths[0]
-
-    def psi_remainder(self) -> Ball:
-        """Return the precession less its mean growth (7,4)."""
-        constant = isinstance(self.kind, Constant)
-        return 0 * self.t if constant else self.at.psi - self.growths[1]
-
-    @cached_property
-    def unit(self) -> tuple[Ball, Ball]:
-        """|X| and |Y| over the root of the sum of their squares."""
-        x, y = self.at.x, self.at.y
-        size = self.ar.sqrt(x * x + y * y)
-        return x / size, y / size
-
-    def cosine(self) -> Ball:
-        """Return cos(theta) (4,6)."""
-        x, y = self.unit
-        return (x - y) * (x + y)
-
-    def sine(self) -> Ball:
-        """Return sin(theta)."""
-        x, y = self.unit
-        return 2 * x * y
-
-    @cached_property
-    def poles(self) -> tuple[Ball, Ball]:
-        """(beta + b)/2/(1 + u) and (beta - b)/2/(1 - u), the two parts of the precession rate."""
-        (x, y), gaps = self.unit, self.kind.gaps
-        south, north = (
-            0 * momentum if not momentum else momentum / (4 * part * part)
-            for momentum, part in ((gaps.beta_plus_b, x), (gaps.beta_minus_b, y))
-        )
-        return south, north
-
-    def phi_rate(self) -> Ball:
-        """Return the spin rate (4,8)."""
-        south, north = self.poles
-        return self.kind.state.pole_drift + south - north
-
-    def psi_rate(self) -> Ball:
-        """Return the precession rate (4,7)."""
-        south, north = self.poles
-        return south + north
-
-    def r(self) -> Ball:
-        """Return the angular velocity about the figure axis."""
-        return self.kind.r0
-
-    def axis_x(self) -> Ball:
-        """Return the x part of the figure axis in space."""
-        return self.sine() * self.ar.sin(self.at.psi)
-
-    def axis_y(self) -> Ball:
-        """Return the y part of the figure axis in space."""
-        return -self.sine() * self.ar.cos(self.at.psi)
-
-    def quaternion_w(self) -> Ball:
-        """Return the real part of X = w + i z, of the rotation from body to space."""
-        return self.unit[0] * self.ar.cos((self.at.psi + self.at.phi) / 2)
-
-    def quaternion_x(self) -> Ball:
-        """Return the real part of Y = x + i y."""
-        return self.unit[1] * self.ar.cos((self.at.psi - self.at.phi) / 2)
-
-    def quaternion_y(self) -> Ball:
-        """Return the imaginary part of Y = x + i y."""
-        return self.unit[1] * self.ar.sin((self.at.psi - self.at.phi) / 2)
-
-    def quaternion_z(self) -> Ball:
-        """Return the imaginary part of X = w + i z."""
-        return self.unit[0] * self.ar.sin((self.at.psi + self.at.phi) / 2)
 
 
 class CertifiedTable:
@@ -158,32 +41,13 @@ class CertifiedTable:
         radians: bool = False,
         wrap: bool = False,
     ) -> None:
-        """Raise LagtopError for an unknown column, and for one that is not proved."""
+        """Raise LagtopError for an unknown column."""
         self.motion, self.digits, self.radians, self.wrap = motion, digits, radians, wrap
         self.chosen = chosen_columns(columns)
-        for part in self.chosen:
-            if part.method != "times" and not hasattr(BallSample, part.method):
-                known = ", ".join(name for name in COLUMNS if _is_proved(name))
-                raise LagtopError(f"columns to certify must be among {known}, got {name_of(part)}")
         self.header = headings(columns, radians=radians)
-        self._spinors: dict[int, Spinor[Ball]] = {}
         scene = motion.exact
         rates = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate)
         self._speed = sum(map(abs, rates)) + scene.a + 1
-
-    def sample(self, t: Fraction, bits: int) -> BallSample:
-        """Return the motion at a time in balls of so many bits.
-
-        Raises TooFewDigitsError where these do not tell the roots or the half periods apart.
-        """
-        kind = self.motion.kind(bits)
-        ar = kind.ar
-        with ar.working():
-            if bits not in self._spinors:
-                self._spinors[bits] = kind.spinor()
-            time = ar.convert(t)
-            at = self._spinors[bits](time) if t else _start(kind, time)
-            return BallSample(kind, time, at, wrap=self.wrap)
 
     def row(self, time: Fraction) -> list[Proved[Any]]:
         """Return the numbers of the columns at a time, which is exact.
@@ -194,7 +58,7 @@ class CertifiedTable:
 
         def enclosure(part: Part, bits: int) -> Ball:
             if bits not in samples:
-                samples[bits] = self.sample(time, bits)
+                samples[bits] = sample_at(self.motion, time, bits, wrap=self.wrap)
             with samples[bits].ar.working():
                 value: Ball = getattr(samples[bits], part.method)()
                 in_degrees = part.heading.endswith("*") and not self.radians
@@ -212,7 +76,14 @@ class CertifiedTable:
                 rounding(what, self.digits),
                 digits=self.digits or 0,
                 more=self._bits_of(time),
-                exactly=partial(self._known, part, time),
+                exactly=partial(
+                    known_column,
+                    self.motion.exact,
+                    part.method,
+                    time,
+                    radians=self.radians,
+                    wrap=self.wrap,
+                ),
             )
             assert number is not None
             found.append(number)
@@ -222,29 +93,6 @@ class CertifiedTable:
         """Return about how many bits whole turns take, in steps, so that precisions come again."""
         turns = abs(time) * self._speed
         return 64 * (math.ceil(turns).bit_length() // 32)
-
-    def _known(self, part: Part, time: Fraction) -> Fraction | None:
-        """Return an angle of a constant motion where it is a fraction; there ties are possible."""
-        scene, name = self.motion.exact, part.method
-        if not scene.facts.steady:
-            return None
-        if name == "theta":
-            return scene.cosine.radians if self.radians else scene.cosine.degrees
-        rate = {"phi": "mean_spin_rate", "psi": "mean_precession_rate"}.get(name)
-        if rate is None or self.wrap or not self.radians:
-            return None
-        known = known_fraction(scene, rate)
-        return None if known is None else known * time
-
-
-def _is_proved(name: str) -> bool:
-    """Return whether all parts of a column are methods of `BallSample`, or times."""
-    methods = (part.method for part in COLUMNS[name].parts)
-    return all(method == "times" or hasattr(BallSample, method) for method in methods)
-
-
-def _start(kind: Kind[Ball], zero: Ball) -> Attitude[Ball]:
-    return Attitude(kind.state.cos_half, kind.state.sin_half, zero, zero, zero)
 
 
 def certified_rows(

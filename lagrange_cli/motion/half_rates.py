@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
+from functools import lru_cache
 
 from ..arithmetic.decimals import Decimals, decimals
 from ..arithmetic.exact_cosine import Polynomial, U, value_at
@@ -24,6 +25,7 @@ InU3 = list[Polynomial]
 """A polynomial in u3, the lowest power first, with polynomials in cos(theta0) as coefficients."""
 
 
+@lru_cache(maxsize=8)
 def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
     """Return the rates at T/2 that are 0 for a top with torque that does not start at rest."""
     if exact.facts.free or exact.facts.at_rest or exact.facts.steady or exact.facts.pole:

@@ -17,7 +17,7 @@ from .spin_precession import SpinPrecession, period_of
 
 if TYPE_CHECKING:
     from .samplers import Sampler
-    from .series_constants import Spinor
+    from .spinors import Spinor
 
 
 class Nutating(SpinPrecession[R]):
@@ -58,7 +58,7 @@ class Nutating(SpinPrecession[R]):
 
     def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .series_constants import nutating_spinor
+        from .spinors import nutating_spinor
 
         return nutating_spinor(self)
 
@@ -131,7 +131,7 @@ class Constant(Moduli[R]):
 
     def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .series_constants import constant_spinor
+        from .spinors import constant_spinor
 
         return constant_spinor(self)
 
@@ -212,7 +212,7 @@ class Separatrix(SpinPrecession[R]):
 
     def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .series_constants import separatrix_spinor
+        from .spinors import separatrix_spinor
 
         return separatrix_spinor(self)
 

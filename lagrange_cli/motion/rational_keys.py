@@ -8,6 +8,7 @@ such a tie, is told here from the inputs.
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 
 from ..arithmetic.exact_cosine import Polynomial, U
 from .half_rates import HALF_RATES, vanishing_half_rates
@@ -22,11 +23,11 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
     """
     keys = rational_keys(exact)
     if name in HALF_RATES and name not in keys:
-        keys |= vanishing_half_rates(exact)
+        keys = keys | vanishing_half_rates(exact)
     if name not in NUMBER_KEYS:
         from .requested import requested_fractions
 
-        keys |= requested_fractions(exact, keys)
+        keys = keys | requested_fractions(exact, keys)
     known = keys.get(name)
     if not radians or known == 0:
         return known
@@ -34,6 +35,7 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
     return exact.cosine.radians if at is not None and at(exact) else None
 
 
+@lru_cache(maxsize=8)
 def rational_keys(exact: Exact) -> dict[str, Fraction]:
     """Return the keys of a record that are known as fractions, zeros above all.
 

@@ -32,7 +32,7 @@ from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
 from .attitude import Attitude, Growths, Spinor
 from .columns import ATTITUDE, NOTHING, Needs
-from .theta_series import Component, Frame, Polynomial
+from .theta_series import Coefficients, Component, Frame
 from .times import check_times, times_of
 
 _IN_ORDER = slice(None)
@@ -250,14 +250,14 @@ def _write_component(component: Component, at: Functions, real: Array, imag: Arr
         scaled *= at.C
 
 
-def _write_rate(coefficients: Polynomial, at: Functions, rate: Array) -> None:
+def _write_rate(coefficients: Coefficients, at: Functions, rate: Array) -> None:
     """Write what goes with the nutation rate."""
     _write_polynomial(coefficients, at.s, rate)
     rate *= at.S
     rate *= at.C if at.C is not None else 1.0 + at.S * at.S
 
 
-def _write_polynomial(coefficients: Polynomial, x: Array, value: Array) -> None:
+def _write_polynomial(coefficients: Coefficients, x: Array, value: Array) -> None:
     """Write the value of two coefficients at least, the lowest power first."""
     np.multiply(x, coefficients[-1], out=value)
     for coefficient in coefficients[-2:0:-1]:

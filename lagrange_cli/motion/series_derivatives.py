@@ -27,7 +27,7 @@ from .attitude import Growths, growths
 from .kinds import Nutating
 from .neighbourhood import PARAMETERS
 from .series_constants import needed, theta_constants
-from .theta_series import Component, Polynomial, evaluate, theta_series
+from .theta_series import Coefficients, Component, evaluate, theta_series
 
 _NEGLIGIBLE = Decimal(2) ** -100
 
@@ -56,7 +56,7 @@ class SeriesDerivatives:
         """Take the constants from a motion, the mean rates from `means`."""
         ar: Any = motion.ar
         with ar.working():
-            constants = theta_constants(motion, smooth_offset(motion), _rises(motion))
+            constants = theta_constants(motion, smooth_offset(motion), _rises(motion), rates=True)
             series = theta_series(ar, constants)
             nearest = ar.nint(constants.offset * 2)
             offset = constants.offset * 2 - nearest
@@ -245,13 +245,13 @@ def _component(component: Rows, z: Array, hyperbolic: bool) -> list[tuple[Array,
     return parts
 
 
-def _kept(polynomial: Polynomial, greatest: Decimal) -> Polynomial:
+def _kept(polynomial: Coefficients, greatest: Decimal) -> Coefficients:
     """Return the coefficients that matter beside the first, up to the greatest argument."""
     sizes = [abs(x.value) for x in polynomial]
     return polynomial[: needed(sizes, greatest, _NEGLIGIBLE)]
 
 
-def _rows(polynomial: Polynomial) -> Array:
+def _rows(polynomial: Coefficients) -> Array:
     """Return coefficients as columns of their value and derivatives."""
     return np.array([_row(x) for x in polynomial]).T
 

@@ -232,7 +232,7 @@ class Motion:
     def settled_kind(self, digits: int) -> Kind[Decimal]:
         """Return the motion computed with enough digits that so many of every gap are right."""
         previous: Kind[Decimal] | None = None
-        first = max(32, digits * 5 // 4)
+        first = max(32, digits * 6 // 5)
         for working in precisions(first):
             try:
                 kind = self.kind(working)

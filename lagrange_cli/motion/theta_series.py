@@ -16,6 +16,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from ..arithmetic.blocks import polynomial
 from ..arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
 from ..elliptic.complete import nome
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
@@ -23,7 +24,7 @@ from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
 TERMS = 4
 """Enough for doubles."""
 
-Polynomial = list[Any]
+Coefficients = list[Any]
 """Coefficients in s, the lowest power first."""
 
 Family = tuple[tuple[int, ...], tuple[int, ...]]
@@ -38,8 +39,8 @@ class Component(NamedTuple):
     Real and imaginary part are C P(s) and S Q(s), or P(s) and S C Q(s) where `even`.
     """
 
-    real: Polynomial
-    imag: Polynomial
+    real: Coefficients
+    imag: Coefficients
     even: bool = False
 
 
@@ -52,7 +53,7 @@ class Frame(NamedTuple):
 
     x: Component
     y: Component
-    rate: Polynomial
+    rate: Coefficients
 
 
 class Place(NamedTuple):
@@ -153,7 +154,7 @@ def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS
     )
 
 
-def _frames(x: Components, y: Components, rate: Polynomial) -> list[Frame]:
+def _frames(x: Components, y: Components, rate: Coefficients) -> list[Frame]:
     """Return the series about u1 and u2: half a period turns theta2 into theta1 and back."""
     return [Frame(x[0], y[1], rate), Frame(x[1], y[0], [-coefficient for coefficient in rate])]
 
@@ -240,7 +241,7 @@ def _hyperbolic_components(
     )
 
 
-def _rate(weights: list[Value], curvature: int, nutation: Value) -> Polynomial:
+def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients:
     """Return theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
     if nutation is None:
         return []
@@ -254,11 +255,11 @@ def _alternate(terms: list[Value]) -> list[Value]:
     return [-term if n % 2 else term for n, term in enumerate(terms)]
 
 
-def _sum(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Polynomial:
+def _sum(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Coefficients:
     """Return a weighted sum of the polynomials of a family, times a unit."""
-    total: Polynomial = [0 * unit] * len(weights)
-    for weight, polynomial in zip(weights, _polynomials(family, len(weights)), strict=True):
-        for i, coefficient in enumerate(polynomial):
+    total: Coefficients = [0 * unit] * len(weights)
+    for weight, coefficients in zip(weights, _polynomials(family, len(weights)), strict=True):
+        for i, coefficient in enumerate(coefficients):
             total[i] += weight * coefficient
     return [unit * x if i % 2 == 0 else curvature * unit * x for i, x in enumerate(total)]
 
@@ -288,12 +289,10 @@ def evaluate(
     """
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
-    powers = [1 + 0 * S]
-    for _ in frame.x.real[1:]:
-        powers.append(powers[-1] * (S * S))
+    s = S * S
 
     def polar(c: Component, side: int) -> tuple[Value, Value]:
-        P, Q = (sum(p * x for p, x in zip(poly, powers, strict=False)) for poly in (c.real, c.imag))
+        P, Q = polynomial(c.real, s), polynomial(c.imag, s)
         real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
         return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
 

@@ -101,7 +101,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
     """Return the theta series of motions that all run in the same nome."""
     motion = motions.motion
     with PAIRS.working():
-        c = theta_constants(motion, 0 * motion.K)._replace(nutation=None)
+        c = theta_constants(motion, 0 * motion.K)
         series = (hyperbolic_series if hyperbolic else circular_series)(PAIRS, c)
         phase, lower, *args = _at_start(motions, series)
         count = phase.size

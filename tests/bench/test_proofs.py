@@ -10,8 +10,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
+from scenes import UNIT
 
 from lagrange_cli import Top, solve
+from lagrange_cli.arithmetic.balls import balls
+from lagrange_cli.arithmetic.correct_rounding import TooFewDigitsError
 from lagrange_cli.bench import battery, proofs
 from lagrange_cli.bench.hard_scenes import hard_scene
 from lagrange_cli.bench.reference import Reference, angle_units, quaternion_units
@@ -39,20 +42,21 @@ def test_bounds_are_the_errors_that_the_reference_finds(stratum: str) -> None:
 @pytest.mark.parametrize("t", [0.3, -1e3, 1e12])
 def test_a_wrong_angle_is_seen(t: float) -> None:
     motion = solve(Top(**START))
-    table = CertifiedTable(Certified(motion.exact), proofs.COLUMNS, radians=True)
+    exactly = Certified(motion.exact)
+    table = CertifiedTable(exactly, proofs.COLUMNS, radians=True)
     values = [float(x.value) for x in table.row(Fraction(t))]
-    right = proofs.bounds_at(table, t, values)
+    right = proofs.bounds_at(exactly, t, values)
     assert max(right) <= 0.5
     exact = Reference(Top(**START), 80).at(t)
     for i in range(7):
         wrong = [x + (1e-6 * max(1, abs(x)) if i == j else 0) for j, x in enumerate(values)]
-        bounds = proofs.bounds_at(table, t, wrong)
+        bounds = proofs.bounds_at(exactly, t, wrong)
         errors = *angle_units(wrong[:3], exact), quaternion_units(wrong[3:], exact)
         assert [n for n in range(7) if bounds[n] != right[n]] == [i]
         assert bounds[i] == pytest.approx(errors[min(i, 3)], rel=1e-3)
     turned = [*values[:2], values[2] + 2 * math.pi, *values[3:]]
-    assert proofs.bounds_at(table, t, turned)[2] > 1e3
-    assert proofs.bounds_at(table, t, [math.nan] * 7) == [math.inf] * 7
+    assert proofs.bounds_at(exactly, t, turned)[2] > 1e3
+    assert proofs.bounds_at(exactly, t, [math.nan] * 7) == [math.inf] * 7
 
 
 def test_a_key_one_double_off_is_seen() -> None:
@@ -69,9 +73,23 @@ def test_a_key_one_double_off_is_seen() -> None:
 
 def test_a_gap_is_that_on_the_side_of_the_exact_value() -> None:
     """Next to 1 gaps are 2^-52 above and 2^-53 below."""
-    third = Fraction(1, 3) / 2**52
-    assert proofs.ulps(1.0, 1 + third, 1 + third) == pytest.approx(1 / 3)
-    assert proofs.ulps(1.0, 1 - third, 1 - third) == pytest.approx(2 / 3)
+    third, ar = Fraction(1, 3) / 2**52, balls(192)
+    with ar.working():
+        assert proofs.ulps(1.0, ar.convert(1 + third)) == pytest.approx(1 / 3)
+        assert proofs.ulps(1.0, ar.convert(1 - third)) == pytest.approx(2 / 3)
+        wide = ar.widened(ar.convert(1 + third), lambda: ar.convert(third / 100))
+        with pytest.raises(TooFewDigitsError):
+            proofs.ulps(1.0, wide)
+
+
+def test_a_tie_and_a_zero_are_judged_by_the_fraction() -> None:
+    """Take a = 3 + 3 eps, midway between two doubles, and no spin."""
+    motion = solve(Top(**UNIT | {"m": 1 + 2.0**-52, "s": 1.5, "r0": 0.0, "theta0_deg": 60.0}))
+    ulps, key = proofs.worst_key(motion, Certified(motion.exact))
+    assert key == "a"
+    assert ulps == pytest.approx(0.5)
+    motion._doubles["spin_rate_half"] = 5e-324
+    assert proofs.worst_key(motion, Certified(motion.exact))[0] >= 1
 
 
 def test_the_report_has_a_column_of_bounds(lagtop: Lagtop) -> None:
