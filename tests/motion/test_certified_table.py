@@ -118,7 +118,7 @@ def test_rates_moment_and_what_is_conserved_are_those_of_the_judge(name: str) ->
                 assert float(found.radius) <= abs(found.value) * 2.0**-52, (t, found)
 
 
-@pytest.mark.parametrize("name", ["any start", "over the top", "radians"])
+@pytest.mark.parametrize("name", ["any start", "radians"])
 def test_angular_velocity_is_that_of_the_turning_quaternion(name: str) -> None:
     """(0, p, q, r) = 2 conj(Q) Q', by central differences in 60 digits."""
     table = CertifiedTable(certified(Top(**SCENES[name])), ["quaternion", "p", "q", "r"], 60)
