@@ -28,6 +28,16 @@ def value_text(value: Any) -> str:
     return double_text(value) if isinstance(value, float) else str(value)
 
 
+def quoted(value: object) -> str:
+    """Return a value as Python writes it, for an error; of a long one `...` stands for the rest."""
+    return repr(shortened(value)) if isinstance(value, str) else shortened(repr(value))
+
+
+def shortened(text: str, most: int = 80) -> str:
+    """Return a text with `...` for the rest of a long one."""
+    return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
 def json_text(value: Any) -> str:
     """Return the text of any JSON value."""
     import orjson
@@ -59,7 +69,7 @@ def parse_number(text: str) -> Fraction:
     if len(text) > _MOST_CHARACTERS:
         raise LagtopError(f"must have at most {_MOST_CHARACTERS} characters, got {len(text)}")
     if not is_decimal(text):
-        raise LagtopError(f"must be a finite decimal number, got {text!r}{_remedy(text)}")
+        raise LagtopError(f"must be a finite decimal number, got {quoted(text)}{_remedy(text)}")
     nearest = float(text)
     if math.isinf(nearest):
         raise LagtopError(f"must be at most 1.8e308 in size, got {text}")

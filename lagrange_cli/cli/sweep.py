@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
@@ -41,7 +42,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", text)
     if match and 1 <= int(match[1]) <= int(match[2]):
         return int(match[1]), int(match[2])
-    raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {text[:60]!r}")
+    raise LagtopError(f"must be I/N with 1 <= I <= N < 1e9, got {quoted(text)}")
 
 
 @click.command(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..motion.record import all_keys, unit_name
@@ -67,7 +67,7 @@ def read_conditions(texts: Iterable[str], *, radians: bool = False) -> Condition
     for text in texts:
         match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
         if not match:
-            raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {text[:60]!r}")
+            raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
         key, relation, value = _known_key(match[1], radians), match[2], match[3]
         if key in numbers or key in words:
             raise LagtopError(f"a condition must name each key once, got {key} twice")
@@ -89,7 +89,7 @@ def _known_key(name: str, radians: bool) -> str:
 def _word(key: str, relation: str, value: str) -> str:
     if relation != "=" or value not in _WORDS[key]:
         wanted = ", ".join(_WORDS[key])
-        raise LagtopError(f"{key}= must be one of {wanted}, got {relation}{value[:60]}")
+        raise LagtopError(f"{key}= must be one of {wanted}, got {relation}{shortened(value)}")
     return value
 
 

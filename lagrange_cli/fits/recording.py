@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
@@ -231,6 +232,6 @@ def spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> 
     each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, float(sigma))
     if unknown := [name for name in each if name not in raw.channels]:
         raise LagtopError(
-            f"sigma must be of {', '.join(raw.channels)}, got {unknown[0][:60]!r}", "sigma"
+            f"sigma must be of {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
         )
     return {name: np.full(raw.t.size, float(value)) for name, value in each.items()}

@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from fractions import Fraction
 from typing import Any
 
+from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError, UnavailableError
 from .quantity_text import TILT, Quantity
 from .top import INPUTS
@@ -42,7 +43,7 @@ def check_header(columns: Sequence[str], known: Collection[str], name: str) -> N
     if not set(columns) & set(known):
         raise DataError(
             f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "
-            f"got {','.join(columns)[:60]!r}"
+            f"got {quoted(','.join(columns))}"
         )
 
 

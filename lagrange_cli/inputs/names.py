@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from ..arithmetic.text import quoted
 from ..errors import LagtopError
 
-_SHOWN = 60
+_MOST_CHARACTERS, _FIRST = 240, 12
+"""The longest list that stands in a message, and how many names stand for a longer one."""
 
 
 def split_names(text: str) -> list[str]:
@@ -18,18 +20,18 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
     """Return the names of the argument `key` as a list.
 
     Raises LagtopError for anything but a sequence of texts, for an empty one, and for a name that
-    is not known or comes twice.
+    is not known, with the name that was meant and the first of those there are, or comes twice.
     """
     if isinstance(names, str) or not isinstance(names, Iterable):
-        raise LagtopError(f"{key} must be a list of names, got {repr(names)[:_SHOWN]}", key)
+        raise LagtopError(f"{key} must be a list of names, got {quoted(names)}", key)
     known, names = list(known), list(names)
     for name in names or [""]:
         if name not in known:
-            raise LagtopError(
-                f"{key} must be among {', '.join(known)}, got {repr(name)[:_SHOWN]}"
-                f"{suggestion(name, known)}",
-                key,
-            )
+            wrong = f"got {quoted(name)}{suggestion(name, known)}"
+            if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
+                raise LagtopError(f"{key} must be among {listed}, {wrong}", key)
+            some = f"{', '.join(known[:_FIRST])} and {len(known) - _FIRST} more"
+            raise LagtopError(f"{key} must be among {len(known)} names, {wrong}: {some}", key)
     if twice := [name for i, name in enumerate(names) if name in names[:i]]:
         raise LagtopError(f"{key} must name each one once, got {twice[0]!r} twice", key)
     return names
@@ -42,7 +44,7 @@ def suggestion(name: object, known: Iterable[str]) -> str:
     """
     from difflib import get_close_matches
 
-    known, wrong = list(known), str(name)[:_SHOWN]
+    known, wrong = list(known), str(name)[:80]
     longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
     nearest = longer or get_close_matches(wrong, known, 1)
     return f" (did you mean {nearest[0]!r}?)" if nearest else ""

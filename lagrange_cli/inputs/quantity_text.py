@@ -6,7 +6,9 @@ import re
 from collections.abc import Callable
 from typing import TypeVar
 
+from ..arithmetic.text import quoted
 from ..arithmetic.values import Over, Values
+from ..errors import LagtopError
 
 V = TypeVar("V")
 
@@ -49,7 +51,13 @@ def split_unit(text: str) -> tuple[str, str]:
 def parse_quantity(text: str, parse: Callable[[str], V]) -> V | Quantity[V]:
     """Return what `parse` makes of the number part, with the unit where there is one.
 
-    Raises LagtopError as `parse` does.
+    Raises LagtopError as `parse` does, with the whole text in place of its number part.
     """
     number, unit = split_unit(text)
-    return Quantity(parse(number), unit) if unit else parse(number)
+    if not unit:
+        return parse(number)
+    try:
+        return Quantity(parse(number), unit)
+    except LagtopError as error:
+        whole = str(error).replace(f"got {quoted(number)}", f"got {quoted(text.strip())}")
+        raise LagtopError(whole, error.key) from None

@@ -8,7 +8,7 @@ from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
 from .block import InputArrays
 
@@ -86,10 +86,10 @@ def parse_span(text: str) -> Span:
     """
     logarithmic, ends = text.startswith("log:"), text.removeprefix("log:").split(":")
     if len(ends) != 2:
-        raise LagtopError(f"must be a number or a range [log:]from:to, got {text[:60]!r}")
+        raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")
     first, last = map(parse_number, ends)
     if not first < last:
-        raise LagtopError(f"must be a range whose first end is the smaller one, got {text[:60]!r}")
+        raise LagtopError(f"must be a range whose first end is the smaller one, got {quoted(text)}")
     if logarithmic and not first * last > 0:
         raise LagtopError(f"must have two ends of one sign, not 0, in a log: range, got {text!r}")
     return Span(first, last, logarithmic)

@@ -7,7 +7,7 @@ import tomllib
 from fractions import Fraction
 from typing import Any
 
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError, SceneError
 from .files import opened, shown_path
 from .names import suggestion
@@ -43,15 +43,15 @@ class SceneFile:
 
     def _number(self, key: str, value: object) -> Any:
         if key not in KEYS:
-            wrong = f"unknown key {key[:60]!r}{suggestion(key, KEYS)} (known: {', '.join(KEYS)})"
+            wrong = f"unknown key {quoted(key)}{suggestion(key, KEYS)} (known: {', '.join(KEYS)})"
             raise self.error(LagtopError(wrong, key))
         if isinstance(value, str) and not isinstance(value, _NoNumber):
             return self._quantity(key, value)
         if isinstance(value, int) and not isinstance(value, bool):
             value = Fraction(value)
         if not isinstance(value, Fraction):
-            shown = repr(value)[:60]
-            raise self.error(LagtopError(f"{key} must be a finite number, got {shown}", key))
+            wrong = f"{key} must be a finite number, got {quoted(value)}"
+            raise self.error(LagtopError(wrong, key))
         if key == TILT:
             wrong = f"{key} must have a unit, as '30 deg', or be called {key}_deg or {key}_rad"
             raise self.error(LagtopError(wrong, key))
@@ -68,11 +68,15 @@ class SceneFile:
         if isinstance(value, Uncertain) and key != TILT:
             return value
         if not isinstance(value, Quantity):
-            wrong = f"{key} must have a unit between quotes, or be a number without, got {text!r}"
-            raise self.error(LagtopError(wrong[:200], key))
+            wrong = (
+                f"{key} must have a unit between quotes, or be a number without, got {quoted(text)}"
+            )
+            raise self.error(LagtopError(wrong, key))
         if key.startswith(f"{TILT}_"):
-            wrong = f"{key} must be called {TILT} where it has a unit of its own, got {text!r}"
-            raise self.error(LagtopError(wrong[:200], key))
+            wrong = (
+                f"{key} must be called {TILT} where it has a unit of its own, got {quoted(text)}"
+            )
+            raise self.error(LagtopError(wrong, key))
         return value
 
     def error(self, error: LagtopError) -> SceneError:

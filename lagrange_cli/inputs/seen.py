@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
@@ -49,12 +50,12 @@ def euler_sequence(text: str) -> str:
     """
     if not re.fullmatch(r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})", str(text)):
         wanted = "three axes, as in xyz (about those of space) or XYZ (of the body)"
-        raise LagtopError(f"must be {wanted}, got {str(text)[:60]!r}")
+        raise LagtopError(f"must be {wanted}, got {quoted(str(text))}")
     return text
 
 
 def _refuse(key: str, wanted: str, got: object) -> None:
-    raise LagtopError(f"{key} must be {wanted}, got {got!r}"[:200], key)
+    raise LagtopError(f"{key} must be {wanted}, got {quoted(got)}", key)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 from ..arithmetic.decimals import own_context, pi_to
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.numbers import Number, R, is_real, unrounded
+from ..arithmetic.text import quoted
 from ..arithmetic.values import Over, Values
 from ..errors import LagtopError
 
@@ -24,7 +25,6 @@ _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _PI = Fraction(pi_to(60))
-_SHOWN = 60
 _DIGITS_SHOWN = own_context(50, [])
 """A context of our own, so that no message depends on the one of the caller."""
 
@@ -226,8 +226,7 @@ def _finite(name: str, value: Any) -> Number:
             raise TypeError
         nearest = float(value)
     except (TypeError, ValueError, OverflowError):
-        shown = repr(value)[:_SHOWN]
-        raise LagtopError(f"{name} must be a real number, got {shown}", name) from None
+        raise LagtopError(f"{name} must be a real number, got {quoted(value)}", name) from None
     if not math.isfinite(nearest):
         raise LagtopError(f"{name} must be finite, got {nearest}", name)
     if value and not nearest:

@@ -16,7 +16,7 @@ from itertools import chain, islice
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ..arithmetic.text import json_text, parse_number
+from ..arithmetic.text import json_text, parse_number, shortened
 from ..errors import DataError, LagtopError
 from .block import InputArrays
 from .files import opened, shown_path
@@ -213,7 +213,7 @@ def _json_double(name: str, value: Any) -> float:
 
 
 def _shown(value: Any) -> str:
-    return json_text(value)[:60]
+    return shortened(json_text(value))
 
 
 def open_tops(

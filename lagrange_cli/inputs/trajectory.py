@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from io import BufferedReader
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, cast
 
+from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import opened, shown_path
 from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
@@ -63,7 +64,7 @@ class Trajectory:
         self.quantities: dict[str, Found] = quantities_in(self.names)
         if "t" not in self.quantities or len(self.quantities) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
-            shown = ", ".join(map(repr, self.names))[:120]
+            shown = shortened(", ".join(map(repr, self.names)), 120)
             raise DataError(
                 f"{self.name} must have columns among {wanted}, got {shown}: name them by --columns"
             )

@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .names import suggestion
 
@@ -200,7 +201,7 @@ def expanded(names: Sequence[str]) -> list[str]:
         if i not in used and name != SKIPPED:
             raise LagtopError(
                 f"columns must be among {', '.join(QUANTITIES)}, all parts of one of them (such as "
-                f"qw,qx,qy,qz) or {SKIPPED}, got {name[:60]!r}{suggestion(name, QUANTITIES)}",
+                f"qw,qx,qy,qz) or {SKIPPED}, got {quoted(name)}{suggestion(name, QUANTITIES)}",
                 "columns",
             )
     return single

@@ -12,6 +12,7 @@ from contextlib import suppress
 from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from ..arithmetic.text import quoted
 from ..errors import DataError
 from .trajectory import Block, Table
 from .trajectory_columns import names_in_comments
@@ -160,7 +161,7 @@ class TextTable:
             if cells[i] and not _is_number(cells[i]):
                 raise DataError(
                     f"{self.name}, line {number}, column {i + 1}: {name} must be a number, "
-                    f"got {cells[i][:60]!r}"
+                    f"got {quoted(cells[i])}"
                 )
             row.append(float(cells[i] or "nan"))
         return row
@@ -241,7 +242,7 @@ class JsonTable:
                 wanted = f"{size} numbers" if size else "a number"
                 raise DataError(
                     f"{self.name}, line {number}, column {key}: must be {wanted}, "
-                    f"got {str(value)[:60]!r}"
+                    f"got {quoted(str(value))}"
                 )
             row += [math.nan if x is None else float(x) for x in numbers]
         return row

@@ -9,7 +9,7 @@ import re
 from fractions import Fraction
 from typing import Any
 
-from ..arithmetic.text import is_decimal, parse_number
+from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
 
@@ -47,7 +47,7 @@ def parse_uncertain(text: str) -> Fraction | Uncertain:
         if not re.search(r"[(±%]|\+/-", text):
             return parse_number(text)
         forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
-        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {text[:60]!r}")
+        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
     parts = found.groupdict(default="")
     exponent = parts.get("exponent", "")
     value = parse_number(parts["value"] + exponent)
@@ -59,5 +59,5 @@ def parse_uncertain(text: str) -> Fraction | Uncertain:
         std = parse_number(parts["std"]) * parse_number(f"1{exponent}")
         std = abs(value) * std / 100 if parts["percent"] else std
     if std < 0:
-        raise LagtopError(f"must have an uncertainty >= 0, got {text[:60]!r}")
+        raise LagtopError(f"must have an uncertainty >= 0, got {quoted(text)}")
     return Uncertain(value, std)

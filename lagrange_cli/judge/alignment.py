@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
@@ -47,14 +48,14 @@ class Alignment(NamedTuple):
 def alignment(words: Sequence[str]) -> Alignment:
     """Return the alignment of some words.  Raises LagtopError for one that is not known."""
     if isinstance(words, str):
-        raise LagtopError(f"align must be a list of words, got {words!r}"[:200], "align")
+        raise LagtopError(f"align must be a list of words, got {quoted(words)}", "align")
     found: dict[str, str | bool] = {}
     for word in words:
         key, is_axis, axis = str(word).partition("=")
         known = axis in AXES if is_axis else key in {"start", "body", "space", "time"}
         if not known or (is_axis and key not in {"axis", "up"}):
             raise LagtopError(
-                f"align must be among {', '.join(WORDS)}, got {word!r}"[:200], "align"
+                f"align must be among {', '.join(WORDS)}, got {quoted(word)}", "align"
             )
         found[key] = axis if is_axis else True
     chosen = Alignment(**found)  # type: ignore[arg-type]

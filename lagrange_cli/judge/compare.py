@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.seen import Conventions, Quantities
@@ -107,7 +108,7 @@ def _shown(array: ArrayLike) -> str:
     """Return the type and the shape of an array, or a short text of what is none."""
     if isinstance(array, np.ndarray):
         return f"{array.dtype} of shape {array.shape}"
-    return repr(array)[:60]
+    return quoted(array)
 
 
 def settled(

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arithmetic.points import MAX_TIME
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 
@@ -20,7 +21,7 @@ def times_of(t: ArrayLike) -> Array:
             raise TypeError(times.dtype)
         return times.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError):
-        raise LagtopError(f"t must be real numbers, got {repr(t)[:60]}", "t") from None
+        raise LagtopError(f"t must be real numbers, got {quoted(t)}", "t") from None
 
 
 def check_times(times: Array, most: float, name: str = "t") -> None:

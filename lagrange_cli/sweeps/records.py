@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.mixed_body import warn_of
@@ -102,7 +103,7 @@ def _doubles(name: str, values: ArrayLike) -> Array:
             raise TypeError
         return array.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError):
-        shown = repr(values)[:60]
+        shown = quoted(values)
         raise LagtopError(f"{name} must be real numbers, got {shown}", name) from None
 
 

@@ -211,8 +211,8 @@ def test_missing_packages_are_rows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
 
 
 BAD = {
-    "--methods euler": "--methods must be among lagtop, ",
-    "--methods ,": "--methods must be among lagtop, ",
+    "--methods euler": "--methods must be among 28 names, got 'euler' (did you mean",
+    "--methods ,": "--methods must be among 28 names, got '': lagtop, ",
     "--n 0": "--n must be in [1, 10000000], got 0",
     "--n 2e7": "--n must be in [1, 10000000], got 20000000",
     "--t-max 0": "--t-max must be other than 0",

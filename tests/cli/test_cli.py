@@ -375,7 +375,7 @@ def test_errors_name_options_where_the_library_names_arguments(lagtop: Lagtop) -
         return lagtop(*line.split()).stderr
 
     assert error("table --columns t,x").startswith("Error: --columns must be among t, theta")
-    assert error("sweep --keys x").startswith("Error: --keys must be among m, A")
+    assert error("sweep --keys x").startswith("Error: --keys must be among 70 names, got 'x': m, A")
     assert error("solve --m -1") == "Error: --m must be > 0, got -1.0\n"
     with pytest.raises(LagtopError, match=r"^keys must be among") as raised:
         sweep(keys=["x"])

@@ -154,7 +154,7 @@ def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Pat
         (["--m", "9(2)", "--derivation"], "--derivation and uncertain inputs exclude"),
         (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
         (["--get", "T_nutation_std"], "no input is uncertain"),
-        (["--theta0", "30(1)", "--budget", "T"], "--budget must be among a, b"),
+        (["--theta0", "30(1)", "--budget", "T"], "--budget must be among 26 names, got 'T': a, b"),
         (["--theta0", "30(1)", "--samples", "5"], "--samples must be in [100, 1000000], got 5"),
         (["--theta0", "30(1)", "--seed", "5"], "--seed is that of random tops"),
         (["--theta0", "30(1)", "--samples", "200", "--seed", "-1"], "--seed must be >= 0, got -1"),

@@ -28,7 +28,7 @@ def test_names_that_are_fine() -> None:
         ([], "keys must be among alpha, beta, T_nutation, got ''"),
         (["alpha", ""], "got ''"),
         ([1], "got 1"),
-        (["x" * 5000], f"got '{'x' * 59}"),
+        (["x" * 5000], f"got '{'x' * 77}...'"),
         ("alpha", "keys must be a list of names, got 'alpha'"),
         (5, "keys must be a list of names, got 5"),
         (None, "keys must be a list of names, got None"),
@@ -40,6 +40,16 @@ def test_names_that_are_not(names: Any, message: str) -> None:
     assert message in str(refused.value)
     assert len(str(refused.value)) < 200
     assert refused.value.key == "keys"
+
+
+def test_a_long_list_comes_after_the_name_that_was_meant_and_is_cut() -> None:
+    known = [f"name{i}" for i in range(66)]
+    with pytest.raises(LagtopError) as refused:
+        check_names("keys", ["nam7"], known)
+    assert str(refused.value) == (
+        "keys must be among 66 names, got 'nam7' (did you mean 'name7'?): name0, name1, name2, "
+        "name3, name4, name5, name6, name7, name8, name9, name10, name11 and 54 more"
+    )
 
 
 WHERE = {

@@ -277,7 +277,7 @@ def test_the_progress_of_a_map_is_told_in_tops() -> None:
             "x must have at most 1e6 cells together with y",
         ),
         ("K", "r0=1:2:3", "r0=1:2:3", "x must be another input than y, got r0 twice"),
-        ("regime", "r0=1:2:3", "g=1:2:3", "key must be among a, b, u1"),
+        ("regime", "r0=1:2:3", "g=1:2:3", "key must be among 26 names, got 'regime'"),
         ("K", "r0=1:2:3", "theta0=100:200:3", r"theta0_deg must be in \[0, 180\]"),
         ("K", "r0=1:2:2001", "g=1:2:3", r"x must have a count in \[2, 2000\], got 2001"),
         ("K", "r0=2:1:2", "g=1:2:3", "x must have start < stop, got 'r0=2:1:2'"),
