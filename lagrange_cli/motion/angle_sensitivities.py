@@ -26,6 +26,7 @@ from .samplers import Angles
 from .sensitivities import Partials
 from .series_derivatives import SeriesDerivatives
 from .solve import Motion
+from .spinor_derivatives import NutationDerivatives
 from .steady_neighbours import SteadyDerivatives
 from .times import check_times, times_of
 
@@ -48,8 +49,10 @@ def angle_sensitivities(
     """Return the angles of a top at the times t, and their derivatives by inputs (default: all).
 
     Angles are in radians, unwrapped; a derivative by `theta0_deg` is per degree.  Each derivative
-    is within 1e-12 of its size times the condition number; those that do not exist are NaN.  Raises
-    LagtopError for an unknown input or a time out of reach.
+    is within 1e-12 times the condition number of the angle, which is 1 rad and how far it moves by
+    all inputs, each by its size; times where this takes many digits take some milliseconds each.
+    Derivatives that do not exist are NaN.  Raises LagtopError for an unknown input or a time out of
+    reach.
     """
     scene = exact(top)
     chain = by_inputs(scene)
@@ -93,7 +96,11 @@ class Model(Protocol):
 class AngleDerivatives:
     """The angles of one top over time and their derivatives by `PARAMETERS`."""
 
-    def __init__(self, scene: Exact) -> None:
+    def __init__(self, scene: Exact, tolerance: float = 1e-12) -> None:
+        """Take a scene, and how far derivatives may be off, over the condition number of an angle.
+
+        Where the parts of one cancel beyond that, it takes some milliseconds per time.
+        """
         partials = Partials(scene)
         near, facts = partials.near, scene.facts
         self.arc = 1.0 if scene.top.theta0_deg is None else math.pi / 180
@@ -105,10 +112,10 @@ class AngleDerivatives:
         elif facts.steady:
             self.models = [(SteadyDerivatives(near), every)]
         else:
-            self.models = [(SeriesDerivatives(partials.here, partials.here), kept)]
+            tilt = abs(float(scene.top.theta0_deg or scene.top.theta0_rad or 0))
+            self.models = [(NutationDerivatives(partials.here, tilt, kept, tolerance), kept)]
             if facts.free:
-                torque = SeriesDerivatives(partials.generic, partials.generic_means)
-                self.models.append((torque, [PARAMETERS.index("a")]))
+                self.models.append((TorqueDerivatives(partials), [PARAMETERS.index("a")]))
         self.max_time = self.models[0][0].max_time
 
     def at(self, t: Array) -> tuple[Array, Array]:
@@ -123,6 +130,18 @@ class AngleDerivatives:
         derivatives[0][:, start] = 0.0
         derivatives[0, PARAMETERS.index("tilt"), start] = self.arc
         return angles, derivatives
+
+
+class TorqueDerivatives:
+    """Angles of a torque-free motion, of whose derivatives the one by a is right."""
+
+    def __init__(self, partials: Partials) -> None:
+        self.series = SeriesDerivatives(partials.generic, partials.generic_means)
+        self.max_time = self.series.max_time
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return angles (3, times) and their derivatives (3, parameters, times)."""
+        return self.series.at(t)[:2]
 
 
 class Spinning:

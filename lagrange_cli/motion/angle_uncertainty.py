@@ -14,13 +14,16 @@ from .neighbourhood import PARAMETERS, by_inputs
 from .regime import Exact
 from .table import ANGLES
 
+_TOLERANCE = 1e-6
+"""An uncertainty has few digits, and a table may have many rows."""
+
 
 class AngleStds:
     """Uncertainties of tilt, spin and precession of a top, whose inputs are not correlated."""
 
     def __init__(self, scene: Exact, stds: Mapping[str, float], given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as they were given, and the names of all inputs."""
-        self.neighbours, solved = AngleDerivatives(scene), by_inputs(scene)
+        self.neighbours, solved = AngleDerivatives(scene, _TOLERANCE), by_inputs(scene)
         inputs = by_given(scene.top, given)
         self.moved = np.zeros((len(stds), len(PARAMETERS)))
         """How far one uncertainty moves each parameter."""

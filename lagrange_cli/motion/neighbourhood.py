@@ -21,7 +21,9 @@ from .regime import Exact, Facts, Regime
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
 """What the partial derivatives are by; the tilt in degrees or radians, as it was given."""
 
-FIRST_DIGITS = 40
+FIRST_DIGITS, _MOST_DIGITS = 48, 800
+_USUAL = 8
+"""Orders of magnitude that the digits of the first neighbourhood have to spare."""
 _AGREED, _NOISE = Decimal("1e-22"), Decimal("1e-36")
 """How well two precisions agree, of each derivative and beside the largest one and the value."""
 
@@ -65,6 +67,34 @@ def neighbourhood(exact: Exact, first: int = FIRST_DIGITS) -> Neighbourhood:
                 return found
             previous = found
     raise LagtopError("the roots of the cubic cannot be told apart")
+
+
+def fine_neighbourhood(exact: Exact) -> Neighbourhood:
+    """Return the dual numbers of a top with two digits more for each order of its smallness.
+
+    A derivative may be smaller than its number by as many orders, and its noise larger.  Raises
+    LagtopError where no precision tells the roots apart.
+    """
+    near = neighbourhood(exact)
+    orders = smallness(near)
+    return neighbourhood(exact, min(FIRST_DIGITS + 2 * orders, _MOST_DIGITS)) if orders else near
+
+
+def smallness(near: Neighbourhood) -> int:
+    """Return by how many orders of magnitude k^2, a gap or a rate is smaller than is usual.
+
+    Gaps are those of the cosines, rates are compared with the fastest one; what is 0 is not small.
+    """
+    start, gaps = near.moved, _values(near.gaps)
+    with near.ar.working():
+        rates = [start.a.value.sqrt()]
+        rates += [abs(x.value) for x in (start.b, start.r0, start.theta_rate, start.psi_rate)]
+        fastest = max(rates)
+        cosines = start.above.value, start.below.value, *list(gaps)[:7]
+        moduli = [start.a.value * gaps.u1_u2 / gaps.a_u3_u2] if gaps.a_u3_u2 else []
+        sizes = [*cosines, *moduli, *(rate / fastest for rate in rates if fastest)]
+        least: Decimal = min(size for size in sizes if size > 0)
+        return max(-least.adjusted() - _USUAL, 0)
 
 
 def broken_by(exact: Exact) -> Iterable[str]:

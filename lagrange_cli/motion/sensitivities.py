@@ -20,13 +20,22 @@ from ..inputs.names import check_names
 from ..inputs.top import Top
 from .gaps import Gaps, cubic
 from .kinds import Nutating, Steady, kind_of
-from .neighbourhood import PARAMETERS, Neighbourhood, by_inputs, generic_gaps, neighbourhood
+from .neighbourhood import (
+    PARAMETERS,
+    Neighbourhood,
+    by_inputs,
+    fine_neighbourhood,
+    generic_gaps,
+    neighbourhood,
+    smallness,
+)
 from .quantity import quantity
 from .record import NUMBER_KEYS
 from .regime import Exact, Regime, exact
 
 _NAN = Decimal("NaN")
-_SPARE, _NOISY = 4, 10**7
+_NONE = [Decimal(0)] * len(PARAMETERS)
+_SPARE, _NOISY = 4, 15
 _MEANS = frozenset("mean_spin_rate mean_precession_rate T_spin T_precession".split())
 _OF_THE_START = frozenset("spin_rate_start precession_rate_start".split())
 _AFTER_REST = frozenset("amplitude_deg alpha".split())
@@ -51,8 +60,7 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
     precession, over a pole or on the separatrix some numbers have a kink or leap: their derivatives
     are NaN.  Raises LagtopError for an unknown key.
     """
-    if keys is not None:
-        check_names("keys", list(keys), NUMBER_KEYS)
+    check_names("keys", list(NUMBER_KEYS if keys is None else keys), NUMBER_KEYS)
     partials = Partials(exact(top))
     chain = by_inputs(partials.exact)
     found = {key: partials.of(key) for key in NUMBER_KEYS if keys is None or key in keys}
@@ -60,7 +68,7 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
     for key, row in found.items():
         if row is not None:
             with partials.near.ar.working():
-                noise = partials.near.ar.plain.eps * _NOISY
+                noise = partials.noise
                 derivatives[key] = {name: chained(row, by, noise) for name, by in chain.items()}
     missing = (key for key, row in derivatives.items() if any(map(math.isnan, row.values())))
     reasons = {key: partials.reason(key) for key in missing}
@@ -89,7 +97,9 @@ class Partials:
         self, scene: Exact, near: Neighbourhood | None = None, spare: int = _SPARE
     ) -> None:
         """Take a motion; a difference may lose so many digits before more are taken."""
-        self.exact, self.near, self.spare = scene, near or neighbourhood(scene), spare
+        self.exact, self.near, self.spare = scene, near or fine_neighbourhood(scene), spare
+        self.noise = self.near.ar.plain.eps.scaleb(_NOISY + smallness(self.near))
+        """What is left of parts that cancel is 0 below it, relative to them."""
 
     def of(self, key: str) -> list[Decimal] | None:
         """Return the derivatives of a key by `PARAMETERS`, or None where the motion has no such."""
@@ -102,7 +112,6 @@ class Partials:
         if key in _MEANS and self._loses_digits:
             return self._finer.of(key)
         beside = self._beside(key) if self.near.broken else []
-        none = [Decimal(0)] * len(PARAMETERS)
         partials = []
         for i, name in enumerate(PARAMETERS):
             if name in self._leaves(key):
@@ -110,13 +119,13 @@ class Partials:
             elif name in self.near.broken:
                 partials.append(beside[i])
             else:
-                partials.append((value.partials or none)[i])
+                partials.append((value.partials or _NONE)[i])
         return self._without_noise(partials, value.value)
 
     def _without_noise(self, partials: list[Decimal], value: Decimal) -> list[Decimal]:
         """Return derivatives, 0 where a parameter of its usual size would move the last digits."""
         with self.near.ar.working():
-            least = abs(value) * self.near.ar.plain.eps * _NOISY
+            least = abs(value) * self.noise
             pairs = zip(partials, self._sizes, strict=True)
             return [x if x.is_nan() or abs(x) * size > least else Decimal(0) for x, size in pairs]
 
@@ -232,7 +241,7 @@ def _partials(kind: Any, key: str) -> list[Decimal]:
         value = None
     if value is None:
         return [_NAN] * len(PARAMETERS)
-    return list(value.partials or [Decimal(0)] * len(PARAMETERS))
+    return list(value.partials or _NONE)
 
 
 class NearSteady(Steady[Dual]):

@@ -41,12 +41,17 @@ class Rows(NamedTuple):
 
 
 class Polar(NamedTuple):
-    """The squared modulus and the argument of X or Y, and their derivatives in rows."""
+    """The squared modulus and the argument of X or Y, and their derivatives in rows.
+
+    The sizes are those of the parts that the derivatives are sums of.
+    """
 
     square: Array
     squares: Array
+    square_sizes: Array
     argument: Array
     arguments: Array
+    argument_sizes: Array
 
 
 class SeriesDerivatives:
@@ -101,10 +106,11 @@ class SeriesDerivatives:
             )
             self.max_time = float(int(MAX_PERIODS) * constants.period.value)
 
-    def at(self, t: Array) -> tuple[Array, Array]:
+    def at(self, t: Array) -> tuple[Array, Array, Array]:
         """Return tilt, spin and precession at times, and their derivatives by the parameters.
 
-        The shapes are (3, times) and (3, parameters, times).
+        Last come the sums of the sizes of the parts of each derivative: it is wrong by some eps of
+        these.  The shapes are (3, times) and, of the others, (3, parameters, times).
         """
         step, since = reduce_phase(t, self.speed, float(self.offsets[0]))
         phase = since + self.offsets[0]
@@ -113,10 +119,13 @@ class SeriesDerivatives:
         dphase = moved + self.offsets[1:, None]
         rates = self._rates(step, phase, x.square, y.square)
         angles = np.empty((3, t.size))
-        derivatives = np.empty((3, len(PARAMETERS), t.size))
+        derivatives, sizes = np.empty((2, 3, len(PARAMETERS), t.size))
+        dsize = abs(moved) + abs(self.offsets[1:, None])
         angles[0] = 2.0 * np.arctan2(np.sqrt(y.square), np.sqrt(x.square))
         both = np.sqrt(x.square * y.square) * (x.square + y.square)
         derivatives[0] = (x.square * y.squares - y.square * x.squares) / both + rates[0] * dphase
+        sizes[0] = (x.square * y.square_sizes + y.square * x.square_sizes) / both
+        sizes[0] += abs(rates[0]) * dsize
         series = x.argument - y.argument, x.argument + y.argument
         slopes = x.arguments - y.arguments, x.arguments + y.arguments
         for i, growth in enumerate((self.growths.phi, self.growths.psi)):
@@ -125,12 +134,15 @@ class SeriesDerivatives:
             grown = np.multiply.outer(self.rates[i, 1:], t)
             wound = np.multiply.outer(self.slopes[i, 1:], since) - self.starts[i, 1:, None]
             derivatives[i + 1] = slopes[i] + wound + grown + rates[i + 1] * dphase
-        return angles, derivatives
+            sizes[i + 1] = x.argument_sizes + y.argument_sizes + abs(wound) + abs(grown)
+            sizes[i + 1] += rates[3] * dsize
+        return angles, derivatives, sizes
 
     def _rates(self, step: Array, phase: Array, x2: Array, y2: Array) -> list[Array]:
         """Return what tilt, spin and precession gain per step, of the latter less the mean growth.
 
-        Formed from the width of the nutation, they keep their digits where that is small.
+        Last comes the size of the parts of the latter.  Formed from the width of the nutation, they
+        keep their digits where that is small.
         """
         z = phase * self.scales[0]
         S, C = (np.sinh(z), np.cosh(z)) if self.hyperbolic else (np.sin(z), np.cos(z))
@@ -138,26 +150,32 @@ class SeriesDerivatives:
         rate = np.where(odd, *(_value(part, S * S) for part in self.rates_of_tilt[::-1])) * S * C
         norm = x2 + y2
         theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
-        phi, psi = self.swing.rates(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
-        return [gain / self.speed.high for gain in (theta, phi, psi)]
+        swing = self.swing.rates(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
+        return [gain / self.speed.high for gain in (theta, *swing)]
 
     def _polar(self, which: int, step: Array, phase: Array) -> Polar:
         """Return X (0) or Y (1) with its derivatives at a fixed phase."""
         z = phase * self.scales[0]
         dz = np.multiply.outer(self.scales[1:], phase)
         odd = np.remainder(step, 2.0) != 0
-        real, imag = np.empty((2, len(dz) + 1, z.size))
+        real, imag, real_size, imag_size = np.empty((4, len(dz) + 1, z.size))
         for rows, frame in ((~odd, self.frames[0]), (odd, self.frames[1])):
             parts = _component(frame[which], z[rows], self.hyperbolic)
-            for whole, (values, slope) in zip((real, imag), parts, strict=True):
-                values[1:] += slope * dz[:, rows]
+            wholes = (real, real_size), (imag, imag_size)
+            for (whole, size), (values, slope) in zip(wholes, parts, strict=True):
+                turned = slope * dz[:, rows]
+                size[:, rows] = abs(values)
+                size[1:, rows] += abs(turned)
+                values[1:] += turned
                 whole[:, rows] = values
         square = real[0] * real[0] + imag[0] * imag[0]
         return Polar(
             square,
             2.0 * (real[0] * real[1:] + imag[0] * imag[1:]),
+            2.0 * (real_size[0] * real_size[1:] + imag_size[0] * imag_size[1:]),
             np.arctan2(imag[0], real[0]),
             (real[0] * imag[1:] - imag[0] * real[1:]) / square,
+            (real_size[0] * imag_size[1:] + imag_size[0] * real_size[1:]) / square,
         )
 
 
@@ -194,17 +212,23 @@ class _Swing(NamedTuple):
             first_is_upper=first_is_upper,
         )
 
-    def rates(self, phase: Array, odd: Array, below: Array, above: Array) -> tuple[Array, Array]:
-        """Return both rates less their means; `below` and `above` are 1 + u and 1 - u."""
+    def rates(
+        self, phase: Array, odd: Array, below: Array, above: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return both rates less their means, and the size of the parts of which both are sums.
+
+        `below` and `above` are 1 + u and 1 - u.
+        """
         _, sn, cn, dn = jacobi(ARRAYS, phase * self.quarter, self.modulus)
         away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 the rest
         mirrored = (self.modulus.k_prime * sn / dn) ** 2
         upper = odd != self.first_is_upper
         under_u1 = np.where(upper, mirrored, cn * cn)
         over_u2 = np.where(upper, (cn / dn) ** 2, away)
-        south = self.south_at_u1 + self.south * under_u1 / below
-        north = self.north_at_u2 + self.north * over_u2 / above
-        return south - north, south + north
+        south, north = self.south * under_u1 / below, self.north * over_u2 / above
+        size = abs(south) + abs(north) + abs(self.south_at_u1) + abs(self.north_at_u2)
+        south, north = south + self.south_at_u1, north + self.north_at_u2
+        return south - north, south + north, size
 
 
 def smooth_offset(motion: Nutating[Dual]) -> Dual:

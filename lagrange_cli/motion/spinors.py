@@ -35,11 +35,12 @@ Spinor = Callable[[R], Attitude[R]]
 """The attitude as a function of time."""
 
 
-def nutating_spinor(motion: Nutating[R]) -> Spinor[R]:
-    """Return the attitude of a nutating top by its theta series."""
+def nutating_spinor(motion: Nutating[R], offset: R | None = None) -> Spinor[R]:
+    """Return the attitude of a nutating top by its theta series; `offset` is that at t = 0."""
     ar: Any = motion.ar
     with ar.working():
-        constants = theta_constants(motion, periods_since_top(motion), direction(motion))
+        first = periods_since_top(motion) if offset is None else offset
+        constants = theta_constants(motion, first, direction(motion))
         series = theta_series(ar, constants, _terms(ar, constants))
 
     def position(t: R) -> tuple[int, R, tuple[R, R, R, R]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Iterable
 from typing import Any
 
@@ -29,6 +30,12 @@ SCENES: dict[str, dict[str, float]] = {
     | {"m": 0.5, "r0": 0.75, "theta0_deg": 60, "psidot0": 0.5 + 1e-9, "thetadot0": 0.559016994},
     "near a pole": UNIT | {"r0": 2, "theta0_deg": 90, "psidot0": 2 + 1e-9, "thetadot0": 1},
     "extreme": {"m": 1e20, "A": 1e-9, "C": 1e-10, "s": 1e-9, "g": 1e-8, "psidot0": 1e3},
+    "very fast": {"r0": 1e18, "thetadot0": 1e3},
+    "very slow": {"r0": 1e-12, "thetadot0": 1e-9, "psidot0": 1e-9},
+    "hardly tilted": {"theta0_deg": 1e-12, "thetadot0": 1e-11, "psidot0": 1},
+    "nearly upright for long": UNIT
+    | {"r0": 0, "theta0_deg": 90, "thetadot0": 2**0.5, "psidot0": 1e-9},
+    "threshold of sleeping": UNIT | {"r0": 2, "theta0_deg": 1e-6},
     "spherical pendulum": UNIT | {"r0": 0, "theta0_deg": 70, "psidot0": 0.5},
     "cancelling": UNIT | {"C": 5e-6, "r0": 2, "theta0_deg": 130, "thetadot0": 2.2e9},
 }
@@ -71,7 +78,8 @@ def test_derivatives_of_the_record_are_right_to_the_last_bit(scene: str) -> None
                 assert sides is None or scene in DEGENERATE, (key, name, sides)
             elif sides is not None:
                 middle = (sides[0] + sides[1]) / 2
-                slack = EPS * abs(middle) + 1e-30 * abs(record[key] or 0)
+                judged = 1e-30 if top.pole else 1e-46  # on an edge differences are one-sided
+                slack = EPS * abs(middle) + judged * abs(record[key] or 0)
                 assert abs(derivative - middle) <= slack, (key, name, derivative, sides)
                 curved = 1e-6 * (abs(middle) + abs(record[key] or 0))
                 assert abs(sides[0] - sides[1]) <= curved, (key, name, sides)
@@ -118,25 +126,62 @@ def test_an_unknown_key_or_input_is_named() -> None:
 
 @pytest.mark.parametrize("scene", quick([*SCENES, "steady", "torque-free", "free and steady"]))
 def test_derivatives_of_the_angles_are_right_at_any_time(scene: str) -> None:
-    """The condition number is how far an angle moves when each input does, by its own size.
+    """The worst seen is 4e-14, of the extreme scene."""
+    assert worst_error(Top(**(SCENES | DEGENERATE)[scene])) < 1e-12
 
-    A rate that is 0 moves by a radian per period.  The worst seen is 6e-11, for rates of 1e9 and at
-    the threshold of sleeping; the others are within 2e-15.
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stratum", range(5))
+def test_derivatives_of_the_angles_of_hard_tops_are_right(stratum: int) -> None:
+    """The worst seen at 2600 times is 2e-13; by series alone it would be 1e-7."""
+    rng = random.Random(stratum)
+    for _ in range(8):
+        top = Top(**UNIT | hard_start(rng, stratum))
+        assert worst_error(top) < 1e-12, top
+
+
+def hard_start(rng: random.Random, stratum: int) -> dict[str, float]:
+    """Return inputs next to the separatrix, the sleeping threshold or a pole, or of any size."""
+
+    def size(low: float, high: float) -> float:
+        return math.exp(rng.uniform(low, high) * math.log(10))
+
+    side = rng.choice([-1, 1])
+    if stratum == 0:
+        rate = math.sqrt(2) * (1 + side * size(-14, -3))
+        return {"r0": size(-12, -1), "theta0_deg": 90, "thetadot0": rate, "psidot0": size(-12, -1)}
+    if stratum == 1:
+        return {"r0": 2 * (1 + side * size(-14, -2)), "theta0_deg": size(-7, 0)}
+    if stratum == 2:
+        rates = {"thetadot0": size(-6, 3), "psidot0": size(-6, 3)}
+        return {"r0": size(-6, 9), "theta0_deg": size(-6, 2.2)} | rates
+    if stratum == 3:
+        rates = {"thetadot0": rng.uniform(0.1, 3), "psidot0": 2 + side * size(-14, -1)}
+        return {"r0": 2, "theta0_deg": 90} | rates
+    rates = {"thetadot0": size(-3, 6), "psidot0": size(-3, 3)}
+    return {"C": size(-8, 0), "r0": size(-3, 6), "theta0_deg": rng.uniform(1, 179)} | rates
+
+
+def worst_error(top: Top) -> float:
+    """Return the worst error of a derivative of an angle over the condition number of the angle.
+
+    That is how far the angle moves when each input does, by its own size, and 1 rad; a rate that is
+    0 moves by a radian per period.
     """
-    top = Top(**(SCENES | DEGENERATE)[scene])
     period = solve(top).T_nutation
     times = [0.3 * period, -1.6 * period, 1e6 * period]
     judge, found = Slopes(top), angle_sensitivities(top, times)
     sizes = [abs(getattr(top, name)) or 1 / period for name in found.inputs]
+    worst = 0.0
     for angle in ("theta", "phi", "psi"):
         exact = [
-            [(judge.of_angle(name, angle, t) or (math.nan,))[0] for name in found.inputs]
+            [sum(judge.of_angle(name, angle, t) or (math.nan,)) / 2 for name in found.inputs]
             for t in times
         ]
         errors = np.abs(getattr(found, angle) - exact) * sizes
         condition = 1.0 + (np.abs(exact) * sizes).sum(axis=1)
-        worst = (errors.max(axis=1) / condition).max()
-        assert worst < 1e-10, (angle, worst)
+        worst = max(worst, float((errors.max(axis=1) / condition).max()))
+    return worst
 
 
 def test_angles_come_with_their_derivatives_in_the_shape_of_the_times() -> None:
