@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
-from ..inputs.seen import ANGLES
+from ..inputs.names import ANGLES
 from .fit import fit_recordings
 from .known import known_inputs
 from .record import Outcome, outcomes

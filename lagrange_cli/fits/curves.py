@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
 
+from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
 from .record import Outcome, angles_at
@@ -23,7 +23,7 @@ def curves_of(outcome: Outcome) -> Iterator[Curve]:
 
     What was measured is brought to the turn of the motion that was found.
     """
-    recording, scale = outcome.recording, 1.0 if outcome.radians else 180 / math.pi
+    recording, scale = outcome.recording, per_radian(radians=outcome.radians)
     t = recording.t
     fine = np.linspace(0, t[-1], _FINE)
     at_rows, at_fine = angles_at(outcome, t), angles_at(outcome, fine)

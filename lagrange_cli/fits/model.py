@@ -13,6 +13,7 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.angle_sensitivities import AngleDerivatives
 from ..motion.neighbourhood import PARAMETERS
@@ -34,7 +35,7 @@ def angles_of(states: Array, t: Array) -> Array:
     found = sweep_angles(t, **_inputs(*states.T))
     if wrong := [error for error in found["error"] if error]:
         raise LagtopError(str(wrong[0]))
-    return np.stack([found[name] for name in ("theta", "phi", "psi")])
+    return np.stack([found[name] for name in ANGLES])
 
 
 def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from .body import Told, completed, told_of
 from .fit import Fit
@@ -87,7 +88,7 @@ class Outcome:
 
     def scale(self, name: str) -> float:
         """Return what takes a quantity from radians to the unit of angles in use."""
-        return 1.0 if self.radians or name not in ANGLES else 180 / math.pi
+        return per_radian(radians=self.radians or name not in ANGLES)
 
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of what was found of the motion."""
@@ -192,7 +193,7 @@ class Outcome:
             "chi2_dof_low": low,
             "chi2_dof_high": high,
         }
-        degrees = 1.0 if self.radians else 180 / math.pi
+        degrees = per_radian(radians=self.radians)
         suffix = "rad" if self.radians else "deg"
         for channel, left in self.remainders.items():
             record[f"{channel}_rms_{suffix}"] = left.rms * degrees

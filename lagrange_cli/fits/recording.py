@@ -12,7 +12,8 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
-from ..inputs.seen import ANGLES, Conventions, Quantities, Said, angles_in, see
+from ..inputs.names import ANGLES
+from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
 from ..inputs.trajectory_columns import plain_name
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..arithmetic.angles import per_radian
 from ..motion.record import KEYS
 from ..output.findings import Field, Findings, with_unit
 from ..output.uncertain_text import uncertain_text
@@ -98,7 +98,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         low, high = chi2_bounds(max(solution.dof, 1))
         bounds = f"{low:.3f} to {high:.3f}"
         yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {solution.dof} dof."
-    unit, scale = ("rad", 1.0) if outcome.radians else ("deg", 180 / math.pi)
+    unit, scale = "rad" if outcome.radians else "deg", per_radian(radians=outcome.radians)
     rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.remainders.items())
     yield f"{name}Left, rms in {unit}: {rest}."
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.types import Array
+from ..inputs.names import ANGLES
 from ..inputs.rotations import within_half_turn
 from .recording import Recording
 
@@ -56,7 +57,7 @@ def _of_angles(recording: Recording, angles: Array) -> Residuals:
     """Return what is left of angles that have columns of their own."""
     values, slopes = [], []
     for channel in recording.channels:
-        i = ("theta", "phi", "psi").index(channel)
+        i = ANGLES.index(channel)
         left = recording.angles[channel] - angles[i]
         values.append(left if channel == "theta" else within_half_turn(left))
         slope = np.zeros((left.size, 3))

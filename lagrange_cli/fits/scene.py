@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
+from ..arithmetic.angles import per_radian
 from ..output.uncertain_text import uncertain_text
 from .record import Outcome
 
@@ -20,10 +19,9 @@ def scene_text(outcome: Outcome, source: str) -> str:
         **{"theta0_deg" if x == "theta0" else x: (y, z) for x, y, z in outcome.found()},
         **{told.name: (told.value, deviation) for told, deviation in outcome.products()},
     }
-    degrees = 180 / math.pi
     for name, value in outcome.inputs().items():
         found, deviation = spread.get(name, (0.0, 0.0))
-        scale = degrees if name == "theta0_deg" else 1.0
+        scale = per_radian(radians=name != "theta0_deg")
         told = f"  # {uncertain_text(found * scale, deviation * scale)}" if deviation else ""
         lines.append(f"{name} = {value!r}{told}")
     return "".join(f"{line}\n" for line in lines)

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
@@ -40,7 +41,7 @@ class Nutation(NamedTuple):
         Raises LagtopError for one that no top has, with its tilts in degrees or in radians.
         """
         if not 0 < self.theta_min < self.theta_max < math.pi:
-            most, unit = ("pi", 1.0) if radians else ("180 degrees", 180 / math.pi)
+            most, unit = "pi" if radians else "180 degrees", per_radian(radians=radians)
             raise LagtopError(
                 f"theta_min and theta_max must be 0 < theta_min < theta_max < {most}, "
                 f"got {self.theta_min * unit:g} and {self.theta_max * unit:g}"

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 
+ANGLES = ("theta", "phi", "psi")
+"""Tilt, spin and precession, in the order in which they stand everywhere."""
 _MOST_CHARACTERS, _FIRST = 240, 12
 """The longest list that stands in a message, and how many names stand for a longer one."""
 

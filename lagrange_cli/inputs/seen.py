@@ -13,8 +13,8 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
+from .names import ANGLES
 
-ANGLES = ("theta", "phi", "psi")
 ORDERS = ("wxyz", "xyzw")
 FRAMES = ("body", "space")
 

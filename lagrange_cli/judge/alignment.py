@@ -13,6 +13,7 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs import rotations
+from ..inputs.names import ANGLES
 from ..inputs.seen import Seen
 from ..motion.solve import Motion
 
@@ -96,7 +97,7 @@ def frames_of(wish: Alignment, motion: Motion, first: Seen) -> Frames:
     if not (wish.start or wish.hides_frames):
         return frames
     seen = frames.aligned(first)
-    exact = motion.table(seen.t, ["theta", "phi", "psi", "quaternion"], wrap=True)
+    exact = motion.table(seen.t, [*ANGLES, "quaternion"], wrap=True)
     if wish.start:
         return _counted_from(frames, seen, {x: float(y[0]) for x, y in exact.items()})
     assert seen.quaternion is not None

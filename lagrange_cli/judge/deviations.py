@@ -8,8 +8,9 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..inputs import rotations
+from ..inputs.names import ANGLES
 from ..inputs.rotations import within_half_turn
-from ..inputs.seen import ANGLES, Seen
+from ..inputs.seen import Seen
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 

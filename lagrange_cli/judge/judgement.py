@@ -12,7 +12,8 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.seen import ANGLES, ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
+from ..inputs.names import ANGLES
+from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
 from .deviations import Deviations

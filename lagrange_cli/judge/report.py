@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+from ..inputs.names import ANGLES
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
 from ..output.terminal import one_line
@@ -116,7 +117,7 @@ def _sentence(judgement: Judgement, limit: float) -> str:
 
 
 def _drift(judgement: Judgement) -> str:
-    drifts = {key: getattr(judgement, f"{key}_drift") for key in ("theta", "phi", "psi")}
+    drifts = {key: getattr(judgement, f"{key}_drift") for key in ANGLES}
     known = {key: x for key, x in drifts.items() if x is not None}
     if not known:
         return ""

@@ -11,6 +11,7 @@ from ..arithmetic.correct_rounding import TooFewDigitsError, correctly_rounded, 
 from ..arithmetic.decimals import Decimals
 from ..arithmetic.numbers import Number
 from ..arithmetic.text import NumberText
+from ..inputs.names import ANGLES
 from .regime import Regime
 from .solve import Motion
 
@@ -50,7 +51,6 @@ class DigitTable:
             return computed[working][column]
 
         first = max(32, digits + 15)
-        names = "theta", "phi", "psi"
         texts = [
             correctly_rounded(
                 f"{name} at t = {float(time)}",
@@ -59,7 +59,7 @@ class DigitTable:
                 first=first,
                 zero_is_proved=True,
             )
-            for column, name in enumerate(names)
+            for column, name in enumerate(ANGLES)
         ]
         return [
             text_of(Decimal(time) if isinstance(time, float) else time, digits),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.points import EvenPoints, Points
 from ..errors import LagtopError
+from ..inputs.names import ANGLES
 from .solve import Motion
 
 if TYPE_CHECKING:
@@ -21,8 +22,7 @@ if TYPE_CHECKING:
 DEFAULT_ROWS = 101
 DIGIT_ROWS = 256
 """Rows that settle together under --digits."""
-DEFAULT_COLUMNS = ("t", "theta", "phi", "psi")
-ANGLES = ("theta", "phi", "psi")
+DEFAULT_COLUMNS = ("t", *ANGLES)
 
 
 def grid(

@@ -6,12 +6,11 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
+from ..arithmetic.angles import PER_RADIAN
 from ..inputs.measured import by_given
 from ..inputs.top import Top
 from .record import TEXT_KEYS
 from .sensitivities import sensitivities
-
-PER_RADIAN = 180 / math.pi
 
 
 class Contribution(NamedTuple):

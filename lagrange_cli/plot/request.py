@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
+
+from ..arithmetic.angles import per_radian
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -103,7 +104,7 @@ class PlotRequest(NamedTuple):
     @property
     def per_radian(self) -> float:
         """The size of one radian in the unit of angles."""
-        return 1.0 if self.radians else 180 / math.pi
+        return per_radian(radians=self.radians)
 
     def options(self) -> list[str]:
         """Return what differs from the usual, as options of the command."""

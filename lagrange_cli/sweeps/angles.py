@@ -12,6 +12,7 @@ from ..arithmetic.blocks import BLOCK, blocks
 from ..arithmetic.types import Array, Mask
 from ..arithmetic.workspace import Workspace
 from ..errors import LagtopError
+from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import solve
@@ -20,8 +21,6 @@ from .angle_arrays import ArraySampler, array_sampler
 from .pair_motions import PairMotions, released, started
 from .records import BLOCK_ROWS, Column, together
 from .top_arrays import TopArrays
-
-_NAMES = ("theta", "phi", "psi")
 
 
 def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> dict[str, Column]:
@@ -44,14 +43,14 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> di
     rows = np.broadcast_to(rows, (tops.m.size, count))
     angles, error = angles_of(tops, rows, wrap=wrap)
     found: dict[str, Column] = {
-        name: values.reshape(whole) for name, values in zip(_NAMES, angles, strict=True)
+        name: values.reshape(whole) for name, values in zip(ANGLES, angles, strict=True)
     }
     return found | {"error": error.reshape(shape)}
 
 
 def angles_of(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:
     """Return theta, phi and psi of each top at its row of times, and what is wrong with it."""
-    angles = np.full((len(_NAMES), *t.shape), np.nan)
+    angles = np.full((len(ANGLES), *t.shape), np.nan)
     error = np.full(tops.m.size, None)
     with ARRAYS.working():
         for first in range(0, tops.m.size, BLOCK_ROWS):
