@@ -130,7 +130,7 @@ def command(
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.files import Request, compare_files
-    from ..judge.report import failed, report
+    from ..judge.report import comparison_report, failed
     from ..plot.files import check_plot
 
     if max_error is not None and not max_error > 0:
@@ -146,7 +146,7 @@ def command(
         comparison = compare_files(motion, trajectories, request, _watched)
         if plot:
             _draw(comparison, limit, plot)
-        return report(motion, comparison, request)
+        return comparison_report(motion, comparison, request)
 
     if failed(write_report(find, fmt, output), limit):
         ctx.exit(1)

@@ -208,12 +208,12 @@ def _in_radians(
 
 def _write(found: list[Outcome], source: str, system: System | None, fmt: str, output: str) -> None:
     """Write a report, or one record for each recording, with units where known inputs have any."""
-    from ..fits.report import report, units_of
+    from ..fits.report import fit_report, units_of
 
     if fmt == "table":
         from ..inputs.files import shown_path
 
-        write_report(lambda: report(found, shown_path(source), system), fmt, output)
+        write_report(lambda: fit_report(found, shown_path(source), system), fmt, output)
         return
     from ..output.write import block_text, write_record, write_text_blocks
 

@@ -12,7 +12,7 @@ from ..errors import LagtopError
 from ..output.layouts import JACOBI
 from ..output.write import write_record, write_table
 from .command import ExamplesFirst, complain
-from .jacobi_complex import complex_points, is_real, write_complex
+from .jacobi_complex import all_real, complex_points, write_complex
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -147,7 +147,7 @@ def command(
     asked = tuple(name for name, wanted in flags.items() if wanted)
     families = asked or ("am",)
     parameter, imaginary = _parameter(param, families)
-    if beyond or not is_real(single, parameter):
+    if beyond or not all_real(single, parameter):
         for name, wanted in (("--phi", amplitudes or fan), ("--series", terms)):
             if wanted:
                 raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Asked = tuple[ModulusInput | ExactComplex, tuple[str, ...], ExactComplex, bool]
 
 
-def is_real(arguments: tuple[Multiple | ExactComplex, ...], parameter: ExactComplex) -> bool:
+def all_real(arguments: tuple[Multiple | ExactComplex, ...], parameter: ExactComplex) -> bool:
     """Return whether arguments are real, and a parameter real or imaginary."""
     return not (
         any(isinstance(u, ExactComplex) for u in arguments) or (parameter.real and parameter.imag)

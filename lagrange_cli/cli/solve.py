@@ -144,12 +144,14 @@ def command(
         uncertainty.check(found, digits, derivation, certify)
     motion = motion_of(found, digits is not None)
     if budget is not None or samples is not None:
-        find = uncertainty.report(found, motion, budget, samples, seed, rad)
+        find = uncertainty.asked_report(found, motion, budget, samples, seed, rad)
         write_report(find, fmt, output)
         return
     chosen = _steps(motion, rad) if derivation else keys
     wanted = list(dict.fromkeys(key.removesuffix("_std") for key in chosen)) if chosen else None
     record = _record(motion, digits, rad, wanted, certify)
+    if certify and fmt == "table" and keys is None:
+        record = _with_proof(record)
     if found.system is not None and record.get("remark"):
         record["remark"] = found.system.in_words(record["remark"])
     if found.stds:
@@ -157,11 +159,17 @@ def command(
     if keys is not None:
         write_values([_number(motion, record, key) for key in keys], output)
     elif derivation:
-        radii = {name: record[name] for name in record if name.endswith("_radius")}
+        more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
         steps = {name: record[name] for name in chosen or ()}
-        _write(steps | radii, found.system, fmt, output, chain_layout)
+        _write(steps | more, found.system, fmt, output, chain_layout)
     else:
         _write(record, found.system, fmt, output, top_layout)
+
+
+def _with_proof(record: dict[str, Any]) -> dict[str, Any]:
+    """Return a record whose remark, which a drawn table ends with, says that it is proved."""
+    words = [record.get("remark"), "every digit is proved by an enclosure in balls (Arb)"]
+    return record | {"remark": "; ".join(filter(None, words))}
 
 
 def _write(

@@ -21,7 +21,7 @@ from .progress import with_progress
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.solve import Motion
-    from ..sweeps.monte_carlo import Outcome
+    from ..sweeps.monte_carlo import Propagated
 
 _LONG = 300_000
 """Samples that are known to take longer than a moment."""
@@ -36,7 +36,7 @@ def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> 
         exclude({name: value, "uncertain inputs": True})
 
 
-def report(
+def asked_report(
     found: Given,
     motion: Motion,
     key: str | None,
@@ -181,7 +181,9 @@ def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
     return inputs
 
 
-def _report(outcome: Outcome, samples: int, seed: int | None, units: Mapping[str, str]) -> Findings:
+def _report(
+    outcome: Propagated, samples: int, seed: int | None, units: Mapping[str, str]
+) -> Findings:
     from ..sweeps.monte_carlo import FAILS, OPEN
 
     conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})

@@ -46,7 +46,7 @@ def units_of(outcome: Outcome, system: System) -> dict[str, str]:
     return {key: unit for key, unit in units.items() if unit}
 
 
-def report(outcomes: Sequence[Outcome], source: str, system: System | None = None) -> Findings:
+def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None = None) -> Findings:
     """Return the report on the outcomes of the recordings of a file.
 
     Where inputs have units those of a system are named.

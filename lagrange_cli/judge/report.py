@@ -46,7 +46,7 @@ FIELDS = [
 ]
 
 
-def report(motion: Motion, comparison: Comparison, request: Request) -> Findings:
+def comparison_report(motion: Motion, comparison: Comparison, request: Request) -> Findings:
     """Return the report on trajectories."""
     shown = {
         key for key in _SHOWN if any(getattr(x, key) is not None for x in comparison.judgements)

@@ -33,7 +33,7 @@ _MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate
 """The rates that periods are made of: where one is exactly 0, there is no period."""
 
 
-def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, bound: Ball) -> Ball:
+def proved_largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, bound: Ball) -> Ball:
     """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
     Laguerre's method finds a point p near it.  If p - f(p)/f'(X) is within a ball X around p, then
@@ -103,7 +103,7 @@ class Certified:
             ar, facts = balls(bits), self.exact.facts
             with ar.working():
                 start = state(ar, self.exact)
-                gaps = gaps_of(ar, facts, start, largest_root)
+                gaps = gaps_of(ar, facts, start, proved_largest_root)
                 if not are_told_apart(facts, gaps):
                     raise TooFewDigitsError
             self._kinds[bits] = self.kind_class(ar, facts, start, gaps)

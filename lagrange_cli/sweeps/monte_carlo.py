@@ -53,7 +53,7 @@ class Spread(NamedTuple):
     """Whether the interval of first order is that of the samples."""
 
 
-class Outcome(NamedTuple):
+class Propagated(NamedTuple):
     """What became of the samples."""
 
     spreads: Sequence[Spread]
@@ -70,7 +70,7 @@ def propagate(
     seed: int | None = None,
     radians: bool = False,
     steps: Steps = lambda blocks, _: blocks,
-) -> Outcome:
+) -> Propagated:
     """Return the distributions of keys of the record, and the regimes of the samples.
 
     `numbers` has the value and the uncertainty of first order of each key.  Raises LagtopError for
@@ -100,7 +100,7 @@ def propagate(
         _spread(shown, np.sort(np.concatenate(columns[shown])), *numbers[key], samples)
         for key, shown in zip(numbers, keys, strict=True)
     ]
-    return Outcome(spreads, shares)
+    return Propagated(spreads, shares)
 
 
 def _drawn(rng: np.random.Generator, name: str, value: float, std: float, count: int) -> Array:

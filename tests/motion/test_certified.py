@@ -13,7 +13,7 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.arithmetic.correct_rounding import TooFewDigitsError
 from lagrange_cli.motion import certified as module
-from lagrange_cli.motion.certified import certified, largest_root
+from lagrange_cli.motion.certified import certified, proved_largest_root
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 
@@ -79,10 +79,10 @@ def test_the_root_is_proved_to_be_the_largest(
     ar = balls(200)
     with ar.working():
         c2, c1, c0, bound, point = (ar.convert(x) for x in (-8, 17, -10, 100, near))
-        assert largest_root(ar, c2, c1, c0, bound).arb.contains(5)
+        assert proved_largest_root(ar, c2, c1, c0, bound).arb.contains(5)
         monkeypatch.setattr(module, "near_largest_root", lambda *_: point.arb)
         if proved:
-            assert largest_root(ar, c2, c1, c0, bound).arb.contains(5)
+            assert proved_largest_root(ar, c2, c1, c0, bound).arb.contains(5)
         else:
             with pytest.raises(TooFewDigitsError):
-                largest_root(ar, c2, c1, c0, bound)
+                proved_largest_root(ar, c2, c1, c0, bound)

@@ -178,7 +178,10 @@ def test_commands_write_radii(lagtop: Lagtop) -> None:
     assert list(solved).index("m_radius") == list(solved).index("remark") + 1
     plain = json.loads(lagtop("solve", "--format", "json").stdout)
     assert {key: solved[key] for key in plain} == plain
-    assert lagtop("solve", "--certify").stdout == lagtop("solve").stdout
+    said = "every digit is proved by an enclosure in balls (Arb)\n"
+    assert lagtop("solve", "--certify").stdout == lagtop("solve").stdout + f"\n{said}"
+    for line in (["--derivation"], ["--theta0", 0], ["--r0", 1e4, "--theta0", 60]):
+        assert " ".join(lagtop("solve", "--certify", *line).stdout.split()).endswith(said.strip())
     assert (
         lagtop("solve", "--certify", "--get", "u2,path").stdout == "0.27695194556122277\ncusped\n"
     )

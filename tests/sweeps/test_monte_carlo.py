@@ -12,7 +12,7 @@ from lagrange_cli.sweeps.monte_carlo import (
     FAILS,
     HOLDS,
     OPEN,
-    Outcome,
+    Propagated,
     first_order_holds,
     propagate,
 )
@@ -20,7 +20,7 @@ from lagrange_cli.sweeps.monte_carlo import (
 
 def outcome(
     inputs: dict[str, float], stds: dict[str, float], keys: list[str], samples: int = 20_000
-) -> Outcome:
+) -> Propagated:
     """Return what becomes of samples of a top, of which some keys are looked at."""
     top = Top(**inputs)
     uncertain, motion = FirstOrder(top, stds, inputs), solve(top)
