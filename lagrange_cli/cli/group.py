@@ -124,7 +124,8 @@ def main(ctx: click.Context) -> None:
     and for fish:
       _LAGTOP_COMPLETE=fish_source lagtop > ~/.config/fish/completions/lagtop.fish
 
-    Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.
+    Inputs default to the worked example of J. Chrapan (1952); any consistent units will do.  A
+    scene is a TOML file that holds some of them, or - for standard input.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

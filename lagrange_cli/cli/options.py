@@ -244,6 +244,7 @@ def jobs_option(command: F) -> F:
     return click.option(
         "--jobs",
         type=Parsed("N|auto", _parse_jobs),
+        metavar="N|auto",
         help="Processes that share the work; auto: one per core.  [default: 1]",
     )(command)
 

@@ -90,6 +90,8 @@ def test_dots_in_comments_are_free(tmp_path: Path) -> None:
 
 
 def test_a_scene_on_standard_input(lagtop: Lagtop) -> None:
+    assert "or - for standard input" in " ".join(lagtop("--help").stdout.split())
+    assert "[SCENE.toml|-]" in lagtop("solve", "--help").stdout
     text = "r0 = 40\n"
     assert lagtop("solve", "-", "--get", "r0", input=text).stdout == "40.0\n"
     assert lagtop("table", "-", "--n", "1", "--columns", "r", input=text).stdout == "r\n40.0\n"
