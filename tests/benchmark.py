@@ -153,34 +153,57 @@ def text(rng: np.random.Generator) -> None:
 
 
 def start_up() -> None:
-    """Compare `jacobi --k 0.8` with importing click and rich, <= 1.3, and `solve`, <= 1.2."""
-    commands = {
-        "importing click and what a table needs of rich": [
-            "-c",
-            "import click, rich.console, rich.table",
-        ],
-        "lagtop jacobi --k 0.8 (<= 1.3)": ["-m", "lagrange_cli", "jacobi", "--k", "0.8"],
-        "lagtop jacobi --k 0.8 --format json": (
-            "-m lagrange_cli jacobi --k 0.8 --format json".split()
-        ),
-        "lagtop jacobi --k 0.8 --u 0.5 --format csv, without NumPy": (
-            "-m lagrange_cli jacobi --k 0.8 --u 0.5 --format csv".split()
-        ),
-        "lagtop jacobi --k 0.8 --u-range 0:1:7 --format csv, with NumPy": (
-            "-m lagrange_cli jacobi --k 0.8 --u-range 0:1:7 --format csv".split()
-        ),
-        "lagtop solve (<= 1.2)": ["-m", "lagrange_cli", "solve"],
+    """Compare whole commands with importing what they cannot do without."""
+    peers = {
+        "import click": {
+            "lagtop solve --format json (<= 1.25)": "solve --format json",
+            "lagtop solve --get T_nutation (<= 1.25)": "solve --get T_nutation",
+        },
+        "import click, rich.console, rich.table": {
+            "lagtop solve (<= 1.2)": "solve",
+            "lagtop jacobi --k 0.8 (<= 1.3)": "jacobi --k 0.8",
+            "lagtop jacobi --k 0.8 --format json": "jacobi --k 0.8 --format json",
+            "lagtop jacobi --k 0.8 --u 0.5 --format csv, without NumPy": (
+                "jacobi --k 0.8 --u 0.5 --format csv"
+            ),
+            "lagtop jacobi --k 0.8 --u-range 0:1:7 --format csv, with NumPy": (
+                "jacobi --k 0.8 --u-range 0:1:7 --format csv"
+            ),
+        },
+        "import numpy": {"lagtop table --t-max 1 (<= 1.5)": "table --t-max 1"},
     }
     compile_dir(ROOT / "lagrange_cli", quiet=1)  # as pip does
-    best = dict.fromkeys(commands, float("inf"))
-    for _ in range(15):
+    for peer, commands in peers.items():
+        processes = {peer: ["-c", peer]}
         for name, command in commands.items():
+            processes[name] = ["-m", "lagrange_cli", *command.split()]
+        shown(f"Start-up against {peer}, CPU of a process", cpu_of_processes(processes), "that")
+
+
+def cpu_of_processes(processes: Mapping[str, Sequence[str]]) -> dict[str, float]:
+    """Return the least CPU time of 15 runs of Python with each list of arguments, in turns."""
+    best = dict.fromkeys(processes, float("inf"))
+    for _ in range(15):
+        for name, arguments in processes.items():
             begun = resource.getrusage(resource.RUSAGE_CHILDREN)
-            subprocess.run([sys.executable, *command], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
             ended = resource.getrusage(resource.RUSAGE_CHILDREN)
             cost = ended.ru_utime + ended.ru_stime - begun.ru_utime - begun.ru_stime
             best[name] = min(best[name], cost * 1e9)
-    shown("Start-up, CPU of a process", best, "that")
+    return best
+
+
+def keys() -> None:
+    """Compare some keys of one top with its full record: T_nutation <= 0.4."""
+    for name, start in STARTS.items():
+        works: dict[str, Callable[[], object]] = {
+            "a full record": partial(lambda top: solve(top).record(), Top(**start))
+        }
+        for key in ("T_nutation", "a", "mean_precession_rate"):
+            works[f"{key} alone"] = partial(
+                lambda top, key: solve(top).record(keys=[key]), Top(**start), key
+            )
+        shown(f"Keys, {name}, CPU per top", cpu_of(works, 1, 30), "full")
 
 
 def jobs() -> None:
@@ -391,6 +414,7 @@ def main() -> None:
         "fresh": fresh,
         "set_up": partial(set_up, rng),
         "functions": partial(functions, rng),
+        "keys": keys,
         "sweeps": partial(sweeps, rng),
         "text": partial(text, rng),
         "writing": partial(writing, t),
