@@ -7,21 +7,24 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import pickle
 import signal
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
+from itertools import cycle
+from tempfile import TemporaryDirectory
 from threading import Thread
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from ..errors import LagtopError, UnavailableError
+from ..errors import CannotWriteError, LagtopError, UnavailableError
 
 MOST_JOBS = 1024
-_HANDED_OUT = 2
-"""Items that each other process has: one that it works at, and the next."""
-_AHEAD = 4
+_HANDED_OUT = 3
+"""Items that each other process has: one that it works at, and the next ones."""
+_AHEAD = 8
 """Results per process that may wait for an earlier one: memory does not grow with the work."""
 
 T = TypeVar("T")
@@ -45,27 +48,28 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
     """Yield what the work makes of each item, in their order; this process is one of the `jobs`.
 
     With more than one, the work and its results must be picklable.  Raises UnavailableError where
-    a process is lost, and what the work raises.
+    a process is lost, CannotWriteError where results find no room, and what the work raises.
     """
     if jobs == 1:
         yield from map(work, items)
         return
-    pool = ProcessPoolExecutor(
-        jobs - 1, mp_context=multiprocessing.get_context("spawn"), initializer=_start_worker
-    )
-    try:
-        with closing(_shared(pool, work, iter(items), jobs)) as results:
-            yield from results
-    except BrokenProcessPool:
-        raise UnavailableError(
-            "a process that shared the work was lost (killed, or out of memory)"
-        ) from None
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+    with TemporaryDirectory(prefix="lagtop-") as folder:
+        pool = ProcessPoolExecutor(
+            jobs - 1, mp_context=multiprocessing.get_context("spawn"), initializer=_start_worker
+        )
+        try:
+            with closing(_shared(pool, work, iter(items), jobs, folder)) as results:
+                yield from results
+        except BrokenProcessPool:
+            raise UnavailableError(
+                "a process that shared the work was lost (killed, or out of memory)"
+            ) from None
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _shared(
-    pool: ProcessPoolExecutor, work: Callable[[T], P], items: Iterator[T], jobs: int
+    pool: ProcessPoolExecutor, work: Callable[[T], P], items: Iterator[T], jobs: int, folder: str
 ) -> Generator[P, None, None]:
     """Yield the results in order; what no other process has room for is done in this one."""
     started = pool.submit(_start_work, work)
@@ -73,17 +77,49 @@ def _shared(
         yield work(item)
         if started.done():
             break
-    results: deque[Future[P]] = deque()
-    for item in items:
+    most = _AHEAD * jobs
+    paths = [os.path.join(folder, str(number)) for number in range(most)]
+    results: deque[Future[P | _Left]] = deque()
+    for item, path in zip(items, cycle(paths), strict=False):
         if sum(not result.done() for result in results) < _HANDED_OUT * (jobs - 1):
-            results.append(pool.submit(work, item))
+            results.append(pool.submit(_left, work, item, path))
         else:
             results.append(Future())
             results[-1].set_result(work(item))
-        while results and (results[0].done() or len(results) >= _AHEAD * jobs):
-            yield results.popleft().result()
+        while results and (results[0].done() or len(results) >= most):
+            yield _taken(results.popleft().result())
     while results:
-        yield results.popleft().result()
+        yield _taken(results.popleft().result())
+
+
+class _Left(NamedTuple):
+    """A result that another process left in a file.
+
+    A pipe is read by a thread in small pieces, and each would wait for the lock of the interpreter
+    that computes here.  A file is used again, by a result that may be shorter.
+    """
+
+    path: str
+
+
+def _left(work: Callable[[T], P], item: T, path: str) -> _Left:
+    """Do the work and leave what it makes in a file.  Raises CannotWriteError."""
+    result = work(item)
+    try:
+        with open(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), "wb") as file:
+            pickle.dump(result, file, pickle.HIGHEST_PROTOCOL)
+    except OSError as error:
+        raise CannotWriteError(f"{path}: {error.strerror}") from None
+    return _Left(path)
+
+
+def _taken(result: P | _Left) -> P:
+    """Return a result, which may be in a file."""
+    if isinstance(result, _Left):
+        with open(result.path, "rb") as file:
+            found: P = pickle.load(file)
+            return found
+    return result
 
 
 def _start_work(work: Callable[[T], P]) -> None:

@@ -8,12 +8,13 @@ import signal
 import subprocess
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 from conftest import LAGTOP, Lagtop, assert_one_line, process
 
-from lagrange_cli.errors import LagtopError, UnavailableError
+from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
 from lagrange_cli.sweeps.jobs import in_order, parse_jobs
 
 
@@ -36,6 +37,16 @@ def lose(x: int) -> None:
 def test_results_come_in_the_order_of_the_work() -> None:
     assert list(in_order(double, range(40), 2)) == list(range(0, 80, 2))
     assert list(in_order(double, [], 2)) == []
+
+
+@pytest.mark.slow
+def test_results_find_no_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for number in range(100):  # where the files were to be
+        (tmp_path / str(number)).mkdir()
+    folder = nullcontext(str(tmp_path))
+    monkeypatch.setattr("lagrange_cli.sweeps.jobs.TemporaryDirectory", lambda **_: folder)
+    with pytest.raises(CannotWriteError, match="Is a directory"):
+        list(in_order(double, range(1000), 2))
 
 
 @pytest.mark.slow
