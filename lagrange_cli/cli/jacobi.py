@@ -28,8 +28,8 @@ from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..elliptic.function_table import Request
     from ..elliptic.modulus_input import ModulusInput
+    from ..elliptic.request import Request
     from ..inputs.multiples import Multiple, Multiples
 
 MOST_TERMS = 10_000
@@ -177,7 +177,7 @@ def command(
             raise LagtopError(f"--{asked[0]} needs --u or --u-range")
         write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
         return
-    from ..elliptic.function_table import Request
+    from ..elliptic.request import Request
 
     part = parameter.imag if imaginary else parameter.real
     request = Request(modulus, families, part, imaginary, rad, in_quarters)

@@ -12,7 +12,7 @@ from .options import exclude
 from .progress import with_progress
 
 if TYPE_CHECKING:
-    from ..elliptic.complex_table import ComplexPoints
+    from ..elliptic.complex_request import ComplexPoints
     from ..elliptic.modulus_input import ModulusInput
     from ..inputs.multiples import Multiple, Multiples
 
@@ -31,7 +31,7 @@ def complex_points(
 ) -> ComplexPoints | None:
     """Return complex arguments, if any.  Raises LagtopError for multiples of K."""
     from ..arithmetic.points import ListedPoints
-    from ..elliptic.complex_table import ComplexPoints
+    from ..elliptic.complex_request import ComplexPoints
 
     exclude({"--u": single or None, "--u-range": grid})
     multiples = [grid] if grid else [u for u in single if not isinstance(u, ExactComplex)]
@@ -56,6 +56,7 @@ def write_complex(
     """Write the functions at these points, or the constants of the modulus."""
     from ..elliptic import complex_table as tables
     from ..elliptic.any_modulus import check_any_modulus
+    from ..elliptic.complex_request import ComplexRequest
 
     k = asked[0]
     if isinstance(k, ExactComplex):
@@ -65,7 +66,7 @@ def write_complex(
             write_record(record, *destination, lambda: in_parts(JACOBI, record))
             return
     assert points is not None
-    request, count = tables.ComplexRequest(*asked), points.real.count
+    request, count = ComplexRequest(*asked), points.real.count
     if digits is None:
         header, blocks = tables.complex_rows(points, request)
         write_table(header, with_progress(blocks, count, 100_000), *destination)

@@ -7,18 +7,15 @@ like.  K and K' are transcendental for algebraic k (Schneider 1937), so that no 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..arithmetic.exact_complex import ExactComplex
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
 from .any_modulus import Kind
 from .complete import complete_k
+from .complex_request import ComplexRequest
 from .modulus_input import ModulusInput
-
-if TYPE_CHECKING:
-    from .complex_table import ComplexRequest
-
 
 _RIGHT = ModulusInput("modular_angle", Fraction(45))
 """The modulus sin 45 degrees, of which K' = K."""

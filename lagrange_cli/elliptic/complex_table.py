@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from fractions import Fraction
 from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.exact_complex import ExactComplex
 from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, Kind, any_constants, any_modulus
 from .complex_jacobi import complex_jacobi
 from .complex_known import known_parts
+from .complex_request import ComplexPoints, ComplexRequest
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
-from .function_table import THETA, THIRD
 from .lattice import Lattice, Place, lattice, place
-from .modulus_input import ModulusInput
 from .proved_digits import Settled, settled_or_rounded
+from .request import THETA, THIRD
 
 if TYPE_CHECKING:
     from ..arithmetic.text import NumberText
@@ -31,43 +30,6 @@ _LEAST = 1e-150
 """Least k and k' in doubles, of the modulus that another one is reduced to."""
 _MOST = 1e20
 """Greatest k above 1 in doubles."""
-
-
-class ComplexRequest(NamedTuple):
-    """A modulus of any kind, some families of functions, and a parameter."""
-
-    modulus: ModulusInput | ExactComplex
-    families: tuple[str, ...] = ("am",)
-    parameter: ExactComplex = ExactComplex(Fraction(0))
-    radians: bool = False
-
-    def modulus_in(self, ar: ManyDigits) -> AnyModulus:
-        """Return the modulus in a context.  Raises LagtopError where it is out of range."""
-        if isinstance(self.modulus, ExactComplex):
-            return any_modulus(ar, self.modulus)
-        return AnyModulus(Kind.UNIT, self.modulus.in_digits(ar))
-
-
-class ComplexPoints(NamedTuple):
-    """Arguments by their real parts and, where some are not real, their imaginary parts."""
-
-    real: Points
-    imag: Points | None = None
-
-    def blocks(self) -> Iterator[Value]:
-        """Yield all of them as arrays."""
-        if self.imag is None:
-            yield from (block + 0j for block in self.real.blocks())
-        else:
-            pairs = zip(self.real.blocks(), self.imag.blocks(), strict=True)
-            yield from (real + 1j * imag for real, imag in pairs)
-
-    def exactly(self) -> Iterator[ExactComplex]:
-        """Yield every one exactly."""
-        if self.imag is None:
-            yield from map(ExactComplex, self.real.decimals())
-        else:
-            yield from map(ExactComplex, self.real.decimals(), self.imag.decimals())
 
 
 class _Functions(NamedTuple):

@@ -20,9 +20,9 @@ from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
 from .known_values import known_values, put_exact_values
 from .modulus import Modulus
-from .modulus_input import ModulusInput
-from .periods import Complex, Periods, of_quarters
+from .periods import Periods, of_quarters
 from .proved_digits import Settled, small_or_large
+from .request import THETA, THIRD, Request
 from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
 from .third_kind import ThirdKind, check_near, check_parameter, third_kind
 
@@ -30,36 +30,6 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
-
-THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
-"""The functions of one argument, and those of an argument and a parameter."""
-
-
-class Request(NamedTuple):
-    """What to evaluate: some families of functions, Omega and Pi with their parameter."""
-
-    modulus: ModulusInput
-    families: tuple[str, ...] = ("am",)
-    """Some of am (with sn, cn and dn), theta, zeta, omega and pi."""
-    parameter: Fraction = Fraction(0)
-    imaginary: bool = False
-    radians: bool = False
-    in_quarters: bool = False
-    """Whether the arguments are factors of K."""
-
-    def parameter_in(self, ar: FunctionArithmetic) -> Complex:
-        """Return the parameter in an mpmath context, rounded once."""
-        value = ar.convert(self.parameter)
-        return ar.mpc(0, value) if self.imaginary else ar.mpc(value, 0)
-
-    def in_doubles(self) -> Request:
-        """Return the request with the parameter that its nearest double is."""
-        return self._replace(parameter=Fraction(float(self.parameter)))
-
-    @property
-    def has_parameter(self) -> bool:
-        """Whether Omega or Pi are among the families."""
-        return bool({"omega", "pi"} & set(self.families))
 
 
 class Functions(NamedTuple):

@@ -6,9 +6,10 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from .request import Request
+
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .function_table import Request
 
 VANISH = {
     "u": "u am_deg am_rad sn theta11 zeta01 zeta00 zeta10 omega01 omega00 pi01 pi00",

@@ -21,8 +21,9 @@ from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.correct_rounding import TooFewDigitsError
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
-from lagrange_cli.elliptic.function_table import Request, blocks, digit_rows, rows
+from lagrange_cli.elliptic.function_table import blocks, digit_rows, rows
 from lagrange_cli.elliptic.modulus_input import ModulusInput
+from lagrange_cli.elliptic.request import Request
 
 FAMILIES = ("theta", "zeta", "omega", "pi")
 

@@ -15,8 +15,9 @@ from function_judge import EPS, INDEX, Judge, ball
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.elliptic.function_table import Request, digit_rows, rows
+from lagrange_cli.elliptic.function_table import digit_rows, rows
 from lagrange_cli.elliptic.modulus_input import ModulusInput
+from lagrange_cli.elliptic.request import Request
 from lagrange_cli.inputs.multiples import Multiple, parse_multiple
 
 TABLE_2 = {
