@@ -9,49 +9,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from io import BufferedReader
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import opened, shown_path
 from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
+from .trajectory_rows import Table
 from .words import Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
 _MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
-
-
-class Block(NamedTuple):
-    """Rows that follow one another, and where they stand."""
-
-    values: Array
-    """A row for each row, a column for each one that was asked for; NaN for an empty cell."""
-    places: Sequence[int]
-    """The number of the line, or of the row where there are no lines, from 1."""
-
-
-class Table(Protocol):
-    """Rows of numbers, in whatever form they are stored."""
-
-    @property
-    def place(self) -> str:
-        """What is counted by the places of a block: `line` or `row`."""
-
-    @property
-    def width(self) -> int:
-        """The number of columns."""
-
-    @property
-    def names(self) -> Sequence[str] | None:
-        """The names of the columns, if they have any."""
-
-    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns, once, a block of rows at a time; names are for errors."""
-
-    def words_of(self, column: int) -> Words:
-        """Return the words of a column, which from now on stand for numbers in it."""
 
 
 class Trajectory:

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 import numpy as np
 
 from ..errors import DataError, UnavailableError
-from .trajectory import Block
 from .trajectory_columns import quantities_in
+from .trajectory_rows import Block
 from .trajectory_text import parts
 from .words import PlainNumbers, Words
 

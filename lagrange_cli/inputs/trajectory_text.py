@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
-from .trajectory import Block, Table
 from .trajectory_columns import names_in_comments
+from .trajectory_rows import Block, Table
 from .words import PlainNumbers, Words
 
 if TYPE_CHECKING:
