@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -27,8 +27,8 @@ class Given(Values):
     """The body of the worked example, in these units."""
     system: System | None
     """The units, where the inputs were given with units."""
-    missing: Sequence[str]
-    """The inputs of the body that are those of the worked example, while others were given."""
+    missing: Mapping[str, float]
+    """The inputs of the body, in CGS, that the worked example gives while others were given."""
     blame: Callable[[LagtopError], LagtopError]
     """Names the file, and the line, in an error about an input that stands in a scene file."""
     stds: Mapping[str, float] = MappingProxyType({})

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 
@@ -12,7 +11,6 @@ from ..arithmetic.decimals import decimals, own_context
 from ..arithmetic.exact_cosine import Cosine
 from ..arithmetic.numbers import Number
 from ..errors import LagtopError
-from .top import EXAMPLE, Top, overridden
 
 AS_SOLVED = {"A_cm": "A", "phidot0": "r0"}
 """The inputs that are measured, and what a top has in their place."""
@@ -20,18 +18,18 @@ EXACT_DIGITS = 1100
 """Digits of an irrational number that has to stand as a fraction: more than any output shows."""
 
 
-def as_solved(given: Mapping[str, Number]) -> dict[str, Number]:
-    """Return inputs of a top with A in the place of A_cm, and r0 in that of phidot0.
+def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
+    """Return all inputs of a top with A in the place of A_cm, and r0 in that of phidot0.
 
     Each is a double, the one nearest to the exact value, unless it comes from a fraction.  Raises
     LagtopError for an A_cm that is negative.
     """
-    inputs = overridden(EXAMPLE, given)
-    for measured, solved, formula in (("A_cm", "A", moment), ("phidot0", "r0", spin)):
-        if measured in given:
-            inputs[solved] = formula(inputs)
-            del inputs[measured]
-    return inputs
+    solved = dict(inputs)
+    for measured, formula in (("A_cm", moment), ("phidot0", spin)):
+        if measured in inputs:
+            solved[AS_SOLVED[measured]] = formula(inputs)
+            del solved[measured]
+    return solved
 
 
 def moment(inputs: Mapping[str, Number]) -> Number:
@@ -69,29 +67,6 @@ def spin(inputs: Mapping[str, Number]) -> Number:
     in_full = own_context(EXACT_DIGITS, [])
     rounded = correctly_rounded("r0", value_in, in_full.plus, first=EXACT_DIGITS + 20)
     return Fraction(rounded or 0)
-
-
-def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, float]]:
-    """Return the derivatives of the inputs of a solved top by those that were given.
-
-    These are the same but for A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
-    """
-    tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
-    angle = float(top.theta0_rad or 0) if top.theta0_deg is None else math.radians(top.theta0_deg)
-    arc = 1.0 if top.theta0_deg is None else math.pi / 180
-    m, s, psi_rate = float(top.m), float(top.s), float(top.psidot0)
-    names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
-    chain = {name: {name: 1.0} for name in names}
-    if "A_cm" in given:
-        del chain["A"]
-        chain["A_cm"] = {"A": 1.0}
-        chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
-    if "phidot0" in given:
-        del chain["r0"]
-        chain["phidot0"] = {"r0": 1.0}
-        chain["psidot0"]["r0"] = math.cos(angle)
-        chain[tilt]["r0"] = -psi_rate * math.sin(angle) * arc
-    return chain
 
 
 def is_exact(*inputs: Number) -> bool:

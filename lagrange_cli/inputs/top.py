@@ -109,11 +109,11 @@ class Top(Values):
         }
         one_of_each(given)
         missing = from_example(given)
+        inputs = overridden(EXAMPLE, given)
         if A_cm is not None or phidot0 is not None:
             from .measured import as_solved  # for few tops only
 
-            given = as_solved(given)
-        inputs = overridden(EXAMPLE, given)
+            inputs = as_solved(inputs)
         super().__init__(*map(inputs.get, self.fields))
         _check_ranges(self)
         if missing:
@@ -286,12 +286,12 @@ def one_of_each(given: Iterable[str]) -> None:
             raise LagtopError(f"{key} and {other} are both given: leave one out", key)
 
 
-def from_example(given: Mapping[str, Any]) -> list[str]:
-    """Return the inputs of the body that are not given, where others of them are.
+def from_example(given: Mapping[str, Any]) -> dict[str, float]:
+    """Return the inputs of the body that are not given, where others of them are, by key.
 
     What is given as 0 fits in any units: no gravity, or a centre of mass in the pivot.
     """
     own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
     if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
-        return []
-    return [name for name in BODY if name not in own]
+        return {}
+    return {name: value for name, value in BODY.items() if name not in own}

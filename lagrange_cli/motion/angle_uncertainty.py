@@ -8,11 +8,11 @@ import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
-from ..inputs.measured import by_given
 from ..inputs.names import ANGLES
 from .angle_sensitivities import AngleDerivatives
 from .neighbourhood import PARAMETERS, by_inputs
 from .regime import Exact
+from .uncertainty import by_given
 
 _TOLERANCE = 1e-6
 """An uncertainty has few digits, and a table may have many rows."""

@@ -7,7 +7,6 @@ from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from ..arithmetic.angles import PER_RADIAN
-from ..inputs.measured import by_given
 from ..inputs.top import Top
 from .record import TEXT_KEYS
 from .sensitivities import sensitivities
@@ -73,6 +72,29 @@ class FirstOrder:
             share = part * part / (whole * whole) if whole else None
             lines.append(Contribution(name, given[name], std, slope, part, elasticity, share))
         return sorted(lines, key=lambda line: -abs(line.contribution))
+
+
+def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, float]]:
+    """Return the derivatives of the inputs of a solved top by those that were given.
+
+    These are the same but for A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
+    """
+    tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
+    angle = float(top.theta0_rad or 0) if top.theta0_deg is None else math.radians(top.theta0_deg)
+    arc = 1.0 if top.theta0_deg is None else math.pi / 180
+    m, s, psi_rate = float(top.m), float(top.s), float(top.psidot0)
+    names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
+    chain = {name: {name: 1.0} for name in names}
+    if "A_cm" in given:
+        del chain["A"]
+        chain["A_cm"] = {"A": 1.0}
+        chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
+    if "phidot0" in given:
+        del chain["r0"]
+        chain["phidot0"] = {"r0": 1.0}
+        chain["psidot0"]["r0"] = math.cos(angle)
+        chain[tilt]["r0"] = -psi_rate * math.sin(angle) * arc
+    return chain
 
 
 def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
