@@ -8,22 +8,29 @@ import signal
 import subprocess
 import time
 from collections.abc import Sequence
-from contextlib import nullcontext
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import closing, nullcontext
 from pathlib import Path
+from typing import Any
 
 import pytest
-from conftest import LAGTOP, Lagtop, assert_one_line, process
+from conftest import LAGTOP, Lagtop, assert_one_line
 
 from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
-from lagrange_cli.sweeps.jobs import in_order, parse_jobs
+from lagrange_cli.sweeps.jobs import _start_work, in_order, parse_jobs
 
 
-def double(x: int) -> int:
-    """Return twice a number; small ones take longer, so that the order has to be restored."""
-    time.sleep(0.05 if x < 2 else 0)
-    if x == 1000:
-        raise LagtopError("too large")
-    return 2 * x
+def number_and_place(x: int) -> tuple[int, int]:
+    """Return a number and the process that it was in; some take longer: the order is restored."""
+    time.sleep(0.02 if x % 5 == 0 else 0.005)
+    return x, os.getpid()
+
+
+def refuse(x: int) -> None:
+    """Take a while, and fail unless this is the process that shares the work out."""
+    time.sleep(0.01)
+    if multiprocessing.parent_process() is not None:
+        raise LagtopError(f"{x} is too large")
 
 
 def lose(x: int) -> None:
@@ -33,10 +40,27 @@ def lose(x: int) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
+MANY = range(10_000)
+"""More than this process has done when another one has started, however slow that is."""
+
+
+def until_shared(jobs: int) -> list[tuple[int, int]]:
+    """Return the results up to the first hundred of another process."""
+    found: list[tuple[int, int]] = []
+    with closing(in_order(number_and_place, MANY, jobs)) as results:
+        for result in results:
+            found.append(result)
+            if sum(place != os.getpid() for _, place in found) == 100:
+                break
+    return found
+
+
 @pytest.mark.slow
 def test_results_come_in_the_order_of_the_work() -> None:
-    assert list(in_order(double, range(40), 2)) == list(range(0, 80, 2))
-    assert list(in_order(double, [], 2)) == []
+    numbers, places = zip(*until_shared(3), strict=True)
+    assert numbers == tuple(range(len(numbers)))
+    assert len(set(places)) == 3
+    assert list(in_order(number_and_place, [], 2)) == []
 
 
 @pytest.mark.slow
@@ -46,19 +70,19 @@ def test_results_find_no_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -
     folder = nullcontext(str(tmp_path))
     monkeypatch.setattr("lagrange_cli.sweeps.jobs.TemporaryDirectory", lambda **_: folder)
     with pytest.raises(CannotWriteError, match="Is a directory"):
-        list(in_order(double, range(1000), 2))
+        list(in_order(number_and_place, MANY, 2))
 
 
 @pytest.mark.slow
 def test_an_error_of_the_work_is_raised() -> None:
     with pytest.raises(LagtopError, match="too large"):
-        list(in_order(double, [3, 1000, 4], 2))
+        list(in_order(refuse, MANY, 2))
 
 
 @pytest.mark.slow
 def test_a_lost_process_is_told() -> None:
     with pytest.raises(UnavailableError, match="was lost"):
-        list(in_order(lose, range(1000), 2))
+        list(in_order(lose, MANY, 2))
 
 
 def test_jobs() -> None:
@@ -79,30 +103,47 @@ def test_jobs_need_something_to_share(lagtop: Lagtop) -> None:
     assert_one_line(refused, 2, "--jobs and --dask exclude each other")
 
 
-TOPS = "id,r0,theta0_deg\n" + "".join(f"{i},{20 + i},{i % 190}\n" for i in range(300))
+def tops(count: int) -> str:
+    """Return a file of tops whose last one has an error."""
+    rows = (f"{i},{20 + i},{i % 180 if i + 1 < count else 200}\n" for i in range(count))
+    return "id,r0,theta0_deg\n" + "".join(rows)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [
-        ["sweep", "--r0", "1:100:20000"],
+        ["sweep", "--r0", "1:100:40000"],
         ["sweep", "tops.csv", "--keys", "T_nutation", "--fail-fast"],
-        ["table", "--tops", "tops.csv", "--n", "3"],
-        ["table", "--tops", "tops.csv", "--times", "times.txt", "--format", "json"],
-        ["stability", "--samples", "1", "--strata", "fast,slow", "--format", "csv"],
+        ["table", "--tops", "few.csv", "--n", "20000"],
+        ["table", "--tops", "few.csv", "--times", "times.txt", "--format", "json"],
+        ["stability", "--samples", "2", "--strata", "fast,slow", "--format", "csv"],
     ],
 )
-def test_bytes_are_those_of_one_process(options: Sequence[str], tmp_path: Path) -> None:
-    (tmp_path / "tops.csv").write_text(TOPS)
-    (tmp_path / "times.txt").write_text("0\n0.5\n")
-    alone, shared = (
-        process(*options, "--jobs", jobs, check=False, cwd=tmp_path) for jobs in ("1", "2")
-    )
-    assert (shared.returncode, shared.stdout) == (alone.returncode, alone.stdout)
+def test_bytes_are_those_of_one_process(
+    options: Sequence[str], tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("lagrange_cli.sweeps.jobs.ProcessPoolExecutor", Started)
+    Path("tops.csv").write_text(tops(9000))
+    Path("few.csv").write_text(tops(12))
+    Path("times.txt").write_text("0.5\n" * 20_000)
+    alone, shared = (lagtop(*options, "--jobs", jobs) for jobs in (1, 2))
+    assert (shared.exit_code, shared.stdout_bytes) == (alone.exit_code, alone.stdout_bytes)
     assert len(shared.stdout) > 10
     if options[0] != "stability":  # which says on standard error how fast the machine is
         assert shared.stderr == alone.stderr
+
+
+class Started(ProcessPoolExecutor):
+    """Processes that have started when the first of the work is done: they get the next items."""
+
+    def submit(self, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Hand out work, and wait for the first of it."""
+        future = super().submit(*args, **kwargs)
+        if args[0] is _start_work:
+            future.result()
+        return future
 
 
 @pytest.mark.slow
