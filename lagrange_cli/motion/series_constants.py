@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
 from ..arithmetic.numbers import R
 from ..arithmetic.points import MAX_PERIODS
+from ..arithmetic.protocol import Value
 from ..elliptic.carlson import carlson_rf
 from .theta_series import (
     Coefficients,
@@ -86,6 +87,35 @@ def direction(motion: Nutating[R] | Separatrix[R]) -> int:
     return -1 if motion.state.theta_rate < 0 else 1
 
 
+class SeriesFromStart(NamedTuple):
+    """The theta series of a motion, counted from the turning point that is nearest to its start."""
+
+    series: Series
+    frames: list[Frame]
+    """The series about that turning point and about the other one."""
+    first_is_upper: bool
+    """Whether that turning point is u1."""
+    offset: Value
+    """Steps, each of them half a period, from there to the start: at most 1/2 either way."""
+    starts: tuple[Value, Value]
+    """The arguments of X and Y at the start."""
+
+
+def series_from_start(ar: Any, c: ThetaConstants) -> SeriesFromStart:
+    """Return the series that some constants have, counted from next to the start."""
+    series = theta_series(ar, c)
+    nearest = ar.nint(c.offset * 2)
+    offset = c.offset * 2 - nearest
+    frames = [series.frames[(nearest + i) % 2] for i in range(2)]
+    _, x_start, _, y_start = evaluate(ar, series, frames[0], offset, c.rises)
+    return SeriesFromStart(series, frames, nearest % 2 == 0, offset, (x_start, y_start))
+
+
+def greatest_argument(ar: Any, series: Series) -> Any:
+    """Return what s, sin^2 or sinh^2, is at most where a step ends, half of `scale` from 0."""
+    return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
+
+
 class Swing(NamedTuple, Generic[R]):
     """The separatrix by its lowest point."""
 
@@ -121,22 +151,20 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     ar: Any = motion.ar
     with ar.working():
         c = theta_constants(motion, periods_since_top(motion), direction(motion), rates=True)
-        series = theta_series(ar, c)
-        nearest = ar.nint(c.offset * 2)
-        offset = c.offset * 2 - nearest
-        frames = [series.frames[(nearest + i) % 2] for i in range(2)]
+        found = series_from_start(ar, c)
+        series = found.series
         return ThetaSampler(
             steps_per_time=pair(2 / c.period),
-            offset=float(offset),
+            offset=float(found.offset),
             max_time=float(int(MAX_PERIODS) * c.period),
             scale=float(series.scale),
             hyperbolic=series.hyperbolic,
-            frames=[_rounded(ar, frame, series) for frame in frames],
+            frames=[_rounded(ar, frame, series) for frame in found.frames],
             growths=growths(
                 ar,
                 rates=(motion.mean_spin_rate, motion.mean_precession_rate),
                 slopes=(series.spin_slope, series.precession_slope),
-                starts=evaluate(ar, series, frames[0], offset, c.rises)[1::2],
+                starts=found.starts,
             ),
         )
 
@@ -183,9 +211,7 @@ def _reach(rate: Decimal) -> float:
 
 def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
     """Return the frame in doubles, without the coefficients that are too small to matter."""
-    # sin^2 and sinh^2 are at most this where a step ends, half of `scale` from its middle
-    greatest = ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
-
+    greatest = greatest_argument(ar, series)
     # X and Y may have any size in common: one that keeps the smallest and the largest in doubles
     parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
     size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.double_double import reduce_phase
 from ..arithmetic.duals import Dual
 from ..arithmetic.points import MAX_PERIODS
@@ -21,13 +20,19 @@ from ..arithmetic.sums_of_doubles import Pair, pair
 from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
 from ..elliptic.carlson import carlson_rf
-from ..elliptic.jacobi import jacobi
-from ..elliptic.modulus import Modulus
 from .attitude import Growths, growths
 from .kinds import Nutating
 from .neighbourhood import PARAMETERS
-from .series_constants import needed, theta_constants
-from .theta_series import Coefficients, Component, evaluate, theta_series
+from .rates_about_means import RatesAboutMeans
+from .series_constants import (
+    SeriesFromStart,
+    direction,
+    greatest_argument,
+    needed,
+    series_from_start,
+    theta_constants,
+)
+from .theta_series import Coefficients, Component
 
 _NEGLIGIBLE = Decimal(2) ** -100
 
@@ -61,40 +66,26 @@ class SeriesDerivatives:
         """Take the constants from a motion, the mean rates from `means`."""
         ar: Any = motion.ar
         with ar.working():
-            constants = theta_constants(motion, smooth_offset(motion), _rises(motion), rates=True)
-            series = theta_series(ar, constants)
-            nearest = ar.nint(constants.offset * 2)
-            offset = constants.offset * 2 - nearest
-            frames = [series.frames[(nearest + i) % 2] for i in range(2)]
-            x_start, y_start = evaluate(ar, series, frames[0], offset, constants.rises)[1::2]
+            constants = theta_constants(
+                motion, smooth_offset(motion), direction(motion), rates=True
+            )
+            found = series_from_start(ar, constants)
+            series, (x_start, y_start) = found.series, found.starts
+            self.hyperbolic = series.hyperbolic
+            self.frames, self.rates_of_tilt = _in_doubles(ar, found)
+            self.about_means = RatesAboutMeans.of(
+                motion, means, first_is_upper=found.first_is_upper
+            )
             speed = 2 / constants.period
             rates = means.mean_spin_rate, means.mean_precession_rate
             slopes = series.spin_slope, series.precession_slope
-            greatest = ar.exp(series.scale).value / 4 if series.hyperbolic else Decimal("0.5")
-            leading = max(abs(c.real[0].value) for frame in frames for c in frame[:2])
-            size = Decimal(2) ** math.frexp(float(leading))[1]
-            self.rates_of_tilt = [
-                np.array([float(x.value / size**4) for x in _kept(frame.rate, greatest)])
-                for frame in frames
-            ]
-            self.swing = _Swing.of(motion, means, first_is_upper=nearest % 2 == 0)
-
-            def component(c: Component) -> Rows:
-                real, imag = (
-                    _rows([x / Dual(size) for x in _kept(part, greatest)])
-                    for part in (c.real, c.imag)
-                )
-                return Rows(real, imag, c.even)
-
-            self.hyperbolic = series.hyperbolic
-            self.frames = [(component(frame.x), component(frame.y)) for frame in frames]
             self.speed: Pair = pair(speed.value)
-            self.speeds, self.offsets, self.scales = map(_row, (speed, offset, series.scale))
+            self.speeds, self.offsets, self.scales = map(_row, (speed, found.offset, series.scale))
             self.rates, self.slopes = (np.array([_row(x) for x in y]) for y in (rates, slopes))
             starts = x_start - y_start, x_start + y_start
             self.starts = np.array(
                 [
-                    _row(start + offset * Dual(_decimal(slope)))  # the slope of the phase at t = 0
+                    _row(start + found.offset * Dual(_decimal(slope)))  # of the phase at t = 0
                     for start, slope in zip(starts, slopes, strict=True)
                 ]
             )
@@ -150,8 +141,8 @@ class SeriesDerivatives:
         rate = np.where(odd, *(_value(part, S * S) for part in self.rates_of_tilt[::-1])) * S * C
         norm = x2 + y2
         theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
-        swing = self.swing.rates(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
-        return [gain / self.speed.high for gain in (theta, *swing)]
+        spinning = self.about_means.at(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
+        return [gain / self.speed.high for gain in (theta, *spinning)]
 
     def _polar(self, which: int, step: Array, phase: Array) -> Polar:
         """Return X (0) or Y (1) with its derivatives at a fixed phase."""
@@ -179,58 +170,6 @@ class SeriesDerivatives:
         )
 
 
-class _Swing(NamedTuple):
-    """The rates of spin and precession about their means, by how far u is from u1 and u2."""
-
-    modulus: Modulus
-    quarter: float
-    """K."""
-    south: float
-    """(beta + b)/2 (u1 - u2)/(1 + u1), over 1 + u the part of the precession rate beyond u1."""
-    north: float
-    south_at_u1: float
-    """(beta + b)/2/(1 + u1) less the mean of (beta + b)/2/(1 + u)."""
-    north_at_u2: float
-    first_is_upper: bool
-    """Whether the turning point of the even steps is u1."""
-
-    @classmethod
-    def of(cls, motion: Nutating[Dual], means: Nutating[Dual], *, first_is_upper: bool) -> _Swing:
-        """Return the constants of a motion, rounded from many digits."""
-        gaps = motion.gaps
-        plus, minus = gaps.beta_plus_b.value / 2, gaps.beta_minus_b.value / 2
-        drift = means.mean_spin_rate.value - motion.state.pole_drift.value
-        precession, width = means.mean_precession_rate.value, gaps.u1_u2.value
-        south, north = plus / gaps.below_u1.value, minus / gaps.above_u2.value
-        return cls(
-            Modulus(float(motion.k.value), float(motion.k_prime.value)),
-            quarter=float(motion.K.value),
-            south=float(south * width),
-            north=float(north * width),
-            south_at_u1=float(south - (precession + drift) / 2),
-            north_at_u2=float(north - (precession - drift) / 2),
-            first_is_upper=first_is_upper,
-        )
-
-    def rates(
-        self, phase: Array, odd: Array, below: Array, above: Array
-    ) -> tuple[Array, Array, Array]:
-        """Return both rates less their means, and the size of the parts of which both are sums.
-
-        `below` and `above` are 1 + u and 1 - u.
-        """
-        _, sn, cn, dn = jacobi(ARRAYS, phase * self.quarter, self.modulus)
-        away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 the rest
-        mirrored = (self.modulus.k_prime * sn / dn) ** 2
-        upper = odd != self.first_is_upper
-        under_u1 = np.where(upper, mirrored, cn * cn)
-        over_u2 = np.where(upper, (cn / dn) ** 2, away)
-        south, north = self.south * under_u1 / below, self.north * over_u2 / above
-        size = abs(south) + abs(north) + abs(self.south_at_u1) + abs(self.north_at_u2)
-        south, north = south + self.south_at_u1, north + self.north_at_u2
-        return south - north, south + north, size
-
-
 def smooth_offset(motion: Nutating[Dual]) -> Dual:
     """Return w/2K for the argument w of (4,22)-(4,24) at t = 0, counted from a passage of u1.
 
@@ -249,8 +188,25 @@ def smooth_offset(motion: Nutating[Dual]) -> Dual:
     return one / 2 - sine * integral / (2 * motion.K)
 
 
-def _rises(motion: Nutating[Dual]) -> int:
-    return -1 if motion.state.theta_rate < 0 else 1
+def _in_doubles(ar: Any, found: SeriesFromStart) -> tuple[list[tuple[Rows, Rows]], list[Array]]:
+    """Return X and Y, and the rate of the tilt, about both turning points as rows of doubles.
+
+    Coefficients that are too small to matter are left out.
+    """
+    greatest = greatest_argument(ar, found.series).value
+    leading = max(abs(c.real[0].value) for frame in found.frames for c in frame[:2])
+    size = Decimal(2) ** math.frexp(float(leading))[1]
+
+    def component(c: Component) -> Rows:
+        parts = (_kept(part, greatest) for part in (c.real, c.imag))
+        real, imag = (_rows([x / Dual(size) for x in part]) for part in parts)
+        return Rows(real, imag, c.even)
+
+    def rate(coefficients: Coefficients) -> Array:
+        return np.array([float(x.value / size**4) for x in _kept(coefficients, greatest)])
+
+    frames = [(component(frame.x), component(frame.y)) for frame in found.frames]
+    return frames, [rate(frame.rate) for frame in found.frames]
 
 
 def _component(component: Rows, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
