@@ -21,6 +21,7 @@ from threading import Thread
 from typing import NamedTuple, TypeVar
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..output.signals import terminated_by
 
 MOST_JOBS = 1024
 _HANDED_OUT = 3
@@ -54,7 +55,11 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
     if jobs == 1:
         yield from map(work, items)
         return
-    with TemporaryDirectory(prefix="lagtop-") as folder, _threads_that_wait_less():
+    with (
+        terminated_by(["SIGTERM", "SIGHUP"]),
+        TemporaryDirectory(prefix="lagtop-") as folder,
+        _threads_that_wait_less(),
+    ):
         pool = ProcessPoolExecutor(
             jobs - 1, mp_context=multiprocessing.get_context("spawn"), initializer=_start_worker
         )

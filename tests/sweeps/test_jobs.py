@@ -147,11 +147,18 @@ class Started(ProcessPoolExecutor):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("to_file", [True, False])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_a_signal_ends_all_processes(number: signal.Signals, tmp_path: Path) -> None:
-    command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "2", "-o", str(tmp_path / "o.csv")]
-    running = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True)
-    while not any(path.stat().st_size for path in tmp_path.iterdir()):  # rows have come
+def test_a_signal_ends_all_processes(
+    number: signal.Signals, to_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    output = ["-o", str(tmp_path / "o.csv")] if to_file else []
+    command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "2", *output]
+    running = subprocess.Popen(
+        command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, start_new_session=True
+    )
+    while not any(path.stat().st_size for path in tmp_path.glob("lagtop-*/*")):  # work is shared
         assert running.poll() is None
         time.sleep(0.01)
     running.send_signal(number)
