@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from ..inputs.names import ANGLES
 from ..output.findings import Field, short
 from .method import Method
 
@@ -40,7 +41,6 @@ class MethodRow(NamedTuple):
     remark: str | None = None
 
 
-ANGLES = ("theta", "phi", "psi")
 FIELDS = [
     Field("method", "method", is_text=True, names_the_row=True),
     Field("setting", "setting", names_the_row=True),

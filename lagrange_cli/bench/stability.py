@@ -8,7 +8,7 @@ from contextlib import closing
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ..inputs.names import check_names
+from ..inputs.names import ANGLES, check_names
 from ..output.findings import Field, Findings, short
 from ..sweeps.jobs import in_order
 from .battery import (
@@ -63,7 +63,7 @@ PROVED = (
 FIELDS = [
     Field("stratum", "stratum", is_text=True, names_the_row=True),
     Field("scenes", "scenes"),
-    *(Field(f"{angle}_units", angle, _hundredths) for angle in ("theta", "phi", "psi")),
+    *(Field(f"{angle}_units", angle, _hundredths) for angle in ANGLES),
     Field("quaternion_units", "quat.", _hundredths),
     Field("key_ulps", "keys", _hundredths),
     Field("worst_key"),

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
-from ..inputs.names import check_names
+from ..inputs.names import ANGLES, check_names
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 from ..output.findings import Findings
 from .closed_forms import CLOSED_FORMS
 from .engines.families import FAMILIES, engines
-from .front import ANGLES, FIELDS, NOT_APPLICABLE, MethodRow, conclusions, is_out, with_front
+from .front import FIELDS, NOT_APPLICABLE, MethodRow, conclusions, is_out, with_front
 from .integrators import STEPS_PER_SECOND, integrators
 from .machine import common_conditions, warm_allocator
 from .method import (

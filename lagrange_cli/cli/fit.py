@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..arithmetic.angles import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain
@@ -200,7 +200,7 @@ def _known(
 def _in_radians(
     sigma: float | dict[str, float] | None, radians: bool
 ) -> float | dict[str, float] | None:
-    unit = 1.0 if radians else math.pi / 180
+    unit = unit_in_radians(radians=radians)
     if isinstance(sigma, dict):
         return {name: value * unit for name, value in sigma.items()}
     return None if sigma is None else sigma * unit

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from ..arithmetic.angles import unit_in_radians
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import check_names
@@ -218,7 +219,7 @@ def _eye(text: str | None, radians: bool) -> tuple[float, float] | None:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
     if text is None:
         return None
-    unit = 1.0 if radians else math.pi / 180
+    unit = unit_in_radians(radians=radians)
     try:
         azimuth, elevation = (float(parse_number(part)) * unit for part in text.split(","))
     except (LagtopError, ValueError):

@@ -13,7 +13,7 @@ from functools import reduce
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.blocks import blockwise, in_arithmetic
+from ..arithmetic.formulas import blockwise, in_arithmetic
 from ..arithmetic.numbers import R, absolute, root_of_epsilon
 
 if TYPE_CHECKING:

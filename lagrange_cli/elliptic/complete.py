@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.numbers import R, absolute, root_of_epsilon
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ An imaginary modulus takes those of the real part a quarter of a period further 
 
 from __future__ import annotations
 
-from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .any_modulus import AnyModulus, Kind
 from .complete import complete_k

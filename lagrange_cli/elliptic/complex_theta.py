@@ -9,8 +9,8 @@ from cell to cell are exponentials of polynomials, which are written out.
 
 from __future__ import annotations
 
-from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.double_double import DoubleDouble
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic
 from ..errors import LagtopError
 from .any_modulus import Kind

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.double_double import DoubleDouble
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .any_modulus import Kind

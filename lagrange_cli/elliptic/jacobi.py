@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import complete_k
 from .modulus import Modulus

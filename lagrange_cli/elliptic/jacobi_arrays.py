@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import blocks, polynomial
+from ..arithmetic.blocks import blocks
 from ..arithmetic.double_double import reduce_phase
+from ..arithmetic.formulas import polynomial
 from ..arithmetic.protocol import Value
 from ..arithmetic.sums_of_doubles import Pair
 from ..arithmetic.types import Array

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.numbers import R
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.formulas import in_arithmetic
 from ..errors import LagtopError
 from .complete import complete_e, complete_k, nome
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..arithmetic.blocks import in_arithmetic
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..errors import LagtopError

@@ -15,8 +15,8 @@ from __future__ import annotations
 import math
 from typing import Any, Protocol
 
-from ..arithmetic.blocks import in_arithmetic
 from ..arithmetic.doubles import DOUBLES
+from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import FunctionArithmetic, Value

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from ..arithmetic.angles import unit_in_radians
 from ..errors import AbsentError, LagtopError
 from ..inputs.top import Top
 from ..motion.record import unit_name
@@ -28,7 +29,7 @@ def invert(
     LagtopError, AbsentError where no top moves so.
     """
     numbers = _numbers(seen, radians)
-    unit = 1.0 if radians else math.pi / 180
+    unit = unit_in_radians(radians=radians)
     least, greatest, period, rate = (numbers[unit_name(key, radians=radians)] for key in _SEEN)
     nutation = Nutation(least * unit, greatest * unit, period).checked(radians=radians)
     known = known or {}

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import Number
+from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
 from .top import BODY, Top, from_example, one_of_each, overridden
@@ -134,7 +135,6 @@ def checked_double(key: str, value: Number) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        shown = repr(value)[:60]
-        raise LagtopError(f"{key} must be a real number, got {shown}", key) from None
+        raise LagtopError(f"{key} must be a real number, got {quoted(value)}", key) from None
     except OverflowError:
         raise LagtopError(f"{key} must be at most 1.8e308 in size", key) from None

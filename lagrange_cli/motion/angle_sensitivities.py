@@ -7,7 +7,6 @@ on the separatrix some do not exist, or are not computed: these are NaN.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import NamedTuple, Protocol
@@ -15,6 +14,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arithmetic.angles import unit_in_radians
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks
 from ..arithmetic.types import Array
@@ -103,7 +103,7 @@ class AngleDerivatives:
         """
         partials = Partials(scene)
         near, facts = partials.near, scene.facts
-        self.arc = 1.0 if scene.top.theta0_deg is None else math.pi / 180
+        self.arc = unit_in_radians(radians=scene.top.theta0_deg is None)
         kept = [i for i, name in enumerate(PARAMETERS) if name not in near.broken]
         every = list(range(len(PARAMETERS)))
         self.models: list[tuple[Model, list[int]]]

@@ -16,7 +16,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..arithmetic.blocks import polynomial
+from ..arithmetic.formulas import polynomial
 from ..arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
 from ..elliptic.complete import nome
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine

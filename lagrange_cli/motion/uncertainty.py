@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
-from ..arithmetic.angles import PER_RADIAN
+from ..arithmetic.angles import PER_RADIAN, unit_in_radians
 from ..inputs.top import Top
 from .record import TEXT_KEYS
 from .sensitivities import sensitivities
@@ -81,7 +81,7 @@ def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, float]]:
     """
     tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
     angle = float(top.theta0_rad or 0) if top.theta0_deg is None else math.radians(top.theta0_deg)
-    arc = 1.0 if top.theta0_deg is None else math.pi / 180
+    arc = unit_in_radians(radians=top.theta0_deg is None)
     m, s, psi_rate = float(top.m), float(top.s), float(top.psidot0)
     names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
     chain = {name: {name: 1.0} for name in names}

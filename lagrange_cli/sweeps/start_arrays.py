@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import ARRAYS, PAIRS
-from ..arithmetic.blocks import polynomial
 from ..arithmetic.double_double import DoubleDouble
+from ..arithmetic.formulas import polynomial
 from ..arithmetic.types import Array, Mask
 from ..motion.gaps import Gaps, State, gaps_from_start
 from ..motion.kinds import Nutating
