@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst
+from .command import ExamplesFirst, write_report
 from .given import solved
 from .options import (
     COUNT,
@@ -18,7 +18,6 @@ from .options import (
     exclude,
     output_options,
     scene_options,
-    write_report,
 )
 from .progress import with_steps
 

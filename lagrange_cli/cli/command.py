@@ -16,6 +16,7 @@ from ..output.terminal import has_colours, one_line, spelt, view_of
 
 if TYPE_CHECKING:
     from ..motion.quantity import Key
+    from ..output.findings import Findings
     from ..output.layouts import Layout, Line
 
 _COLOURS = {"Error": "red", "Warning": "yellow"}
@@ -32,6 +33,17 @@ def complain(line: str) -> None:
         line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
         click.echo(line, err=True)
+
+
+def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
+    """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
+    from ..output.write import write_findings
+
+    findings = write_findings(find, fmt, output)
+    if fmt == "csv":
+        for name, text in findings.conditions.items():
+            complain(f"{name}: {text}")
+    return findings
 
 
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:

@@ -12,7 +12,7 @@ import click
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst
+from .command import ExamplesFirst, write_report
 from .given import solved
 from .options import (
     FILE,
@@ -23,7 +23,6 @@ from .options import (
     exclude,
     input_options,
     output_options,
-    write_report,
 )
 from .progress import with_progress
 from .reading_options import reading_options

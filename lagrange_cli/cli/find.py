@@ -22,6 +22,7 @@ from .options import (
 from .progress import with_progress
 
 if TYPE_CHECKING:
+    from ..inputs.units import System
     from ..motion.solve import Motion
 
 
@@ -98,10 +99,10 @@ def command(
         raise LagtopError(f"find takes one scene, got {' '.join(scenes)}")
     inputs = by_key(options, radians=rad)
     if seen:
-        motions = _inverted(scenes, conditions, inputs, rad)
+        motions, system = _inverted(scenes, conditions, inputs, rad)
     else:
-        motions = _found(scenes, conditions, inputs, scan, rad)
-    _write(motions, chosen, rad, fmt, output)
+        motions, system = _found(scenes, conditions, inputs, scan, rad)
+    _write(motions, system, chosen, rad, fmt, output)
 
 
 def _found(
@@ -110,7 +111,7 @@ def _found(
     inputs: dict[str, Any],
     count: int | None,
     radians: bool,
-) -> list[Motion]:
+) -> tuple[list[Motion], System | None]:
     from ..fits.find import look
     from ..fits.search import search_of
 
@@ -120,7 +121,7 @@ def _found(
     say_missing(given)
     say_unused(given.stds)
     complain(f"{len(found.motions)} found; {found.looked}")
-    return found.motions
+    return found.motions, given.system
 
 
 def _watched(blocks: Iterable[Any]) -> Iterator[Any]:
@@ -131,7 +132,7 @@ def _watched(blocks: Iterable[Any]) -> Iterator[Any]:
 
 def _inverted(
     scenes: list[str], conditions: list[str], inputs: dict[str, Any], radians: bool
-) -> list[Motion]:
+) -> tuple[list[Motion], System | None]:
     from ..fits.body import INPUTS
     from ..fits.invert import invert
     from ..inputs.given import gather
@@ -144,13 +145,24 @@ def _inverted(
     found = gather(inputs, scenes[0] if scenes else None)
     given = {name: float(x) for name, x in found.inputs.items() if name in INPUTS}
     say_unused(name for name in found.stds if name in given)
-    return invert(conditions, radians=radians, known=given)
+    return invert(conditions, radians=radians, known=given), found.system
 
 
-def _write(motions: list[Motion], keys: list[str], radians: bool, fmt: str, output: str) -> None:
+def _write(
+    motions: list[Motion],
+    system: System | None,
+    keys: list[str],
+    radians: bool,
+    fmt: str,
+    output: str,
+) -> None:
     """Write the records as `lagtop sweep` does, a row for each motion."""
     from ..output.write import block_text, write_text_blocks
 
     records = [motion.record_in_range(radians=radians, keys=keys)[0] for motion in motions]
+    if system is not None:
+        for record in records:
+            if record.get("remark"):
+                record["remark"] = system.in_words(record["remark"])
     columns = [[record[key] for record in records] for key in keys]
     write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)

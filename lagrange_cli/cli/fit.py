@@ -11,7 +11,7 @@ import click
 from ..arithmetic.angles import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, complain
+from .command import ExamplesFirst, complain, write_report
 from .given import say_unused
 from .options import (
     FILE,
@@ -22,7 +22,6 @@ from .options import (
     exclude,
     input_options,
     output_options,
-    write_report,
 )
 from .progress import with_steps
 from .reading_options import reading_options

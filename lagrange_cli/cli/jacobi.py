@@ -62,7 +62,7 @@ MULTIPLES = Parsed("range", _parse_multiples)
     examples="""
         lagtop jacobi --k 0.8
         lagtop jacobi --k-prime 1e-9 --u 0.5 --u 20
-        lagtop jacobi --modular-angle 45 --u-range 0:10:101 --format csv -o sn.csv
+        lagtop jacobi --modular-angle 45 --u-range 0:10:101 -o sn.csv
         lagtop jacobi --k 0.8 --u 0.3 --theta --pi --param 0.7i
         lagtop jacobi --nome 0.1 --u 1 --digits 40
         lagtop jacobi --k 0.8 --u-range 0:4K:5

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..arithmetic.text import is_decimal, parse_number
+from ..arithmetic.text import is_decimal, parse_number, quoted
 from ..errors import LagtopError
 from .command import complain
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..inputs.given import Given
     from ..motion.solve import Motion
-    from ..output.findings import Findings
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -159,17 +158,6 @@ def on_command_line(name: str) -> bool:
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
 
 
-def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
-    """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
-    from ..output.write import write_findings
-
-    findings = write_findings(find, fmt, output)
-    if fmt == "csv":
-        for name, text in findings.conditions.items():
-            complain(f"{name}: {text}")
-    return findings
-
-
 FILE = FileName()
 NUMBER = Parsed("number", parse_number)
 INPUT = TIME = Parsed("number", _parse_input)
@@ -273,8 +261,21 @@ def certify_option(more: str) -> Callable[[F], F]:
     return click.option("--certify", is_flag=True, callback=check, help=text)
 
 
+ENDINGS = ("csv", "json", "ndjson", "npy", "parquet")
+"""The ends of names of files that tell a format."""
+
+
 def output_options(*formats: str) -> Callable[[F], F]:
-    """Add the options --format, whose default is the first one, and --output."""
+    """Add the options --output and --format, whose default is as the file ends, or the first."""
+
+    def chosen(ctx: click.Context, _: click.Parameter, fmt: str | None) -> str:
+        path = ctx.params["output"]
+        dot, ending = path.rpartition(".")[1:]
+        wanted = fmt or (ending if dot and ending in ENDINGS else formats[0])
+        if wanted not in formats:
+            known = f"{ctx.command.name} writes {', '.join(formats)}"
+            raise LagtopError(f"{known} and no {ending}, got --output {quoted(path)}")
+        return wanted
 
     def decorate(command: F) -> F:
         command = click.option(
@@ -283,11 +284,15 @@ def output_options(*formats: str) -> Callable[[F], F]:
             type=FILE,
             default="-",
             metavar="FILE|-",
+            is_eager=True,  # the format looks at it
             help="Where to write; FILE is replaced when all is written.",
         )(command)
-        choice = click.Choice(formats)
         return click.option(
-            "--format", "fmt", type=choice, default=formats[0], show_default=True, help="Output."
+            "--format",
+            "fmt",
+            type=click.Choice(formats),
+            callback=chosen,
+            help=f"Output.  [default: as FILE ends, or {formats[0]}]",
         )(command)
 
     return decorate

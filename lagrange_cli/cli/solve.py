@@ -17,6 +17,7 @@ from .command import (
     top_layout,
     units_of,
     write_keys,
+    write_report,
 )
 from .options import (
     COUNT,
@@ -32,7 +33,6 @@ from .options import (
     on_command_line,
     output_options,
     scene_argument,
-    write_report,
 )
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
         lagtop solve --m '1587(2)' --theta0 '30 +/- 1 %'
         lagtop solve --m '1587(2)' --theta0 '30(1)' --budget T_nutation
         lagtop solve --theta0 '30(1)' --samples 100000 --seed 1
-        lagtop solve --rad --theta0 0.05 --format csv -o solved.csv
+        lagtop solve --rad --theta0 0.05 -o solved.csv
     """,
 )
 @scene_argument

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst
+from .command import ExamplesFirst, write_report
 from .options import (
     COUNT,
     FILE,
@@ -16,7 +16,6 @@ from .options import (
     exclude,
     jobs_option,
     output_options,
-    write_report,
 )
 from .progress import with_steps
 
@@ -44,7 +43,7 @@ class _ListingStrata(ExamplesFirst):
     examples="""
         lagtop stability
         lagtop stability --strata separatrix,thresholds --samples 50
-        lagtop stability --thorough --seed 7 --jobs auto --format csv -o battery.csv
+        lagtop stability --thorough --seed 7 --jobs auto -o battery.csv
         lagtop stability --plot stability.svg
     """,
 )

@@ -53,7 +53,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
         lagtop sweep --r0 10:200:1000 --theta0 5,10,30 > tops.csv
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
         lagtop sweep --r0 10:100:10 --m '1587(2)' --keys r0,T_nutation
-        lagtop sweep tops.csv --format ndjson -o solved.ndjson
+        lagtop sweep tops.csv -o solved.ndjson
         jq -c .top log.json | lagtop sweep - --keys T_nutation,error
         lagtop sweep --r0 10:200:1e5 --jobs auto -o solved.csv
         lagtop sweep --r0 10:200:1e5 --parts out

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.angles import PER_RADIAN
 from ..arithmetic.text import NumberText
@@ -21,7 +22,7 @@ from .progress import with_progress
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.solve import Motion
-    from ..sweeps.monte_carlo import Propagated
+    from ..sweeps.monte_carlo import Propagated, Spread
 
 _LONG = 300_000
 """Samples that are known to take longer than a moment."""
@@ -83,8 +84,26 @@ def shown_with(record: Mapping[str, Any], stds: Mapping[str, float | None]) -> d
     return shown
 
 
+class _BudgetLine(NamedTuple):
+    """A line of a budget: an input, or last of all the result, as in EA-4/02."""
+
+    quantity: str
+    value: float
+    std: float
+    sensitivity: float | None = None
+    sensitivity_unit: str | None = None
+    contribution: float | None = None
+    elasticity: float | None = None
+    share: float | None = None
+
+    @property
+    def noise(self) -> float:
+        """What the digits of the value are measured by."""
+        return self.std
+
+
 def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
-    """Return the budget of a key: what each uncertain input contributes.
+    """Return the budget of a key: what each uncertain input contributes, and the key itself.
 
     Raises AbsentError where the motion has no such key, or it has no derivative.
     """
@@ -99,11 +118,20 @@ def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
     units = _units(found, [key, *given])
     scale = 1 / PER_RADIAN if key != name else 1.0
     lines = [
-        line._replace(sensitivity=line.sensitivity * scale, contribution=line.contribution * scale)
+        _BudgetLine(
+            line.input,
+            line.value,
+            line.std,
+            line.sensitivity * scale,
+            _over(units.get(key, "1"), units.get(line.input, "1")),
+            line.contribution * scale,
+            line.elasticity,
+            line.share,
+        )
         for line in uncertain.budget(name, value, given)
     ]
-    result = uncertain_text(value * scale, whole * scale)
-    shown = f"{key} = {result} {units.get(key, '')}".rstrip()
+    lines.append(_BudgetLine(key, value * scale, whole * scale))
+    shown = f"{key} = {uncertain_text(value * scale, whole * scale)} {units.get(key, '')}".rstrip()
     conclusions = [f"{shown}, to first order; inputs are taken as independent."]
     return Findings({"key": key}, _budget_fields(units, key), lines, conclusions, units)
 
@@ -118,6 +146,13 @@ def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
     return {key: units[one] for key, one in solved.items() if one in units}
 
 
+def _over(above: str, below: str) -> str:
+    """Return the unit of a derivative."""
+    if above == below:
+        return "1"
+    return "/".join(f"({unit})" if set(unit) & set(" /") else unit for unit in (above, below))
+
+
 def _figures(x: float) -> str:
     return f"{x:.4g}"
 
@@ -128,11 +163,13 @@ def _names(key: str, units: Mapping[str, str]) -> Field:
 
 
 def _budget_fields(units: Mapping[str, str], key: str) -> list[Field]:
+    per = [Field("sensitivity_unit", "its unit", is_text=True)] if units else []
     return [
-        _names("input", units),
-        Field("value", "value", _figures),
+        _names("quantity", units),
+        _Measured("value", "value"),
         Field("std", "uncertainty", _figures),
         Field("sensitivity", "sensitivity", _figures),
+        *per,
         Field("contribution", with_unit("contribution", units.get(key)), _figures),
         Field("elasticity", "elasticity", _figures),
         Field("share", "share", lambda x: f"{100 * x:.1f} %"),
@@ -190,24 +227,40 @@ def _report(
     shares = [f"{name} {100 * share:.3g} %" for name, share in outcome.regimes.items()]
     conditions["regimes"] = ", ".join(shares)
     conclusions = []
-    for verdict, words in ((FAILS, "does not hold"), (OPEN, "is left open by so few samples")):
+    for verdict, said in ((FAILS, "does not hold"), (OPEN, "is left open by so few samples")):
         if keys := [spread.key for spread in outcome.spreads if spread.first_order == verdict]:
-            conclusions.append(f"First order {words} for {', '.join(keys)}.")
+            conclusions.append(f"First order {said} for {', '.join(keys)}.")
     if not conclusions:
         conclusions.append("First order holds for every number.")
-    fields = [_names("key", units), *_SAMPLE_FIELDS]
+    numbers = [_Measured(key, heading) for key, heading in _SAMPLED.items()]
+    holds = Field("first_order", "first order", is_text=True)
+    fields = [_names("key", units), *numbers, holds]
     return Findings(conditions, fields, outcome.spreads, conclusions, units)
 
 
-_SAMPLE_FIELDS = [
-    Field("value", "value", _figures),
-    Field("first_order_std", "first-order std", _figures),
-    Field("sampled_mean", "sampled mean", _figures),
-    Field("sampled_std", "sampled std", _figures),
-    Field("q2_5", "2.5 %", _figures),
-    Field("q16", "16 %", _figures),
-    Field("q50", "50 %", _figures),
-    Field("q84", "84 %", _figures),
-    Field("q97_5", "97.5 %", _figures),
-    Field("first_order", "first order", is_text=True),
-]
+_SAMPLED = {
+    "value": "value",
+    "first_order_std": "first-order std",
+    "sampled_mean": "sampled mean",
+    "sampled_std": "sampled std",
+    "q2_5": "2.5 %",
+    "q16": "16 %",
+    "q50": "50 %",
+    "q84": "84 %",
+    "q97_5": "97.5 %",
+}
+"""The numbers of a report on random samples, and their headings."""
+
+
+class _Measured(Field):
+    """A number that is shown to one digit below the first one of the noise of its row."""
+
+    def cell(self, row: Spread | _BudgetLine) -> str:
+        """Return the text in a table: all such numbers of a row end at the same place."""
+        value = getattr(row, self.key)
+        if value is None:
+            return ""
+        if not (row.noise > 0 and value):
+            return _figures(value)
+        digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(row.noise)) + 2
+        return f"{value:#.{min(max(digits, 1), 17)}g}".removesuffix(".")

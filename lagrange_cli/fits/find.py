@@ -104,8 +104,8 @@ def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], 
             last = i + int(np.argmin([*near[i:], False])) - 1
             name = next(iter(search.spans))
             raise LagtopError(
-                f"every {name} from {x[i]:g} to {x[last]:g} has {_wanted(search)}, which does not "
-                f"tell {name}: take another condition, or another unknown"
+                f"every {name} from {x[i]:g} to {x[last]:g} has {search.wanted_text()}, which does "
+                f"not tell {name}: take another condition, or another unknown"
             )
 
 
@@ -122,10 +122,10 @@ def _looked(search: Search, grid: Scan) -> str:
 def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
     """Return why nothing was found: what is nearest, or what is broken by all solutions."""
     if broken is not None:
-        return f"of {count} with {_wanted(search)} none has {broken}"
+        return f"of {count} with {search.wanted_text()} none has {broken}"
     known = np.isfinite(grid.numbers).all(axis=1)
     if not known.any():
-        return f"no top of the scan has {_wanted(search)}{_error(search, grid)}"
+        return f"no top of the scan has {search.wanted_text()}{_error(search, grid)}"
     size = np.maximum(np.abs(search.wanted), np.ptp(grid.numbers[known], axis=0))
     off = np.abs(grid.numbers - search.wanted) / np.where(size > 0, size, 1.0)
     nearest = int(np.nanargmin(np.where(known, np.linalg.norm(off, axis=1), np.nan)))
@@ -139,7 +139,7 @@ def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
         f"{name} = {value:.6g}"
         for name, value in zip(search.spans, grid.values[nearest], strict=True)
     )
-    return f"nearest to {_wanted(search)} is {reached} at {where}"
+    return f"nearest to {search.wanted_text()} is {reached} at {where}"
 
 
 def _error(search: Search, grid: Scan) -> str:
@@ -155,8 +155,3 @@ def _short(value: float, wanted: float) -> str:
     """Return a number in six digits, or in all where six do not tell it from the wanted one."""
     text = f"{value:.6g}"
     return double_text(value) if text == f"{wanted:.6g}" else text
-
-
-def _wanted(search: Search) -> str:
-    numbers = search.conditions.numbers.items()
-    return ", ".join(f"{key}={double_text(value).removesuffix('.0')}" for key, value in numbers)

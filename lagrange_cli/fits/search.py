@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.text import double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given, gather
@@ -37,6 +38,11 @@ class Search(NamedTuple):
     def wanted(self) -> Array:
         """The numbers that the record shall have."""
         return np.array(list(self.conditions.numbers.values()))
+
+    def wanted_text(self) -> str:
+        """Return the conditions that name numbers, as they are written."""
+        numbers = self.conditions.numbers.items()
+        return ", ".join(f"{key}={double_text(x).removesuffix('.0')}" for key, x in numbers)
 
     @property
     def ends(self) -> Array:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arithmetic.types import Array
+from ..errors import LagtopError
 from .search import Scan, Search
 from .slopes import number_slopes
 
@@ -15,13 +16,22 @@ _MOST_STARTS = 16
 _NEWTON_STEPS = 6
 _APART = 1e-9
 """Solutions that differ by less, over the range, are one."""
+_PLATEAU = 3
+"""Solutions that are no single points, from which on there are more than can be listed."""
+_STILL = 1e-8
+"""Parts of the steepest slope that are none: what differences may be off, and more."""
 _BITS = 4.0
 """How many last bits of the unknowns, and of the number itself, a number may be off."""
 
 
 def solutions(search: Search, grid: Scan) -> list[list[float]]:
-    """Return the values of the unknowns where all numbers are as wanted."""
+    """Return the values of the unknowns where all numbers are as wanted.
+
+    Raises LagtopError where these are not single points: where the numbers stay as they are along
+    some direction at as many of them as a plateau takes.
+    """
     found: list[Array] = []
+    loose: list[list[str]] = []
     width = search.ends[1] - search.ends[0]
     for start in _starts(search, grid):
         point = _settled(search, _descended(search, grid, start))
@@ -29,7 +39,25 @@ def solutions(search: Search, grid: Scan) -> list[list[float]]:
             np.max(np.abs(point - other) / width) > _APART for other in found
         ):
             found.append(point)
+            loose += [names] if (names := _loose(search, grid, point)) else []
+            if len(loose) == _PLATEAU:
+                raise LagtopError(
+                    f"the conditions leave {' and '.join(loose[0])} open: many have "
+                    f"{search.wanted_text()}; take another condition, or another unknown"
+                )
     return sorted(point.tolist() for point in found)
+
+
+def _loose(search: Search, grid: Scan, point: Array) -> list[str]:
+    """Return the unknowns that can change together while the numbers stay, to first order."""
+    width = search.ends[1] - search.ends[0]
+    slopes = number_slopes(search, point) * width / _sizes(search, grid)[:, np.newaxis]
+    if not np.isfinite(slopes).all():
+        return []
+    _, sizes, directions = np.linalg.svd(slopes)
+    still = directions[sizes <= _STILL * sizes[0]]
+    moving = np.abs(still).max(axis=0, initial=0.0) > _STILL
+    return [name for name, moves in zip(search.spans, moving.tolist(), strict=True) if moves]
 
 
 def _sizes(search: Search, grid: Scan) -> Array:

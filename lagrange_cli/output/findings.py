@@ -19,8 +19,9 @@ class Field(NamedTuple):
     names_the_row: bool = False
     """Whether every block of a folded table begins with this column."""
 
-    def cell(self, value: Any) -> str:
-        """Return the text in a table."""
+    def cell(self, row: Any) -> str:
+        """Return the text in a table, for the object of a row."""
+        value = getattr(row, self.key)
         return "" if value is None else self.show(value)
 
 

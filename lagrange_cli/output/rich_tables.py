@@ -135,7 +135,7 @@ def findings_table(findings: Findings, view: View) -> bytes:
     columns = [
         Column(
             spelt(field.heading, view),
-            [spelt(field.cell(getattr(row, field.key)), view) for row in findings.rows],
+            [spelt(field.cell(row), view) for row in findings.rows],
             not field.is_text,
         )
         for field in shown

@@ -51,6 +51,13 @@ class Spread(NamedTuple):
     q97_5: float
     first_order: str
     """Whether the interval of first order is that of the samples."""
+    samples: int
+    """How many samples have the key."""
+
+    @property
+    def noise(self) -> float:
+        """The standard error of the sampled mean; those of the other numbers are about as large."""
+        return self.sampled_std / math.sqrt(self.samples) if self.samples else math.nan
 
 
 class Propagated(NamedTuple):
@@ -121,13 +128,15 @@ def _regime(regime: str | None, remark: str | None) -> str:
 
 
 def _spread(key: str, ordered: Array, value: float, std: float | None, samples: int) -> Spread:
-    if not ordered.size:
+    count = int(ordered.size)
+    if not count:
         ordered = np.full(1, math.nan)
     q2_5, q16, q50, q84, q97_5 = np.percentile(ordered, QUANTILES).tolist()
-    lost = 1 - np.count_nonzero(~np.isnan(ordered)) / samples
+    lost = 1 - count / samples
     verdict = FAILS if std is None or lost > _MISSING else first_order_holds(ordered, value, std)
     mean, deviation = float(ordered.mean()), float(ordered.std())
-    return Spread(key, value, std, mean, deviation, q2_5, q16, q50, q84, q97_5, first_order=verdict)
+    quantiles = q2_5, q16, q50, q84, q97_5
+    return Spread(key, value, std, mean, deviation, *quantiles, verdict, samples=count)
 
 
 def first_order_holds(ordered: Array, value: float, std: float) -> str:

@@ -7,7 +7,7 @@ hold in their order, wherever each of them was made.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from ..output.row_texts import Columns
 from ..output.write import block_text
 from .measured_arrays import top_arrays
 from .records import Column, records
+
+if TYPE_CHECKING:
+    from ..inputs.units import System
 
 NumberedBlock = tuple[int, Block]
 """The number of a part, and the tops that it is made of."""
@@ -52,6 +55,8 @@ class Sweep(NamedTuple):
     """Whether the rows of a part end before the first top that has an error."""
     stds: Sequence[tuple[str, float]] = ()
     """Standard uncertainties of inputs that all tops share, by name."""
+    system: System | None = None
+    """The units of the output, which remarks name, where inputs have units."""
 
     @property
     def computed_keys(self) -> list[str]:
@@ -73,6 +78,8 @@ class Sweep(NamedTuple):
             errors = [(row, f"line {given.lines[row]}: {error}") for row, error in errors]
         for row, error in errors:
             columns["error"][row] = error
+        if self.system and "remark" in columns:
+            columns["remark"][:] = [x and self.system.in_words(x) for x in columns["remark"]]
         rows = slice(errors[0][0] if errors and self.until_error else given.size)
         carried = [column[rows] for column in given.carried]
         if self.stds:

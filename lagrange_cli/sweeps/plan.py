@@ -18,6 +18,7 @@ from ..inputs.given import Given, checked_double, gather
 from ..inputs.ranges import Product
 from ..inputs.top import INPUTS, overridden
 from ..inputs.tops_file import open_tops
+from ..inputs.units import System
 from .parts import NumberedBlock, Sweep
 from .records import BLOCK_ROWS, check_keys, record_keys
 
@@ -60,6 +61,7 @@ def plan(
     scene = scenes[0] if scenes else None
     known = record_keys(radians=radians)
     chosen = list(check_keys(known if keys is None else keys, radians=radians))
+    manner = radians, fmt, until_error
     told: dict[str, Any] = {"lagtop": __version__, "format": fmt, "radians": radians}
     if not tables:
         found = gather(axes, scene, system=system)
@@ -70,8 +72,8 @@ def plan(
         shared = shared_inputs(found, varying=ranges)
         told |= {"keys": chosen, "inputs": shared | {x: str(axis) for x, axis in ranges.items()}}
         told |= {"file": None, "parts": -(-grid.size // BLOCK_ROWS)}
-        sweep = _sweep([], chosen, shared, found.stds, (radians, fmt, until_error))
-        told |= {"uncertainties": dict(found.stds)} if found.stds else {}
+        sweep = _sweep([], chosen, shared, found.stds, manner, system=found.system)
+        told |= _told_of(sweep)
         return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told, found)
     if ranges := ranges_of(axes):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
@@ -84,8 +86,8 @@ def plan(
         chosen.append("error")
     told |= {"keys": chosen, "inputs": shared, "file": digest, "parts": None}
     stds = {name: std for name, std in found.stds.items() if name not in file.named}
-    told |= {"uncertainties": stds} if stds else {}
-    sweep = _sweep(source.carried, chosen, shared, stds, (radians, fmt, until_error))
+    sweep = _sweep(source.carried, chosen, shared, stds, manner, system=found.system)
+    told |= _told_of(sweep)
     blocks = (block._replace(file=source) for block in lines)
     return Plan(sweep, enumerate(blocks), 0, told, found, tables[0])
 
@@ -96,10 +98,18 @@ def _sweep(
     shared: Mapping[str, float],
     stds: Mapping[str, float],
     manner: tuple[bool, str, bool],
+    *,
+    system: System | None,
 ) -> Sweep:
     """Return a sweep; `manner` says whether in radians, in which format, and until what."""
-    sweep = Sweep(keys, shared, keys, *manner, stds=tuple(stds.items()))
+    sweep = Sweep(keys, shared, keys, *manner, stds=tuple(stds.items()), system=system)
     return sweep._replace(header=[*carried, *sweep.computed_keys])
+
+
+def _told_of(sweep: Sweep) -> dict[str, Any]:
+    """Return what decides about the bytes of the parts of some sweeps only."""
+    told: dict[str, Any] = {"uncertainties": dict(sweep.stds)} if sweep.stds else {}
+    return told | ({"units": [sweep.system.mass, sweep.system.length]} if sweep.system else {})
 
 
 def ranges_of(axes: Mapping[str, Any]) -> dict[str, Points]:

@@ -107,3 +107,28 @@ def test_what_files_of_numbers_cannot_hold(options: str, error: str, lagtop: Lag
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr.startswith(f"Error: {error}")
     assert result.stderr.count("\n") == 1
+
+
+ENDED = ["solve", "table --n 2", "sweep --keys T_nutation", "jacobi --k 0.8", "find --r0 9:99 b=20"]
+
+
+@pytest.mark.parametrize("line", [f"{one} {end}" for one in ENDED for end in ("csv", "json")])
+def test_the_ending_of_a_file_tells_its_format(line: str, lagtop: Lagtop, tmp_path: Path) -> None:
+    *words, ending = line.split()
+    lagtop(*words, "-o", tmp_path / f"ended.{ending}")
+    lagtop(*words, "--format", ending, "-o", tmp_path / "named.parquet")
+    wanted = lagtop(*words, "--format", ending).stdout_bytes
+    assert [file.read_bytes() for file in tmp_path.iterdir()] == [wanted] * 2
+
+
+@pytest.mark.parametrize("line", ["table --n 2 npy", "sweep ndjson", "sweep parquet"])
+def test_an_ending_may_tell_a_format_of_few_commands(
+    line: str, lagtop: Lagtop, tmp_path: Path
+) -> None:
+    *words, ending = line.split()
+    lagtop(*words, "-o", tmp_path / f"ended.{ending}")
+    wanted = lagtop(*words, "--format", ending).stdout_bytes
+    assert (tmp_path / f"ended.{ending}").read_bytes() == wanted
+    refused = lagtop("solve", "-o", tmp_path / f"solved.{ending}")
+    assert refused.exit_code == 2
+    assert f"solve writes table, json, csv and no {ending}, got --output" in refused.stderr

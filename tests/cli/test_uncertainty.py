@@ -100,10 +100,13 @@ def test_measured_inputs_hand_their_uncertainty_on() -> None:
 def test_a_budget_adds_up(lagtop: Lagtop) -> None:
     arguments = [*BODY, "--theta0", "30(1)", "--budget", "T_nutation"]
     rows = list(csv.DictReader(io.StringIO(lagtop("solve", *arguments, "--format", "csv").stdout)))
-    assert [row["input"] for row in rows] == ["theta0_deg", "s", "m", "g"]
+    *rows, result = rows
+    assert [row["quantity"] for row in rows] == ["theta0_deg", "s", "m", "g"]
     whole = math.hypot(*(float(row["contribution"]) for row in rows))
     std = lagtop("solve", *BODY, "--theta0", "30(1)", "--get", "T_nutation_std").stdout
     assert whole == pytest.approx(float(std), rel=1e-14)
+    known = {"quantity": "T_nutation", "value": "0.4292501244785477", "std": std.strip()}
+    assert {name: text for name, text in result.items() if text} == known
     assert sum(float(row["share"]) for row in rows) == pytest.approx(1)
     assert float(rows[0]["elasticity"]) == pytest.approx(-0.572, abs=1e-3)
     text = lagtop("solve", *arguments).stdout
@@ -116,13 +119,15 @@ UNITS = "--m 1587(2)g --A-cm 13640g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".
 def test_budgets_and_reports_on_samples_name_units(lagtop: Lagtop) -> None:
     arguments = [*UNITS, "--r0", "50rad/s", "--psidot0", "1.0(1)rad/s"]
     shown = lagtop("solve", *arguments, "--budget", "T_nutation").stdout
-    assert all(x in shown for x in ("m [kg]", "psidot0 [rad/s]", "contribution [s]", ") s, to"))
+    words = "m [kg]", "psidot0 [rad/s]", "contribution [s]", "s/kg", "s/(rad/s)", ") s, to"
+    assert all(x in shown for x in words)
     found = json.loads(
         lagtop("solve", *arguments, "--budget", "T_nutation", "--format", "json").stdout
     )
     assert found["units"] == {"T_nutation": "s", "m": "kg", "psidot0": "rad/s"}
     sampled = [*arguments, "--samples", "100", "--seed", "1"]
-    assert "mean_spin_rate [rad/s]" in lagtop("solve", *sampled).stdout
+    shown = lagtop("solve", *sampled).stdout
+    assert "mean_spin_rate [rad/s]" in shown
     found = json.loads(lagtop("solve", *sampled, "--units", "cgs", "--format", "json").stdout)
     assert (found["units"]["a"], found["units"]["theta_max_deg"]) == ("1/s²", "deg")
     assert set(found["units"]) <= {row["key"] for row in found["rows"]}

@@ -63,6 +63,19 @@ def test_a_plateau_is_no_list_of_solutions(line: str, where: str, lagtop: Lagtop
     assert where in result.stderr.splitlines()[-1]
 
 
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ("--m 1000:2000 --g 900:1000 T_nutation=0.43 theta_min_deg=30", "m and g"),
+        ("--r0 10:200 --m 1000:2000 --theta0 0 theta_min_deg=0 theta_max_deg=0", "r0 and m"),
+    ],
+)
+def test_a_curve_of_solutions_is_no_list_of_them(line: str, names: str, lagtop: Lagtop) -> None:
+    result = lagtop("find", *line.split())
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert f"the conditions leave {names} open: many have " in result.stderr.splitlines()[-1]
+
+
 def test_what_is_nearest_differs_from_what_is_wanted(lagtop: Lagtop) -> None:
     result = lagtop("find", "--psidot0", "1:2", "a=319.0914121746259")
     assert "nearest to a=319.0914121746259 is a = 319.09141217462593 at psidot0" in result.stderr
