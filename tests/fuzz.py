@@ -212,8 +212,8 @@ def certify_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
             value = record[key]
             show = f"lagtop solve {motion.top.options()} --get {key}  # {value!r}"
             try:
-                found = proofs.with_ends(key)
-                proved = None if found is None else found[0]
+                found = proofs.number(key)
+                proved = None if found is None else found.value
             except OutOfRangeError:
                 proved = None
             except LagtopError:

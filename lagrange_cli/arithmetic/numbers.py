@@ -1,6 +1,6 @@
 """Numbers of any arithmetic: what formulas need of them at run time.
 
-What their arithmetic offers is said in `protocol`, which only type checkers read.
+What their arithmetic offers is said in `protocol`, which a record is computed without.
 """
 
 from __future__ import annotations

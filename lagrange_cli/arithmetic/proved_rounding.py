@@ -69,27 +69,13 @@ def proved(
     precision leaves a number open, `exactly` is asked: it may know it.  Raises LagtopError where
     20 000 bits do not decide.
     """
-    found = rounded(what, enclosure, rounding, digits=digits, more=more, exactly=exactly)
-    return None if found is None else about(*found)
-
-
-def rounded(
-    what: str,
-    enclosure: Callable[[int], Ball | None],
-    rounding: Callable[[Decimal | Fraction], T],
-    *,
-    digits: int = 0,
-    more: int = 0,
-    exactly: Callable[[], Fraction | None] = lambda: None,
-) -> tuple[T, Decimal | Fraction, Decimal | Fraction] | None:
-    """Return what `proved` does, with the ends of the enclosure instead of the distance to them."""
     known: Fraction | None = None
     asked = False
 
-    def attempt(bits: int) -> tuple[T, Decimal | Fraction, Decimal | Fraction] | None:
+    def attempt(bits: int) -> Proved[T] | None:
         nonlocal known, asked
         if known is not None:
-            return rounding(known), known, known
+            return about(rounding(known), known)
         try:
             ball = enclosure(bits)
             return None if ball is None else _alike(ball, bits, rounding)
@@ -100,10 +86,8 @@ def rounded(
     return decided(what, attempt, digits, more)
 
 
-def _alike(
-    ball: Ball, bits: int, rounding: Callable[[Decimal | Fraction], T]
-) -> tuple[T, Decimal, Decimal]:
-    """Return what both ends of a ball are rounded to, and the ends.
+def _alike(ball: Ball, bits: int, rounding: Callable[[Decimal | Fraction], T]) -> Proved[T]:
+    """Return what both ends of a ball are rounded to, with its distance from them.
 
     Raises TooFewDigitsError where they are rounded differently.
     """
@@ -111,7 +95,7 @@ def _alike(
     value = rounding(low)
     if value != rounding(high):
         raise TooFewDigitsError
-    return value, low, high
+    return about(value, low, high)
 
 
 def about(value: T, *ends: Decimal | Fraction) -> Proved[T]:
@@ -119,11 +103,11 @@ def about(value: T, *ends: Decimal | Fraction) -> Proved[T]:
 
     The distance is rounded up to two digits, and so far that the double that is read is no less.
     """
-    away = max(distance(end, value) for end in ends)
+    away = max(_distance(end, value) for end in ends)
     return Proved(value, text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec))
 
 
-def distance(end: Decimal | Fraction, value: float | NumberText) -> Decimal:
+def _distance(end: Decimal | Fraction, value: float | NumberText) -> Decimal:
     """Return the distance of two numbers in 20 digits, rounded up."""
     if isinstance(end, Decimal):
         return _OUTWARDS.subtract(end, Decimal(value)).copy_abs()

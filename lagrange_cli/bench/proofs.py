@@ -50,9 +50,9 @@ def prove(scene: HardScene) -> Case:
 
 def _period(proofs: Certified) -> Many:
     """Return the nutation period in many digits."""
-    found = proofs.with_ends("T_nutation", _DIGITS)
+    found = proofs.number("T_nutation", _DIGITS)
     assert found is not None
-    return mpmath.mpf(found[0])
+    return mpmath.mpf(found.value)
 
 
 def worst_key(motion: Motion, proofs: Certified) -> tuple[float, str]:

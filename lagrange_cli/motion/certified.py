@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from ..arithmetic.balls import Ball, Balls, balls, near_largest_root
 from ..arithmetic.correct_rounding import TooFewDigitsError, nearest_double, text_of
 from ..arithmetic.numbers import Number
-from ..arithmetic.proved_rounding import Proved, about, decided, proved, rounded
+from ..arithmetic.proved_rounding import Proved, about, decided, proved
 from ..arithmetic.text import NumberText
 from ..errors import OutOfRangeError
 from ..inputs.top import Top
@@ -115,12 +115,12 @@ class Certified:
             self._spinors[bits] = self.kind(bits).spinor()
         return self._spinors[bits]
 
-    def decide(self, what: str, ask: Callable[[Kind[Ball]], S], digits: int = 0) -> S:
+    def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
         """Return what is asked of the motion, at the first precision that decides it.
 
         Raises LagtopError where none does.
         """
-        return decided(what, lambda bits: ask(self.kind(bits)), digits)
+        return decided(what, lambda bits: ask(self.kind(bits)))
 
     def enclosure(self, name: str, bits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that holds a number, by its key; None where the motion has none.
@@ -169,15 +169,8 @@ class Certified:
 
         None stands where the motion has none.  Raises LagtopError where no precision tells.
         """
-        found = self.with_ends(name, digits, radians=radians)
-        return None if found is None else about(*found)
-
-    def with_ends(
-        self, name: str, digits: int | None = None, *, radians: bool = False
-    ) -> tuple[Any, Decimal | Fraction, Decimal | Fraction] | None:
-        """Return a number as `number` does, with the ends of its enclosure for the radius."""
         in_radians = radians and name.endswith("_deg")
-        return rounded(
+        return proved(
             name,
             lambda bits: self.enclosure(name, bits, radians=radians),
             rounding(name, digits),

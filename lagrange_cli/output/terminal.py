@@ -17,7 +17,7 @@ MOST_CHARACTERS = 1000
 """The length of a line that is still read."""
 
 
-def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
+def one_line(text: str) -> str:
     """Return a text as one line of printable characters, with the middle left out of a long one.
 
     Control characters, marks that change the direction of writing and the like come out as escapes,
@@ -25,9 +25,9 @@ def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
     """
     words = " ".join(text.split())
     line = "".join(x if x.isprintable() else x.encode("unicode_escape").decode() for x in words)
-    if len(line) <= most:
+    if len(line) <= MOST_CHARACTERS:
         return line
-    half = (most - 40) // 2
+    half = (MOST_CHARACTERS - 40) // 2
     return f"{line[:half]} [... {len(line) - 2 * half} characters ...] {line[-half:]}"
 
 

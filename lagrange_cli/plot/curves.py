@@ -31,6 +31,8 @@ from .motion_facts import (
 PHASES = 48
 """Samples per half period, before `refined` adds where a curve is steep."""
 
+_LONGEST = 0.02
+"""The longest step on a curve, as a part of its range."""
 _STRAIGHT, _VISIBLE = math.cos(math.radians(10)), 5e-4
 """Where `refined` lets a polygon pass for a curve: its corners, and its steps over the range."""
 
@@ -144,11 +146,11 @@ def _between(t: Array, t_max: float) -> Array:
     return np.concatenate([[0.0], t[(t > 0.0) & (t < t_max)], [t_max]])
 
 
-def refined(t: Array, curve: Callable[[Array], Array], most: float = 0.02) -> Array:
+def refined(t: Array, curve: Callable[[Array], Array]) -> Array:
     """Return the times and more between them where a curve is steep or sharp.
 
-    `curve` gives one row of coordinates per time.  A step is halved where it exceeds the part
-    `most` of the curve's range, or turns by more than 10 degrees and can be seen.  It stops at
+    `curve` gives one row of coordinates per time.  A step is halved where it exceeds 2 % of
+    the curve's range, or turns by more than 10 degrees and can be seen.  It stops at
     eight times the points, because a jump or rounding noise would refine for ever.
     """
     enough = 8 * t.size
@@ -156,7 +158,7 @@ def refined(t: Array, curve: Callable[[Array], Array], most: float = 0.02) -> Ar
         points = curve(t)
         extent = np.ptp(points, axis=0)
         steps = np.diff(points, axis=0) / np.where(extent > 0.0, extent, np.inf)
-        wide = abs(steps).max(axis=1) > most
+        wide = abs(steps).max(axis=1) > _LONGEST
         size = np.linalg.norm(steps, axis=1)
         along = np.sum(steps[1:] * steps[:-1], axis=1)
         sharp = along < _STRAIGHT * size[1:] * size[:-1]

@@ -164,7 +164,7 @@ def _create(file: Path, content: bytes) -> None:
         own.unlink(missing_ok=True)
 
 
-def _difference(one: Mapping[str, Any], other: Mapping[str, Any], name: str = "") -> str:
+def _difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
     """Return the first thing in which two descriptions differ, and how; nothing if they agree."""
     for key in dict.fromkeys([*one, *other]):
         there, here = one.get(key), other.get(key)

@@ -9,13 +9,13 @@ _IMPORT = re.compile(r'^import (\{[^}]*\}) from "([^"]+)";$', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:function|class|const) (\w+))", re.MULTILINE)
 
 
-def joined_script(main: str = "page/main.js") -> str:
-    """Return a module and all that it imports, each once and before who needs it, as one script.
+def joined_script() -> str:
+    """Return the page's main module and all that it imports, each before who needs it, as a script.
 
     Each becomes a function that is called once, so that its own names stay its own.
     """
     scripts: dict[str, str] = {}
-    _collect(main, scripts)
+    _collect("page/main.js", scripts)
     return "\n".join(["const modules = {};", *scripts.values()])
 
 
