@@ -191,7 +191,8 @@ def no_torque(rng: random.Random) -> Scene:
     """Return a free top, or nearly."""
     scene = generic(rng) | {rng.choice(["g", "s"]): rng.choice([0, 0, power(rng, -18, -3)])}
     scene["r0"] *= rng.choice([0, 1, 1, 1])
-    return scene | {"theta0_deg": rng.choice([60, 90, 0, scene["theta0_deg"]])}
+    scene["theta0_deg"] = rng.choice([60, 90, 0, scene["theta0_deg"]])
+    return scene | ({} if scene["theta0_deg"] else {"psidot0": 0})
 
 
 def no_spin(rng: random.Random) -> Scene:

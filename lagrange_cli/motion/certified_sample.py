@@ -12,7 +12,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from ..arithmetic.balls import Ball
-from .kinds import Constant, Separatrix
+from .kinds import Constant, Separatrix, rate_parts
+from .rational_keys import known_fraction
 from .spinors import Attitude
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ class BallSample:
     def __init__(
         self, motion: Certified, bits: int, t: Ball, at: Attitude[Ball], *, wrap: bool
     ) -> None:
-        self.kind, self.top, self.t, self.at, self.wrap = motion.kind(bits), motion.top, t, at, wrap
+        self.exact, self.top, self.kind = motion.exact, motion.top, motion.kind(bits)
+        self.t, self.at, self.wrap = t, at, wrap
         self.ar = cast("Balls", self.kind.ar)
 
     def theta(self) -> Ball:
@@ -71,7 +73,9 @@ class BallSample:
         kind = self.kind
         if isinstance(kind, Separatrix):
             return kind.state.spin_drift * self.t, kind.b / 2 * self.t
-        return kind.mean_spin_rate * self.t, kind.mean_precession_rate * self.t
+        still = known_fraction(self.exact, "mean_spin_rate") == 0
+        spin = 0 * self.t if still else kind.mean_spin_rate * self.t
+        return spin, kind.mean_precession_rate * self.t
 
     def phi_remainder(self) -> Ball:
         """Return the spin less its mean growth (6,4)."""
@@ -107,19 +111,24 @@ class BallSample:
         return 2 * x * y
 
     @cached_property
+    def rate_parts(self) -> tuple[Ball, Ball, Ball]:
+        """What the rates of spin and precession are made of."""
+        return rate_parts(self.kind)
+
+    @cached_property
     def poles(self) -> tuple[Ball, Ball]:
         """(beta + b)/2/(1 + u) and (beta - b)/2/(1 - u), the two parts of the precession rate."""
-        (x, y), gaps = self.unit, self.kind.gaps
+        _, *momenta = self.rate_parts
         south, north = (
             0 * momentum if not momentum else momentum / (4 * part * part)
-            for momentum, part in ((gaps.beta_plus_b, x), (gaps.beta_minus_b, y))
+            for momentum, part in zip(momenta, self.unit, strict=True)
         )
         return south, north
 
     def phi_rate(self) -> Ball:
         """Return the spin rate (4,8)."""
         south, north = self.poles
-        return self.kind.state.pole_drift + south - north
+        return self.rate_parts[0] + south - north
 
     def psi_rate(self) -> Ball:
         """Return the precession rate (4,7)."""

@@ -234,3 +234,13 @@ def kind_of(facts: Facts) -> type[Kind[Any]]:
     if facts.steady:
         return Steady
     return Separatrix if facts.regime is Regime.SEPARATRIX else Nutating
+
+
+def rate_parts(kind: Kind[R]) -> tuple[R, R, R]:
+    """Return r0 - b, beta + b and beta - b, of which both rates are made (4,7), (4,8).
+
+    On the vertical all of the rotation counts as spin.
+    """
+    if isinstance(kind, Vertical):
+        return kind.r0, 0 * kind.r0, 0 * kind.r0
+    return kind.state.pole_drift, kind.gaps.beta_plus_b, kind.gaps.beta_minus_b

@@ -73,6 +73,11 @@ class Facts(Values):
     """The precession is pseudo-regular: released from rest, with (C r0)^2 >= 100 A m g s."""
 
     @property
+    def over_top(self) -> bool:
+        """The axis comes to the upper pole or, on the separatrix, tends to it: beta = b."""
+        return bool(self.upper_root) or self.regime is Regime.SEPARATRIX
+
+    @property
     def plane(self) -> bool:
         """The axis moves in a vertical plane, over the lower pole: beta = b = 0."""
         return self.over_bottom and not self.spins

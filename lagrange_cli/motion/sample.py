@@ -18,6 +18,7 @@ from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
 from .attitude import Attitude, needed
 from .columns import NOTHING, Part, needs_of
+from .kinds import rate_parts
 from .solve import SAMPLER_DIGITS, Motion
 
 
@@ -30,7 +31,7 @@ class ColumnConstants(NamedTuple):
     """mgs."""
     r0: float
     drift: float
-    """r0 - b."""
+    """r0 - b, or r0 on the vertical, where the next two are 0."""
     plus: float
     """(beta + b)/2."""
     minus: float
@@ -44,8 +45,9 @@ class ColumnConstants(NamedTuple):
 def column_constants(motion: Motion) -> ColumnConstants:
     """Return the constants of a motion, rounded from many digits."""
     kind = motion.settled_kind(SAMPLER_DIGITS)
-    state, gaps, top = kind.state, kind.gaps, motion.top
+    state, top = kind.state, motion.top
     with kind.ar.working():
+        drift, plus, minus = rate_parts(kind)
         around = state.psi_rate * state.sin
         energy = state.theta_rate * state.theta_rate + around * around
         return ColumnConstants(
@@ -53,9 +55,9 @@ def column_constants(motion: Motion) -> ColumnConstants:
             C=float(top.C),
             torque=float(state.a) * float(top.A) / 2,
             r0=float(state.r0),
-            drift=float(state.pole_drift),
-            plus=float(gaps.beta_plus_b / 2),
-            minus=float(gaps.beta_minus_b / 2),
+            drift=float(drift),
+            plus=float(plus / 2),
+            minus=float(minus / 2),
             alpha=float(energy + state.a * state.cos),
             a=float(state.a),
             rises=-1 if state.theta_rate < 0 else 1,

@@ -135,7 +135,7 @@ class Partials:
         state = self.near.moved
         with self.near.ar.working():
             rates = state.r0, state.b, state.theta_rate, state.psi_rate
-            rate = state.a.value.sqrt() + sum(abs(x.value) for x in rates)
+            rate = state.a.value.sqrt() + sum(abs(x.value) for x in rates) or Decimal(1)
             radian = Decimal(1 if self.exact.top.theta0_deg is None else 60)
             return [rate * rate, rate, rate, radian, rate, rate]
 
@@ -164,8 +164,8 @@ class Partials:
         """Whether the mean rates are small differences of what they are made of."""
         if not isinstance(self.here, Nutating):
             return False
-        rates = self.here.mean_spin_rate.value, self.here.mean_precession_rate.value
         with self.near.ar.working():
+            rates = self.here.mean_spin_rate.value, self.here.mean_precession_rate.value
             parts = max(abs(self.here.r0.value), *map(abs, rates))
             least = parts * Decimal(10) ** -self.spare
             return any(0 < abs(rate) < least for rate in rates)
@@ -228,8 +228,9 @@ class Partials:
         if facts.regime is Regime.SEPARATRIX:
             return self._above_lowest if key in {"u2", "theta_max_deg"} else None
         if facts.steady:
-            smooth = not vertical and (key in _MEANS or key in {"T_nutation", "u3"})
-            return self._about_steady if smooth else None
+            stands = facts.free and facts.at_rest and not facts.spins
+            mean = key in _MEANS | {"T_nutation", "u3"} and not (vertical or stands)
+            return self._about_steady if mean else None
         return self.generic_means if key in _MEANS else self.generic
 
 
@@ -239,9 +240,7 @@ def _partials(kind: Any, key: str) -> list[Decimal]:
         value: Dual | None = getattr(kind, key)
     except (DivisionByZero, InvalidOperation):
         value = None
-    if value is None:
-        return [_NAN] * len(PARAMETERS)
-    return list(value.partials or _NONE)
+    return [_NAN] * len(PARAMETERS) if value is None else list(value.partials or _NONE)
 
 
 class NearSteady(Steady[Dual]):

@@ -22,6 +22,9 @@ from .spinors import Spinor, nutating_spinor
 _LOST = 1e-15
 """The error of a derivative by series over the sizes of its parts: the worst seen is 2e-16."""
 
+_IN_THE_PLANE = [PARAMETERS.index(name) for name in ("a", "tilt", "theta_rate")]
+"""Along these a motion in a plane stays in it."""
+
 
 class NutationDerivatives:
     """Angles of a nutating top over time, and their derivatives to a tolerance."""
@@ -45,12 +48,16 @@ class NutationDerivatives:
     def at(self, t: Array) -> tuple[Array, Array]:
         """Return angles (3, times) and their derivatives (3, parameters, times).
 
-        Of a motion in a plane, where spin and precession leap, all come from the series.
+        In a plane spin and precession leap and are else constant: along the parameters that leave
+        the motion there their derivatives are 0, along the others they come from the series.
         """
         angles, derivatives, parts = self.series.at(t)
-        if not self.motion.facts.plane:
-            doubtful = self._doubtful(derivatives, parts)
-            derivatives[..., doubtful] = self._in_digits(t[doubtful])
+        smooth = 3
+        if self.motion.facts.plane:
+            smooth = 1
+            derivatives[1:, _IN_THE_PLANE], parts[1:] = 0.0, 0.0
+        doubtful = self._doubtful(derivatives, parts)
+        derivatives[:smooth, :, doubtful] = self._in_digits(t[doubtful])[:smooth]
         return angles, derivatives
 
     def _doubtful(self, derivatives: Array, parts: Array) -> Array:

@@ -19,8 +19,11 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.balls import Ball, balls
 from lagrange_cli.arithmetic.proved_rounding import about, decided, proved
 from lagrange_cli.motion.certified import certified, rounding
+from lagrange_cli.motion.certified_sample import sample_at
 from lagrange_cli.motion.certified_table import CertifiedTable
+from lagrange_cli.motion.columns import chosen_columns, column_names
 from lagrange_cli.motion.digits import rows_in_digits
+from lagrange_cli.motion.rational_columns import known_column
 
 TIMES = [0.375, -7.25, 1e3, -1e6, 1e12]
 COLUMNS = ["theta", "phi", "psi", "quaternion"]
@@ -152,6 +155,126 @@ def test_what_is_rational_is_known(method: str) -> None:
     t = Fraction(0 if method == "start" else 7)
     table = CertifiedTable(certified(Top(**scene)), columns, 1)
     assert [x.value for x in table.row(t)] == expected
+
+
+ZERO, TENTH = Fraction(0), Fraction(1, 10)
+ALWAYS: dict[str, tuple[dict[str, float | Fraction], dict[str, Fraction]]] = {
+    "disc from rest": ({"C": 2, "r0": 3, "theta0_deg": 31}, {"q": ZERO}),
+    "disc with p = 0": (
+        {"C": 2, "r0": 6 * TENTH, "theta0_deg": 31, "psidot0": Fraction(5, 3)},
+        {"p": ZERO},
+    ),
+    "sphere over the bottom": (
+        {"r0": 0.625, "theta0_deg": 90, "psidot0": -0.625},
+        {"quaternion_z": ZERO},
+    ),
+    "sphere over the top": (
+        {"r0": 0.625, "theta0_deg": 90, "psidot0": 0.625, "thetadot0": 5},
+        {"quaternion_y": ZERO},
+    ),
+    "separatrix of a sphere": (
+        {"m": 3.25, "r0": -2.25, "theta0_deg": 60, "thetadot0": -1.25, "psidot0": -1.5},
+        {"quaternion_y": ZERO},
+    ),
+    "plane, round and round": (
+        {"r0": 0, "theta0_deg": 31, "thetadot0": 9},
+        dict.fromkeys(("q", "axis_x", "quaternion_y", "quaternion_z"), ZERO),
+    ),
+    "steady, psi + phi stands": (
+        {"m": 0.5, "C": 0.25, "r0": -3, "theta0_deg": 120, "psidot0": 2},
+        {"quaternion_z": ZERO},
+    ),
+    "free sphere": (
+        {"g": 0, "r0": 3, "theta0_deg": 31, "thetadot0": 25 * TENTH},
+        {"p": 25 * TENTH, "q": ZERO},
+    ),
+    "free turn about the vertical": (
+        {"g": 0, "r0": 0, "theta0_deg": 90, "psidot0": 2.5},
+        {"p": ZERO, "q": 25 * TENTH},
+    ),
+}
+
+
+STANDS = {"m": Fraction(1, 9), "C": 1.5, "r0": Fraction(1, 3), "theta0_deg": 60}
+STANDS |= {"psidot0": Fraction(2, 3)}
+"""A steady precession whose spin rate is 0."""
+
+
+@pytest.mark.parametrize("name", ALWAYS)
+def test_what_is_the_same_at_all_times_is_known(name: str) -> None:
+    """Spheres, discs and planes; the judge has the same numbers."""
+    inputs, expected = ALWAYS[name]
+    top = Top(**UNIT | inputs)
+    judge, proofs = Judge(top.as_dict()), certified(top)
+    for t in (Fraction(7, 3), Fraction(-2, 5)):
+        for digits in (1, 17):
+            row = CertifiedTable(proofs, list(expected), digits).row(t)
+            assert [x.value for x in row] == [
+                rounding(column, digits)(value) for column, value in expected.items()
+            ]
+        state = judge.at(t)
+        sin, cos = state.phi.sin(), state.phi.cos()
+        across = state.psi_rate * state.theta.sin()
+        judged = {
+            "p": across * sin + state.theta_rate * cos,
+            "q": across * cos - state.theta_rate * sin,
+            "axis_x": state.theta.sin() * state.psi.sin(),
+        }
+        judged |= {f"quaternion_{x}": y for x, y in zip("wxyz", state.quaternion, strict=True)}
+        for column, value in expected.items():
+            assert judged[column].contains(float(value)), column
+            assert judged[column].rad() < 1e-14, column
+
+
+@pytest.mark.parametrize("name", [*SCENES, *ALWAYS])
+def test_what_is_known_is_in_the_balls(name: str) -> None:
+    inputs = SCENES[name] if name in SCENES else UNIT | ALWAYS[name][0]
+    proofs = certified(Top(**inputs))
+    parts = {part.method for name in column_names() for part in chosen_columns([name])}
+    for t in (Fraction(0), Fraction(7, 3)):
+        sample = sample_at(proofs, t, 192)
+        with sample.ar.working():
+            for method in parts - {"times"}:
+                known = known_column(proofs.exact, method, t, radians=True)
+                if known is not None:
+                    away = getattr(sample, method)() - sample.ar.convert(known)
+                    assert away.holds(0 * away), (method, t)
+
+
+@pytest.mark.parametrize("tilt", [0, 180])
+@pytest.mark.parametrize("C", [0.5, 1])
+def test_on_the_vertical_all_of_the_rotation_is_spin(tilt: float, C: float) -> None:
+    """The rates are those of the angles: phidot was r0 - b/2 and psidot b/2."""
+    top = Top(**UNIT | {"C": C, "r0": 3, "theta0_deg": tilt})
+    columns = ["phi", "psi", "phidot", "psidot", "p", "q", "energy", "Lz"]
+    spin = 3 * (1 if tilt == 0 else -1) * C
+    expected = [7.5, 0, 3, 0, 0, 0, 4.5 * C + (1 if tilt == 0 else -1), spin]
+    proved_row = CertifiedTable(certified(top), columns, radians=True).row(Fraction(5, 2))
+    assert [x.value for x in proved_row] == expected
+    assert [float(x) for x in solve(top).table(2.5, columns).values()] == expected
+
+
+@pytest.mark.parametrize(
+    ("inputs", "t", "column", "expected"),
+    [
+        ({"r0": 3, "theta0_deg": 31}, 0, "q", "0.0"),
+        ({"r0": 3 * TENTH, "theta0_deg": 0, "thetadot0": 5}, 0, "phidot", "0.2"),
+        ({"r0": 3 * TENTH, "theta0_deg": 0, "thetadot0": 5}, 0, "psidot", "0.2"),
+        ({"r0": 3 * TENTH, "theta0_deg": 180, "thetadot0": 5}, 0, "psidot", "-0.2"),
+        ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 25 * TENTH}, 1, "theta", "2.0"),
+        ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 15 * TENTH}, -1, "thetadot", "-2.0"),
+        ({"g": 0, "r0": 0, "theta0_rad": 0.5, "thetadot0": -1.25}, 0.6, "theta", "0.2"),
+        ({"r0": 0, "theta0_deg": 31, "thetadot0": 9}, 0.01, "dphi", "0.0"),
+        (STANDS, 7, "phi", "0.0"),
+        (STANDS, 7, "p", "0.0"),
+    ],
+)
+def test_what_is_rational_for_some_tops_is_known(
+    inputs: dict[str, Any], t: float, column: str, expected: str
+) -> None:
+    """Ties among them: 0.15 and 2.5 in one digit."""
+    table = CertifiedTable(certified(Top(**UNIT | inputs)), [column], 1, radians=True)
+    assert table.row(Fraction(str(t)))[0].value == expected
 
 
 def test_a_tie_is_said_and_not_guessed() -> None:

@@ -108,6 +108,38 @@ def test_a_pendulum_that_turns_over_has_derivatives() -> None:
     assert math.isnan(found["mean_spin_rate"]["r0"])
 
 
+def test_a_top_without_torque_that_stands_still_has_no_means() -> None:
+    """Whatever is given to it turns it over both poles."""
+    found = sensitivities(Top(**UNIT | {"s": 0, "r0": 0, "theta0_deg": 26}))
+    assert math.isnan(found.derivatives["mean_precession_rate"]["psidot0"])
+    assert found.derivatives["mean_spin_rate"]["r0"] == 1.0
+    assert found.derivatives["a"]["s"] == 2.0
+
+
+PLANE: dict[str, dict[str, float]] = {
+    "to and fro": {"theta0_deg": 90, "thetadot0": 2**0.5 * (1 - 1e-13)},
+    "round": {"theta0_deg": 90, "thetadot0": 2**0.5 * (1 + 1e-13)},
+    "from the bottom": {"theta0_deg": 180, "thetadot0": 2 * (1 - 1e-13)},
+    "round from the bottom": {"theta0_deg": 180, "thetadot0": 2 * (1 + 1e-13)},
+    "from rest": {"theta0_deg": 1e-6},
+}
+
+
+@pytest.mark.parametrize("scene", PLANE)
+def test_derivatives_in_a_plane_are_those_of_the_tilt(scene: str) -> None:
+    """Spin and precession leap, and no input of the plane moves them: it was noise, up to 64."""
+    top = Top(**UNIT | {"r0": 0} | PLANE[scene])
+    period = solve(top).T_nutation
+    times, inputs = [0.3 * period, -1.6 * period, 1e6 * period], ["m", "A", "thetadot0"]
+    found, judge = angle_sensitivities(top, times, inputs), Slopes(top)
+    assert not found.phi.any()
+    assert not found.psi.any()
+    for t, row in zip(times, found.theta.tolist(), strict=True):
+        exact = [sum(judge.of_angle(name, "theta", t) or (math.nan,)) / 2 for name in inputs]
+        size = 1 + max(map(abs, exact))
+        assert max(abs(x - y) for x, y in zip(row, exact, strict=True)) < 1e-12 * size
+
+
 def test_what_does_not_depend_on_an_input_has_the_derivative_0() -> None:
     """After release from rest psi'(T/2) = a/b = 2mgs/(C r0), whatever the tilt and A are."""
     row = sensitivities(Top()).derivatives["precession_rate_half"]
