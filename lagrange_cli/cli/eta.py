@@ -12,17 +12,9 @@ from ..errors import LagtopError
 from ..output.layouts import ETA
 from ..output.write import write_record, write_table
 from .command import ExamplesFirst
-from .options import (
-    MOST_TABLE_DIGITS,
-    NUMBER,
-    RANGE,
-    Parsed,
-    digits_option,
-    exclude,
-    listed,
-    output_options,
-)
+from .options import MOST_TABLE_DIGITS, NUMBER, Parsed, digits_option, exclude, output_options
 from .progress import with_progress
+from .row_options import RANGE, listed
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

@@ -9,7 +9,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, complain, write_keys
-from .given import is_scene, say_missing, say_unused
+from .given import is_scene, say_unused
 from .options import (
     COUNT,
     KEY_NAMES,
@@ -18,6 +18,7 @@ from .options import (
     exclude,
     input_options,
     output_options,
+    say_missing,
 )
 from .progress import with_progress
 

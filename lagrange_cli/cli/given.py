@@ -57,19 +57,6 @@ def say_no_tops(path: str) -> None:
     complain(f"Warning: {shown_path(path)} holds no tops")
 
 
-def say_missing(found: Given) -> None:
-    """Name the inputs of the body that are those of the worked example, and a scene without any."""
-    if found.empty is not None:
-        complain(
-            f"Warning: {found.empty} has no inputs: what is not given is as in the worked example"
-        )
-    if found.missing:
-        from ..inputs import mixed_body  # for few tops only
-
-        words = mixed_body.options(found.missing, units=found.system is not None)
-        complain(f"Warning: {mixed_body.remark(found.missing, words)}")
-
-
 def say_unused(uncertain: Iterable[str]) -> None:
     """Name inputs whose uncertainties a command does not use."""
     if names := ", ".join(uncertain):

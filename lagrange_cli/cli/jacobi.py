@@ -17,14 +17,13 @@ from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
-    RANGE,
     Parsed,
     digits_option,
     exclude,
-    listed,
     output_options,
 )
 from .progress import with_progress
+from .row_options import RANGE, listed
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

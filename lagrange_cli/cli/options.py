@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from fractions import Fraction
 from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -17,7 +16,6 @@ from .command import complain
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from ..arithmetic.points import Points
     from ..inputs.given import Given
     from ..motion.solve import Motion
 
@@ -89,12 +87,6 @@ def _parse_input(text: str, *, uncertain: bool = False) -> Any:
     return parse_quantity(text, parse_uncertain)
 
 
-def _parse_range(text: str) -> Points:
-    from ..inputs.ranges import parse_range
-
-    return parse_range(text)
-
-
 def _split_names(text: str) -> list[str]:
     from ..inputs.names import split_names
 
@@ -117,13 +109,23 @@ def motion_of(found: Given, exact: bool) -> Motion:
     from ..motion.solve import solve
 
     motion = solve(found.top(exact=exact))
-    if found.missing or found.empty is not None:
-        from .given import say_missing
-
-        say_missing(found)
+    say_missing(found)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
+
+
+def say_missing(found: Given) -> None:
+    """Name the inputs of the body that are those of the worked example, and a scene without any."""
+    if found.empty is not None:
+        complain(
+            f"Warning: {found.empty} has no inputs: what is not given is as in the worked example"
+        )
+    if found.missing:
+        from ..inputs import mixed_body  # for few tops only
+
+        words = mixed_body.options(found.missing, units=found.system is not None)
+        complain(f"Warning: {mixed_body.remark(found.missing, words)}")
 
 
 def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
@@ -143,14 +145,6 @@ def exclude(options: dict[str, Any]) -> None:
         raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
 
 
-def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Points | None:
-    """Return the numbers of --NAME or of --NAME-range, if any.  Raises LagtopError for both."""
-    from ..arithmetic.points import ListedPoints
-
-    exclude({f"--{name}": single or None, f"--{name}-range": grid})
-    return grid or (ListedPoints(list(single)) if single else None)
-
-
 def on_command_line(name: str) -> bool:
     """Return whether an option of the command that runs stands on the command line."""
     from click.core import ParameterSource
@@ -163,7 +157,6 @@ NUMBER = Parsed("number", parse_number)
 INPUT = TIME = Parsed("number", _parse_input)
 UNCERTAIN = Parsed("number", partial(_parse_input, uncertain=True))
 COUNT = Parsed("integer", _parse_count)
-RANGE = Parsed("range", _parse_range)
 NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
     Parsed("names", _split_names, words) for words in ("", "keys", "columns", "methods", "strata")
 )
@@ -219,22 +212,6 @@ def scene_options(command: F) -> F:
 def scene_argument(command: F) -> F:
     """Add the argument for a scene file."""
     return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml|-]")(command)
-
-
-def _parse_jobs(text: str) -> int:
-    from ..sweeps.jobs import parse_jobs
-
-    return parse_jobs(text)
-
-
-def jobs_option(command: F) -> F:
-    """Add the option --jobs."""
-    return click.option(
-        "--jobs",
-        type=Parsed("N|auto", _parse_jobs),
-        metavar="N|auto",
-        help="Processes that share the work; auto: one per core.  [default: 1]",
-    )(command)
 
 
 def digits_option(most: int) -> Callable[[F], F]:

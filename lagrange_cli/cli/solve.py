@@ -127,13 +127,7 @@ def command(
     )
     if keys is not None:
         exclude({"--get": keys, "--format": fmt if on_command_line("fmt") else None})
-        values = [key.removesuffix("_std") for key in keys]
-        if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
-            values = list(dict.fromkeys(values))
-        from ..inputs.names import check_names
-
-        known = record_keys(radians=rad)
-        check_names("get", values, known if set(values) <= {*known} else all_keys(radians=rad))
+        _check_keys(keys, rad)
     if seed is not None and samples is None:
         raise LagtopError("--seed is that of random tops: it needs --samples")
     found = inputs_of(scene, rad, options)
@@ -164,6 +158,17 @@ def command(
         _write(steps | more, found.system, fmt, output, chain_layout)
     else:
         _write(record, found.system, fmt, output, top_layout)
+
+
+def _check_keys(keys: list[str], radians: bool) -> None:
+    """Raise LagtopError for a key that no motion has, or that comes twice."""
+    from ..inputs.names import check_names
+
+    values = [key.removesuffix("_std") for key in keys]
+    if len(set(keys)) == len(keys):  # a number and its uncertainty are not one key twice
+        values = list(dict.fromkeys(values))
+    known = record_keys(radians=radians)
+    check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
 
 
 def _with_proof(record: dict[str, Any]) -> dict[str, Any]:

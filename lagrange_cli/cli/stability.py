@@ -8,16 +8,9 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_report
-from .options import (
-    COUNT,
-    FILE,
-    STRATUM_NAMES,
-    certify_option,
-    exclude,
-    jobs_option,
-    output_options,
-)
+from .options import COUNT, FILE, STRATUM_NAMES, certify_option, exclude, output_options
 from .progress import with_steps
+from .row_options import jobs_option
 
 if TYPE_CHECKING:
     from ..output.findings import Findings

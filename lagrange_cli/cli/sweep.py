@@ -12,7 +12,7 @@ from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
-from .given import say_missing, say_no_tops
+from .given import say_no_tops
 from .options import (
     FILE,
     KEY_NAMES,
@@ -20,10 +20,11 @@ from .options import (
     by_key,
     exclude,
     input_options,
-    jobs_option,
     output_options,
+    say_missing,
 )
 from .progress import with_count, with_progress
+from .row_options import jobs_option
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

@@ -13,7 +13,7 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
-from .given import angle_stds, blaming, in_seconds, say_missing, say_no_tops
+from .given import angle_stds, blaming, in_seconds, say_no_tops
 from .options import (
     COLUMN_NAMES,
     COUNT,
@@ -27,12 +27,13 @@ from .options import (
     exclude,
     input_options,
     inputs_of,
-    jobs_option,
     motion_of,
     output_options,
+    say_missing,
     scene_argument,
 )
 from .progress import with_count, with_progress
+from .row_options import jobs_option
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
