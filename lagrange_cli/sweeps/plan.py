@@ -18,7 +18,6 @@ from ..inputs.given import Given, checked_double, gather
 from ..inputs.ranges import Product
 from ..inputs.top import INPUTS, overridden
 from ..inputs.tops_file import open_tops
-from ..inputs.units import System
 from .parts import NumberedBlock, Sweep
 from .records import BLOCK_ROWS, check_keys, record_keys
 
@@ -59,56 +58,75 @@ def plan(
     if len(scenes) > 1 or len(tables) > 1:
         raise LagtopError(f"a sweep has one scene and one file of tops, got {' '.join(files)}")
     scene = scenes[0] if scenes else None
-    known = record_keys(radians=radians)
-    chosen = list(check_keys(known if keys is None else keys, radians=radians))
-    manner = radians, fmt, until_error
-    told: dict[str, Any] = {"lagtop": __version__, "format": fmt, "radians": radians}
+    chosen = list(
+        check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
+    )
+    wanted = Sweep((), {}, chosen, radians, fmt, until_error)
     if not tables:
-        found = gather(axes, scene, system=system)
-        axes = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
-        grid = Product(axes)
-        grid.check()
-        ranges = ranges_of(axes)
-        shared = shared_inputs(found, varying=ranges)
-        told |= {"keys": chosen, "inputs": shared | {x: str(axis) for x, axis in ranges.items()}}
-        told |= {"file": None, "parts": -(-grid.size // BLOCK_ROWS)}
-        sweep = _sweep([], chosen, shared, found.stds, manner, system=found.system)
-        told |= _told_of(sweep)
-        return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told, found)
+        return _of_grid(wanted, axes, scene, system)
     if ranges := ranges_of(axes):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
-    stream, digest = _digested(tables[0]) if described else (None, "")
-    computed = {*known, *record_keys(radians=not radians), *chosen}
-    file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
+    return _of_file(wanted, tables[0], axes, scene, system, described=described)
+
+
+def _of_grid(
+    wanted: Sweep, axes: Mapping[str, Points], scene: str | None, system: str | None
+) -> Plan:
+    """Return the plan for all tops of a grid."""
+    found = gather(axes, scene, system=system)
+    axes = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
+    grid = Product(axes)
+    grid.check()
+    ranges = ranges_of(axes)
+    shared = shared_inputs(found, varying=ranges)
+    sweep = _with_inputs(wanted, found, shared, found.stds)
+    inputs = shared | {name: str(axis) for name, axis in ranges.items()}
+    told = _told_of(sweep, inputs, file=None, parts=-(-grid.size // BLOCK_ROWS))
+    return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told, found)
+
+
+def _of_file(
+    wanted: Sweep,
+    path: str,
+    axes: Mapping[str, Points],
+    scene: str | None,
+    system: str | None,
+    *,
+    described: bool,
+) -> Plan:
+    """Return the plan for the tops of a file; a column tells the errors of its rows."""
+    stream, digest = _digested(path) if described else (None, "")
+    computed = {*record_keys(), *record_keys(radians=True), *wanted.keys}
+    file, lines = open_tops(path, computed, BLOCK_ROWS, stream)
     found, source = file.among(axes, scene, system)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
-    if "error" not in chosen:
-        chosen.append("error")
-    told |= {"keys": chosen, "inputs": shared, "file": digest, "parts": None}
     stds = {name: std for name, std in found.stds.items() if name not in file.named}
-    sweep = _sweep(source.carried, chosen, shared, stds, manner, system=found.system)
-    told |= _told_of(sweep)
+    wanted = wanted._replace(keys=list(dict.fromkeys([*wanted.keys, "error"])))
+    sweep = _with_inputs(wanted, found, shared, stds, source.carried)
+    told = _told_of(sweep, shared, file=digest, parts=None)
     blocks = (block._replace(file=source) for block in lines)
-    return Plan(sweep, enumerate(blocks), 0, told, found, tables[0])
+    return Plan(sweep, enumerate(blocks), 0, told, found, path)
 
 
-def _sweep(
-    carried: Sequence[str],
-    keys: Sequence[str],
+def _with_inputs(
+    wanted: Sweep,
+    found: Given,
     shared: Mapping[str, float],
     stds: Mapping[str, float],
-    manner: tuple[bool, str, bool],
-    *,
-    system: System | None,
+    carried: Sequence[str] = (),
 ) -> Sweep:
-    """Return a sweep; `manner` says whether in radians, in which format, and until what."""
-    sweep = Sweep(keys, shared, keys, *manner, stds=tuple(stds.items()), system=system)
+    """Return a sweep with the inputs that all tops share, and the columns it carries through."""
+    sweep = wanted._replace(shared=shared, stds=tuple(stds.items()), system=found.system)
     return sweep._replace(header=[*carried, *sweep.computed_keys])
 
 
-def _told_of(sweep: Sweep) -> dict[str, Any]:
-    """Return what decides about the bytes of the parts of some sweeps only."""
-    told: dict[str, Any] = {"uncertainties": dict(sweep.stds)} if sweep.stds else {}
+def _told_of(
+    sweep: Sweep, inputs: Mapping[str, Any], *, file: str | None, parts: int | None
+) -> dict[str, Any]:
+    """Return what decides about the bytes of the parts; some of it only where it is there."""
+    told: dict[str, Any] = {"lagtop": __version__, "format": sweep.fmt, "radians": sweep.radians}
+    told |= {"keys": sweep.keys, "inputs": inputs, "file": file, "parts": parts}
+    told |= {"uncertainties": dict(sweep.stds)} if sweep.stds else {}
     return told | ({"units": [sweep.system.mass, sweep.system.length]} if sweep.system else {})
 
 
