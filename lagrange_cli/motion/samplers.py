@@ -32,7 +32,8 @@ from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
 from .attitude import Attitude, Growths, Spinor
 from .columns import ATTITUDE, NOTHING, Needs
-from .theta_series import Coefficients, Component, Frame
+from .multiple_angles import Coefficients
+from .theta_series import Component, Frame
 from .times import check_times, times_of
 
 _IN_ORDER = slice(None)

@@ -14,8 +14,8 @@ from ..arithmetic.numbers import R
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import Value
 from ..elliptic.carlson import carlson_rf
+from .multiple_angles import Coefficients
 from .theta_series import (
-    Coefficients,
     Component,
     Frame,
     Place,

@@ -22,6 +22,7 @@ from ..arithmetic.workspace import Workspace
 from ..elliptic.carlson import carlson_rf
 from .attitude import Growths, growths
 from .kinds import Nutating
+from .multiple_angles import Coefficients
 from .neighbourhood import PARAMETERS
 from .rates_about_means import RatesAboutMeans
 from .series_constants import (
@@ -32,7 +33,7 @@ from .series_constants import (
     series_from_start,
     theta_constants,
 )
-from .theta_series import Coefficients, Component
+from .theta_series import Component
 
 _NEGLIGIBLE = Decimal(2) ** -100
 

@@ -7,30 +7,31 @@ series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so four term
 doubles.  The phase is counted from the nearer of u1 and u2: no argument is ever near the end of
 its branch, and none can leap there.
 
-sin and cos of multiples of x are polynomials in s = sin^2 x (times S = sin x, C = cos x or S C),
-all four families by one recurrence; sinh and cosh are the same with s -> -sinh^2.
+s is sin^2 x or -sinh^2 x, and S and C are sine and cosine (see `multiple_angles`).
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..arithmetic.formulas import polynomial
 from ..arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
 from ..elliptic.complete import nome
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
+from .multiple_angles import (
+    COS_EVEN,
+    COS_ODD,
+    SIN_EVEN,
+    SIN_ODD,
+    Coefficients,
+    alternated,
+    doubled,
+    multiples,
+    summed,
+)
 
 TERMS = 4
 """Enough for doubles."""
-
-Coefficients = list[Any]
-"""Coefficients in s, the lowest power first."""
-
-Family = tuple[tuple[int, ...], tuple[int, ...]]
-"""The first two of a family of polynomials in s, which give the others."""
-_COS_ODD, _SIN_ODD = ((1,), (1, -4)), ((1,), (3, -4))
-_COS_EVEN, _SIN_EVEN = ((1,), (1, -2)), ((0,), (2,))
 
 
 class Component(NamedTuple):
@@ -166,36 +167,16 @@ def _circular_components(
 
     `first` are cosh y and sinh y.
     """
-    odd = _multiples(first, _doubled(*first, -1), -1, len(weights))
+    odd = multiples(first, doubled(*first, -1), -1, len(weights))
     cosh, sinh = ([w * x for w, x in zip(weights, part, strict=True)] for part in odd)
     unit = size / sum(cosh)
     return (
-        Component(_sum(_COS_ODD, 1, unit, cosh), _sum(_SIN_ODD, 1, sign * unit, sinh)),
+        Component(summed(COS_ODD, 1, unit, cosh), summed(SIN_ODD, 1, sign * unit, sinh)),
         Component(
-            _sum(_COS_ODD, 1, unit, _alternate(sinh)),
-            _sum(_SIN_ODD, 1, sign * unit, _alternate(cosh)),
+            summed(COS_ODD, 1, unit, alternated(sinh)),
+            summed(SIN_ODD, 1, sign * unit, alternated(cosh)),
         ),
     )
-
-
-def _doubled(cos: Value, sin: Value, curvature: int) -> tuple[Value, Value]:
-    """Return cosine and sine of twice an angle, or the hyperbolic ones for a curvature of -1."""
-    return 1 - 2 * curvature * sin * sin, 2 * sin * cos
-
-
-def _multiples(
-    first: tuple[Value, Value], step: tuple[Value, Value], curvature: int, count: int
-) -> tuple[list[Value], list[Value]]:
-    """Return cosines and sines of first, first + step, first + 2 step ..., by those of both.
-
-    A factor that all the sines, or all the cosines, have in common keeps its digits.
-    """
-    cosines, sines = [first[0]], [first[1]]
-    for _ in range(count - 1):
-        c, s = cosines[-1], sines[-1]
-        cosines.append(c * step[0] - curvature * s * step[1])
-        sines.append(s * step[0] + c * step[1])
-    return cosines, sines
 
 
 def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Value]:
@@ -224,20 +205,20 @@ def _hyperbolic_components(
     `first` are cos v and sin v.
     """
     zero = 0 * first[0]
-    step, none = _doubled(*first, 1), (1 + zero, zero)
+    step, none = doubled(*first, 1), (1 + zero, zero)
     (cos_even, sin_even), (cos_odd, sin_odd) = (
-        [_alternate([w * x for w, x in zip(weights, part, strict=True)]) for part in multiples]
-        for weights, multiples in (
-            (even, _multiples(none, step, 1, len(even))),
-            (odd, _multiples(first, step, 1, len(odd))),
+        [alternated([w * x for w, x in zip(weights, part, strict=True)]) for part in functions]
+        for weights, functions in (
+            (even, multiples(none, step, 1, len(even))),
+            (odd, multiples(first, step, 1, len(odd))),
         )
     )
     unit = size / sum(cos_even)
     return (
         Component(
-            _sum(_COS_EVEN, -1, unit, cos_even), _sum(_SIN_EVEN, -1, -sign * unit, sin_even), True
+            summed(COS_EVEN, -1, unit, cos_even), summed(SIN_EVEN, -1, -sign * unit, sin_even), True
         ),
-        Component(_sum(_COS_ODD, -1, unit, sin_odd), _sum(_SIN_ODD, -1, sign * unit, cos_odd)),
+        Component(summed(COS_ODD, -1, unit, sin_odd), summed(SIN_ODD, -1, sign * unit, cos_odd)),
     )
 
 
@@ -246,37 +227,9 @@ def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients
     if nutation is None:
         return []
     terms = [0 * nutation] * (2 * len(weights))
-    terms[1::2] = _alternate(weights)
+    terms[1::2] = alternated(weights)
     unit = nutation / sum(2 * n * term for n, term in enumerate(terms))
-    return _sum(_SIN_EVEN, curvature, unit, terms)
-
-
-def _alternate(terms: list[Value]) -> list[Value]:
-    return [-term if n % 2 else term for n, term in enumerate(terms)]
-
-
-def _sum(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Coefficients:
-    """Return a weighted sum of the polynomials of a family, times a unit."""
-    total: Coefficients = [0 * unit] * len(weights)
-    for weight, coefficients in zip(weights, _polynomials(family, len(weights)), strict=True):
-        for i, coefficient in enumerate(coefficients):
-            total[i] += weight * coefficient
-    return [unit * x if i % 2 == 0 else curvature * unit * x for i, x in enumerate(total)]
-
-
-@lru_cache(maxsize=64)
-def _polynomials(family: Family, count: int) -> list[list[int]]:
-    """Return the first polynomials in s of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
-    found = [list(polynomial) for polynomial in family]
-    while len(found) < count:
-        found.append(_next(*found[-2:]))
-    return found[:count]
-
-
-def _next(previous: list[int], current: list[int]) -> list[int]:
-    doubled, shifted = [2 * c for c in current] + [0], [0] + [4 * c for c in current]
-    padded = previous + [0] * (len(doubled) - len(previous))
-    return [a - b - c for a, b, c in zip(doubled, shifted, padded, strict=True)]
+    return summed(SIN_EVEN, curvature, unit, terms)
 
 
 def evaluate(

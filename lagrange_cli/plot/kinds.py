@@ -1,7 +1,8 @@
 """The kinds of picture: one row per kind, from which the command, its help and the page are made.
 
 A new picture is one file of this room with the functions `draw(panel, motion, request, look)` and
-`draw_on(places, motion, request, look)`, which draws on axes that are there, and one row here.
+`draw_on(places, motion, request, look)`, which draws on axes that are there, and one row here; for
+axes of a user it has a function of its own in `on_axes`, whose name stands in `__init__`.
 """
 
 from __future__ import annotations
