@@ -114,7 +114,7 @@ class AngleDerivatives:
         else:
             tilt = abs(float(scene.top.theta0_deg or scene.top.theta0_rad or 0))
             self.models = [(NutationDerivatives(partials.here, tilt, kept, tolerance), kept)]
-            if facts.free:
+            if facts.free and not (facts.over_bottom or facts.over_top):
                 self.models.append((TorqueDerivatives(partials), [PARAMETERS.index("a")]))
         self.max_time = self.models[0][0].max_time
 

@@ -109,6 +109,8 @@ class Partials:
         value: Dual | None = getattr(kind, key)
         if value is None:
             return None
+        if key == "a":  # without torque it is a constant of the motion, but not of its neighbours
+            return self._without_noise(list(self.near.moved.a.partials or ()), value.value)
         if key in _MEANS and self._loses_digits:
             return self._finer.of(key)
         beside = self._beside(key) if self.near.broken else []
@@ -214,8 +216,6 @@ class Partials:
 
     def _beside(self, key: str) -> list[Decimal]:
         """Return the derivatives of a key by the formulas that hold next to a degenerate top."""
-        if key == "a":
-            return list(self.near.moved.a.partials or ())
         kind = self._kind_beside(key)
         return [_NAN] * len(PARAMETERS) if kind is None else _partials(kind, key)
 

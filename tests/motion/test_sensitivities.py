@@ -116,6 +116,35 @@ def test_a_top_without_torque_that_stands_still_has_no_means() -> None:
     assert found.derivatives["a"]["s"] == 2.0
 
 
+@pytest.mark.parametrize("tilt", [0, 180])
+@pytest.mark.parametrize("r0", [0, 3])
+def test_on_the_vertical_without_torque_a_answers_to_gravity(tilt: float, r0: float) -> None:
+    top = Top(**UNIT | {"C": 0.5, "g": 0, "r0": r0, "theta0_deg": tilt})
+    assert sensitivities(top, ["a"]).derivatives["a"]["g"] == 2.0
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        {"r0": 3, "theta0_deg": 0, "thetadot0": 2},
+        {"r0": 3, "theta0_deg": 180, "thetadot0": 2},
+        {"r0": -3, "theta0_deg": 90, "thetadot0": 1, "psidot0": 3},
+        {"r0": 0, "theta0_deg": 31, "thetadot0": 2},
+    ],
+)
+def test_without_torque_over_a_pole_angles_have_derivatives_but_by_it(
+    start: dict[str, float],
+) -> None:
+    """It was a division by zero."""
+    top = Top(**UNIT | {"g": 0} | start)
+    found, judge = angle_sensitivities(top, [0.5], ["g", "thetadot0"]), Slopes(top)
+    for angle in ("theta", "phi", "psi"):
+        by_g, by_rate = getattr(found, angle)[0]
+        assert math.isnan(by_g)
+        sides = judge.of_angle("thetadot0", angle, 0.5) or (math.nan, math.nan)
+        assert by_rate == pytest.approx(sum(sides) / 2, abs=1e-12)
+
+
 PLANE: dict[str, dict[str, float]] = {
     "to and fro": {"theta0_deg": 90, "thetadot0": 2**0.5 * (1 - 1e-13)},
     "round": {"theta0_deg": 90, "thetadot0": 2**0.5 * (1 + 1e-13)},
