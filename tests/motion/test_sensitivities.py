@@ -135,7 +135,7 @@ def test_on_the_vertical_without_torque_a_answers_to_gravity(tilt: float, r0: fl
 def test_without_torque_over_a_pole_angles_have_derivatives_but_by_it(
     start: dict[str, float],
 ) -> None:
-    """It was a division by zero."""
+    """Angles of such a top ended in a division by zero."""
     top = Top(**UNIT | {"g": 0} | start)
     found, judge = angle_sensitivities(top, [0.5], ["g", "thetadot0"]), Slopes(top)
     for angle in ("theta", "phi", "psi"):
