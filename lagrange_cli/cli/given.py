@@ -60,7 +60,8 @@ def say_no_tops(path: str) -> None:
 def say_unused(uncertain: Iterable[str]) -> None:
     """Name inputs whose uncertainties a command does not use."""
     if names := ", ".join(uncertain):
-        complain(f"Warning: the uncertainty of {names} is not used: solve, table and sweep use it")
+        used = "solve, table, sweep and plot angles use it"
+        complain(f"Warning: the uncertainty of {names} is not used: {used}")
 
 
 def solved(scene: str | None, rad: bool, exact: bool, options: Mapping[str, Any]) -> Motion:
@@ -74,9 +75,15 @@ def solved(scene: str | None, rad: bool, exact: bool, options: Mapping[str, Any]
 
 
 def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
-    """Return the uncertainties of the angles over time, where inputs have any."""
+    """Return the uncertainties of the angles over time, where inputs have any.
+
+    A line says why there are none.
+    """
     if not found.stds:
         return None
     from ..motion.angle_uncertainty import AngleStds  # for few tops only
 
-    return AngleStds(motion.exact, found.stds, found.inputs.keys())
+    stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
+    if stds.reason:
+        complain(f"Warning: no uncertainty of the angles: {stds.reason}")
+    return stds

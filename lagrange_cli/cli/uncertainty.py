@@ -163,7 +163,7 @@ def _names(key: str, units: Mapping[str, str]) -> Field:
 
 
 def _budget_fields(units: Mapping[str, str], key: str) -> list[Field]:
-    per = [Field("sensitivity_unit", "its unit", is_text=True)] if units else []
+    per = [Field("sensitivity_unit", "sensitivity unit", is_text=True)] if units else []
     return [
         _names("quantity", units),
         _Measured("value", "value"),

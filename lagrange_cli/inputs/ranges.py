@@ -50,7 +50,7 @@ def parse_uncertain_values(text: str) -> Points | Uncertain:
     """Return points, or those of one uncertain number.  Raises LagtopError."""
     from .uncertain import Uncertain, parse_uncertain
 
-    if not set(text) & set("(±/"):
+    if not set(text) & set("(±/") and "+-" not in text:
         return parse_values(text)
     found = parse_uncertain(text)
     assert isinstance(found, Uncertain)

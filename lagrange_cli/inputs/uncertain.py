@@ -1,6 +1,7 @@
 """Uncertain inputs: how they are written.
 
-`1587(2)`, `1587+/-2`, `1587±2` and `1587 +/- 0.1 %` are a value and its standard uncertainty.
+`1587(2)`, `1587+/-2`, `1587+-2`, `1587±2` and `1587 +/- 0.1 %` are a value and its standard
+uncertainty.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from ..arithmetic.values import Values
 from ..errors import LagtopError
 
 _DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_PLUS_MINUS = rf"(?P<value>{_DECIMAL})\s*(?:\+/-|±)\s*(?P<std>{_DECIMAL})\s*(?P<percent>%?)"
+_PLUS_MINUS = rf"(?P<value>{_DECIMAL})\s*(?:\+/?-|±)\s*(?P<std>{_DECIMAL})\s*(?P<percent>%?)"
 _FORMS = (
     re.compile(r"(?P<value>[+-]?(?:\d+\.?\d*|\.\d+))\((?P<last>\d+\.?\d*)\)(?P<exponent>[eE].*)?"),
     re.compile(_PLUS_MINUS),
@@ -44,7 +45,7 @@ def parse_uncertain(text: str) -> Fraction | Uncertain:
     text = text.strip()
     found = next((match for form in _FORMS if (match := form.fullmatch(text))), None)
     if is_decimal(text) or found is None:
-        if not re.search(r"[(±%]|\+/-", text):
+        if not re.search(r"[(±%]|\+/?-", text):
             return parse_number(text)
         forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
         raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")

@@ -148,7 +148,7 @@ def judge(motion: Motion, given: Given) -> JudgedRun:
                 tally = _Tally(motion, given, _first_row(block))
             tally.add(block)
         if tally is None:
-            raise LagtopError("t must have at least one row")
+            raise LagtopError("t must have at least one row", "t")
         return JudgedRun(tally.judgement(), tally.kept_rows(), tally.given.conventions)
 
 

@@ -117,6 +117,10 @@ class AngleDerivatives:
             if facts.free and not (facts.over_bottom or facts.over_top):
                 self.models.append((TorqueDerivatives(partials), [PARAMETERS.index("a")]))
         self.max_time = self.models[0][0].max_time
+        self.known = {i for _, rows in self.models for i in rows}
+        """The places of the parameters by which the angles have derivatives."""
+        self.reason = partials.reason("an angle")
+        """Why they have none by the others, if there are others."""
 
     def at(self, t: Array) -> tuple[Array, Array]:
         """Return angles (3, times) and their derivatives (3, parameters, times)."""

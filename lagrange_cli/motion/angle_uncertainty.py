@@ -31,6 +31,9 @@ class AngleStds:
             for one, slope in inputs[name].items():
                 for by, factor in solved[one].items():
                     row[PARAMETERS.index(by)] += std * slope * float(factor)
+        used = set(np.flatnonzero(self.moved.any(axis=0)).tolist())
+        self.reason = None if used <= self.neighbours.known else self.neighbours.reason
+        """Why there are no uncertainties after the start, where there are none."""
 
     def at(self, t: Array) -> Array:
         """Return the uncertainties in radians, of shape (3, times); NaN where there is none."""

@@ -43,19 +43,22 @@ def angle_curves(motion: Motion, t_max: float) -> AngleCurves:
 def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw tilt, spin and precession over time, and their mean growth."""
     axes = panel.subplots(2 if _all_is_spin(motion) else 3, sharex=True)
-    head(panel, TITLE)
+    head(panel, _title(request))
     _draw_curves(axes, motion, request, look)
     panel.align_ylabels(axes)
 
 
 def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
     """Draw the picture on three axes, which share the time."""
-    bands = "" if request.stds is None else "; bands: standard uncertainty"
-    places[0].set_title(TITLE + bands)
+    places[0].set_title(_title(request))
     last = 2 if _all_is_spin(motion) else 3
     _draw_curves(places[:last], motion, request, look)
     for empty in places[last:]:
         empty.set_axis_off()
+
+
+def _title(request: PlotRequest) -> str:
+    return TITLE if request.stds is None else f"{TITLE}; bands: standard uncertainty"
 
 
 def _all_is_spin(motion: Motion) -> bool:

@@ -43,6 +43,7 @@ def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
         ("12.3(4.5)", 12.3, 4.5),
         ("1587+/-2", 1587, 2),
         ("1587±2", 1587, 2),
+        ("1587 +- 2", 1587, 2),
         (" 1587 +/- 0.1 % ", 1587, 1.587),
         ("(-1.5+/-0.1)e3", -1500, 100),
         ("-20(0)", -20, 0),
@@ -138,7 +139,7 @@ def test_budgets_and_reports_on_samples_name_units(lagtop: Lagtop) -> None:
 def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "top.toml"
     scene.write_text('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
-    line = "Warning: the uncertainty of m is not used: solve, table and sweep use it\n"
+    line = "Warning: the uncertainty of m is not used: solve, table, sweep and plot angles use it\n"
     recording = "sample_inputs/recording.csv"
     for words in (
         ("find", scene, "--r0", "10:200", "T_precession=2", "--keys", "r0"),
@@ -191,6 +192,12 @@ def test_a_number_without_an_uncertainty_is_named(lagtop: Lagtop) -> None:
     refused = lagtop("solve", "--theta0", "0(1)", "--budget", "u1")
     assert refused.exit_code == 1
     assert "no uncertainty of first order" in refused.stderr
+    table = lagtop("table", "--theta0", "0(1)", "--t-max", 1, "--n", 2)
+    assert table.stdout.endswith(",,,\n")
+    assert "no uncertainty of the angles: next to the vertical" in table.stderr
+    by_spin = lagtop("table", "--theta0", 0, "--r0", "50(1)", "--t-max", 1, "--n", 2)
+    assert by_spin.stdout.endswith(",0.0,57.29577951308232,0.0\n")
+    assert by_spin.stderr == ""
 
 
 def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: object) -> None:

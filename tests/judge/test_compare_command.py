@@ -205,6 +205,11 @@ def test_bad_requests_get_one_line(
     assert_one_line(lagtop("compare", *arguments), code, message)
 
 
+def test_a_header_without_rows_is_bad_data(lagtop: Lagtop) -> None:
+    result = lagtop("compare", "-", input="t,theta\n")
+    assert_one_line(result, 65, "standard input: t must have at least one row")
+
+
 def test_nothing_is_written_for_a_bad_file(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
     (tmp_path / "out.csv").write_text("old")
     right.write_text(right.read_text()[:-30])
