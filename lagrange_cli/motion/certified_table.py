@@ -6,9 +6,9 @@ The numbers are those of `certified_sample`, rounded where both ends of a ball r
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
 
 ROWS = 64
-"""Rows that settle together."""
+"""Rows that are handed on together."""
 
 
 class CertifiedTable:
@@ -54,40 +54,35 @@ class CertifiedTable:
 
         Raises LagtopError where no precision tells one from 0 or a tie.
         """
-        samples: dict[int, BallSample] = {}
+        sample = cache(lambda bits: sample_at(self.motion, time, bits, wrap=self.wrap))
+        return [self._number(part, time, sample) for part in self.chosen]
 
-        def enclosure(part: Part, bits: int) -> Ball:
-            if bits not in samples:
-                samples[bits] = sample_at(self.motion, time, bits, wrap=self.wrap)
-            with samples[bits].ar.working():
-                value: Ball = getattr(samples[bits], part.method)()
-                in_degrees = part.heading.endswith("*") and not self.radians
-                return value * 180 / samples[bits].ar.pi if in_degrees else value
+    def _number(
+        self, part: Part, time: Fraction, sample: Callable[[int], BallSample]
+    ) -> Proved[Any]:
+        """Return a column at a time, at which `sample` gives the motion in so many bits."""
+        what = f"{name_of(part)} at t = {float(time)}"
+        to = rounding(what, self.digits)
+        if part.method == "times":
+            return about(to(time), time)
+        scene, units = self.motion.exact, {"radians": self.radians, "wrap": self.wrap}
+        number = proved(
+            what,
+            lambda bits: self._enclosure(part, sample(bits)),
+            to,
+            digits=self.digits or 0,
+            more=self._bits_of(time),
+            exactly=partial(known_column, scene, part.method, time, **units),
+        )
+        assert number is not None
+        return number
 
-        found = []
-        for part in self.chosen:
-            what = f"{name_of(part)} at t = {float(time)}"
-            if part.method == "times":
-                found.append(about(rounding(what, self.digits)(time), time))
-                continue
-            number = proved(
-                what,
-                partial(enclosure, part),
-                rounding(what, self.digits),
-                digits=self.digits or 0,
-                more=self._bits_of(time),
-                exactly=partial(
-                    known_column,
-                    self.motion.exact,
-                    part.method,
-                    time,
-                    radians=self.radians,
-                    wrap=self.wrap,
-                ),
-            )
-            assert number is not None
-            found.append(number)
-        return found
+    def _enclosure(self, part: Part, sample: BallSample) -> Ball:
+        """Return a ball that holds a column, angles in the unit in use."""
+        with sample.ar.working():
+            value: Ball = getattr(sample, part.method)()
+            in_degrees = part.heading.endswith("*") and not self.radians
+            return value * 180 / sample.ar.pi if in_degrees else value
 
     def _bits_of(self, time: Fraction) -> int:
         """Return about how many bits whole turns take, in steps, so that precisions come again."""
