@@ -100,7 +100,10 @@ class Cosine(Values):
         return self._clear_sign(polynomial) is None and self._vanishes(polynomial)
 
     def fraction(self, polynomial: Polynomial) -> Fraction | None:
-        """Return a polynomial here where it is known as a fraction: 0, or of a rational cosine."""
+        """Return a polynomial here where it is known as a fraction: 0, a constant, or of one."""
+        constant, *others = polynomial.coefficients
+        if not any(others):
+            return Fraction(constant)
         if self.rational is not None:
             return Fraction(value_at([Fraction(x) for x in polynomial.coefficients], self.rational))
         return Fraction(0) if self.vanishes(polynomial) else None

@@ -97,7 +97,7 @@ def _of_steady(
         known = rate is not None and (not rate or (radians and not wrap))
         return rate * t if rate is not None and known else None
     if method in {"p", "q"}:
-        stays = not exact.psi_rate or known_fraction(exact, "mean_spin_rate") == 0
+        stays = not (t and exact.psi_rate) or known_fraction(exact, "mean_spin_rate") == 0
         return _at_start(exact, method, radians=radians) if stays else None
     if method in {"phi_rate", "psi_rate"}:
         return known_fraction(exact, _MEAN_RATES[method])

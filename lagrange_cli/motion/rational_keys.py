@@ -42,13 +42,9 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
     Zeros of the rates at T/2 after a start with rates take longer: `half_rates` tells them.
     """
     keys = {"a": exact.a, "b": exact.b}
-    facts, cosine = exact.facts, exact.cosine.rational
+    facts = exact.facts
     keys |= _tilt_keys(exact)
-    spin = None if cosine is None else exact.r0 - exact.psi_rate * cosine
-    if not spin and exact.cosine.vanishes(exact.r0 - exact.psi_rate * U):
-        spin = Fraction(0)
-    if facts.pole:
-        spin = exact.r0
+    spin = exact.r0 if facts.pole else exact.cosine.fraction(exact.r0 - exact.psi_rate * U)
     if facts.steady or not facts.pole:  # on the vertical neither rate has a meaning of its own
         keys["precession_rate_start"] = exact.psi_rate
         keys |= {} if spin is None else {"spin_rate_start": spin}

@@ -265,6 +265,8 @@ def test_on_the_vertical_all_of_the_rotation_is_spin(tilt: float, C: float) -> N
         ({"g": 0, "r0": 0, "theta0_deg": 0, "thetadot0": 15 * TENTH}, -1, "thetadot", "-2.0"),
         ({"g": 0, "r0": 0, "theta0_rad": 0.5, "thetadot0": -1.25}, 0.6, "theta", "0.2"),
         ({"r0": 0, "theta0_deg": 31, "thetadot0": 9}, 0.01, "dphi", "0.0"),
+        ({"r0": 0.25, "theta0_deg": 30, "m": 0.1, "A": 0.5}, 0, "phidot", "0.2"),
+        ({"m": 0.125, "r0": 0.5, "theta0_deg": 90, "psidot0": 0.25}, 0, "q", "0.2"),
         (STANDS, 7, "phi", "0.0"),
         (STANDS, 7, "p", "0.0"),
     ],
