@@ -21,7 +21,7 @@ from errata import FIGURES, round_alike, true_values
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve, sweep
-from lagrange_cli.motion.record import all_keys, record_keys, requested_keys
+from lagrange_cli.motion.record import KEYS, all_keys, record_keys, requested_keys
 from lagrange_cli.motion.worked_example import chain
 
 DIGITS = 40
@@ -206,3 +206,9 @@ def test_a_record_loads_none_of_their_modules() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
     assert done.stdout == "[]\n"
+
+
+def test_each_input_is_in_the_group_of_inputs_under_its_symbol() -> None:
+    tilted = {"theta0_deg": "ϑ0", "thetadot0": "ϑ'0", "psidot0": "ψ'0"}
+    for name in Top().inputs():
+        assert (KEYS[name].group, KEYS[name].symbol) == ("Inputs", tilted.get(name, name))
