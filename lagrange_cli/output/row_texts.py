@@ -36,7 +36,8 @@ def csv_lines(columns: Columns, names: Sequence[str]) -> bytes:
         if np.isfinite(first).all():
             return _one_column(first)
     if len(names) > 1:
-        return b"".join(map(_lines, _slices(columns, names)))
+        parts = [part for column in columns for part in _parts(column)]
+        return b"".join(map(_lines, _slices(parts, names)))
     # An empty line would be lost to its reader.
     return b"".join(b"%s\n" % (cell or b'""') for cell in _cells(first))
 
@@ -87,9 +88,30 @@ def _slices(columns: Columns, names: Sequence[str]) -> Iterator[Columns]:
         yield [column[first : first + step] for column in columns]
 
 
+def _parts(column: Array | Sequence[Any]) -> Iterator[Array | Sequence[Any]]:
+    """Yield an array in up to three parts: what is the same in all rows at either end stands apart.
+
+    That is a view of one row, such as that of the inputs which all tops of a sweep share.
+    """
+    if not isinstance(column, np.ndarray):
+        yield column
+        return
+    bits = column.view(np.int64)
+    alike = bits[0] == bits[-1]  # only where the ends are alike can all be
+    alike[alike] = (bits[:, alike] == bits[0, alike]).all(axis=0)
+    places = np.flatnonzero(~alike).tolist()
+    first, end = (places[0], places[-1] + 1) if places else (column.shape[1],) * 2
+    same = np.broadcast_to(column[0], column.shape)
+    yield from (x for x in (same[:, :first], column[:, first:end], same[:, end:]) if x.size)
+
+
 def _cells(column: Array | Sequence[Any]) -> Sequence[bytes]:
     """Return columns of a CSV file, a text per row."""
-    return _array_rows(column) if isinstance(column, np.ndarray) else _texts_of(column, _csv_cell)
+    if not isinstance(column, np.ndarray):
+        return _texts_of(column, _csv_cell)
+    if column.strides[0] == 0:  # one row, repeated
+        return _array_rows(column[:1]) * len(column)
+    return _array_rows(column)
 
 
 def _array_rows(rows: Array) -> list[bytes]:

@@ -27,6 +27,7 @@ def rows_of(count: int) -> tuple[list[Any], list[list[Any]]]:
     numbers = rng.normal(size=(count, 3)) * 10.0 ** rng.integers(-300, 300, (count, 3))
     numbers[rng.random((count, 3)) < 0.2] = np.nan
     numbers[:, 2] = -0.0
+    numbers[-1:] = numbers[:1]  # alike at the ends, but not in between
     texts = [(None, "re]g,[ular", 'a "b"\n', "ü")[i] for i in rng.integers(0, 4, count)]
     more = [(True, 1, 1.0, {"x": [1]}, "null")[i] for i in rng.integers(0, 5, count)]
     columns = [numbers[:, :1], texts, numbers[:, 1:], more]
