@@ -31,7 +31,17 @@ class Growth(NamedTuple):
     """The value of the series at t = 0."""
 
     def unwrapped(self, t: Array, since: Array, series: Array, space: Workspace) -> Array:
-        """Return the angle, counted on from 0 at t = 0; `series` is overwritten."""
+        """Return the angle, counted on from 0 at t = 0; `series` is overwritten.
+
+        A start has one term more than 4 units leave room for: what rounding takes is kept then.
+        """
+        if np.any(self.start.high):
+            total, lost = self._remainder(since, series, space)
+            grown, lost_of_growth = two_product(t, self.rate.high, space)
+            total, lost_there = two_sum(total, grown)
+            total += lost + (lost_there + (lost_of_growth + t * self.rate.low))
+            total[t == 0] = 0.0
+            return total
         series = self._within(t, since, series, space)
         grown = space.new()
         series += np.multiply(t, self.rate.low, out=grown)
@@ -60,27 +70,30 @@ class Growth(NamedTuple):
         Neither the angle nor the growth is formed, so that nothing is lost far away; the slope and
         the winding of the series may cancel, so that their sum keeps what rounding takes from it.
         """
+        total, lost = self._remainder(since, series, space)
+        total += lost
+        if np.any(self.start.high):
+            total[t == 0] = 0.0
+        return total
+
+    def _remainder(self, since: Array, series: Array, space: Workspace) -> tuple[Array, Array]:
+        """Return the angle less its mean growth, and what rounding takes from it."""
         ramp, lost = two_product(since, self.slope.high, space)
         total, lost_there = two_sum(series, ramp)
         total, lost_at_start = two_sum(total, -self.start.high)
         lost += lost_there
         lost += lost_at_start
         lost += since * self.slope.low - self.start.low
-        total += lost
-        if np.any(self.start.high):
-            total[t == 0] = 0.0
-        return total
+        return total, lost
 
     def _within(self, t: Array, since: Array, series: Array, space: Workspace) -> Array:
         """Add what the series lacks within a step."""
         if np.any(self.start.high):
-            series -= self.start.high
+            return self.remainder(t, since, series, space)
         if np.any(self.slope.high):
             ramp = np.multiply(since, self.slope.high, out=space.new())
             series += ramp
             space.free(ramp)
-        if np.any(self.start.high):
-            series[t == 0] = 0.0
         return series
 
 
