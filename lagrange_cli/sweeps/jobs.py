@@ -57,7 +57,7 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
         return
     with (
         terminated_by(["SIGTERM", "SIGHUP"]),
-        TemporaryDirectory(prefix="lagtop-") as folder,
+        _folder() as folder,
         _threads_that_wait_less(),
     ):
         pool = ProcessPoolExecutor(
@@ -72,6 +72,14 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
             ) from None
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _folder() -> TemporaryDirectory[str]:
+    """Return a folder for results that goes when it is left.  Raises CannotWriteError."""
+    try:
+        return TemporaryDirectory(prefix="lagtop-")
+    except OSError as error:
+        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
 
 
 @contextmanager
@@ -129,7 +137,7 @@ def _left(work: Callable[[T], P], item: T, path: str) -> _Left:
         with open(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), "wb") as file:
             pickle.dump(result, file, pickle.HIGHEST_PROTOCOL)
     except OSError as error:
-        raise CannotWriteError(f"{path}: {error.strerror}") from None
+        raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
     return _Left(path)
 
 

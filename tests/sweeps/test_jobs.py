@@ -6,6 +6,7 @@ import multiprocessing
 import os
 import signal
 import subprocess
+import tempfile
 import time
 from collections.abc import Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -69,7 +70,13 @@ def test_results_find_no_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -
         (tmp_path / str(number)).mkdir()
     folder = nullcontext(str(tmp_path))
     monkeypatch.setattr("lagrange_cli.sweeps.jobs.TemporaryDirectory", lambda **_: folder)
-    with pytest.raises(CannotWriteError, match="Is a directory"):
+    with pytest.raises(CannotWriteError, match=r"^cannot write .*: Is a directory"):
+        list(in_order(number_and_place, MANY, 2))
+
+
+def test_no_folder_can_be_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", "/nonexistent")
+    with pytest.raises(CannotWriteError, match=r"^cannot write temporary files: No such file"):
         list(in_order(number_and_place, MANY, 2))
 
 
