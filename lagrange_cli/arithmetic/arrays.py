@@ -22,7 +22,7 @@ class Arrays:
     """The arithmetic of float64 arrays, as far as both kinds of arrays share it."""
 
     is_array = True
-    eps = 2.0**-52
+    eps, magnitude = 2.0**-52, -15.65
     pi: Any = np.pi
     nan: Any = np.nan
 
@@ -72,8 +72,24 @@ class Arrays:
         return bool(np.all(condition))
 
     @staticmethod
-    def widened(x: Any, remainder: Callable[[], Any]) -> Any:
+    def widened(
+        x: Any,
+        small: Callable[[], tuple[Any, ...]],
+        bound: Callable[..., Any],
+        *,
+        values_only: bool = False,
+    ) -> Any:
         """Return x: what an iteration leaves out is below the last bit."""
+        return x
+
+    @staticmethod
+    def either(condition: Any) -> Any:
+        """Return a condition on which only the way to the result depends."""
+        return condition
+
+    @staticmethod
+    def fixed(x: Any) -> Any:
+        """Return x as a constant."""
         return x
 
 
@@ -111,7 +127,7 @@ class ArrayFunctions(Arrays):
 class Pairs(Arrays):
     """The arithmetic of arrays of pairs of doubles, as far as it is needed: one function."""
 
-    eps = 2.0**-104
+    eps, magnitude = 2.0**-104, -31.31
     pi = DoubleDouble(np.array([np.pi]), np.array([1.2246467991473532e-16]))
 
     @staticmethod

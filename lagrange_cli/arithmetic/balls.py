@@ -1,292 +1,281 @@
-"""Arb's balls as an arithmetic: every result is proved to hold the exact value.
+"""The arithmetic of balls over decimals: roots, elementary functions and what iterations leave out.
 
-Roundings are Arb's own business; what an iteration leaves out is added by `widened`, with the bound
-that stands beside the iteration.  A question that the balls leave open is no answer: `Open` raises
-TooFewDigitsError where a decision hangs on it, and the next precision is tried.
+A middle has the digits of its arithmetic, rounded to nearest; a radius has six, rounded up.
+`widened` adds to a radius what an iteration leaves out, by the bound that is proved beside the
+iteration.
 """
 
 from __future__ import annotations
 
-import math
+import decimal
 from collections.abc import Callable
-from contextlib import AbstractContextManager
-from decimal import Decimal
+from contextlib import AbstractContextManager, nullcontext
+from decimal import Decimal, DecimalException, Inexact
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
 
-from ..errors import UnavailableError
-from .correct_rounding import TooFewDigitsError
-from .decimals import own_context
+from .ball import INFINITE, OPEN, ZERO, Ball, TooFewDigitsError, Truth
+from .decimals import TRAPS, Decimals, decimals, own_context, pi_to
+from .radii import CEILING, DOWN, SHORT, UP, add_up, divide_up, fma_up, multiply_up
 
-try:
-    from flint import arb, ctx, fmpq
-except ImportError:
-    raise UnavailableError(
-        "proved digits need python-flint: pip install 'lagtop[certify]'"
-    ) from None
-
-if TYPE_CHECKING:
-    Truth = Any
-
-
-class Open:
-    """What no precision so far decides: neither true nor false."""
-
-    def __bool__(self) -> bool:
-        raise TooFewDigitsError
-
-
-OPEN = Open()
-
-
-class Ball:
-    """A ball; its comparisons are True, False or OPEN."""
-
-    __slots__ = ("arb",)
-
-    def __init__(self, value: arb) -> None:
-        self.arb = value
-
-    def __repr__(self) -> str:
-        return f"Ball({self.arb})"
-
-    def __add__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb + (other.arb if isinstance(other, Ball) else other))
-
-    def __mul__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb * (other.arb if isinstance(other, Ball) else other))
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __sub__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb - (other.arb if isinstance(other, Ball) else other))
-
-    def __rsub__(self, other: int) -> Ball:
-        return Ball(other - self.arb)
-
-    def __truediv__(self, other: Ball | int) -> Ball:
-        return Ball(self.arb / (other.arb if isinstance(other, Ball) else other))
-
-    def __rtruediv__(self, other: int) -> Ball:
-        return Ball(other / self.arb)
-
-    def __pow__(self, power: Ball | int) -> Ball:
-        return Ball(self.arb ** _plain(power))
-
-    def __neg__(self) -> Ball:
-        return Ball(-self.arb)
-
-    def __abs__(self) -> Ball:
-        return Ball(abs(self.arb))
-
-    def __bool__(self) -> bool:
-        if self.arb.is_zero():
-            return False
-        if self.arb != 0:
-            return True
-        raise TooFewDigitsError
-
-    def __lt__(self, other: Ball | int) -> Truth:
-        right = _plain(other)
-        return True if self.arb < right else False if self.arb >= right else OPEN
-
-    def __le__(self, other: Ball | int) -> Truth:
-        right = _plain(other)
-        return True if self.arb <= right else False if self.arb > right else OPEN
-
-    def __gt__(self, other: Ball | int) -> Truth:
-        right = _plain(other)
-        return True if self.arb > right else False if self.arb <= right else OPEN
-
-    def __ge__(self, other: Ball | int) -> Truth:
-        right = _plain(other)
-        return True if self.arb >= right else False if self.arb < right else OPEN
-
-    def radius(self) -> Ball:
-        """Return the radius of the ball, which is exact."""
-        return Ball(self.arb.rad())
-
-    def least_size(self) -> Ball:
-        """Return a number, exact, that all in the ball are at least in size."""
-        return Ball(self.arb.abs_lower())
-
-    def greatest_size(self) -> float:
-        """Return a double that all in the ball are at most in size."""
-        return math.nextafter(float(self.arb.abs_upper()), math.inf)
-
-    def holds(self, other: Ball) -> bool:
-        """Return whether all of another ball is within this one."""
-        return self.arb.is_finite() and self.arb.contains(other.arb)
-
-    def ends(self, digits: int) -> tuple[Decimal, Decimal]:
-        """Return decimals below and above all of the ball, which know so many digits of it.
-
-        Raises TooFewDigitsError for a ball without bounds.
-        """
-        if not self.arb.is_finite():
-            raise TooFewDigitsError
-        middle, radius, exponent = map(int, self.arb.mid_rad_10exp(digits))
-        wide = own_context(digits + 50, [])
-        low, high = (
-            wide.scaleb(Decimal(end), exponent) for end in (middle - radius, middle + radius)
-        )
-        return low, high
-
-
-def _plain(other: Ball | int) -> arb | int:
-    return other.arb if isinstance(other, Ball) else other
+_MARGIN = 6
+"""Digits of elementary functions beyond those of the balls, besides the digits of that number."""
 
 
 class Balls:
-    """The arithmetic of balls with so many bits, in which iterations stop at 2^-`stop`.
+    """The arithmetic of balls whose middles have `digits` digits.
 
-    Wherever they stop, the ball that they give is right: only its radius hangs on that.
+    Iterations stop where they leave out less than 10^-`stop`, by default the last digit.  Wherever
+    they stop, their ball holds the exact value: only its radius depends on it.
     """
 
     is_array = False
-    nan = Ball(arb("nan"))
 
-    def __init__(self, bits: int, stop: int | None = None) -> None:
-        self.bits = bits
-        self.stop = bits if stop is None else stop
-        self.digits = int(self.stop * 0.30103)
-
-    def working(self) -> AbstractContextManager[object]:
-        """Return a context manager that sets the precision of Arb in this thread."""
-        return _Precision(self.bits)
-
-    @cached_property
-    def eps(self) -> Ball:
-        """What iterations may leave out."""
-        return Ball(arb(fmpq(1, 1 << self.stop)))
+    def __init__(self, digits: int, stop: int | None = None) -> None:
+        self.digits, self.magnitude = digits, 1 - (stop or digits)
+        context = own_context(digits, TRAPS)
+        self.add, self.subtract = context.add, context.subtract
+        self.multiply, self.divide = context.multiply, context.divide
+        self._context, self._tight = context, own_context(digits, [*TRAPS, Inexact])
+        self.unit = Decimal((0, (5,), -digits))
+        """Half a unit in the last digit, beside the largest number with this exponent."""
+        self.eps = self.exact(Decimal((0, (1,), self.magnitude)))
+        self.unbounded = Ball(self, ZERO, INFINITE)
+        self.nan = Ball(self, Decimal("NaN"), Decimal("NaN"))
 
     @property
+    def middles(self) -> Decimals:
+        """The arithmetic of the middles alone."""
+        return decimals(self.digits)
+
+    @cached_property
+    def outwards(self) -> tuple[decimal.Context, decimal.Context]:
+        """Contexts that round down and up, with digits for both ends of a ball."""
+        floor, ceiling = (own_context(self.digits + SHORT, []) for _ in range(2))
+        floor.rounding, ceiling.rounding = decimal.ROUND_FLOOR, decimal.ROUND_CEILING
+        return floor, ceiling
+
+    @staticmethod
+    def working() -> AbstractContextManager[object]:
+        """Return a context manager that has nothing to do: the balls know their contexts."""
+        return nullcontext()
+
+    def exactly(self, operation: str, x: Decimal, y: Decimal | int) -> Ball:
+        """Return the result of an operation on exact numbers, exact if it has few enough digits."""
+        try:
+            return Ball(self, getattr(self._tight, operation)(x, y), ZERO)
+        except Inexact:
+            return self._about(getattr(self._context, operation)(x, y))
+        except DecimalException:  # a division by 0
+            return self.unbounded
+
+    def _about(self, middle: Decimal, units: int = 1) -> Ball:
+        """Return a ball about a number that was rounded, by so many units at most."""
+        return Ball(self, middle, multiply_up(middle.copy_abs(), multiply_up(units, self.unit)))
+
+    def exact(self, value: Decimal | float) -> Ball:
+        """Return the ball of radius 0 about a decimal, which may have more digits."""
+        return Ball(self, Decimal(value), ZERO)
+
+    def within(self, size: Decimal) -> Ball:
+        """Return the ball of all numbers up to a size."""
+        return Ball(self, ZERO, size)
+
+    @cached_property
     def pi(self) -> Ball:
         """The number pi."""
-        return Ball(arb.pi())
+        return self._about(self._context.plus(pi_to(self.digits + 2)), 2)
 
-    @staticmethod
-    def convert(value: float | Fraction) -> Ball:
+    def convert(self, value: float | Fraction) -> Ball:
         """Return a ball that holds an exact value."""
-        if isinstance(value, Fraction):
-            return Ball(arb(fmpq(value.numerator, value.denominator)))
-        return Ball(arb(value))
+        exact = Fraction(value)
+        return self.exactly("divide", Decimal(exact.numerator), Decimal(exact.denominator))
 
-    @staticmethod
-    def sqrt(x: Ball | int) -> Ball:
-        """Return the square root of x >= 0."""
-        return Ball(arb(_plain(x)).sqrt())
+    def sqrt(self, x: Ball | int) -> Ball:
+        """Return the square root of x >= 0; of a ball that reaches below 0, by its upper end."""
+        if isinstance(x, int):
+            x = self.exact(x)
+        middle, r = x.middle, x.radius
+        try:
+            if not r:
+                return self._exact_root(middle)
+            if not middle > r:
+                return self._root_from_0(x)
+            root = self._context.sqrt(middle)
+            # |sqrt x' - sqrt x| = |x' - x|/(sqrt x' + sqrt x)
+            share = Decimal("1.9") if middle > multiply_up(10, r) else Decimal("0.99")
+            away = divide_up(r, DOWN.multiply(root, share))
+            return Ball(self, root, fma_up(root, self.unit, away))
+        except DecimalException:
+            return self.nan if middle.is_nan() else self.unbounded
 
-    @staticmethod
-    def sin(x: Ball) -> Ball:
+    def _exact_root(self, x: Decimal) -> Ball:
+        try:
+            return Ball(self, self._tight.sqrt(x), ZERO)
+        except Inexact:
+            return self._about(self._context.sqrt(x))
+
+    def _root_from_0(self, x: Ball) -> Ball:
+        """Return a ball about all roots from 0 to that of the upper end."""
+        upper = CEILING.add(x.middle, x.radius)
+        if not 0 <= upper < INFINITE:
+            return self.unbounded
+        half = multiply_up(UP.sqrt(upper), Decimal("0.50001"))  # sqrt rounds to nearest
+        return Ball(self, half, half)
+
+    @cached_property
+    def plain(self) -> Decimals:
+        """Decimals whose elementary functions are right to `digits` digits (see `Decimals`)."""
+        return decimals(self.digits + _MARGIN + len(str(self.digits)))
+
+    def _value(self, function: Callable[..., Decimal], *at: Decimal) -> Ball:
+        """Return a function of exact numbers."""
+        try:
+            with self.plain.working():
+                value = function(*at)
+            return self._about(self._context.plus(value), 2)
+        except DecimalException:  # beyond all exponents
+            return self.unbounded
+
+    def chained(self, function: Callable[[Decimal], Decimal], x: Ball, inverse: Ball) -> Ball:
+        """Return a function of x whose slope is 1 over a number `inverse` that falls with it."""
+        if not inverse.least > 0:
+            return self.unbounded
+        return self._value(function, x.middle).enlarged(divide_up(x.radius, inverse.least))
+
+    def _spread(self, value: Ball, factor: int, slope: Decimal, radius: Decimal) -> Ball:
+        """Return a function of a ball from its value, a bound of its slope and the radius."""
+        try:
+            return value.enlarged(multiply_up(multiply_up(factor, slope), radius))
+        except DecimalException:
+            return self.unbounded
+
+    def sin(self, x: Ball) -> Ball:
         """Return the sine of x."""
-        return Ball(x.arb.sin())
+        return self._turned(x, 0)
 
-    @staticmethod
-    def cos(x: Ball) -> Ball:
+    def cos(self, x: Ball) -> Ball:
         """Return the cosine of x."""
-        return Ball(x.arb.cos())
+        return self._turned(x, 1)
 
-    @staticmethod
-    def exp(x: Ball) -> Ball:
-        """Return e to the power x."""
-        return Ball(x.arb.exp())
+    def _turned(self, x: Ball, quarters: int) -> Ball:
+        """Return the sine of x and so many quarter turns; its slope is 1 at most."""
+        if not x.radius < 2:
+            return self.within(Decimal(1))
+        turns = self.plain.nint(self.divide(self.multiply(x.middle, 2), self.pi.middle))
+        if turns:
+            x = x - self.pi * turns / 2
+        which = (quarters + turns) % 4
+        function = self.plain.cos if which % 2 else self.plain.sin
+        value = self._value(function, x.middle).enlarged(x.radius)
+        return -value if which > 1 else value
 
-    @staticmethod
-    def sinh(x: Ball) -> Ball:
-        """Return the hyperbolic sine of x."""
-        return Ball(x.arb.sinh())
+    def exp(self, x: Ball) -> Ball:
+        """Return e to the power x; e^r - 1 <= 2 r for r <= 1."""
+        if not x.radius <= 1:
+            return self.unbounded
+        value = self._value(self.plain.exp, x.middle)
+        return self._spread(value, 2, value.greatest, x.radius)
 
-    @staticmethod
-    def cosh(x: Ball) -> Ball:
-        """Return the hyperbolic cosine of x."""
-        return Ball(x.arb.cosh())
+    def sinh(self, x: Ball) -> Ball:
+        """Return the hyperbolic sine of x; its slope is cosh x <= 1 + |sinh x|."""
+        if not x.radius <= 1:
+            return self.unbounded
+        value = self._value(self.plain.sinh, x.middle)
+        return self._spread(value, 3, add_up(1, value.greatest), x.radius)
 
-    @staticmethod
-    def asinh(x: Ball) -> Ball:
-        """Return the inverse hyperbolic sine of x."""
-        return Ball(x.arb.asinh())
+    def cosh(self, x: Ball) -> Ball:
+        """Return the hyperbolic cosine of x; its slope is less than itself."""
+        if not x.radius <= 1:
+            return self.unbounded
+        value = self._value(self.plain.cosh, x.middle)
+        return self._spread(value, 3, value.greatest, x.radius)
 
-    @staticmethod
-    def atan2(y: Ball, x: Ball) -> Ball:
-        """Return the angle of the point (x, y); all of [-pi, pi] where it may lie on the cut."""
-        return Ball(arb.atan2(y.arb, x.arb))
+    def asinh(self, x: Ball) -> Ball:
+        """Return the inverse hyperbolic sine of x, to so many digits behind the point."""
+        value = self._value(self.plain.asinh, x.middle)
+        return value.enlarged(add_up(x.radius, self.unit))
 
-    @staticmethod
-    def nint(x: Ball) -> int:
+    def atan2(self, y: Ball, x: Ball) -> Ball:
+        """Return the angle of the point (x, y); all angles if it may lie on the cut or at 0.
+
+        Between two points the angle changes by (|x| |dy| + |y| |dx|)/(x^2 + y^2) at most.
+        """
+        r, s = x.radius, y.radius
+        if not (r or s):
+            return self._value(self.plain.atan2, y.middle, x.middle)
+        across, along = y.least, x.least
+        on_the_cut = not across and s and not x.middle > r
+        if on_the_cut or not (across or along) or not (r < INFINITE and s < INFINITE):
+            return self.within(Decimal(4))
+        square = DOWN.fma(along, along, DOWN.multiply(across, across))
+        moved = fma_up(x.greatest, s, multiply_up(y.greatest, r))
+        value = self._value(self.plain.atan2, y.middle, x.middle)
+        return value.enlarged(divide_up(moved, square))
+
+    def nint(self, x: Ball) -> int:
         """Return an integer within 3/4 of all of x.
 
         Raises TooFewDigitsError for a ball that is wider than half a unit.
         """
-        if not (x.arb.is_finite() and x.arb.rad() <= 0.25):
+        if not x.radius <= Decimal("0.25"):
             raise TooFewDigitsError
-        mantissa, exponent = (int(part) for part in x.arb.mid().man_exp())
-        if exponent >= 0:
-            return mantissa << exponent
-        return (2 * mantissa + (1 << -exponent)) >> (1 - exponent)
+        return self.plain.nint(x.middle)
 
     @staticmethod
     def ceiling(x: Ball) -> int:
-        """Return the least integer that is at least x; TooFewDigitsError where x is about one."""
-        integer = x.arb.ceil().unique_fmpz() if x.arb.is_finite() else None
-        if integer is None:
+        """Return the least integer that is at least x; TooFewDigitsError if x is about one."""
+        low, high = (int(end.to_integral_value(decimal.ROUND_CEILING)) for end in x.ends())
+        if low != high:
             raise TooFewDigitsError
-        return int(integer)
+        return low
 
-    @staticmethod
-    def where(condition: Truth, yes: Ball | int, no: Ball | int) -> Ball:
-        """Return one of two numbers, or a ball about both where the condition is open."""
-        if condition is OPEN:
-            return Ball(arb(_plain(yes)).union(arb(_plain(no))))
-        return Ball(arb(_plain(yes if condition else no)))
+    def where(self, condition: Truth, yes: Ball | float, no: Ball | float) -> Ball:
+        """Return one of two numbers, or a ball about both if the condition is open."""
+        both = [x if isinstance(x, Ball) else self.exact(x) for x in (yes, no)]
+        if condition is not OPEN:
+            return both[0] if condition else both[1]
+        (a, r), (b, s) = ((x.middle, x.radius) for x in both)
+        if not add_up(r, s) < INFINITE:
+            return self.unbounded
+        middle = self.divide(self.add(a, b), 2)
+        reach = (add_up(UP.subtract(x, middle).copy_abs(), y) for x, y in ((a, r), (b, s)))
+        return Ball(self, middle, max(reach))
 
     @staticmethod
     def anywhere(condition: Truth) -> bool:
-        """Return whether a condition holds.  Raises TooFewDigitsError where it is open."""
+        """Return whether a condition holds.  Raises TooFewDigitsError if it is open."""
         return bool(condition)
 
     everywhere = anywhere
 
     @staticmethod
-    def widened(x: Ball, remainder: Callable[[], Ball]) -> Ball:
-        """Return a ball that holds all numbers at most a remainder away from x."""
-        return Ball(x.arb + arb(0, remainder().arb.abs_upper()))
+    def either(condition: Truth) -> bool:
+        """Return whether a condition is proved, where both answers lead to the right result."""
+        return condition is True
+
+    def widened(
+        self,
+        x: Ball,
+        small: Callable[[], tuple[Ball, ...]],
+        bound: Callable[..., Ball],
+        *,
+        values_only: bool = False,
+    ) -> Ball:
+        """Return a ball that holds all numbers away from x by at most a bound of some sizes.
+
+        A bound that comes out negative is one whose series diverges.
+        """
+        away = bound(*(self.exact(number.greatest) for number in small()))
+        return x.enlarged(away.greatest) if (away >= 0) is True else self.unbounded
+
+    @staticmethod
+    def fixed(x: Ball) -> Ball:
+        """Return x as a constant."""
+        return x
 
 
-def near_largest_root(c2: arb, c1: arb, c0: arb, bound: arb) -> arb:
-    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, all of them real.
-
-    Laguerre's method falls to it from a bound above, three times as many digits at each step, but
-    for a double root.  The point is exact, and proves nothing.
-    """
-    x, least = bound, arb(2) ** (4 - ctx.prec)
-    for _ in range(4 * ctx.prec):
-        value, slope = ((x + c2) * x + c1) * x + c0, (3 * x + 2 * c2) * x + c1
-        curved = 4 * slope * slope - 12 * value * (3 * x + c2)
-        step = (3 * value / (slope + arb(curved.mid()).nonnegative_part().sqrt())).mid()
-        x = (x - step).mid()
-        if not step > least * abs(x):
-            break
-    return x
-
-
-@lru_cache(maxsize=16)
-def balls(bits: int) -> Balls:
-    """Return the balls of so many bits, always the same object."""
-    return Balls(bits)
-
-
-class _Precision:
-    """A context manager that sets the precision of Arb, quicker than one made of a generator."""
-
-    __slots__ = ("before", "bits")
-
-    def __init__(self, bits: int) -> None:
-        self.bits = bits
-
-    def __enter__(self) -> None:
-        self.before, ctx.prec = ctx.prec, self.bits
-
-    def __exit__(self, *raised: object) -> None:
-        ctx.prec = self.before
+@lru_cache(maxsize=64)
+def balls(digits: int) -> Balls:
+    """Return the balls with so many digits, always the same object."""
+    return Balls(digits)

@@ -13,7 +13,7 @@ class Doubles:
     """The arithmetic of floats."""
 
     is_array = False
-    eps = 2.0**-52
+    eps, magnitude = 2.0**-52, -15.65
     pi = math.pi
     nan = math.nan
     sqrt = staticmethod(math.sqrt)
@@ -38,8 +38,24 @@ class Doubles:
         return yes if condition else no
 
     @staticmethod
-    def widened(x: float, remainder: Callable[[], float]) -> float:
+    def widened(
+        x: Any,
+        small: Callable[[], tuple[Any, ...]],
+        bound: Callable[..., Any],
+        *,
+        values_only: bool = False,
+    ) -> Any:
         """Return x: what an iteration leaves out is below the last bit."""
+        return x
+
+    @staticmethod
+    def either(condition: Any) -> Any:
+        """Return a condition on which only the way to the result depends."""
+        return condition
+
+    @staticmethod
+    def fixed(x: Any) -> Any:
+        """Return x as a constant."""
         return x
 
 

@@ -1,20 +1,23 @@
-"""Dual numbers over decimals: a value with its partial derivatives, carried along by any formula.
+"""Dual numbers over balls or decimals: a value with its partial derivatives, by any formula.
 
 With e_i e_j = 0 a number x + x_1 e_1 + ... + x_n e_n obeys the rules of differentiation, so that a
-formula written for any arithmetic gives its derivatives by n parameters at once.
+formula written for any arithmetic gives its derivatives by n parameters at once.  Over balls the
+derivatives are enclosures.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from .decimals import decimals
+from .ball import OPEN, Ball
+from .balls import Balls
+from .decimals import Decimals
 
-_NAN = Decimal("NaN")
+Plain = Any
+"""A number of the arithmetic that duals are over."""
 
 
 class Dual:
@@ -26,8 +29,14 @@ class Dual:
 
     __slots__ = ("partials", "value")
 
-    def __init__(self, value: Decimal, partials: Sequence[Decimal] | None = None) -> None:
+    def __init__(self, value: Plain, partials: Sequence[Plain] | None = None) -> None:
         self.value, self.partials = value, partials
+
+    @property
+    def middle(self) -> Dual:
+        """The middles of balls."""
+        partials = None if self.partials is None else [x.middle for x in self.partials]
+        return Dual(self.value.middle, partials)
 
     def __add__(self, other: Dual | int) -> Dual:
         if isinstance(other, int) or other.partials is None:
@@ -48,9 +57,9 @@ class Dual:
 
     __radd__, __rmul__ = __add__, __mul__
 
-    def _times(self, factor: Decimal | int) -> Dual:
+    def _times(self, factor: Plain) -> Dual:
         """Return the product with a constant."""
-        if self.partials is None or not factor:
+        if self.partials is None or is_zero(factor):
             return Dual(self.value * factor)
         return Dual(self.value * factor, [x * factor for x in self.partials])
 
@@ -59,7 +68,12 @@ class Dual:
 
     def __abs__(self) -> Dual:
         """Return |x|; at 0 its derivatives are those of x, as if x were growing there."""
-        return -self if self.value < 0 else self
+        falls = self.value < 0
+        if falls is not OPEN:
+            return -self if falls else self
+        ar = self.value.ar
+        partials = self.partials and [ar.within(dx.greatest) for dx in self.partials]
+        return Dual(abs(self.value), partials)
 
     def __sub__(self, other: Dual | int) -> Dual:
         return self + -other
@@ -73,72 +87,78 @@ class Dual:
             partials = None if self.partials is None else [x / divisor for x in self.partials]
             return Dual(self.value / divisor, partials)
         inverse = 1 / other.value
-        if self.partials is None:
-            value = self.value / other.value
-            factor = -value * inverse
-            return Dual(value, [factor * y for y in other.partials] if value else None)
         value = self.value / other.value
+        if self.partials is None:
+            factor = -value * inverse
+            return Dual(value, None if is_zero(value) else [factor * y for y in other.partials])
         pairs = zip(self.partials, other.partials, strict=True)
         return Dual(value, [(x - value * y) * inverse for x, y in pairs])
 
     def __rtruediv__(self, other: int) -> Dual:
-        return Dual(Decimal(other)) / self
-
-    def __pow__(self, power: Dual) -> Dual:
-        """Return a power of constants, such as a tolerance."""
-        if self.partials is not None or power.partials is not None:
-            raise TypeError("only constants have powers")
-        return Dual(self.value**power.value)
+        inverse = 1 / self.value
+        if self.partials is None:
+            return Dual(other * inverse)
+        factor = -other * inverse * inverse
+        return Dual(other * inverse, [factor * x for x in self.partials])
 
     def __bool__(self) -> bool:
         return bool(self.value)
 
-    def __hash__(self) -> int:
-        return hash(self.value)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Dual) and (self.value, self.partials) == (
-            other.value,
-            other.partials,
-        )
-
-    def __lt__(self, other: Dual | int) -> bool:
+    def __lt__(self, other: Dual | int) -> Any:
         return self.value < _value(other)
 
-    def __le__(self, other: Dual | int) -> bool:
+    def __le__(self, other: Dual | int) -> Any:
         return self.value <= _value(other)
 
-    def __gt__(self, other: Dual | int) -> bool:
+    def __gt__(self, other: Dual | int) -> Any:
         return self.value > _value(other)
 
-    def __ge__(self, other: Dual | int) -> bool:
+    def __ge__(self, other: Dual | int) -> Any:
         return self.value >= _value(other)
 
     def __repr__(self) -> str:
         return f"Dual({self.value}, {self.partials})"
 
 
-def _value(x: Dual | int) -> Decimal | int:
+def _value(x: Dual | int) -> Plain:
     return x if isinstance(x, int) else x.value
 
 
-class Duals:
-    """The arithmetic of dual numbers over decimals with so many digits.
+def is_zero(x: Plain) -> bool:
+    """Return whether a number is exactly 0."""
+    if isinstance(x, Ball):
+        return not (x.middle or x.radius)
+    return not x
 
-    Where a root is taken of a 0 that is no constant its derivatives do not exist: they are NaN, and
-    so is whatever hangs on them.
+
+class Duals:
+    """The arithmetic of dual numbers over that of balls or decimals.
+
+    If a root is taken of a 0 that is no constant its derivatives do not exist: they are NaN, and so
+    is whatever depends on them.
     """
 
     is_array = False
-    nan = Dual(_NAN)
 
-    def __init__(self, digits: int) -> None:
-        self.digits, self.plain = digits, decimals(digits)
-        self.eps, self.pi = Dual(self.plain.eps), Dual(self.plain.pi)
+    def __init__(self, plain: Balls | Decimals) -> None:
+        self.plain: Any = plain
+        self.digits, self.magnitude = plain.digits, plain.magnitude
+        self.eps, self.nan = Dual(plain.eps), Dual(plain.nan)
+
+    @property
+    def middles(self) -> Duals:
+        """The arithmetic of the middles of balls."""
+        return Duals(self.plain.middles)
+
+    @property
+    def pi(self) -> Dual:
+        """The number pi."""
+        return Dual(self.plain.pi)
 
     def working(self) -> AbstractContextManager[object]:
         """Return a context manager that sets the precision of this thread."""
-        return self.plain.working()
+        manager: AbstractContextManager[object] = self.plain.working()
+        return manager
 
     def convert(self, value: float | Fraction) -> Dual:
         """Return the constant nearest to an exact value."""
@@ -146,10 +166,10 @@ class Duals:
 
     def sqrt(self, x: Dual | int) -> Dual:
         """Return the square root of x >= 0."""
+        root = self.plain.sqrt(_value(x))
         if isinstance(x, int) or x.partials is None:
-            return Dual(Decimal(_value(x)).sqrt())
-        root = x.value.sqrt()
-        return _chained(x, root, 1 / (2 * root) if root else _NAN)
+            return Dual(root)
+        return _chained(x, root, self.plain.nan if is_zero(root) else 1 / (2 * root))
 
     def sin(self, x: Dual) -> Dual:
         """Return the sine of x."""
@@ -169,12 +189,12 @@ class Duals:
 
     def asinh(self, x: Dual) -> Dual:
         """Return the inverse hyperbolic sine of x."""
-        slope = 1 / (1 + x.value * x.value).sqrt()
+        slope = 1 / self.plain.sqrt(1 + x.value * x.value)
         return _chained(x, self.plain.asinh(x.value), slope)
 
     def exp(self, x: Dual) -> Dual:
         """Return e to the power x."""
-        value = x.value.exp()
+        value = self.plain.exp(x.value)
         return _chained(x, value, value)
 
     def atan2(self, y: Dual, x: Dual) -> Dual:
@@ -182,22 +202,52 @@ class Duals:
         angle = self.plain.atan2(y.value, x.value)
         square = x.value * x.value + y.value * y.value
         along, across = x.value / square, -y.value / square
-        return Dual(angle) + (_slope(y, along) + _slope(x, across))
+        return Dual(angle) + (self._slope(y, along) + self._slope(x, across))
+
+    def _slope(self, x: Dual, factor: Plain) -> Dual:
+        """Return a number of value 0 with the partials of x times a factor."""
+        return _chained(x, self.plain.convert(0), factor)
 
     def nint(self, x: Dual) -> int:
         """Return the integer nearest to x."""
-        return self.plain.nint(x.value)
+        nearest: int = self.plain.nint(x.value)
+        return nearest
+
+    def widened(
+        self,
+        x: Dual,
+        small: Callable[[], tuple[Dual, ...]],
+        bound: Callable[..., Dual],
+        *,
+        values_only: bool = False,
+    ) -> Dual:
+        """Return x and, over balls, what an iteration may have left out of it and its derivatives.
+
+        Raises NotImplementedError over balls for a bound of `values_only`.
+        """
+        if not isinstance(self.plain, Balls):
+            return x
+        if values_only:
+            raise NotImplementedError("this bound does not hold for derivatives")
+        away = bound(*(_sizes(self.plain, number) for number in small()))
+        if (away.value >= 0) is not True:  # the series of the bound diverges
+            unbounded = self.plain.unbounded
+            return Dual(unbounded, None if x.partials is None else [unbounded for _ in x.partials])
+        return _widened(x, away)
+
+    def either(self, condition: Any) -> bool:
+        """Return a condition on which only the way to the result depends."""
+        return bool(self.plain.either(condition))
 
     @staticmethod
-    def widened(x: Dual, remainder: Callable[[], Dual]) -> Dual:
-        """Return x: what an iteration leaves out is below the last digit."""
-        return x
+    def fixed(x: Dual) -> Dual:
+        """Return x as a constant, without derivatives."""
+        return Dual(x.value)
 
-    @staticmethod
-    def where(condition: bool, yes: Dual | int, no: Dual | int) -> Dual:
+    def where(self, condition: bool, yes: Dual | int, no: Dual | int) -> Dual:
         """Return one of two numbers."""
         chosen = yes if condition else no
-        return Dual(Decimal(chosen)) if isinstance(chosen, int) else chosen
+        return self.convert(chosen) if isinstance(chosen, int) else chosen
 
     @staticmethod
     def anywhere(condition: Any) -> bool:
@@ -207,18 +257,30 @@ class Duals:
     everywhere: Callable[[Any], bool] = anywhere
 
 
-def _chained(x: Dual, value: Decimal, slope: Decimal) -> Dual:
+def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:
     """Return a function of x by its value and its slope there."""
     return Dual(value, None if x.partials is None else [slope * dx for dx in x.partials])
 
 
-def _slope(x: Dual, factor: Decimal) -> Dual:
-    """Return a number of value 0 with the partials of x times a factor."""
-    return _chained(x, Decimal(0), factor)
+def _sizes(ar: Balls, x: Dual) -> Dual:
+    """Return the greatest sizes of a number and of its derivatives."""
+    partials = None if x.partials is None else [ar.exact(dx.greatest) for dx in x.partials]
+    return Dual(ar.exact(x.value.greatest), partials)
 
 
-def independent(values: Iterable[Decimal]) -> list[Dual]:
+def _widened(x: Dual, away: Dual) -> Dual:
+    """Return a number with larger radii of its value and its derivatives."""
+    value = x.value.enlarged(away.value.greatest)
+    if away.partials is None:
+        return Dual(value, x.partials)
+    partials = x.partials or [0 * dx for dx in away.partials]
+    pairs = zip(partials, away.partials, strict=True)
+    return Dual(value, [dx.enlarged(size.greatest) for dx, size in pairs])
+
+
+def independent(values: Iterable[Plain]) -> list[Dual]:
     """Return numbers as parameters, each with the derivative 1 by itself and 0 by the others."""
     values = list(values)
-    count = range(len(values))
-    return [Dual(x, [Decimal(i == j) for j in count]) for i, x in enumerate(values)]
+    return [
+        Dual(x, [0 * y + int(i == j) for j, y in enumerate(values)]) for i, x in enumerate(values)
+    ]

@@ -12,15 +12,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache, reduce
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any
 
-from .decimals import Decimals, decimals
-from .values import Values
+from .ball import Ball
+from .balls import Balls, balls
+from .decimals import pi_to
+from .numbers import R
+from .rounding import decided
+from .values import Over, Values
 
-N = TypeVar("N", float, Fraction, Decimal)
+if TYPE_CHECKING:
+    from .protocol import Arithmetic
 
 _CERTAIN = 1e-12
 """More than the rounding of a value whose coefficients have the sum 1 in size."""
@@ -80,8 +84,21 @@ def _polynomial(value: object) -> Polynomial:
     return Polynomial(value)
 
 
+class Tilt(Values, Over[R]):
+    """Sines and cosines of an angle from 0 to pi and of its half."""
+
+    sin: R
+    cos: R
+    sin_half: R
+    cos_half: R
+
+    def degrees(self, ar: Arithmetic[R]) -> R:
+        """Return the angle itself, in degrees."""
+        return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
+
+
 class Cosine(Values):
-    """The cosine of an angle that is given exactly, in degrees or else in radians."""
+    """The cosine of an angle from 0 to pi that is given exactly, in degrees or else in radians."""
 
     degrees: Fraction | None
     radians: Fraction | None
@@ -112,7 +129,7 @@ class Cosine(Values):
         """Return the sign of a polynomial, -1, 0 or 1."""
         sign = self._clear_sign(polynomial)
         if sign is None:
-            sign = 0 if self._vanishes(polynomial) else self._sign_in_digits(polynomial)
+            sign = 0 if self._vanishes(polynomial) else self._sign_in_balls(polynomial)
         return sign
 
     def _clear_sign(self, polynomial: Polynomial) -> int | None:
@@ -143,30 +160,65 @@ class Cosine(Values):
             return False
         return not any(x != 0 for x in _remainder(_in_roots_of_unity(coefficients), cyclotomic(n)))
 
-    def _sign_in_digits(self, polynomial: Polynomial) -> int:
-        coefficients = [Fraction(x) for x in polynomial.coefficients]
-        digits, size = 50, sum(abs(x) for x in coefficients)
-        while True:
-            ar = decimals(digits)
-            with ar.working():
-                value = value_at([ar.convert(x / size) for x in coefficients], self.value(ar))
-                if abs(value) > 1000 * ar.eps:
-                    return 1 if value > 0 else -1
-            digits *= 2
+    def _sign_in_balls(self, polynomial: Polynomial) -> int:
+        def sign(digits: int) -> int:
+            return 1 if self.at(balls(digits), polynomial) > 0 else -1
+
+        return decided("a polynomial in cos(theta0)", sign)
+
+    def at(self, ar: Balls, polynomial: Polynomial) -> Ball:
+        """Return the value of a polynomial in balls."""
+        value: Ball = value_at(
+            [ar.convert(Fraction(x)) for x in polynomial.coefficients], self.value(ar)
+        )
+        return value
 
     def _in_radians(self) -> float:
         return (
             float(self.radians or 0) if self.degrees is None else math.radians(float(self.degrees))
         )
 
-    def value(self, ar: Decimals) -> Decimal:
-        """Return the value in decimals."""
-        if self.degrees is None:
-            return ar.cos(ar.convert(self.radians or 0))
-        return ar.sin(ar.convert(90 - self.degrees) * ar.pi / 180)
+    def value(self, ar: Arithmetic[R]) -> R:
+        """Return the value in an arithmetic."""
+        rational = self.rational
+        return self.tilt(ar).cos if rational is None else ar.convert(rational)
+
+    def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
+        """Return sines and cosines of the angle and its half with full *relative* accuracy.
+
+        They are computed from the distances to the nearer pole and to the horizontal.
+        """
+        if self.degrees is not None:
+            degree, upper = ar.pi / 180, self.degrees <= 90
+            nearer = ar.convert(self.degrees if upper else 180 - self.degrees) * degree
+            level = ar.convert(90 - self.degrees) * degree
+        else:
+            theta = Fraction(self.radians or 0)
+            upper = theta < Fraction(3, 2)
+            nearer = ar.convert(theta) if upper else _below_quarters(ar, 2, theta)
+            level = _below_quarters(ar, 1, theta)
+        small = ar.sin(nearer / 2)
+        large = ar.sqrt(1 - small * small)
+        return Tilt(2 * small * large, ar.sin(level), *(small, large) if upper else (large, small))
 
 
-def value_at(coefficients: Sequence[N], x: N) -> N:
+def below_quarters(quarters: int, theta: Fraction, digits: int = 1) -> Fraction:
+    """Return so many quarter turns less an angle in radians, to so many significant digits."""
+    of_pi = digits + 20
+    while True:
+        gap = quarters * Fraction(pi_to(of_pi)) / 2 - theta
+        if abs(gap) * 10 ** (of_pi - digits) > 2:
+            return gap
+        of_pi *= 2
+
+
+def _below_quarters(ar: Arithmetic[R], quarters: int, theta: Fraction) -> R:
+    """Return the same in an arithmetic, with full relative accuracy."""
+    gap = ar.convert(below_quarters(quarters, theta, 2 - int(ar.magnitude)))
+    return ar.widened(gap, lambda: (gap,), lambda gap: gap * ar.eps)
+
+
+def value_at(coefficients: Sequence[Any], x: Any) -> Any:
     """Return the polynomial with these coefficients, the lowest power first, at x."""
     return reduce(lambda value, coefficient: value * x + coefficient, reversed(coefficients))
 

@@ -18,6 +18,11 @@ class ManyDigits(MPContext):  # type: ignore[misc]
 
     is_array = False
 
+    @property
+    def magnitude(self) -> float:
+        """The decimal logarithm of eps."""
+        return 1.0 - float(self.dps)
+
     def __init__(self, digits: int = 50) -> None:
         super().__init__()
         self.dps = digits
@@ -40,6 +45,22 @@ class ManyDigits(MPContext):  # type: ignore[misc]
     everywhere = anywhere
 
     @staticmethod
-    def widened(x: Any, remainder: Callable[[], Any]) -> Any:
+    def widened(
+        x: Any,
+        small: Callable[[], tuple[Any, ...]],
+        bound: Callable[..., Any],
+        *,
+        values_only: bool = False,
+    ) -> Any:
         """Return x: what an iteration leaves out is below the last digit."""
+        return x
+
+    @staticmethod
+    def either(condition: Any) -> Any:
+        """Return a condition on which only the way to the result depends."""
+        return condition
+
+    @staticmethod
+    def fixed(x: Any) -> Any:
+        """Return x as a constant."""
         return x

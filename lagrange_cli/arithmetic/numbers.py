@@ -5,6 +5,7 @@ What their arithmetic offers is said in `protocol`, which a record is computed w
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from functools import lru_cache
 from operator import index
@@ -47,7 +48,19 @@ def absolute(x: R) -> R:
     return x.__abs__()
 
 
+def power(x: R, exponent: int) -> R:
+    """Return x to a power of 1 at least, by squaring."""
+    if exponent == 1:
+        return x
+    half = power(x, exponent // 2)
+    return half * half * x if exponent % 2 else half * half
+
+
 @lru_cache(maxsize=256)
-def root_of_epsilon(eps: Any, over: int, degree: int) -> Any:
-    """Return (eps/over)^(1/degree): where a series with so many orders is exact."""
-    return (eps / over) ** (eps / eps / degree)
+def root_of_epsilon(ar: Any, over: int, degree: int) -> Any:
+    """Return (eps/over)^(1/degree): where a series with so many orders is exact.
+
+    Three digits are enough: it says when to stop, not what is true.
+    """
+    exponent, part = divmod((ar.magnitude - math.log10(over)) / degree, 1)
+    return ar.convert(Fraction(10) ** int(exponent) * Fraction(10.0**part))

@@ -36,6 +36,8 @@ class Real(Protocol):
 class Arithmetic(Protocol[R]):
     """What the formulas of the record need."""
 
+    def __hash__(self) -> int: ...
+
     @property
     def is_array(self) -> bool:
         """Whether its numbers are arrays, so that a condition on them is a mask."""
@@ -47,6 +49,10 @@ class Arithmetic(Protocol[R]):
     @property
     def eps(self) -> R:
         """Distance from 1 to the next number."""
+
+    @property
+    def magnitude(self) -> float:
+        """The decimal logarithm of eps."""
 
     @property
     def nan(self) -> R:
@@ -83,11 +89,27 @@ class Arithmetic(Protocol[R]):
     def everywhere(self, condition: Any, /) -> bool:
         """Return whether a condition holds for every element of an array."""
 
-    def widened(self, x: R, remainder: Callable[[], R], /) -> R:
-        """Return x with all that is at most a remainder away from it, in an arithmetic of balls.
+    def either(self, condition: Any, /) -> Any:
+        """Return a condition that chooses between two right ways; balls may leave it open."""
 
-        In any other it is x, and the remainder, which an iteration left out, is not computed.
+    def widened(
+        self,
+        x: R,
+        small: Callable[[], tuple[R, ...]],
+        bound: Callable[..., R],
+        /,
+        *,
+        values_only: bool = False,
+    ) -> R:
+        """Return x and, in an arithmetic of balls, all that an iteration may have left out.
+
+        `bound`, at the sizes of the `small` numbers, bounds what is left out, and its derivatives
+        by them bound those of what is left out, unless it is one of `values_only`.  In any other
+        arithmetic this is x, and neither is computed.
         """
+
+    def fixed(self, x: R, /) -> R:
+        """Return x as a constant, without derivatives."""
 
 
 class SeriesArithmetic(Arithmetic[R], Protocol[R]):
@@ -113,34 +135,18 @@ Value = Any
 """A real or complex number, or an array of them, of a `FunctionArithmetic`: mpmath has no types."""
 
 
-class FunctionArithmetic(Protocol):
-    """What Jacobi's, the theta and Omega functions need: arrays of doubles, or mpmath.
+class FunctionArithmetic(SeriesArithmetic[Any], Protocol):
+    """What Jacobi's, the theta and Omega functions need: balls, arrays of doubles, or mpmath.
 
-    Their numbers are real or complex and mix with floats, so they have no narrower type than Any:
-    float64 and complex128 arrays, or mpf and mpc.  `SeriesArithmetic` names most of these methods;
-    those that are here besides are the functions that decimals do not have.
+    Their numbers may be complex and mix with floats, so they have no narrower type than Any.
     """
 
-    pi: Any
-    eps: Any
-    nan: Any
-    inf: Any
-
     @property
-    def is_array(self) -> bool:
-        """Whether its numbers are arrays, so that a condition on them is a mask."""
-
-    def working(self) -> AbstractContextManager[object]:
-        """Return a context manager inside which the host's settings do not matter."""
+    def inf(self) -> Any:
+        """Infinity."""
 
     def convert(self, value: Any, /) -> Any:
         """Return a number or an array as one of this arithmetic."""
-
-    def sqrt(self, x: Any, /) -> Any:
-        """Return the square root of x."""
-
-    def exp(self, x: Any, /) -> Any:
-        """Return e to the power x."""
 
     def expm1(self, x: Any, /) -> Any:
         """Return e to the power x, less 1."""
@@ -151,21 +157,6 @@ class FunctionArithmetic(Protocol):
     def log1p(self, x: Any, /) -> Any:
         """Return the natural logarithm of 1 + x."""
 
-    def sin(self, x: Any, /) -> Any:
-        """Return the sine of x."""
-
-    def cos(self, x: Any, /) -> Any:
-        """Return the cosine of x."""
-
-    def sinh(self, x: Any, /) -> Any:
-        """Return the hyperbolic sine of x."""
-
-    def cosh(self, x: Any, /) -> Any:
-        """Return the hyperbolic cosine of x."""
-
-    def asinh(self, x: Any, /) -> Any:
-        """Return the inverse hyperbolic sine of x."""
-
     def tanh(self, x: Any, /) -> Any:
         """Return the hyperbolic tangent of x."""
 
@@ -174,9 +165,6 @@ class FunctionArithmetic(Protocol):
 
     def atanh(self, x: Any, /) -> Any:
         """Return the number whose hyperbolic tangent is x."""
-
-    def atan2(self, y: Any, x: Any, /) -> Any:
-        """Return the angle of the point (x, y), in (-pi, pi]."""
 
     def sign(self, x: Any, /) -> Any:
         """Return 1, 0 or -1 with the sign of x."""
@@ -190,20 +178,12 @@ class FunctionArithmetic(Protocol):
     def im(self, x: Any, /) -> Any:
         """Return the imaginary part of x."""
 
+
+class ComplexArithmetic(FunctionArithmetic, Protocol):
+    """What functions of complex numbers need besides."""
+
     def conj(self, x: Any, /) -> Any:
         """Return the complex conjugate of x."""
 
     def mpc(self, real: Any, imag: Any, /) -> Any:
         """Return the complex number with these parts."""
-
-    def where(self, condition: Any, yes: Any, no: Any, /) -> Any:
-        """Return one of two numbers, or choose element by element between two arrays."""
-
-    def anywhere(self, condition: Any, /) -> bool:
-        """Return whether a condition holds at all, for some element of an array."""
-
-    def everywhere(self, condition: Any, /) -> bool:
-        """Return whether a condition holds for every element of an array."""
-
-    def widened(self, x: Any, remainder: Callable[[], Any], /) -> Any:
-        """Return x, with all that is at most a remainder away from it in an arithmetic of balls."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from .ball import Ball
+
 if TYPE_CHECKING:
     from .types import Array
 
@@ -19,9 +21,12 @@ class Pair(NamedTuple):
 
 
 def pair(value: Any) -> Pair:
-    """Return a many-digit number, or a fraction, as two doubles."""
+    """Return a many-digit number, or a fraction, as two doubles.
+
+    Raises TooFewDigitsError for a ball that does not know them.
+    """
     high = float(value)
-    return Pair(high, float(value - type(value)(high)))
+    return Pair(high, float(_less(value, high)))
 
 
 class Triple(NamedTuple):
@@ -34,6 +39,9 @@ class Triple(NamedTuple):
 
 def triple(value: Any) -> Triple:
     """Return a many-digit number as three doubles."""
-    high, middle = pair(value)
-    kind = type(value)
-    return Triple(float(high), float(middle), float(value - kind(high) - kind(middle)))
+    high, middle = map(float, pair(value))
+    return Triple(high, middle, float(_less(_less(value, high), middle)))
+
+
+def _less(value: Any, part: float) -> Any:
+    return value - (part if isinstance(value, Ball) else type(value)(part))

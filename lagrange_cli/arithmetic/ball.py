@@ -1,0 +1,234 @@
+"""A ball: a middle and a radius between which the exact value is proved to lie.
+
+Each operation adds to the radius what its own rounding can take.  A comparison that the balls leave
+open is `OPEN`: it raises TooFewDigitsError when a decision depends on it, and the caller takes more
+digits.  A ball of radius 0 is exact, and stays so through sums and products that are exact.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal, DecimalException
+from typing import TYPE_CHECKING, Any
+
+from .radii import CEILING, DOWN, FLOOR, UP, add_up, divide_up, fma_up, multiply_up
+
+if TYPE_CHECKING:
+    from .balls import Balls
+
+Truth = Any
+"""True, False or OPEN."""
+
+ZERO, INFINITE = Decimal(0), Decimal("Infinity")
+
+
+class TooFewDigitsError(Exception):
+    """A question that the digits at hand leave open."""
+
+
+class UndefinedError(ArithmeticError):
+    """A question about a number that does not exist."""
+
+
+class Open:
+    """The answer to a comparison that is neither proved nor disproved."""
+
+    def __bool__(self) -> bool:
+        raise TooFewDigitsError
+
+
+OPEN = Open()
+
+
+class Ball:
+    """All numbers at most `radius` away from `middle`; comparisons are True, False or OPEN.
+
+    An infinite radius says nothing of a number, and NaN that it does not exist, as x/0.
+    """
+
+    __slots__ = ("ar", "middle", "radius")
+
+    def __init__(self, ar: Balls, middle: Decimal, radius: Decimal) -> None:
+        self.ar, self.middle, self.radius = ar, middle, radius
+
+    def __repr__(self) -> str:
+        return f"Ball({self.middle} +- {self.radius})"
+
+    def __add__(self, other: Ball | float) -> Ball:
+        ar = self.ar
+        if isinstance(other, Ball):
+            term, radius = other.middle, add_up(self.radius, other.radius)
+        else:
+            term, radius = Decimal(other), self.radius
+        if not radius:
+            return ar.exactly("add", self.middle, term)
+        middle = ar.add(self.middle, term)
+        return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
+
+    def __sub__(self, other: Ball | float) -> Ball:
+        ar = self.ar
+        if isinstance(other, Ball):
+            term, radius = other.middle, add_up(self.radius, other.radius)
+        else:
+            term, radius = Decimal(other), self.radius
+        if not radius:
+            return ar.exactly("subtract", self.middle, term)
+        middle = ar.subtract(self.middle, term)
+        return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
+
+    def __rsub__(self, other: float) -> Ball:
+        return -self + other
+
+    def __mul__(self, other: Ball | float) -> Ball:
+        ar, x, r = self.ar, self.middle, self.radius
+        try:
+            if not isinstance(other, Ball):
+                y = Decimal(other)
+                if not (r and y):
+                    return ar.exactly("multiply", x, y) if r.is_finite() else ar.exact(0)
+                middle = ar.multiply(x, y)
+                rounding = multiply_up(middle.copy_abs(), ar.unit)
+                return Ball(ar, middle, fma_up(r, y.copy_abs(), rounding))
+            y, s = other.middle, other.radius
+            if not (r or s):
+                return ar.exactly("multiply", x, y)
+            middle = ar.multiply(x, y)
+            # |x| s + (|y| + s) r + the rounding
+            radius = fma_up(x.copy_abs(), s, multiply_up(middle.copy_abs(), ar.unit))
+            return Ball(ar, middle, fma_up(add_up(y.copy_abs(), s), r, radius))
+        except DecimalException:
+            return ar.unbounded
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __truediv__(self, other: Ball | float) -> Ball:
+        ar, x, r = self.ar, self.middle, self.radius
+        y, s = (other.middle, other.radius) if isinstance(other, Ball) else (Decimal(other), ZERO)
+        try:
+            if not s:
+                if not y:
+                    return ar.nan
+                if not r:
+                    return ar.exactly("divide", x, y)
+            least = DOWN.subtract(y.copy_abs(), s)
+            if not least > 0:
+                return ar.unbounded
+            middle = ar.divide(x, y)
+            size = middle.copy_abs()
+            # |x' - q y'| <= |x - q y| + r + |q| s, and |x - q y| is the rounding of q times |y|
+            away = fma_up(multiply_up(size, ar.unit), y.copy_abs(), fma_up(size, s, r))
+            return Ball(ar, middle, divide_up(away, least))
+        except DecimalException:
+            return ar.nan if x.is_nan() or y.is_nan() else ar.unbounded
+
+    def __rtruediv__(self, other: float) -> Ball:
+        return Ball(self.ar, Decimal(other), ZERO) / self
+
+    def __pow__(self, exponent: int) -> Ball:
+        if exponent < 2:
+            return self if exponent else self.ar.exact(1)
+        half = self ** (exponent // 2)
+        return half * half * self if exponent % 2 else half * half
+
+    def __neg__(self) -> Ball:
+        return Ball(self.ar, self.middle.copy_negate(), self.radius)
+
+    def __abs__(self) -> Ball:
+        return Ball(self.ar, self.middle.copy_abs(), self.radius)
+
+    def __bool__(self) -> bool:
+        if self.middle.copy_abs() > self.radius:
+            return True
+        if self.middle or self.radius:
+            raise TooFewDigitsError
+        return False
+
+    def __eq__(self, other: object) -> Truth:
+        if not isinstance(other, Ball | int | float):
+            return False
+        low, high = self._less(other)
+        return True if low == high == 0 else False if low > 0 or high < 0 else OPEN
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __lt__(self, other: Ball | float) -> Truth:
+        low, high = self._less(other)
+        return True if high < 0 else False if low >= 0 else OPEN
+
+    def __le__(self, other: Ball | float) -> Truth:
+        low, high = self._less(other)
+        return True if high <= 0 else False if low > 0 else OPEN
+
+    def __gt__(self, other: Ball | float) -> Truth:
+        low, high = self._less(other)
+        return True if low > 0 else False if high <= 0 else OPEN
+
+    def __ge__(self, other: Ball | float) -> Truth:
+        low, high = self._less(other)
+        return True if low >= 0 else False if high < 0 else OPEN
+
+    def _less(self, other: Ball | float) -> tuple[Decimal, Decimal]:
+        """Return numbers below and above the difference from another ball."""
+        if isinstance(other, Ball):
+            term, radius = other.middle, add_up(self.radius, other.radius)
+        else:
+            term, radius = Decimal(other), self.radius
+        if not radius.is_finite():
+            if radius.is_nan():
+                raise UndefinedError
+            return -INFINITE, INFINITE
+        x = self.middle
+        low = FLOOR.subtract(FLOOR.subtract(x, term), radius)
+        return low, CEILING.add(CEILING.subtract(x, term), radius)
+
+    def __float__(self) -> float:
+        """Return the double nearest to every number in the ball.
+
+        Raises TooFewDigitsError if there is more than one.
+        """
+        low, high = map(float, self.ends())
+        if low != high:
+            raise TooFewDigitsError
+        return low
+
+    @property
+    def is_nan(self) -> bool:
+        """Whether the number does not exist."""
+        return self.middle.is_nan()
+
+    @property
+    def greatest(self) -> Decimal:
+        """A number that all in the ball are at most in size, to six digits."""
+        return add_up(self.middle.copy_abs(), self.radius)
+
+    @property
+    def least(self) -> Decimal:
+        """A number that all in the ball are at least in size, to six digits."""
+        return max(DOWN.subtract(self.middle.copy_abs(), self.radius), ZERO)
+
+    def enlarged(self, away: Decimal) -> Ball:
+        """Return the ball with a larger radius."""
+        return Ball(self.ar, self.middle, add_up(self.radius, away))
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether the sign of the number and its size, to a factor of 2, are known."""
+        return self.greatest <= multiply_up(2, self.least)
+
+    def is_known_to(self, digits: int) -> bool:
+        """Return whether the radius is at most 10^-digits of every number in the ball."""
+        return self.radius <= DOWN.scaleb(self.least, -digits)
+
+    def holds(self, other: Ball) -> bool:
+        """Return whether all of another ball is proved to be within this one."""
+        apart = UP.subtract(self.middle, other.middle).copy_abs()
+        return add_up(apart, other.radius) <= self.radius
+
+    def ends(self) -> tuple[Decimal, Decimal]:
+        """Return decimals below and above all of the ball.
+
+        Raises TooFewDigitsError for a ball without bounds.
+        """
+        if not self.radius.is_finite():
+            raise TooFewDigitsError
+        floor, ceiling = self.ar.outwards
+        return floor.subtract(self.middle, self.radius), ceiling.add(self.middle, self.radius)

@@ -1,0 +1,188 @@
+"""Proved roundings: more digits, until both ends of an enclosure are rounded alike (Ziv 1991)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from decimal import ROUND_UP, Decimal
+from fractions import Fraction
+from typing import Any, NamedTuple, TypeVar
+
+from ..errors import LagtopError, OutOfRangeError
+from .ball import Ball, TooFewDigitsError
+from .decimals import own_context
+from .text import NumberText
+
+S = TypeVar("S")
+
+FIRST_DIGITS, MOST_DIGITS = 32, 4_500
+"""Digits of the first enclosure of a double, and digits beyond which a question stays open."""
+_GUARD = 10
+"""Digits that an enclosure of N digits has besides."""
+_INFINITE = float("inf")
+_OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])
+_OUTWARDS.rounding = _SHORT.rounding = ROUND_UP
+_A_HAIR_MORE = Decimal("1.000000000001")
+
+Real = Decimal | Fraction
+
+
+class Settled(NamedTuple):
+    """A number as it is printed, with the ends of an interval that holds its exact value."""
+
+    value: Any
+    ends: tuple[Real, ...]
+
+    @property
+    def radius(self) -> NumberText:
+        """How far the exact value may be from the number, rounded up to two digits.
+
+        It is rounded so far that the double which is read is no less.
+        """
+        away = max(_distance(end, self.value) for end in self.ends)
+        return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
+
+
+def precisions(digits: int = 0, more: int = 0) -> Iterator[int]:
+    """Yield the digits of enclosures to try for a number of so many digits.
+
+    `more` are digits that are lost anyway, such as those of whole turns.
+    """
+    working = max(FIRST_DIGITS, digits + _GUARD) + more
+    while working <= MOST_DIGITS + more:
+        yield working
+        working = working * 3 // 2 if working < 100 else working * 2
+
+
+def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0) -> S:
+    """Return the first result that some number of digits decides.
+
+    Raises LagtopError if none does.
+    """
+    for working in precisions(digits, more):
+        try:
+            return compute(working)
+        except TooFewDigitsError:
+            continue
+    raise LagtopError(f"{what} cannot be told from 0 or a tie with {MOST_DIGITS} digits")
+
+
+def settled(
+    what: str,
+    enclosure: Callable[[int], Ball | None],
+    rounding: Callable[[Real], Any],
+    *,
+    digits: int = 0,
+    more: int = 0,
+    exactly: Callable[[], Fraction | None] = lambda: None,
+) -> Settled | None:
+    """Return the rounding of a number from enclosures with more and more digits; None for None.
+
+    If the first enclosure leaves the number open, `exactly` is asked once whether it is known as a
+    fraction.  Raises LagtopError if nothing decides.
+    """
+    known: Fraction | None = None
+    asked = False
+
+    def attempt(working: int) -> Settled | None:
+        nonlocal known, asked
+        try:
+            ball = enclosure(working)
+            return None if ball is None else alike(ball, rounding)
+        except TooFewDigitsError:
+            known, asked = (known if asked else exactly()), True
+            if known is None:
+                raise
+            return Settled(rounding(known), (known,))
+
+    return decided(what, attempt, digits, more)
+
+
+def alike(ball: Ball, rounding: Callable[[Real], Any]) -> Settled:
+    """Return the number to which both ends of a ball are rounded.
+
+    It is 0 only if the ball is.  Raises TooFewDigitsError if the ends are rounded differently, or
+    if they are too far apart to know the size of the number.
+    """
+    low, high = ball.ends()
+    if not ball.is_sharp:
+        raise TooFewDigitsError
+    value = rounding(low)
+    if value != rounding(high):
+        raise TooFewDigitsError
+    return Settled(value, (low, high))
+
+
+def rounded(what: str, enclosure: Callable[[int], Ball]) -> float:
+    """Return the double nearest to a number, 0 also for one that is proved to be as small.
+
+    A ball that is NaN is NaN.  Raises LagtopError if no precision decides.
+    """
+
+    def nearest(digits: int) -> float:
+        ball = enclosure(digits)
+        if ball.is_nan:
+            return math.nan
+        low, high = map(float, ball.ends())
+        if low != high:
+            raise TooFewDigitsError
+        return low + 0.0  # never -0.0
+
+    return decided(what, nearest)
+
+
+def nearest_double(name: str) -> Callable[[Real], float]:
+    """Return the rounding of a number to doubles.
+
+    It raises OutOfRangeError for a number that is beyond them, or smaller than all but 0.
+    """
+
+    def rounding(value: Real) -> float:
+        nearest = float(value)
+        if not abs(nearest) < _INFINITE:
+            raise OutOfRangeError(
+                f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
+            )
+        if value and not nearest:
+            raise OutOfRangeError(
+                f"{name} must be 0 or at least 5e-324 in size, got {value:.3e}: use --digits"
+            )
+        return nearest + 0.0  # never -0.0
+
+    return rounding
+
+
+def rounding_of(name: str, digits: int | None) -> Callable[[Real], Any]:
+    """Return the rounding of a number to doubles, or to so many significant digits."""
+    return nearest_double(name) if digits is None else lambda value: text_of(value, digits)
+
+
+def text_of(value: Real, digits: int) -> NumberText:
+    """Return a number with so many significant digits, in full if its size is usual."""
+    context = own_context(digits, [])
+    if isinstance(value, Fraction):
+        rounded = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    else:
+        rounded = context.plus(value)
+    if not rounded:
+        return NumberText("0.0")
+    sign, figures, _ = rounded.normalize(context).as_tuple()
+    exponent = rounded.adjusted()
+    text = "".join(map(str, figures))
+    if -5 < exponent < 16:
+        if exponent < 0:
+            body = "0." + "0" * (-exponent - 1) + text
+        else:
+            text = text.ljust(exponent + 1, "0")
+            body = text[: exponent + 1] + "." + (text[exponent + 1 :] or "0")
+    else:
+        body = f"{text[0]}.{text[1:] or '0'}e{exponent:+d}"
+    return NumberText("-" * sign + body)
+
+
+def _distance(end: Real, value: float | NumberText) -> Decimal:
+    """Return the distance of two numbers in 20 digits, rounded up."""
+    if isinstance(end, Decimal):
+        return _OUTWARDS.subtract(end, Decimal(value)).copy_abs()
+    away = abs(end - Fraction(value))
+    return _OUTWARDS.divide(Decimal(away.numerator), Decimal(away.denominator))

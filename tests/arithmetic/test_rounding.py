@@ -1,0 +1,209 @@
+"""Proved rounding: ties, zeros, numbers that settle late, radii, and digits as text."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from decimal import Decimal, getcontext, localcontext
+from fractions import Fraction
+
+import mpmath
+import pytest
+
+from lagrange_cli.arithmetic.ball import Ball, TooFewDigitsError
+from lagrange_cli.arithmetic.balls import balls
+from lagrange_cli.arithmetic.rounding import (
+    MOST_DIGITS,
+    Settled,
+    decided,
+    nearest_double,
+    precisions,
+    rounded,
+    settled,
+    text_of,
+)
+from lagrange_cli.errors import LagtopError, OutOfRangeError
+
+
+def noisy(exact: str | Decimal | Fraction | float) -> Callable[[int], Ball]:
+    """Return enclosures of a number whose middles are off by most of their radius."""
+    rng = random.Random(str(exact))
+
+    def enclosure(digits: int) -> Ball:
+        ar = balls(digits)
+        ball = ar.convert(Fraction(exact))
+        off = ball * rng.uniform(-80, 80) * (100 * ar.eps)
+        return (ball + off).enlarged((2 * off).greatest)
+
+    return enclosure
+
+
+def value_of(found: Settled | None) -> float:
+    assert found is not None
+    value: float = found.value
+    return value
+
+
+TIES = [
+    (1 + Fraction(1, 2**53), 1.0),
+    (1 + Fraction(3, 2**53), 1 + 2.0**-51),
+    (-1 - Fraction(1, 2**53), -1.0),
+    (Fraction(2**53 + 1), 2.0**53),
+    (Fraction(5, 2) * Fraction(2) ** -1074, 2 * 5e-324),
+]
+
+
+@pytest.mark.parametrize(("value", "nearest"), TIES)
+def test_a_tie_is_decided_by_the_fraction_alone(value: Fraction, nearest: float) -> None:
+    assert value_of(settled("x", noisy(value), float, exactly=lambda: value)) == nearest
+    with pytest.raises(LagtopError, match=f"x cannot be told .* with {MOST_DIGITS} digits"):
+        settled("x", noisy(value), float)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_next_to_a_tie_digits_decide(sign: int) -> None:
+    value = 1 + Fraction(1, 2**53) + sign * Fraction("1e-200")
+    assert value_of(settled("x", noisy(value), float)) == (1 + 2.0**-52 if sign > 0 else 1.0)
+
+
+def test_random_numbers_are_rounded_as_python_rounds_fractions() -> None:
+    rng = random.Random(53)
+    for _ in range(200):
+        value = Fraction(rng.randrange(1, 10**40), rng.randrange(1, 10**40))
+        value *= Fraction(10) ** rng.randrange(-300, 260)
+        assert value_of(settled("x", noisy(value), nearest_double("x"))) == float(value)
+
+
+def test_a_zero_is_one_only_if_it_is_exact() -> None:
+    def cancels(digits: int) -> Ball:
+        one = balls(digits).exact(1)
+        return (one + balls(digits).exact(Decimal("1e-100"))) - one
+
+    def hidden(digits: int) -> Ball:
+        return balls(digits).exact(0).enlarged(balls(digits).eps.greatest)
+
+    assert value_of(settled("x", cancels, nearest_double("x"))) == 1e-100
+    assert value_of(settled("x", lambda digits: balls(digits).exact(0), float)) == 0
+    assert value_of(settled("x", hidden, float, exactly=lambda: Fraction(0))) == 0
+    with pytest.raises(LagtopError, match="x cannot be told from 0"):
+        settled("x", hidden, float)
+
+
+def test_a_derivative_may_be_0_by_its_size() -> None:
+    """An enclosure of all that round to 0 is enough, and NaN says that there is none."""
+
+    def hidden(digits: int) -> Ball:
+        return balls(digits).exact(0).enlarged(balls(digits).eps.greatest)
+
+    assert rounded("x", hidden) == 0
+    assert rounded("x", noisy("0.1")) == 0.1
+    assert rounded("x", lambda digits: balls(digits).nan) != 0
+
+
+def test_the_fraction_is_asked_for_once() -> None:
+    asked = []
+
+    def exactly() -> None:
+        asked.append(1)
+
+    assert value_of(settled("x", noisy(1 + Fraction(1, 2**53) + Fraction("1e-99")), float)) > 1
+    settled("x", noisy(1 + Fraction(1, 2**53) + Fraction("1e-99")), float, exactly=exactly)
+    assert asked == [1]
+
+
+def test_precisions_with_too_few_digits_are_passed_over() -> None:
+    asked = []
+
+    def late(digits: int) -> Ball:
+        asked.append(digits)
+        if digits < 200:
+            raise TooFewDigitsError
+        return balls(digits).exact(Decimal("0.5"))
+
+    assert value_of(settled("x", late, float)) == 0.5
+    assert asked == [digits for digits in precisions() if digits <= asked[-1]]
+    assert [digits >= 200 for digits in asked][-2:] == [False, True]
+    assert decided("x", lambda digits: digits, 90, 16) == 116
+
+
+def test_what_does_not_exist_is_none() -> None:
+    assert settled("x", lambda _: None, float) is None
+
+
+@pytest.mark.parametrize(("value", "word"), [("1e309", "within"), ("-1e-330", "at least 5e-324")])
+def test_a_number_beyond_the_doubles_is_an_error(value: str, word: str) -> None:
+    with pytest.raises(OutOfRangeError, match=f"^x must be .*{word}"):
+        settled("x", noisy(value), nearest_double("x"))
+
+
+def test_a_wide_enclosure_is_not_out_of_range() -> None:
+    """The lower end may be smaller than all doubles, and the number is not."""
+
+    def enclosure(digits: int) -> Ball:
+        ball = balls(digits).exact(Decimal("0.5"))
+        return ball.enlarged(ball.greatest) if digits < 40 else ball
+
+    assert value_of(settled("x", enclosure, nearest_double("x"))) == 0.5
+
+
+@pytest.mark.parametrize("value", ["0.1", "1e300", "-1e-300", "0.3333333333333333333333"])
+@pytest.mark.parametrize("digits", [None, 1, 12])
+def test_the_exact_value_is_within_the_radius(value: str, digits: int | None) -> None:
+    rounding = nearest_double("x") if digits is None else lambda x: text_of(x, digits)
+    found = settled("x", noisy(value), rounding, digits=digits or 0)
+    assert found is not None
+    away = abs(Fraction(value) - Fraction(found.value))
+    assert (
+        away
+        <= Fraction(float(found.radius))
+        <= abs(Fraction(value)) * Fraction(10) ** -((digits or 16) - 1)
+    )
+    exact = Settled(0.5, (Fraction(1, 2),))
+    assert exact.radius == "0.0"
+
+
+def test_digits_are_those_of_mpmath() -> None:
+    """Numbers of any size, whose digits and exponents look like those of mpmath.nstr."""
+    rng = random.Random(17)
+    with mpmath.workdps(120):
+        for _ in range(400):
+            digits, size = rng.choice([1, 2, 5, 17, 40]), rng.choice([-300, -20, -5, 0, 5, 20, 300])
+            fraction = Fraction(rng.randrange(-(10**60), 10**60), 10**60) * Fraction(10) ** size
+            exact = mpmath.mpf(fraction.numerator) / fraction.denominator
+            shown = mpmath.nstr(exact, digits, min_fixed=-5, max_fixed=16)
+            assert text_of(fraction, digits) == shown
+            with localcontext() as context:
+                context.prec = 100
+                decimal = Decimal(fraction.numerator) / Decimal(fraction.denominator)
+            assert text_of(decimal, digits) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (Fraction(0), 5, "0.0"),
+        (Fraction(1), 5, "1.0"),
+        (Fraction(-1, 2), 5, "-0.5"),
+        (Fraction(5, 2), 1, "2.0"),
+        (Fraction(7, 2), 1, "4.0"),
+        (Fraction(999999), 3, "1000000.0"),
+        (Fraction(10) ** 16, 3, "1.0e+16"),
+        (Fraction(10) ** 15, 3, "1000000000000000.0"),
+        (Fraction("0.00001234"), 2, "1.2e-5"),
+        (Fraction("0.0001234"), 2, "0.00012"),
+        (Fraction("-1e-400"), 2, "-1.0e-400"),
+    ],
+)
+def test_digits_of_some_numbers(value: Fraction, digits: int, text: str) -> None:
+    assert text_of(value, digits) == text
+
+
+def test_the_context_of_the_host_is_left_alone() -> None:
+    before = getcontext().copy()
+    settled("x", noisy(Fraction(1, 3)), float)
+    text_of(Fraction(1, 3), 30)
+    assert str(getcontext()) == str(before)
+    with localcontext() as context:
+        context.prec = 2
+        assert text_of(Fraction(1, 3), 20) == "0." + "3" * 20
+        assert text_of(Decimal("0.123456789"), 6) == "0.123457"
