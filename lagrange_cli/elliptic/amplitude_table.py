@@ -8,13 +8,13 @@ from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
 
-from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.ball_functions import BallFunctions
 from ..arithmetic.points import MAX_PERIODS, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .incomplete import e_of, f_of, in_degrees, in_radians
 from .modulus import Modulus
 from .modulus_input import ModulusInput
-from .proved_digits import Settled, small_or_large
+from .proved_numbers import ProvedNumbers, small_or_large
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -63,36 +63,43 @@ def blocks(
     """Return what `rows` does, as texts without NumPy where the table is small."""
     return small_or_large(
         2 * amplitudes.count,
-        lambda: list(digit_rows(amplitudes, modulus_input)),
+        lambda: list(digit_rows(amplitudes, modulus_input, short=True)),
         lambda: rows(amplitudes, modulus_input),
     )
 
 
 def digit_rows(
-    amplitudes: Points, modulus_input: ModulusInput, digits: int | None = None
+    amplitudes: Points,
+    modulus_input: ModulusInput,
+    digits: int | None = None,
+    *,
+    short: bool = False,
 ) -> Iterator[list[NumberText]]:
     """Return rows to so many significant digits; what is infinite is an empty text.
 
     Without `digits` amplitudes are rounded to doubles, and each number is the nearest double: what
-    `rows` does, without NumPy.  Raises LagtopError for a modulus out of range and, without
+    `rows` does, without NumPy; a `short` search raises TooFewDigitsError where that is sooner.
+    Raises LagtopError for a modulus out of range and, without
     `digits`, as `check_domain` does.
     """
-    names, settled = header(modulus_input), Settled(digits)
+    names, numbers = header(modulus_input), ProvedNumbers(digits, short=short)
     modulus_input.check()
     if digits is None:
         check_domain(amplitudes, modulus_input)
-    endless = {"F"} if "k_prime" in modulus_input.zeros() else set()
+    endless = "k_prime" in modulus_input.zeros()
     modulus_in = cache(modulus_input.in_digits)
+    quarter = math.pi / 2 if modulus_input.radians else 90
 
     def at(phi: Fraction) -> list[NumberText]:
-        def compute(ar: ManyDigits) -> dict[str, Value]:
-            settled.require(ar, abs(ar.convert(phi)))
+        def compute(ar: BallFunctions) -> dict[str, Value]:
             exact = ar.convert(phi)
             integrals = _integrals(ar, exact, modulus_in(ar), modulus_input.radians)
             return dict(zip(names, (exact, *integrals), strict=True))
 
-        known = names if phi == 0 else endless
-        return list(settled.texts(compute, known).values())
+        known: dict[str, float] = dict.fromkeys(names, 0) if phi == 0 else {}
+        if endless and abs(phi) >= quarter:
+            known["F"] = math.inf
+        return list(numbers.texts(compute, known, len(str(int(abs(phi))))).values())
 
     places = amplitudes.decimals()
     return (at(phi if digits else Fraction(float(phi))) for phi in places)

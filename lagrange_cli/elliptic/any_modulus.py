@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from enum import Enum
+from fractions import Fraction
 from typing import NamedTuple
 
 from ..arithmetic.exact_complex import ExactComplex
@@ -18,7 +19,7 @@ from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
-from .modulus import Modulus, constants, modulus
+from .modulus import Modulus, constants, exact_modulus
 
 
 class Kind(Enum):
@@ -60,9 +61,9 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
         root = ar.sqrt(1 + imag * imag)
         return AnyModulus(Kind.IMAGINARY, Modulus(imag / root, 1 / root), root)
     if real > 1:
-        complement = ar.sqrt((real - 1) * (real + 1)) / real
+        complement = ar.sqrt(ar.convert(Fraction(k.real) ** 2 - 1)) / real
         return AnyModulus(Kind.LARGE, Modulus(1 / real, complement), real)
-    return AnyModulus(Kind.UNIT, modulus(ar, k=real))
+    return AnyModulus(Kind.UNIT, exact_modulus(ar, Fraction(k.real)))
 
 
 def check_any_modulus(k: ExactComplex | complex) -> None:

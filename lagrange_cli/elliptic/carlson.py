@@ -14,7 +14,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.formulas import blockwise, in_arithmetic
-from ..arithmetic.numbers import R, absolute, root_of_epsilon
+from ..arithmetic.numbers import R, absolute, power, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Value
@@ -55,12 +55,13 @@ def carlson_rf(ar: Arithmetic[R], x: R, y: R, z: R) -> R:
     square = e2 * e2
     series = -e2 / 10 + e3 / 14 + square / 24 - 3 * e2 * e3 / 44
     series += -5 * e2 * square / 208 + 3 * e3 * e3 / 104 + square * e3 / 16
-
-    def remainder() -> R:
-        r = _radius(dx, dy, dz)
-        return _eighth(r) / (5 * (1 - r))
-
-    return ar.widened(1 + series, remainder) / ar.sqrt(mean)
+    series = ar.widened(
+        1 + series,
+        lambda: (_radius(dx, dy, dz),),
+        lambda r: power(r, 8) / (5 * (1 - r)),
+        values_only=True,
+    )
+    return series / ar.sqrt(mean)
 
 
 @in_arithmetic
@@ -110,8 +111,7 @@ def _spread(ar: Arithmetic[R], mean: R, *arguments: R) -> R:
     """Return the greatest distance from the mean, over the one at which the series is exact."""
     distances = [absolute(mean - x) for x in arguments]
     greatest = reduce(lambda a, b: ar.where(a > b, a, b), distances)
-    eps: Any = ar.eps  # a number that can be hashed
-    scale: R = root_of_epsilon(eps, 4, 8)
+    scale: R = root_of_epsilon(ar, 4, 8)
     return greatest / scale
 
 
@@ -119,13 +119,6 @@ def _radius(*shares: R) -> R:
     """Return a bound of the size of each of some numbers whose sum is 0: half of all sizes."""
     total: R = reduce(lambda a, b: a + b, map(absolute, shares)) / 2
     return total
-
-
-def _eighth(r: R) -> R:
-    """Return the eighth power."""
-    square = r * r
-    fourth = square * square
-    return fourth * fourth
 
 
 def _rc_from_one(ar: FunctionArithmetic, y: Value) -> Value:
@@ -231,9 +224,9 @@ def _near_mean(ar: FunctionArithmetic, dx: Value, dy: Value, dz: Value) -> Value
     series = 1 - 3 * e2 / 14 + e3 / 6 + 9 * square / 88 - 3 * e4 / 22 - 9 * e2 * e3 / 52
     series = series + 3 * e5 / 26 - e2 * square / 16 + 3 * e3 * e3 / 40 + 3 * e2 * e4 / 20
     series = series + 45 * square * e3 / 272 - 9 * (e3 * e4 + e2 * e5) / 68
-
-    def remainder() -> Value:
-        r = _radius(dx, dy, dz, dp, dp)
-        return 4 * _eighth(r) / (1 - 2 * r)
-
-    return ar.widened(series, remainder)
+    return ar.widened(
+        series,
+        lambda: (_radius(dx, dy, dz, dp, dp),),
+        lambda r: 4 * power(r, 8) / (1 - 2 * r),
+        values_only=True,
+    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Value
 from .lattice import Fine, coarse
 from .periods import Complex
 from .theta import negligible
@@ -22,16 +22,16 @@ class Base(NamedTuple):
     value: Complex
     slope: Complex
 
-    def mirrored(self, ar: FunctionArithmetic, where: Value) -> Base:
+    def mirrored(self, ar: ComplexArithmetic, where: Value) -> Base:
         """Return the series of the conjugate argument where a condition holds."""
         return self.chosen(ar, where, Base(ar.conj(self.value), ar.conj(self.slope)))
 
-    def chosen(self, ar: FunctionArithmetic, where: Value, other: Base) -> Base:
+    def chosen(self, ar: ComplexArithmetic, where: Value, other: Base) -> Base:
         """Return another one where a condition holds."""
         return Base(*(ar.where(where, b, a) for a, b in zip(self, other, strict=True)))
 
 
-def cell_series(ar: FunctionArithmetic, ij: str, phase: Fine, height: Fine, t: Value) -> Base:
+def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Value) -> Base:
     """Return theta_ij for 01 and 00, and q^(-1/4) exp(-t height) theta_ij for 11 and 10."""
     if ij == "11":
         return _sines(ar, coarse(phase), coarse(height), t)
@@ -48,7 +48,7 @@ def cell_series(ar: FunctionArithmetic, ij: str, phase: Fine, height: Fine, t: V
     return Base(turn * rest.value, rest.slope - ar.mpc(0, ar.pi)).chosen(ar, low, plain)
 
 
-def _cosines(ar: FunctionArithmetic, phase: Fine, height: Value, t: Value) -> Base:
+def _cosines(ar: ComplexArithmetic, phase: Fine, height: Value, t: Value) -> Base:
     """Return the series of theta10; next to its zero as theta11 half a period away."""
     here = coarse(phase)
     middle = abs(here) < 0.25
@@ -60,12 +60,12 @@ def _cosines(ar: FunctionArithmetic, phase: Fine, height: Value, t: Value) -> Ba
     return beside.chosen(ar, middle, plain)
 
 
-def _sines(ar: FunctionArithmetic, phase: Value, height: Value, t: Value) -> Base:
+def _sines(ar: ComplexArithmetic, phase: Value, height: Value, t: Value) -> Base:
     """Return the series of theta11."""
     return _odd(ar, phase, height, t, sines=True)
 
 
-def _odd(ar: FunctionArithmetic, phase: Value, height: Value, t: Value, *, sines: bool) -> Base:
+def _odd(ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, sines: bool) -> Base:
     """Return 2 sum (-1)^n q^(n (n + 1)) sin (2n + 1) pi z, over exp(t height), and its slope.
 
     Without `sines`: the sum of cosines without the signs.
@@ -89,7 +89,7 @@ def _odd(ar: FunctionArithmetic, phase: Value, height: Value, t: Value, *, sines
 
 
 def _even(
-    ar: FunctionArithmetic, phase: Value, height: Value, t: Value, *, alternating: bool
+    ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, alternating: bool
 ) -> Base:
     """Return 1 + 2 sum (+-1)^n q^(n^2) cos 2 n pi z, and its slope, for a height up to 1/4."""
     real, imag, slope_real, slope_imag = 1 + 0 * phase, 0 * phase, 0 * phase, 0 * phase
@@ -107,6 +107,6 @@ def _even(
     return Base(value, ar.mpc(slope_real, slope_imag) / value)
 
 
-def _terms(ar: FunctionArithmetic) -> int:
+def _terms(ar: ComplexArithmetic) -> int:
     """Return how many terms matter, of which the last is at most exp(-pi (n - 1/2)^2)."""
     return 2 + math.ceil(math.sqrt(negligible(ar) / math.pi))

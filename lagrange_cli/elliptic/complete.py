@@ -5,10 +5,10 @@ Every loop adds and multiplies positive numbers only, so each result is good to 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.numbers import R, absolute, root_of_epsilon
+from ..arithmetic.numbers import R, power, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
@@ -18,15 +18,21 @@ if TYPE_CHECKING:
 def agm(ar: Arithmetic[R], a: R | int, b: R) -> R:
     """Return the arithmetic-geometric mean M of a > 0 and b > 0 (DLMF 19.8.1).
 
-    What the last step leaves out: sqrt(a b) <= M <= (a + b)/2 (DLMF 19.8.4 and 19.8.5), and the
-    ends of that are (sqrt a - sqrt b)^2/2 = (a - b)^2/(2 (sqrt a + sqrt b)^2) apart, which is at
-    most (a - b)^2/(2 (a + b)).
+    The last step leaves out (a + b)/2 - M.  With x = (a - b)/(a + b), 2 M/(a + b) is pi/2K(x)
+    (DLMF 19.8.5).  The powers of x^2 in 2K/pi have logarithmically convex coefficients, so that
+    those of its inverse are negative from the second on (Kaluza 1928).  As M = 0 at x = 1, their
+    sizes add up to 1: none is larger than those of x^2/(1 - x^2), which bounds their derivatives
+    too.
     """
     tolerance = ar.sqrt(ar.eps)
     while ar.anywhere(abs(a - b) > tolerance * a):
         a, b = (a + b) / 2, ar.sqrt(a * b)
-    total, apart = a + b, a - b
-    return ar.widened(total / 2, lambda: apart * apart / (2 * total))
+    total = a + b
+    return ar.widened(
+        total / 2,
+        lambda: ((a - b) / total, total),
+        lambda x, total: total * (x * x / (2 * (1 - x * x))),
+    )
 
 
 @in_arithmetic
@@ -43,11 +49,16 @@ def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | in
     is K times this mean (DLMF 19.2.11), so
     E = K period_mean(k', 1, 1, k'^2)  and  R_J(0, k'^2, 1, p) = 3 K period_mean(k', p, 0, 1).
 
-    What the last step leaves out: each step is Bartky's transformation (Bulirsch 1969), and keeps
-    the mean of R = (a m^2 c^2 + b p s^2)/(m^2 c^2 + p^2 s^2), c = cos x, s = sin x, over a quarter
-    turn of x with the weight M/sqrt(m^2 c^2 + g^2 s^2), where M is the agm of m and g.  Since g and
-    m enclose both M and the root, the weight is between g/m and m/g, so that the mean of R with the
-    weight 1, (a m + b)/(m + p), is wrong by at most (m/g - 1) (|a| m + |b|)/(m + p).
+    Each step is Bartky's transformation (Bulirsch 1969), and keeps the mean of
+    R = (a m^2 c^2 + b p s^2)/(m^2 c^2 + p^2 s^2), c = cos z, s = sin z, over a quarter turn of z
+    with the weight M/sqrt(m^2 c^2 + g^2 s^2), where M is the agm of m and g.  The last step takes
+    the weight 1, with which the mean of R is (a m + b)/(m + p).
+
+    With x = (m - g)/(m + g) the weight is pi/2K(x) (see `agm`) times the sum of P_n(-cos 2z) x^n
+    (DLMF 18.12.11), so that it is 1 and powers of x with coefficients of at most those of
+    1/(1 - x)^2 - 1, and these of 2 x/(1 - 2 x).  As R is not negative, the
+    error is at most that times its mean.  By the ratio p/m the two terms of R change by at most
+    twice and once their own relative change, which is what the powers of the ratio say.
     """
     tolerance = ar.sqrt(ar.eps)
     mean, geometric, p = k_prime * 0 + 1, k_prime, ar.sqrt(p)
@@ -61,11 +72,16 @@ def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | in
         close = not ar.anywhere(abs(mean - geometric) > tolerance * mean)
         mean, geometric = (mean + geometric) / 2, ar.sqrt(product)
 
-    def remainder() -> R:
-        size = absolute(a * mean) + absolute(b + 0 * mean)
-        return absolute(mean - geometric) / geometric * size / (mean + p)
+    def small() -> tuple[R, ...]:
+        ratio, apart = p / mean, (mean - geometric) / (mean + geometric)
+        changes = ratio / ar.fixed(ratio), mean / ar.fixed(mean)
+        return apart, a + 0 * mean, b + 0 * mean, ar.fixed(mean), ar.fixed(1 / (mean + p)), *changes
 
-    return ar.widened((a * mean + b) / (mean + p), remainder)
+    def bound(*sizes: R) -> R:
+        x, a, b, mean, share, ratio, size = sizes
+        return 2 * x / (1 - 2 * x) * share * ratio * (a * mean * ratio + b * size)
+
+    return ar.widened((a * mean + b) / (mean + p), small, bound)
 
 
 @in_arithmetic
@@ -82,14 +98,14 @@ def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     the nome is squared at each step, until the series q = e + 2 e^5 + 15 e^9 ... (DLMF 19.5.5) is
     short.
 
-    What the series leaves out is at most (2 e)^21.  With e = k^(1/2)(q^4)/2 and dq/dm = q/(m
+    The series leaves out powers of e whose coefficients are at most those of (2 e)^21/(1 - 2 e).
+    With e = k^(1/2)(q^4)/2 and dq/dm = q/(m
     theta4(q)^4) (DLMF 20.9.2, 22.2) it solves e dq/de = q/theta4(q^4)^4.  The powers of 1/theta4 =
     (1 + q)(1 + q^2).../(1 - q)(1 - q^2)... have no negative coefficients, so that a comparison of
-    powers of e on both sides gives none to q(e), one after the other.  As q(1/2) = 1, the terms
-    from e^21 on, at e = 1/2, are at most 1 together, and at a smaller e at most (2 e)^21.
+    powers of e on both sides gives none to q(e), one after the other.  As q(1/2) = 1, no
+    coefficient of e^n is larger than 2^n.
     """
-    eps: Any = ar.eps  # a number that can be hashed
-    tolerance: R = 2 * root_of_epsilon(eps, 20910, 20)
+    tolerance = 2 * root_of_epsilon(ar, 20910, 20)
     a, b = (1 + k_prime) / 2, ar.sqrt(k_prime)
     c, squarings = m / (4 * a), []
     while ar.anywhere(c > tolerance * a):
@@ -101,7 +117,7 @@ def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     e = c / (2 * (a + b))
     e4 = (e * e) * (e * e)
     q = e * (1 + e4 * (2 + e4 * (15 + e4 * (150 + e4 * 1707))))
-    q = ar.widened(q, lambda: 2 * e * (16 * e4) * (16 * e4) * (16 * e4) * (16 * e4) * (16 * e4))
+    q = ar.widened(q, lambda: (2 * e,), lambda double: power(double, 21) / (1 - double))
     for far in reversed(squarings):
         q = ar.where(far, ar.sqrt(q), q)
     return q

@@ -9,7 +9,7 @@ An imaginary modulus takes those of the real part a quarter of a period further 
 from __future__ import annotations
 
 from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Value
 from .any_modulus import AnyModulus, Kind
 from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
@@ -18,7 +18,7 @@ from .periods import Complex, Rate, reduced
 
 
 @in_arithmetic
-def complex_jacobi(ar: FunctionArithmetic, u: Complex, given: AnyModulus) -> Jacobi:
+def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jacobi:
     """Return am, sn, cn, dn of complex numbers u; arrays take the digits of one modulus in context.
 
     am is not a number beyond its branch points, which are the poles next to the real axis: for a
@@ -34,7 +34,7 @@ def complex_jacobi(ar: FunctionArithmetic, u: Complex, given: AnyModulus) -> Jac
 
 
 def _real(
-    ar: FunctionArithmetic, u: Value, modulus: Modulus, stretch: Value
+    ar: ComplexArithmetic, u: Value, modulus: Modulus, stretch: Value
 ) -> tuple[Jacobi, Value]:
     """Return the functions of real numbers times a factor, and the whole periods in these."""
     k, k_prime, _ = modulus
@@ -55,7 +55,7 @@ def _context(x: Value) -> Value:
 
 
 def _combined(
-    ar: FunctionArithmetic, real: Jacobi, other: Jacobi, kind: Kind, inner: tuple[Value, Value]
+    ar: ComplexArithmetic, real: Jacobi, other: Jacobi, kind: Kind, inner: tuple[Value, Value]
 ) -> Jacobi:
     """Return the functions from those of the real part and of the imaginary part."""
     k, k_prime = inner
@@ -80,6 +80,6 @@ def _combined(
     return Jacobi(ar.mpc(angle, ar.asinh(d * s1 / size)), sn, cn, dn)
 
 
-def _near(ar: FunctionArithmetic, angle: Value, am: Value) -> Value:
+def _near(ar: ComplexArithmetic, angle: Value, am: Value) -> Value:
     """Return an angle with the whole turns that take it next to am of the real part."""
     return angle + 2 * ar.pi * ar.nint((am - angle) / (2 * ar.pi))

@@ -10,8 +10,9 @@ from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.exact_complex import ExactComplex
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
+from .agreeing_digits import Settled, settled_or_rounded
 from .any_modulus import AnyModulus, Kind, any_constants, any_modulus
 from .complex_jacobi import complex_jacobi
 from .complex_known import known_parts
@@ -19,7 +20,6 @@ from .complex_request import ComplexPoints, ComplexRequest
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .lattice import Lattice, Place, lattice, place
-from .proved_digits import Settled, settled_or_rounded
 from .request import THETA, THIRD
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def _check_doubles(
 
 
 def _columns(
-    ar: FunctionArithmetic,
+    ar: ComplexArithmetic,
     u: Value,
     functions: _Functions,
     request: ComplexRequest,
@@ -185,7 +185,7 @@ def _columns(
 
 
 def _families(
-    ar: FunctionArithmetic,
+    ar: ComplexArithmetic,
     at: Place,
     functions: _Functions,
     periods: Lattice,
@@ -207,14 +207,14 @@ def _families(
                 )
 
 
-def _parts(ar: FunctionArithmetic, columns: dict[str, Value], *, real: bool) -> dict[str, Value]:
+def _parts(ar: ComplexArithmetic, columns: dict[str, Value], *, real: bool) -> dict[str, Value]:
     """Return the parts of the columns; u, am, sn, cn, dn are real at real arguments."""
     single = columns.keys() & {"u", "am_deg", "am_rad", "sn", "cn", "dn"} if real else set()
     parts = {name: ar.re(z) for name, z in columns.items() if name in single}
     return parts | _both(ar, {name: z for name, z in columns.items() if name not in parts})
 
 
-def _both(ar: FunctionArithmetic, columns: dict[str, Value]) -> dict[str, Value]:
+def _both(ar: ComplexArithmetic, columns: dict[str, Value]) -> dict[str, Value]:
     """Return the real and the imaginary part of every column."""
     return {
         f"{name}{suffix}": part(z)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.protocol import FunctionArithmetic
+from ..arithmetic.protocol import ComplexArithmetic
 from ..errors import LagtopError
 from .any_modulus import Kind
 from .cell_series import Base, cell_series
@@ -43,18 +43,18 @@ def rises(ij: str, periods: Lattice) -> bool:
 
 
 @in_arithmetic
-def complex_theta(ar: FunctionArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
+def complex_theta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
     """Return Theta_ij(v) of complex numbers v."""
     return theta_at_place(ar, ij, place(ar, v, periods), periods)
 
 
 @in_arithmetic
-def complex_zeta(ar: FunctionArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
+def complex_zeta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
     """Return Z_ij(v), the derivative of log Theta_ij(v), of complex numbers v."""
     return zeta_at_place(ar, ij, place(ar, v, periods), periods)
 
 
-def theta_at_place(ar: FunctionArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
+def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
     """Return Theta_ij at a place."""
     inner, T = inner_name(ij, periods.kind), periods.ratio
     (r, s), (X, Y) = ((c.rest for c in at), map(fine_whole, at))
@@ -94,7 +94,7 @@ _EIGHTH = {Kind.UNIT: (), Kind.IMAGINARY: ("11", "10"), Kind.LARGE: ("11", "01")
 """The functions that are turned by an eighth, where tau is one unit further or tau/(1 - tau)."""
 
 
-def zeta_at_place(ar: FunctionArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
+def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
     """Return Z_ij at a place."""
     inner, T = inner_name(ij, periods.kind), periods.ratio
     real, imag = 0 * at.x.whole, at.y.whole
@@ -105,7 +105,7 @@ def zeta_at_place(ar: FunctionArithmetic, ij: str, at: Place, periods: Lattice) 
     return periods.scale * (slope + ar.mpc(real, -2 * ar.pi * imag))
 
 
-def slope_in_cell(ar: FunctionArithmetic, inner: str, at: Place, periods: Lattice) -> Complex:
+def slope_in_cell(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Complex:
     """Return d log theta by the argument in periods, at the rests of a place."""
     slope = base_at(ar, inner, at, periods).slope
     if periods.circular:
@@ -114,7 +114,7 @@ def slope_in_cell(ar: FunctionArithmetic, inner: str, at: Place, periods: Lattic
     return slope - ar.mpc(2 * periods.steepness * real, 2 * ar.pi * imag)
 
 
-def base_at(ar: FunctionArithmetic, inner: str, at: Place, periods: Lattice) -> Base:
+def base_at(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Base:
     """Return the series of theta_ij at the rests of a place."""
     x, y, t = at.x.rest, at.y.rest, periods.steepness
     if periods.circular:

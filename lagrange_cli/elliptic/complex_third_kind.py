@@ -21,10 +21,10 @@ from typing import NamedTuple
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Value
 from .any_modulus import Kind
 from .complex_theta import absolute, base_at, inner_name, rises, slope_in_cell
-from .lattice import Coordinate, Fine, Lattice, Place, coarse, fine, place
+from .lattice import Coordinate, Fine, Lattice, Place, coarse, place
 from .periods import Complex
 
 
@@ -32,6 +32,7 @@ class Parameter(NamedTuple):
     """A parameter v and what Omega_ij and Pi_ij need of it, in a context or in doubles."""
 
     ij: str
+    v: Complex
     periods: Lattice
     at: Place
     slope: Complex
@@ -45,12 +46,14 @@ class Parameter(NamedTuple):
     side: int
     """Sign of the height of v, where the rise of a series with it is not in the slope; else 0."""
 
-    def rounded(self, ar: FunctionArithmetic) -> Parameter:
+    def rounded(self, ar: ComplexArithmetic) -> Parameter:
         """Return the parameter with its constants in doubles, to go with arrays."""
-        x, y = (Coordinate(float(end.whole), fine(ar, end.rest)) for end in self.at)
+        import numpy as np
+
+        periods = self.periods.rounded(ar)
         return self._replace(
-            periods=self.periods.rounded(ar),
-            at=Place(x, y),
+            periods=periods,
+            at=place(ar, np.array([complex(self.v)]), periods),  # as eta: equal parts stay equal
             slope=complex(self.slope),
             along=complex(self.along),
             up=complex(self.up),
@@ -68,7 +71,7 @@ def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Paramete
     height = s if periods.circular else r
     if inner == "11" and not (r or s):
         none = ar.mpc(ar.nan, ar.nan)
-        return Parameter(ij, periods, at, none, none, none, 0, 0)
+        return Parameter(ij, v, periods, at, none, none, none, 0, 0)
     whole = slope_in_cell(ar, inner, at, periods)
     t, T = periods.steepness, periods.ratio
     bell = ar.mpc(0, 0) if periods.circular else ar.mpc(2 * t * r, 2 * ar.pi * s)
@@ -80,22 +83,22 @@ def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Paramete
     up = ar.mpc(0, T) * whole + 2 * ar.pi * ar.mpc(-T * s, r)
     turns = int(ar.nint(ar.im(whole) / ar.pi))
     along = whole - ar.mpc(0, turns * ar.pi)
-    return Parameter(ij, periods, at, slope, along, up, turns, side)
+    return Parameter(ij, v, periods, at, slope, along, up, turns, side)
 
 
 @in_arithmetic
-def complex_omega(ar: FunctionArithmetic, eta: Complex, given: Parameter) -> Complex:
+def complex_omega(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex:
     """Return Omega_ij(eta, v) of complex numbers eta."""
     return omega_at(ar, place(ar, eta, given.periods), given)
 
 
 @in_arithmetic
-def complex_pi(ar: FunctionArithmetic, eta: Complex, given: Parameter) -> Complex:
+def complex_pi(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex:
     """Return Pi_ij(eta, v) of complex numbers eta; not a number where it has a pole for each."""
     return pi_at(ar, place(ar, eta, given.periods), given)
 
 
-def omega_at(ar: FunctionArithmetic, at: Place, given: Parameter) -> Complex:
+def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Omega_ij at a place."""
     T, v, u = given.periods.ratio, given.at, at.within(ar)
     cell = _Cell(ar, u, given)
@@ -122,7 +125,7 @@ def omega_at(ar: FunctionArithmetic, at: Place, given: Parameter) -> Complex:
     return cell.logarithm + ar.mpc(real, ar.pi * (imag + turns))
 
 
-def pi_at(ar: FunctionArithmetic, at: Place, given: Parameter) -> Complex:
+def pi_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Pi_ij at a place."""
     T, t, u = given.periods.ratio, given.periods.steepness, at.within(ar)
     cell = _Cell(ar, u, given)
@@ -146,7 +149,7 @@ class _Cell:
     logarithm: Complex
     """Half the difference of the logarithms of the series."""
 
-    def __init__(self, ar: FunctionArithmetic, u: Place, given: Parameter) -> None:
+    def __init__(self, ar: ComplexArithmetic, u: Place, given: Parameter) -> None:
         periods, v = given.periods, given.at
         self.inner = inner_name(given.ij, periods.kind)
         self.given = given
@@ -167,7 +170,7 @@ class _Cell:
         size = ar.log(abs(values[0]) / abs(values[1]))
         self.logarithm = ar.mpc(size, angles[0] - angles[1]) / 2
 
-    def _angle(self, ar: FunctionArithmetic, value: Complex, at: Place) -> Value:
+    def _angle(self, ar: ComplexArithmetic, value: Complex, at: Place) -> Value:
         """Return the angle of the series at a place; on a line of zeros the mean of both sides."""
         angle = ar.atan2(ar.im(value), ar.re(value))
         if self.inner == "11":  # from -pi/2 to 3 pi/2 above the line of zeros

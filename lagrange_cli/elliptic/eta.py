@@ -16,16 +16,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import agm
 from .modulus import Modulus
-from .proved_digits import settled_or_rounded
+from .proved_numbers import ProvedNumbers
 from .quadrature import Quadrature
-
-if TYPE_CHECKING:
-    pass
 
 
 class EtaConstants(NamedTuple):
@@ -54,7 +51,7 @@ class EtaConstants(NamedTuple):
 
 
 def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
-    """Return the constants in an mpmath context.
+    """Return the constants in balls, or in an mpmath context.
 
     m'^2 and m''^2 are products of the distances of delta and delta* from the outer roots, and
     2 sigma1/sqrt(g) is a sum of square roots of such products, in each layout.
@@ -148,7 +145,8 @@ def _sum_and_difference(
     difference = ar.convert(square2 * quadrature.upper**2 - square1 * quadrature.lower**2)
     if quadrature.upper * quadrature.lower > 0:
         return high + low, difference / (high + low)
-    return (difference / (high - low) if high - low else high + low), high - low
+    moves = quadrature.upper or quadrature.lower
+    return (difference / (high - low) if moves else high + low), high - low
 
 
 def record(
@@ -162,8 +160,8 @@ def record(
         quadrature.check()
     else:
         quadrature.check_doubles()
-    zeros = _zeros_of_record(quadrature)
-    return settled_or_rounded(lambda ar: _record_in(ar, quadrature, c3), digits, zeros)
+    zeros = dict.fromkeys(_zeros_of_record(quadrature), 0)
+    return ProvedNumbers(digits).of(lambda ar: _record_in(ar, quadrature, c3), zeros)
 
 
 def _zeros_of_record(quadrature: Quadrature) -> set[str]:
@@ -189,7 +187,7 @@ def _zeros_of_record(quadrature: Quadrature) -> set[str]:
 
 
 def _record_in(ar: FunctionArithmetic, quadrature: Quadrature, c3: Fraction) -> dict[str, Any]:
-    """Return the record in an mpmath context; None for what the layout does not have."""
+    """Return the record in balls; None for what the layout does not have."""
     c, outer = eta_constants(ar, quadrature), quadrature.outer
     pair_of_roots, imaginary = len(outer) > 1, bool(quadrature.height)
     return {

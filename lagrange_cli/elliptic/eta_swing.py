@@ -27,7 +27,7 @@ class Swing(NamedTuple):
         gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
         if band.pair:
             from_lower, from_upper, height = band.pair
-            apart = ar.where(risen < left, from_lower + risen, from_upper - left)
+            apart = ar.where(ar.either(risen < left), from_lower + risen, from_upper - left)
             gaps = [ar.sqrt(apart * apart + height * height)] * 2
         size = prod(map(ar.sqrt, (band.g, risen, left, *gaps)))
         return ar.where(self.falling, -size, size)
@@ -45,8 +45,8 @@ def swing(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band) -> Swin
         up, down = abs(ar.sqrt(c.m2) * sn * dn), abs(ar.sqrt(c.m1) * cn)
     else:
         up, down = abs(ar.sqrt(band.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
-    larger = ar.where(up < down, down, up)  # so that no square leaves the range
+    larger = ar.where(ar.either(up < down), down, up)  # so that no square leaves the range
     up, down = (up / larger) ** 2, (down / larger) ** 2
     risen, left = band.width * up / (up + down), band.width * down / (up + down)
-    eta = ar.where(risen < left, band.lower + risen, band.upper - left)
+    eta = ar.where(ar.either(risen < left), band.lower + risen, band.upper - left)
     return Swing(eta, risen, left, sn * cn < 0)

@@ -8,16 +8,18 @@ from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.ball_functions import BallFunctions, ball_functions
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.rounding import decided
+from ..arithmetic.sums_of_doubles import Pair, pair
 from .complete import complete_k
 from .eta import Band, EtaConstants, band_of, eta_constants, modulus_in_use
 from .eta_swing import swing
 from .jacobi import jacobi_at
 from .periods import whole_and_rest
-from .proved_digits import Settled
+from .proved_numbers import ProvedNumbers
 from .quadrature import Quadrature
 
 if TYPE_CHECKING:
@@ -78,16 +80,19 @@ def rows(
     import numpy as np
 
     from ..arithmetic.double_double import reduce_phase
-    from ..arithmetic.sums_of_doubles import pair
 
     quadrature.check_doubles()
-    exact = ManyDigits()
-    exactly = eta_constants(exact, quadrature)
-    rate = pair(1 / exactly.period)
-    offset = exact.convert(c3) / exactly.period
-    whole = exact.nint(offset)
-    shift = float(offset - whole)
-    c, band = EtaConstants(*map(float, exactly)), band_of(ARRAYS, quadrature)
+
+    def constants(digits: int) -> tuple[EtaConstants, Pair, int, float]:
+        ar = ball_functions(digits)
+        exact = eta_constants(ar, quadrature)
+        offset = ar.convert(c3) / exact.period
+        whole = ar.nint(offset)
+        c = EtaConstants(*map(float, exact))
+        return c, pair(1 / exact.period), whole, float(offset - whole)
+
+    c, rate, whole, shift = decided("the constants of eta", constants)
+    band = band_of(ARRAYS, quadrature)
     check_reach("tau", times, min(MAX_PERIODS * c.period, MAX_TIME))
     half_period = 2 * complete_k(DOUBLES, float(modulus_in_use(c, band).k_prime))
 
@@ -116,16 +121,15 @@ def digit_rows(
     """
     quadrature.check()
     still = quadrature.lower == quadrature.upper
-    names, settled = header(wanted), Settled(digits)
+    names, numbers = header(wanted), ProvedNumbers(digits)
 
     @cache
-    def constants(ar: ManyDigits) -> tuple[EtaConstants, Band]:
+    def constants(ar: BallFunctions) -> tuple[EtaConstants, Band]:
         return eta_constants(ar, quadrature), band_of(ar, quadrature)
 
     def at(tau: Fraction) -> list[NumberText]:
-        def compute(ar: ManyDigits) -> dict[str, Value]:
+        def compute(ar: BallFunctions) -> dict[str, Value]:
             (c, band), time = constants(ar), ar.convert(tau + c3)
-            settled.require(ar, abs(time / c.period))
             turns, phase, _ = whole_and_rest(ar, time / c.period)
             quarter = complete_k(ar, modulus_in_use(c, band).k_prime)
             place = swing(ar, 2 * quarter * phase, c, band)
@@ -138,7 +142,7 @@ def digit_rows(
 
         at_start = still or tau + c3 == 0
         zero = {"tau": tau == 0, "eta": at_start and not quadrature.lower, "etadot": at_start}
-        known = [name for name, is_zero in zero.items() if is_zero]
-        return list(settled.texts(compute, known).values())
+        known = {name: 0 for name, is_zero in zero.items() if is_zero}
+        return list(numbers.texts(compute, known).values())
 
     return (at(tau) for tau in times.decimals())

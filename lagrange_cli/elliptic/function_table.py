@@ -9,11 +9,11 @@ from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.correct_rounding import TooFewDigitsError
+from ..arithmetic.ball_functions import BallFunctions, ball_functions
 from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.rounding import decided
 from ..arithmetic.sums_of_doubles import pair
 from ..errors import LagtopError
 from .complete import complete_k
@@ -21,10 +21,10 @@ from .jacobi import Jacobi, jacobi, jacobi_at
 from .known_values import known_values, put_exact_values
 from .modulus import Modulus
 from .periods import Periods, of_quarters
-from .proved_digits import Settled, small_or_large
+from .proved_numbers import ProvedNumbers, small_or_large
 from .request import THETA, THIRD, Request
 from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
-from .third_kind import ThirdKind, check_near, check_parameter, third_kind
+from .third_kind import ThirdKind, check_near, third_kind
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -40,29 +40,28 @@ class Functions(NamedTuple):
     """None for k = 1, where there are no periods."""
     third: dict[str, ThirdKind]
     K: Value
-    """The quarter period; a pair in doubles."""
+    """The quarter period; a pair in doubles, None for k = 1."""
 
     def rounded(self, modulus: Modulus) -> Functions:
         """Return them in doubles, beside the modulus in doubles."""
         series = self.series and rounded(self.series)
         third = {ij: kind.rounded() for ij, kind in self.third.items()}
-        return Functions(modulus, series, third, pair(self.K))
+        return Functions(modulus, series, third, self.K and pair(self.K))
 
 
-def functions_in(ar: ManyDigits, request: Request) -> Functions:
-    """Return the constants of a request in an mpmath context.
+def functions_in(ar: BallFunctions, request: Request) -> Functions:
+    """Return the constants of a request in balls.
 
     Raises LagtopError for a modulus or a parameter out of range.
     """
     exact = request.modulus.in_digits(ar)
-    endless = not exact.k_prime and request.families == ("am",)
+    endless = "k_prime" in request.modulus.zeros() and request.families == ("am",)
     series = None if endless else series_for(ar, exact)
     third: dict[str, ThirdKind] = {}
     if request.has_parameter:
-        v = request.parameter_in(ar)
-        check_parameter(ar, v, exact)
-        third = {ij: third_kind(ar, ij, v, exact) for ij in THIRD}
-    return Functions(exact, series, third, ar.inf if endless else complete_k(ar, exact.k_prime))
+        size, imaginary = ar.convert(request.parameter), request.imaginary
+        third = {ij: third_kind(ar, ij, size, exact, imaginary=imaginary) for ij in THIRD}
+    return Functions(exact, series, third, None if endless else complete_k(ar, exact.k_prime))
 
 
 def values(
@@ -72,7 +71,7 @@ def values(
     request: Request,
     known: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, Value]:
-    """Return the columns at u, in numpy or an mpmath context; those `known` are not computed.
+    """Return the columns at u, of arrays or in balls; those `known` are not computed.
 
     u is a factor of K where the request says so.  Omega and Pi of an imaginary parameter are given
     by their imaginary parts.
@@ -81,17 +80,15 @@ def values(
     if not series:
         found = jacobi(ar, u, functions.modulus)
         columns = {"u": u} | dict(_named(ar, found, request))
-        return columns | {name: ar.convert(known[name]) for name in known.keys() & columns.keys()}
+        return columns | {name: known[name] for name in known.keys() & columns.keys()}
     if request.in_quarters:
         x = of_quarters(ar, u)
         u = times_quarter(ar, u, functions.K)
     else:
         x = in_periods(ar, u, series)
-        if not ar.is_array and u and not x.rest:
-            raise TooFewDigitsError
     columns = {"u": u}
     for name, compute in _families(ar, x, functions, series, request):
-        columns[name] = ar.convert(known[name]) if name in known else compute()
+        columns[name] = known[name] if name in known else compute()
     return columns
 
 
@@ -160,7 +157,10 @@ def rows(arguments: Points, request: Request) -> tuple[list[str], Iterator[Array
 
     request, parameter = request.in_doubles(), float(request.parameter)
     modulus = check_domain(arguments, request)
-    functions = functions_in(ManyDigits(), request).rounded(modulus)
+    functions = decided(
+        "the constants of these functions",
+        lambda digits: functions_in(ball_functions(digits), request).rounded(modulus),
+    )
 
     def columns(u: Array) -> dict[str, Array]:
         with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
@@ -188,7 +188,7 @@ def blocks(
     header: list[str] = []
 
     def small() -> list[list[NumberText]]:
-        header[:], lines = digit_rows(arguments, request)
+        header[:], lines = digit_rows(arguments, request, short=True)
         return list(lines)
 
     def large() -> Iterator[Array]:
@@ -199,12 +199,13 @@ def blocks(
 
 
 def digit_rows(
-    arguments: Points, request: Request, digits: int | None = None
+    arguments: Points, request: Request, digits: int | None = None, *, short: bool = False
 ) -> tuple[list[str], Iterator[list[NumberText]]]:
     """Return the header, and rows to so many significant digits; a pole is an empty text.
 
     Without `digits` the arguments and the parameter are rounded to doubles, and each number is the
-    nearest double: what `rows` does, without NumPy.  Raises LagtopError before any row, for a
+    nearest double: what `rows` does, without NumPy; a `short` search raises TooFewDigitsError
+    where that is sooner.  Raises LagtopError before any row, for a
     parameter out of range and, without `digits`, as `check_domain` does.
     """
     if digits is None:
@@ -215,21 +216,18 @@ def digit_rows(
     places = arguments.decimals()
     if digits is None and not request.in_quarters:
         places = (Fraction(float(u)) for u in places)
-    settled = Settled(digits)
+    numbers = ProvedNumbers(digits, short=short)
 
     @cache
-    def constants(ar: ManyDigits) -> Functions:
+    def constants(ar: BallFunctions) -> Functions:
         return functions_in(ar, request)
 
     def at(u: Fraction) -> dict[str, NumberText]:
         known = known_values(u, request)
-
-        def compute(ar: ManyDigits) -> dict[str, Value]:
-            for far in (u, request.parameter if not request.imaginary else 0):
-                settled.require(ar, abs(ar.convert(far)))
-            return values(ar, ar.convert(u), constants(ar), request, known)
-
-        return settled.texts(compute, known)
+        more = len(str(int(max(abs(u), abs(request.parameter)))))
+        return numbers.texts(
+            lambda ar: values(ar, ar.convert(u), constants(ar), request, known), known, more
+        )
 
     first = at(next(places))
     return list(first), (list(row.values()) for row in chain([first], map(at, places)))

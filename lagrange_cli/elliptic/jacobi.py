@@ -70,6 +70,6 @@ def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus, series: Thet
     sn = theta["11"] / (ar.sqrt(k) * below)
     cn = ar.sqrt(k_prime / k) * theta["10"] / below
     dn = ar.sqrt(k_prime) * theta["00"] / below
-    am = ar.atan2(sn, cn) if ar.im(x.rest) == 0 else -ar.mpc(0, 1) * ar.log(cn + ar.mpc(0, 1) * sn)
+    am = ar.atan2(sn, cn) if ar.im(x.rest) == 0 else -1j * ar.log(cn + 1j * sn)
     sign = -1 if x.turns % 2 else 1
     return Jacobi(x.turns * ar.pi + am, sign * sn, sign * cn, dn)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.formulas import in_arithmetic
@@ -25,7 +26,7 @@ class Modulus(NamedTuple):
 
 
 class Constants(NamedTuple):
-    """K, E and the nome q of k; K', E' of the complement.  K = inf and q = 1 where k = 1."""
+    """K, E and the nome q of k; K', E' of the complement.  q = 1, and K has no value, for k = 1."""
 
     K: Value
     K_prime: Value
@@ -110,6 +111,11 @@ def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
     return Pair(*two_sum(high, low))
 
 
+def exact_modulus(ar: FunctionArithmetic, k: Fraction) -> Modulus:
+    """Return a modulus in [0, 1], whose complement keeps its digits however close k is to 1."""
+    return Modulus(ar.convert(k), ar.sqrt(ar.convert(1 - k * k)))
+
+
 def _from_k(ar: FunctionArithmetic, k: Value) -> Modulus:
     return Modulus(k, *_complement(ar, k))
 
@@ -135,7 +141,7 @@ def _from_angle(ar: FunctionArithmetic, angle: Value) -> Modulus:
 def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
     """Return theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and k'."""
     limit = ar.exp(-ar.pi)
-    large = q > limit
+    large = ar.either(q > limit)
     root = ar.where(large, ar.exp(ar.pi**2 / (2 * ar.log(ar.where(large, q, limit)))), ar.sqrt(q))
     small = root * root
     n, power, theta2, theta3, theta4 = 0, small**0, small * 0, small**0, small**0
@@ -146,6 +152,11 @@ def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
         theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
     if ar.is_array and (root == 0)[large].any():
         raise LagtopError("q must be at most 0.9934 in doubles, whose range k' leaves beyond")
+    # the sums leave out less than 4 small^(n^2), as every term is less than half of the one before
+    theta2, theta3, theta4 = (
+        ar.widened(x, lambda: (power,), lambda power: 4 * power, values_only=True)
+        for x in (theta2, theta3, theta4)
+    )
     one, other = root * (theta2 / theta3) ** 2, (theta4 / theta3) ** 2
     return Modulus(ar.where(large, other, one), ar.where(large, one, other), 0 * q)
 

@@ -6,15 +6,16 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.decimals import decimals
+from ..arithmetic.ball_functions import ball_functions
+from ..arithmetic.exact_cosine import Cosine
+from ..arithmetic.rounding import decided
+from ..arithmetic.sums_of_doubles import pair
 from ..errors import LagtopError
-from .modulus import Modulus, constants, modulus
+from .modulus import Modulus, constants, exact_modulus, modulus
+from .proved_numbers import ProvedNumbers
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import FunctionArithmetic, Value
-
-_DIGITS = 50
-"""Digits of constants that are rounded to doubles; 34 would do."""
 
 
 class ModulusInput(NamedTuple):
@@ -45,40 +46,41 @@ class ModulusInput(NamedTuple):
         return zeros | ({"k_prime", "nome_prime"} if complement_vanishes else set())
 
     def in_digits(self, ar: FunctionArithmetic) -> Modulus:
-        """Return the modulus in an mpmath context or, of k or k', in decimals.
+        """Return the modulus in balls or an mpmath context, k and k' with all their digits.
 
         Raises LagtopError where it is out of range.
         """
         self.check()
-        value: Any = ar.convert(self.value)
         if self.name == "nome":
-            return modulus(ar, q=value)
-        if self.name != "modular_angle":
-            return modulus(ar, **{self.name: value})
-        if self.value == 90 and not self.radians:
-            return modulus(ar, k_prime=0)
-        return modulus(ar, angle=value if self.radians else ar.pi * value / 180)
+            return modulus(ar, q=ar.convert(self.value))
+        if self.name == "modular_angle":
+            angles = (None, self.value) if self.radians else (self.value, None)
+            tilt = Cosine(*angles).tilt(ar)
+            return Modulus(tilt.sin, tilt.cos)
+        exact = exact_modulus(ar, self.value)
+        return exact if self.name == "k" else Modulus(exact.k_prime, exact.k)
 
     def in_doubles(self) -> Modulus:
         """Return the modulus rounded once, k' as two doubles.
 
         Raises LagtopError where it is out of range, or k' is too small for a double.
         """
-        from ..arithmetic.many_digits import ManyDigits
-        from ..arithmetic.sums_of_doubles import pair
 
-        exact = self.in_digits(ManyDigits())
-        rounded = Modulus(float(exact.k), *pair(exact.k_prime))
-        if exact.k_prime > 0 and not rounded.k_prime:
+        def rounded(digits: int) -> Modulus:
+            exact = self.in_digits(ball_functions(digits))
+            return Modulus(float(exact.k), *pair(exact.k_prime))
+
+        found = decided(self.name, rounded)
+        if not found.k_prime and "k_prime" not in self.zeros():
             raise LagtopError(
                 f"{self.name}: k' is too small for doubles (give --digits)", self.name
             )
-        return rounded
+        return found
 
 
 def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[str, Value]:
     """Return the record of a modulus in the digits of an arithmetic; None for what is infinite."""
-    exact = modulus_input.in_digits(ar)
+    exact, zeros = modulus_input.in_digits(ar), modulus_input.zeros()
     K, K_prime, E, E_prime, q = constants(ar, exact)
     other = constants(ar, Modulus(exact.k_prime, exact.k)).q
     unit = "rad" if modulus_input.radians else "deg"
@@ -89,8 +91,8 @@ def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[st
         f"modular_angle_{unit}": angle,
         "nome": q,
         "nome_prime": other,
-        "K": None if K == ar.inf else K,
-        "K_prime": None if K_prime == ar.inf else K_prime,
+        "K": None if "k_prime" in zeros else K,
+        "K_prime": None if "k" in zeros else K_prime,
         "E": E,
         "E_prime": E_prime,
     }
@@ -98,12 +100,6 @@ def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[st
 
 def constants_record(modulus_input: ModulusInput, digits: int | None = None) -> dict[str, Any]:
     """Return the record, each number the nearest double or to so many significant digits."""
-    if digits is None and modulus_input.name in {"k", "k_prime"}:  # without mpmath
-        ar: Any = decimals(_DIGITS)
-        with ar.working():
-            exact = constants_in(ar, modulus_input)
-        return {name: None if x is None else float(x) for name, x in exact.items()}
-    from .proved_digits import settled_or_rounded
-
-    zeros = modulus_input.zeros()
-    return settled_or_rounded(lambda ar: constants_in(ar, modulus_input), digits, zeros)
+    return ProvedNumbers(digits).of(
+        lambda ar: constants_in(ar, modulus_input), dict.fromkeys(modulus_input.zeros(), 0)
+    )

@@ -9,9 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.sums_of_doubles import triple
-from .complete import complete_k
-from .modulus import Modulus, rate_of_half_periods
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
     from ..arithmetic.types import Array
@@ -30,7 +27,9 @@ class Periods(NamedTuple):
 
     def half_further(self, ar: FunctionArithmetic) -> Periods:
         """Return the place half a period further on."""
-        forward = real_part(ar, self.rest) < 0
+        forward = ar.either(real_part(ar, self.rest) < 0)
+        if not ar.is_array:
+            return Periods(self.turns + (not forward), self.rest + (0.5 if forward else -0.5))
         half, turns = ar.where(forward, 0.5, -0.5), self.turns + ar.where(forward, 0.0, 1.0)
         if is_real_array(ar, self.rest):
             from ..arithmetic.double_double import two_sum
@@ -46,13 +45,6 @@ class Rate(NamedTuple):
     high: float | Array
     middle: float | Array
     low: float | Array = 0.0
-
-
-def rate_of(ar: FunctionArithmetic, modulus: Modulus) -> Rate:
-    """Return the rate of a modulus with k' > 0: 48 digits in a context, 30 of arrays."""
-    if ar.is_array:
-        return Rate(*rate_of_half_periods(modulus.k_prime, modulus.rest))
-    return Rate(*triple(1 / (2 * complete_k(ar, modulus.k_prime))))
 
 
 def whole_and_rest(ar: FunctionArithmetic, x: Complex) -> Periods:

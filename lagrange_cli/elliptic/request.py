@@ -5,9 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..arithmetic.protocol import FunctionArithmetic
 from .modulus_input import ModulusInput
-from .periods import Complex
 
 THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
 """The functions of one argument, and those of an argument and a parameter."""
@@ -24,11 +22,6 @@ class Request(NamedTuple):
     radians: bool = False
     in_quarters: bool = False
     """Whether the arguments are factors of K."""
-
-    def parameter_in(self, ar: FunctionArithmetic) -> Complex:
-        """Return the parameter in an mpmath context, rounded once."""
-        value = ar.convert(self.parameter)
-        return ar.mpc(0, value) if self.imaginary else ar.mpc(value, 0)
 
     def in_doubles(self) -> Request:
         """Return the request with the parameter that its nearest double is."""

@@ -15,19 +15,21 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..arithmetic.ball import TooFewDigitsError
+from ..arithmetic.ball_functions import ball_functions
 from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.rounding import decided
+from ..arithmetic.sums_of_doubles import triple
 from ..errors import LagtopError
 from .complete import complete_k, nome
-from .modulus import Modulus
+from .modulus import Modulus, rate_of_half_periods
 from .periods import (
     Complex,
     Periods,
     Rate,
     imaginary_part,
     is_real_array,
-    rate_of,
     real_part,
     reduced,
     whole_and_rest,
@@ -55,13 +57,13 @@ class ThetaSeries(NamedTuple):
     rate: Value
     """1/(2K)."""
     exact_rate: Rate | None
-    """1/(2K) to reduce arrays of real arguments with."""
+    """1/(2K) to reduce arrays of real arguments with; None for numbers."""
 
 
 def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
-    """Return the constants in an mpmath context or, for an array of moduli, in numpy."""
+    """Return the constants in balls or an mpmath context or, for an array of moduli, in numpy."""
     k, k_prime = modulus.k, modulus.k_prime
-    circular = k <= k_prime
+    circular = ar.either(k <= k_prime)
     quarter, other = complete_k(ar, k_prime), complete_k(ar, ar.where(k > 0, k, 1 + 0 * k))
     limit = ar.exp(-ar.pi)
     q = ar.where(circular, nome(ar, m=k * k, k_prime=k_prime), limit)
@@ -69,22 +71,28 @@ def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     if not ar.is_array:
         root = ar.sqrt(ar.sqrt(q))
     gauss = ar.sqrt(quarter / other)
+    steepness = ar.where(circular, ar.pi, ar.pi * quarter / other)
+    if not (ar.is_array or steepness > 3):
+        raise TooFewDigitsError  # the bounds of what the sums leave out take it for granted
     return ThetaSeries(
         circular=circular,
         q=q,
-        steepness=ar.where(circular, ar.pi, ar.pi * quarter / other),
+        steepness=steepness,
         even_size=ar.where(circular, 1 + 0 * q, gauss),
         odd_size=ar.where(circular, root, gauss),
         rate=1 / (2 * quarter),
-        exact_rate=rate_of(ar, modulus),
+        exact_rate=Rate(*rate_of_half_periods(k_prime, modulus.rest)) if ar.is_array else None,
     )
 
 
 def rounded(series: ThetaSeries) -> ThetaSeries:
-    """Return constants of many digits as doubles."""
+    """Return constants of many digits as doubles.
+
+    Raises TooFewDigitsError for balls that do not know them.
+    """
     q, steepness, even_size, odd_size, rate = map(float, series[1:-1])
-    sizes = even_size, odd_size
-    return ThetaSeries(series.circular, q, steepness, *sizes, rate, series.exact_rate)
+    exact_rate = Rate(*triple(series.rate))
+    return ThetaSeries(series.circular, q, steepness, even_size, odd_size, rate, exact_rate)
 
 
 def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
@@ -100,13 +108,23 @@ def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
 
     if any(np.ndim(part) for part in modulus):
         return theta_series(ar, modulus)
-    return rounded(theta_series(ManyDigits(), in_many_digits(ManyDigits(), modulus)))
+    return rounded_series(modulus)
 
 
-def in_many_digits(ar: ManyDigits, modulus: Modulus) -> Modulus:
-    """Return the modulus that doubles stand for in an mpmath context."""
+def rounded_series(modulus: Modulus) -> ThetaSeries:
+    """Return the constants for a modulus in doubles, rounded from balls."""
+
+    def series(digits: int) -> ThetaSeries:
+        ar = ball_functions(digits)
+        return rounded(theta_series(ar, in_many_digits(ar, modulus)))
+
+    return decided("the constants of the modulus", series)
+
+
+def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
+    """Return the modulus that doubles stand for in balls or an mpmath context."""
     k, k_prime, rest = map(float, modulus)
-    return Modulus(ar.mpf(k), ar.mpf(k_prime) + ar.mpf(rest))
+    return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
 
 @in_arithmetic
@@ -198,13 +216,16 @@ def _fourier(
     odd, sines = ij[0] == "1", ij == "11"
     wave, other = (ar.sin, ar.cos) if sines else (ar.cos, ar.sin)
     value, slope = (0 * x, 0 * x) if odd else (1 + 0 * x, 0 * x)
-    for h in range(0 if odd else 1, _fourier_terms(ar, x, q)):
+    terms = _fourier_terms(ar, x, q)
+    for h in range(0 if odd else 1, terms):
         weight = 2 * (-1) ** (h * int(ij[1])) * q ** (h * (h + 1) if odd else h * h)
         rate = (2 * h + odd) * ar.pi
         value = value + weight * wave(rate * x)
         if slopes:
             slope = slope + weight * (rate if sines else -rate) * other(rate * x)
-    return value, slope
+    # from N = terms on they are at most 2 q^(N^2), of real x, and each less than half of the last
+    left_out = q ** (terms * terms)
+    return widened_by(ar, value, 4 * left_out), widened_by(ar, slope, 26 * terms * left_out)
 
 
 def _bell(ar: FunctionArithmetic, ij: str, x: Complex, series: ThetaSeries) -> Complex:
@@ -228,7 +249,8 @@ def _gaussians(
     value = slope = 0 * x
     if not half:
         value, slope = 1 + 0 * x, -2 * c * x
-    for index in range(2 + int(math.sqrt(negligible(ar) / 3))):
+    terms = 2 + int(math.sqrt(negligible(ar) / 3))
+    for index in range(terms):
         n = index + 0.5 if half else index + 1.0
         sign = (-1) ** int(n) if ij[0] == "1" else 1
         lower = index * (index + 1 - 2 * x) if half else n * (n - 2 * x)
@@ -239,8 +261,17 @@ def _gaussians(
         value = value + total
         if slopes:
             slope = slope - 2 * c * (x * total - n * difference)
+    # from N = terms on each pair is at most 2 exp(-c N^2), and less than half of the one before
+    bell = ar.exp(-c * (terms * terms))
+    value = widened_by(ar, value, 4 * bell)
+    slope = widened_by(ar, slope, 8 * c * (terms + 2) * bell)
     turn = ar.where(left, -1, 1)
     return value * (turn if subtracted else 1), slope * (1 if subtracted else turn)
+
+
+def widened_by(ar: FunctionArithmetic, value: Value, left_out: Value) -> Value:
+    """Return a number with all that are at most so far away, in balls."""
+    return ar.widened(value, lambda: (left_out,), lambda x: x, values_only=True)
 
 
 def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
@@ -256,4 +287,4 @@ def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
 
 def negligible(ar: FunctionArithmetic) -> float:
     """Return -log of the largest number that does not matter beside 1."""
-    return float(-ar.log(ar.eps)) + 2
+    return 2.0 - math.log(10) * ar.magnitude

@@ -7,7 +7,7 @@ beside Omega where the two cancel.  So what depends on the modulus and the param
 computed once, in many digits, and what depends on eta is arranged so that nothing cancels:
 Theta(eta -+ v) are taken apart as P +- Q, and the growth of Pi over a period is one constant.
 
-A parameter of many digits and one rounded to doubles obey the same formulas, over mpf and arrays.
+A parameter of many digits and one rounded to doubles obey the same formulas, over balls and arrays.
 """
 
 from __future__ import annotations
@@ -15,16 +15,24 @@ from __future__ import annotations
 import math
 from typing import Any, Protocol
 
+from ..arithmetic.ball_functions import ball_functions
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
+from ..arithmetic.rounding import decided
 from ..errors import LagtopError
 from .complete import complete_k
 from .modulus import Modulus
 from .periods import Complex, Periods
-from .theta import in_many_digits, in_periods, negligible, rounded, series_for, zeta_at
+from .theta import (
+    in_many_digits,
+    in_periods,
+    negligible,
+    rounded_series,
+    series_for,
+    zeta_at,
+)
 from .third_kind_imaginary import ImaginaryCircular, ImaginaryHyperbolic
 from .third_kind_real import RealCircular, RealHyperbolic
 
@@ -64,21 +72,21 @@ class ZeroParameter:
         return self
 
 
-def check_parameter(ar: ManyDigits, v: Complex, modulus: Modulus) -> None:
-    """Raise LagtopError unless v is real, or imaginary and smaller than K' in size.
-
-    `ar` is an mpmath context.
-    """
-    height = abs(ar.im(v))
-    if height and ar.re(v):
-        raise LagtopError("param must be real or imaginary", "param")
-    if height and modulus.k and height >= (limit := complete_k(ar, modulus.k)):
-        size = ar.nstr(limit, 6)
+def check_parameter(
+    ar: FunctionArithmetic, size: Value, modulus: Modulus, *, imaginary: bool
+) -> None:
+    """Raise LagtopError for an imaginary parameter whose size is K' or more."""
+    if imaginary and modulus.k and abs(size) >= (limit := complete_k(ar, modulus.k)):
         raise LagtopError(
-            f"param must be smaller than K' = {size} in size where it is imaginary, "
-            f"got {ar.nstr(ar.im(v), 6)}i",
+            f"param must be smaller than K' = {_shown(limit)} in size where it is imaginary, "
+            f"got {_shown(size)}i",
             "param",
         )
+
+
+def _shown(x: Value) -> str:
+    middle: Value = getattr(x, "middle", x)
+    return f"{float(middle):.6g}"
 
 
 def check_near(v: float, modulus: Modulus) -> None:
@@ -91,37 +99,36 @@ def check_near(v: float, modulus: Modulus) -> None:
         )
 
 
-def third_kind(ar: ManyDigits, ij: str, v: Complex, modulus: Modulus) -> ThirdKind:
-    """Return Omega_ij and Pi_ij of a parameter, with constants in an mpmath context.
+def third_kind(
+    ar: FunctionArithmetic, ij: str, size: Value, modulus: Modulus, *, imaginary: bool
+) -> ThirdKind:
+    """Return Omega_ij and Pi_ij of a parameter, with constants in balls or an mpmath context.
 
-    Raises LagtopError as `check_parameter` does, and for k = 1.
+    The parameter is `size`, or i times it if `imaginary`.  Raises LagtopError as `check_parameter`
+    does, and for k = 1.
     """
-    check_parameter(ar, v, modulus)
+    check_parameter(ar, size, modulus, imaginary=imaginary)
     series = series_for(ar, modulus)
-    if v == 0:
+    if not size:
         return ZeroParameter(ij)
     terms = 3 + int(math.sqrt(negligible(ar) / math.pi))
-    odd, imaginary = ij[0] == "1", bool(ar.im(v))
-    if imaginary and series.circular:
-        y = ar.im(v) * series.rate
-        zeta = (
-            ar.im(zeta_at(ar, ij, Periods(ar.convert(0), ar.mpc(0, abs(y))), series)) / series.rate
-        )
-        return ImaginaryCircular.at(ar, ij, y, zeta, series.q, terms=terms)
+    odd = ij[0] == "1"
     if imaginary:
-        y = ar.im(v) * series.rate
+        y = size * series.rate
+        if series.circular:
+            return ImaginaryCircular.at(ar, ij, y, series.q, terms)
         return ImaginaryHyperbolic.at(ar, ij, y, series.steepness, terms)
-    y = in_periods(ar, ar.re(v), series).rest
+    y = in_periods(ar, size, series).rest
     if ij[1] == "0":
-        y = Periods(ar.convert(0), y).half_further(ar).rest
+        y = Periods(0, y).half_further(ar).rest
     if series.circular:
-        zeta = zeta_at(ar, f"{ij[0]}1", Periods(ar.convert(0), abs(y)), series) / series.rate
+        zeta = zeta_at(ar, f"{ij[0]}1", Periods(0, abs(y)), series) / series.rate
         return RealCircular.at(ar, odd, y, zeta, series.q, terms=terms)
     return RealHyperbolic.at(ar, odd, y, series.steepness, terms)
 
 
 @in_arithmetic
-def omega(ar: FunctionArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus) -> Complex:
+def omega(ar: ComplexArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus) -> Complex:
     """Return Omega_ij(eta, v) of section 2, for real eta.
 
     Real v: the real part.  Imaginary v = i alpha, |alpha| < K': i times a phase continuous in eta,
@@ -133,7 +140,7 @@ def omega(ar: FunctionArithmetic, ij: str, eta: Value, v: Complex, modulus: Modu
 
 @in_arithmetic
 def pi_function(
-    ar: FunctionArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus
+    ar: ComplexArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus
 ) -> Complex:
     """Return Pi_ij(eta, v) = eta Z_ij(v) + Omega_ij(eta, v), (3,1) and (3,2), as `omega` does."""
     return _evaluate(ar, "pi", ij, (eta, v), modulus)
@@ -145,20 +152,40 @@ def _evaluate(
     """Return Omega or Pi of numbers of a context, or of arrays that broadcast."""
     eta, v = place
     if not ar.is_array:
-        v = ar.convert(v)
-        series = series_for(ar, modulus)
-        kind = third_kind(ar, ij, v, modulus)
-        value = getattr(kind, name)(ar, in_periods(ar, ar.convert(eta), series))
-        return ar.mpc(0, value) if ar.im(v) else value
+        size, imaginary = parameter_of(ar, ar.convert(v))
+        kind = third_kind(ar, ij, size, modulus, imaginary=imaginary)
+        value = getattr(kind, name)(ar, in_periods(ar, ar.convert(eta), series_for(ar, modulus)))
+        return ar.mpc(0, value) if imaginary else value
     import numpy as np
 
     eta, v, *parts = np.broadcast_arrays(eta, v, *modulus)
     values = np.zeros(eta.shape, dtype=v.dtype if np.iscomplexobj(v) else float)
-    many = ManyDigits()
     for pair in {tuple(pair) for pair in zip(*(x.ravel() for x in (v, *parts)), strict=True)}:
         same = np.all([x == y for x, y in zip((v, *parts), pair, strict=True)], axis=0)
-        exact = in_many_digits(many, Modulus(*pair[1:]))
-        kind = third_kind(many, ij, many.convert(complex(pair[0])), exact).rounded()
-        x = in_periods(ar, eta[same], rounded(series_for(many, exact)))
-        values[same] = getattr(kind, name)(ar, x) * (1j if pair[0].imag else 1)
+        size, imaginary = parameter_of(ar, pair[0])
+        kind = rounded_kind(ij, size, Modulus(*pair[1:]), imaginary=imaginary)
+        x = in_periods(ar, eta[same], rounded_series(Modulus(*pair[1:])))
+        values[same] = getattr(kind, name)(ar, x) * (1j if imaginary else 1)
     return values
+
+
+def parameter_of(ar: FunctionArithmetic, v: Complex) -> tuple[Value, bool]:
+    """Return the size of a parameter, with its sign, and whether it is imaginary.
+
+    Raises LagtopError unless it is real or imaginary.
+    """
+    real, imag = ar.re(v), ar.im(v)
+    if imag and real:
+        raise LagtopError("param must be real or imaginary", "param")
+    return (imag, True) if imag else (real, False)
+
+
+def rounded_kind(ij: str, size: float, modulus: Modulus, *, imaginary: bool) -> ThirdKind:
+    """Return Omega_ij and Pi_ij of a parameter and a modulus in doubles, rounded from balls."""
+
+    def kind(digits: int) -> ThirdKind:
+        ar = ball_functions(digits)
+        exact = in_many_digits(ar, modulus)
+        return third_kind(ar, ij, ar.convert(float(size)), exact, imaginary=imaginary).rounded()
+
+    return decided("the constants of the parameter", kind)

@@ -8,9 +8,11 @@ All is odd in alpha, so y > 0 below.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from operator import mul
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .periods import Periods
+from .theta import widened_by
 
 
 @dataclass(frozen=True)
@@ -32,28 +34,40 @@ class ImaginaryCircular:
     """Coefficients with cosh."""
     slants: tuple[Value, ...]
     """Coefficients with sinh."""
+    left_out: Value
+    """A bound of what each series leaves out."""
 
     @classmethod
     def at(
-        cls, ar: FunctionArithmetic, ij: str, y: Value, zeta: Value, q: Value, *, terms: int
+        cls, ar: FunctionArithmetic, ij: str, y: Value, q: Value, terms: int
     ) -> ImaginaryCircular:
-        """Return the constants from y = alpha/2K, the nome and zeta = 2K Z(i |alpha|)/i."""
-        odd, size, floor = ij[0] == "1", abs(y), ar.convert(1)
+        """Return the constants from y = alpha/2K and the nome.
+
+        As 2 pi |y| <= log(1/q), the terms of the sums from h = N on are at most 4 q^(N(N-1)), those
+        of the slopes (2 N + 1) pi times that, and each is less than half of the one before.
+        """
+        odd, shifted, size = ij[0] == "1", ij[1] == "0", abs(y)
+        orders = range(terms) if odd else range(1, terms)
+        rates = [(2 * h + odd) * ar.pi for h in orders]
         if odd:
-            weights = [(-1) ** h * q ** (h * (h + 1)) / ar.cosh(ar.pi * size) for h in range(terms)]
-            angles = [(2 * h + 1) * ar.pi * size for h in range(terms)]
+            weights = [(-1) ** h * q ** (h * (h + 1)) / ar.cosh(ar.pi * size) for h in orders]
         else:
-            weights = [2 * (-1) ** h * q ** (h * h) for h in range(1, terms)]
-            angles = [2 * h * ar.pi * size for h in range(1, terms)]
-        parts = list(zip(weights, angles, strict=True))
-        heights = tuple(weight * ar.cosh(angle) for weight, angle in parts)
-        slants = tuple(weight * ar.sinh(angle) for weight, angle in parts)
+            weights = [2 * (-1) ** h * q ** (h * h) for h in orders]
+        heights = [w * ar.cosh(rate * size) for w, rate in zip(weights, rates, strict=True)]
+        slants = [w * ar.sinh(rate * size) for w, rate in zip(weights, rates, strict=True)]
+        signs = [(-1) ** h if shifted else 1 for h in orders]  # of the function half a period on
+        left_out = 8 * q ** (terms * (terms - 1))
+        value, slope = (slants, heights) if ij == "11" else (heights, slants)
+        total = sum(map(mul, signs, value), 0 if odd else ar.convert(1))
+        rising = sum(map(mul, map(mul, signs, slope), rates))
+        zeta = -widened_by(ar, rising, 4 * (2 * terms + 1) * left_out)
+        zeta = zeta / widened_by(ar, total, left_out)
+        floor = widened_by(ar, 1 + sum(heights), left_out)
         if not odd:
-            floor += sum(heights)
-            heights = tuple(-2 * height for height in heights)
-        growth = zeta + ar.pi if odd else zeta
-        sign = -1 if y < 0 else 1
-        return cls(odd, ij[1] == "0", sign, zeta, growth, floor, heights, slants)
+            heights = [-2 * height for height in heights]
+        growth, sign = zeta + ar.pi if odd else zeta, -1 if y < 0 else 1
+        parts = tuple(heights), tuple(slants), 2 * left_out
+        return cls(odd, shifted, sign, zeta, growth, floor, *parts)
 
     def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return the phase of the theta function."""
@@ -74,10 +88,14 @@ class ImaginaryCircular:
         if self.odd:
             across = sum(a * ar.sin((2 * h + 1) * ar.pi * rest) for h, (a, _) in series)
             along = sum(b * ar.cos((2 * h + 1) * ar.pi * rest) for h, (_, b) in series)
-            return turns, ar.atan2(across, along) - ar.pi / 2
+            return turns, self._angle(ar, across, along) - ar.pi / 2
         along = self.floor + sum(a * ar.sin((h + 1) * ar.pi * rest) ** 2 for h, (a, _) in series)
         across = sum(b * ar.sin(2 * (h + 1) * ar.pi * rest) for h, (_, b) in series)
-        return 0 * turns, ar.atan2(across, along)
+        return 0 * turns, self._angle(ar, across, along)
+
+    def _angle(self, ar: FunctionArithmetic, across: Value, along: Value) -> Value:
+        """Return the angle of two sums, with what they leave out."""
+        return ar.atan2(*(widened_by(ar, x, self.left_out) for x in (across, along)))
 
     def rounded(self) -> ImaginaryCircular:
         """Return the parameter with its constants in doubles."""
@@ -88,6 +106,7 @@ class ImaginaryCircular:
             floor=float(self.floor),
             heights=tuple(map(float, self.heights)),
             slants=tuple(map(float, self.slants)),
+            left_out=0.0,
         )
 
 
@@ -135,7 +154,10 @@ class ImaginaryHyperbolic:
         else:
             rise = sum(sign * bell * 2 * c * n * sine for sign, bell, n, _, sine in parts)
             total = sum(sign * bell * cosine for sign, bell, _, cosine, _ in parts)
-        slope, turn = rise / total, 2 * half_turn
+        # from i = N on the terms are at most exp(-c N^2) and 2 c (N + 1) times that
+        bell = 2 * ar.exp(-c * (terms * terms))
+        rise = widened_by(ar, rise, 2 * c * (terms + 1) * bell)
+        slope, turn = rise / widened_by(ar, total, bell), 2 * half_turn
         growth = slope - turn + ar.pi if ij[0] == "1" else slope - turn
         return cls(ij, -1 if y < 0 else 1, c, turn, slope, growth, cosines, sines)
 
@@ -160,9 +182,13 @@ class ImaginaryHyperbolic:
             both = bell * (2 + image) if i or half else 1 + 0 * size
             plus = plus[0] + both * cosine, plus[1] + both * sine
             minus = minus[0] - bell * image * cosine, minus[1] - bell * image * sine
+        terms = len(self.cosines)  # from i = N on they are at most 2 exp(-c N(N - 1))
+        bell = 4 * ar.exp(-c * (terms * (terms - 1)))
         if self.ij != "11":
-            return -ar.sign(rest) * ar.atan2(minus[1], plus[0])
-        turned = ar.atan2(plus[1], minus[0])
+            across, along = widened_by(ar, minus[1], bell), widened_by(ar, plus[0], bell)
+            return -ar.sign(rest) * ar.atan2(across, along)
+        across, along = widened_by(ar, plus[1], bell), widened_by(ar, minus[0], bell)
+        turned = ar.atan2(across, along)
         return ar.where(rest < 0, turned - ar.pi, -turned)
 
     def rounded(self) -> ImaginaryHyperbolic:

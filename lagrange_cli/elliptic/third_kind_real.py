@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.sums_of_doubles import pair
 from .periods import Periods
+from .theta import widened_by
 
 
 def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Value:
@@ -34,6 +36,8 @@ class RealCircular:
     """Coefficients of both, before they are multiplied by cosines and sines."""
     size: Value
     """|y|."""
+    left_out: Value
+    """A bound of what each series leaves out."""
     low: Value = 0.0
     """What rounding took from |y|."""
 
@@ -45,7 +49,8 @@ class RealCircular:
 
         Even: theta(x -+ y) = P +- Q, P = 1 + 2 sum (-1)^h q^(h^2) cos 2 pi h x cos 2 pi h y, and Q
         with sines.  Odd, over 2 q^(1/4): A -+ B, A = sum (-1)^h q^(h(h+1)) sin (2h+1) pi x
-        cos (2h+1) pi y, and B with cos and sin exchanged.
+        cos (2h+1) pi y, and B with cos and sin exchanged.  From h = N on the terms are at most
+        2 q^(N^2), and each is less than half of the one before.
         """
         size, orders = abs(y), range(terms)
         if odd:
@@ -57,7 +62,8 @@ class RealCircular:
         parts = list(zip(weights, angles, strict=True))
         cosines = tuple(weight * ar.cos(angle) for weight, angle in parts)
         sines = tuple(weight * ar.sin(angle) for weight, angle in parts)
-        return cls(odd, -1 if y < 0 else 1, growth, cosines, sines, tuple(weights), size)
+        left_out, sign = 4 * q ** (terms * terms), -1 if y < 0 else 1
+        return cls(odd, sign, growth, cosines, sines, tuple(weights), size, left_out)
 
     def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Omega = artanh Q/P or, of the odd function, -artanh B/A or A/B.
@@ -69,15 +75,20 @@ class RealCircular:
         if not self.odd:
             P = 1 + sum(a * ar.cos(2 * (h + 1) * ar.pi * size) for h, (a, _) in series)
             Q = sum(b * ar.sin(2 * (h + 1) * ar.pi * size) for h, (_, b) in series)
-            return side * ar.atanh(Q / P)
-        A = sum(a * ar.sin((2 * h + 1) * ar.pi * size) for h, (a, _) in series)
-        B = sum(b * ar.cos((2 * h + 1) * ar.pi * size) for h, (_, b) in series)
-        near = _distance(ar, x, self.size, self.low)
-        close = abs(sum(w * ar.sin((2 * h + 1) * ar.pi * near) for h, w in enumerate(self.weights)))
-        pole = 2 * close < A + B
-        ratio = ar.where(A < B, A, B) / ar.where(A < B, B, A)
+            return side * ar.atanh(self._whole(ar, Q) / self._whole(ar, P))
+        A = self._whole(ar, sum(a * ar.sin((2 * h + 1) * ar.pi * size) for h, (a, _) in series))
+        B = self._whole(ar, sum(b * ar.cos((2 * h + 1) * ar.pi * size) for h, (_, b) in series))
+        near, terms = _distance(ar, x, self.size, self.low), enumerate(self.weights)
+        difference = sum(w * ar.sin((2 * h + 1) * ar.pi * near) for h, w in terms)
+        close = abs(self._whole(ar, difference))
+        pole, less = ar.either(2 * close < A + B), ar.either(A < B)
+        ratio = ar.where(less, A, B) / ar.where(less, B, A)
         logarithm = ar.log(ar.where(pole, close / (A + B), 1 + 0 * A)) / 2
         return side * ar.where(pole, logarithm, -ar.atanh(ar.where(pole, 0 * ratio, ratio)))
+
+    def _whole(self, ar: FunctionArithmetic, total: Value) -> Value:
+        """Return a sum with what it leaves out."""
+        return widened_by(ar, total, self.left_out)
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
         """Return Pi, by its growth over the periods and what is left within one."""
@@ -94,7 +105,8 @@ class RealCircular:
             sines=tuple(map(float, self.sines)),
             weights=tuple(map(float, self.weights)),
             size=float(self.size),
-            low=float(self.size - float(self.size)),
+            low=pair(self.size).low,
+            left_out=0.0,
         )
 
 
@@ -139,7 +151,10 @@ class RealHyperbolic:
             pair = ar.expm1(-2 * c * (2 * i + 1) * size)
             total += sign * near * (-pair if odd else 2 + pair)
             rise += sign * 2 * c * (i * near - image * (i + 1) * far)
-        slope = rise / total
+        # from i = N on the terms are at most 2 and (4 N + 2) c times exp(-c N^2)
+        bell = ar.exp(-c * (terms * terms))
+        total = widened_by(ar, total, 4 * bell)
+        slope = widened_by(ar, rise, (8 * terms + 4) * c * bell) / total
         room, sign = 1 - 2 * size, -1 if y < 0 else 1
         return cls(odd, sign, c * room + slope, size, room, c, slope, slope + c, terms)
 
@@ -153,7 +168,7 @@ class RealHyperbolic:
         """Return Pi, by its growth over the periods and what is left within one."""
         size, c = abs(x.rest), self.steepness
         small, room, apart = self._sorted(ar, x)
-        if c * self.size > 1:  # the multiples of c have cancelled
+        if ar.either(c * self.size > 1):  # the multiples of c have cancelled
             within = size * self.slope + c * ar.where(size < self.size, 0 * apart, apart)
         else:
             within = size * self.tilt - c * small
@@ -162,25 +177,25 @@ class RealHyperbolic:
 
     def rounded(self) -> RealHyperbolic:
         """Return the parameter with its constants in doubles."""
-        size = float(self.size)
+        size, low = pair(self.size)
         return RealHyperbolic(
             odd=self.odd,
             sign=self.sign,
             growth=float(self.growth),
-            size=size,
+            size=float(size),
             room=float(self.room),
             steepness=float(self.steepness),
             slope=float(self.slope),
             tilt=float(self.tilt),
             terms=4,
-            low=float(self.size - size),
+            low=low,
         )
 
     def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value, Value]:
         """Return the smaller of |x| and |y|, 1 - 2 times the larger, and their distance."""
         size = abs(x.rest)
         room = (1 - 2 * size) - 2 * ar.where(x.rest < 0, -x.low, x.low)
-        less = size < self.size
+        less = ar.either(size < self.size)
         apart = _distance(ar, x, self.size, self.low)
         return ar.where(less, size, self.size), ar.where(less, self.room, room), apart
 
@@ -191,7 +206,7 @@ class RealHyperbolic:
         function the signs alternate and the images are subtracted.
         """
         c = self.steepness
-        apart = ar.where(2 * small < room, 2 * small, room)
+        apart = ar.where(ar.either(2 * small < room), 2 * small, room)
         b = a + apart
         difference = total = 0 * a
         for i in range(self.terms):
@@ -203,10 +218,11 @@ class RealHyperbolic:
             difference = difference + sign * (
                 near * fall + (image if self.odd else -image) * image_fall
             )
-        quotient = difference / total
+        bell = 4 * ar.exp(-c * (self.terms * self.terms))  # what both leave out, as in `at`
+        quotient = widened_by(ar, difference, bell) / widened_by(ar, total, bell)
         if not self.odd:
             return ar.log1p(quotient) / 2
-        pole = quotient < -0.5  # S(a) nearly vanishes
+        pole = ar.either(quotient < -0.5)  # S(a) nearly vanishes
         there = self._odd_sum(ar, ar.where(pole, a, 0 * a + 0.5)) / total
         logarithm = ar.log(ar.where(pole, there, 0 * there + 1))
         return ar.where(pole, logarithm, ar.log1p(ar.where(pole, 0 * quotient, quotient))) / 2
@@ -217,4 +233,4 @@ class RealHyperbolic:
         for i in range(self.terms):
             near = ar.exp(-c * i * (i + 1 - 2 * a))
             total = total - (-1) ** i * near * ar.expm1(-2 * c * (2 * i + 1) * a)
-        return total
+        return widened_by(ar, total, 4 * ar.exp(-c * (self.terms * self.terms)))

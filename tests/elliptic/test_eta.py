@@ -180,7 +180,7 @@ def rational(value: Any) -> Fraction:
 
 def test_the_top_is_the_cubic_case() -> None:
     """u(t) another way: the roots put into the satellite's routine.  Half a period is c3."""
-    exact = {key: Fraction(x) for key, x in solve(Top()).digits(50, keys=TOP_KEYS).items()}
+    exact = {key: Fraction(x) for key, x in solve(Top()).record(digits=50, keys=TOP_KEYS).items()}
     of = Quadrature(exact["u2"], exact["u1"], (exact["u3"],), exact["a"])
     times = np.linspace(-3, 400, 1001)
     block = next(rows(of, ListedPoints([Fraction(t) for t in times]), exact["T_nutation"] / 2))

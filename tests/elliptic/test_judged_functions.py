@@ -18,7 +18,7 @@ from function_judge import EPS, Judge, ball, units
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.correct_rounding import TooFewDigitsError
+from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.function_table import blocks, digit_rows, rows
