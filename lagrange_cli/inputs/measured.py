@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from decimal import Decimal
 from fractions import Fraction
 
-from ..arithmetic.correct_rounding import correctly_rounded
-from ..arithmetic.decimals import decimals, own_context
+from ..arithmetic.ball import Ball
+from ..arithmetic.balls import balls
 from ..arithmetic.exact_cosine import Cosine
 from ..arithmetic.numbers import Number
+from ..arithmetic.rounding import nearest_double, rounding_of, settled
 from ..errors import LagtopError
 
 AS_SOLVED = {"A_cm": "A", "phidot0": "r0"}
@@ -57,16 +57,17 @@ def spin(inputs: Mapping[str, Number]) -> Number:
         exact = phi_rate + psi_rate * rational
         return exact if keeps else nearest(exact)
 
-    def value_in(digits: int) -> Decimal:
-        ar = decimals(digits)
-        with ar.working():
-            return ar.convert(phi_rate) + ar.convert(psi_rate) * cosine.value(ar)
+    def enclosure(digits: int) -> Ball:
+        ar = balls(digits)
+        return ar.convert(phi_rate) + ar.convert(psi_rate) * cosine.value(ar)
 
     if not keeps:
-        return correctly_rounded("r0", value_in, float) or 0.0
-    in_full = own_context(EXACT_DIGITS, [])
-    rounded = correctly_rounded("r0", value_in, in_full.plus, first=EXACT_DIGITS + 20)
-    return Fraction(rounded or 0)
+        found = settled("r0", enclosure, nearest_double("r0"))
+    else:
+        found = settled("r0", enclosure, rounding_of("r0", EXACT_DIGITS), digits=EXACT_DIGITS)
+    assert found is not None
+    value: Number = found.value if not keeps else Fraction(found.value)
+    return value
 
 
 def is_exact(*inputs: Number) -> bool:

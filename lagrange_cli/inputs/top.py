@@ -8,11 +8,12 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from ..arithmetic.decimals import own_context, pi_to
+from ..arithmetic.decimals import own_context
 from ..arithmetic.doubles import DOUBLES
+from ..arithmetic.exact_cosine import Cosine, Tilt, below_quarters
 from ..arithmetic.numbers import Number, R, is_real, unrounded
 from ..arithmetic.text import quoted
-from ..arithmetic.values import Over, Values
+from ..arithmetic.values import Values
 from ..errors import LagtopError
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT = 1e-150
 _LARGEST = 1e100
 _UNITS = "choose other units"
-_PI = Fraction(pi_to(60))
 _DIGITS_SHOWN = own_context(50, [])
 """A context of our own, so that no message depends on the one of the caller."""
 
@@ -35,19 +35,6 @@ EXAMPLE = {**BODY, "r0": 50.0, "theta0_deg": 30.0, "thetadot0": 0.0, "psidot0": 
 """What stands where nothing is given."""
 _SAME = {"A_cm": "A", "phidot0": "r0"} | dict.fromkeys(("theta0_deg", "theta0_rad"), "theta0")
 """What an input is that may be given in several ways."""
-
-
-class Tilt(Values, Over[R]):
-    """Sines and cosines of theta0 and of its half."""
-
-    sin: R
-    cos: R
-    sin_half: R
-    cos_half: R
-
-    def degrees(self, ar: Arithmetic[R]) -> R:
-        """Return the angle itself, in degrees."""
-        return 360 * ar.atan2(self.sin_half, self.cos_half) / ar.pi
 
 
 class Top(Values):
@@ -151,17 +138,13 @@ class Top(Values):
 
     def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
         """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
-        if self.theta0_rad is not None:
-            arc = ar.convert(self.theta0_rad)
-            return Tilt(ar.sin(arc), ar.cos(arc), ar.sin(arc / 2), ar.cos(arc / 2))
-        tilt = Fraction(_known(self.theta0_deg))
-        nearer = ar.convert(min(tilt, 180 - tilt)) * ar.pi / 180
-        sin_half = ar.sin(nearer / 2)
-        cos_half = ar.sqrt(1 - sin_half * sin_half)
-        sine, cosine = 2 * sin_half * cos_half, ar.sin(ar.convert(90 - tilt) * ar.pi / 180)
-        if tilt > 90:
-            sin_half, cos_half = cos_half, sin_half
-        return Tilt(sine, cosine, sin_half, cos_half)
+        return self.cosine.tilt(ar)
+
+    @property
+    def cosine(self) -> Cosine:
+        """The cosine of theta0, exactly."""
+        tilts = self.theta0_deg, self.theta0_rad
+        return Cosine(*(None if x is None else Fraction(x) for x in tilts))
 
     @property
     def is_released(self) -> bool:
@@ -245,11 +228,16 @@ def _check_ranges(top: Top) -> None:
     _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
     twice = 2 * Fraction(top.A)
     _require(twice >= top.C, "C", f"<= 2 A = {_shown(twice)}", top.C, "no rigid body has more")
-    for name, most, shown in (("theta0_deg", 180, "180"), ("theta0_rad", _PI, "pi")):
+    for name, most in (("theta0_deg", "180"), ("theta0_rad", "pi")):
         tilt = getattr(top, name)
         if tilt is not None:
-            _require(0 <= tilt <= most, name, f"in [0, {shown}]", tilt)
+            _require(0 <= tilt and _is_at_most(tilt, most), name, f"in [0, {most}]", tilt)
             _require(tilt == 0 or tilt >= _LEAST_TILT, name, f"0 or at least {_LEAST_TILT}", tilt)
+
+
+def _is_at_most(tilt: Number, most: str) -> bool:
+    """Return whether a tilt is at most 180 degrees, or pi."""
+    return tilt <= 180 if most == "180" else tilt < 3 or below_quarters(2, Fraction(tilt)) > 0
 
 
 def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = "") -> None:

@@ -16,11 +16,14 @@ from numpy.typing import ArrayLike
 
 from ..arithmetic.angles import unit_in_radians
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.blocks import blocks
+from ..arithmetic.rounding import decided
 from ..arithmetic.types import Array
 from ..inputs.names import check_names
 from ..inputs.top import Top
-from .neighbourhood import PARAMETERS, by_inputs
+from .kinds import middle_of
+from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .regime import Exact, Regime, exact
 from .samplers import Angles
 from .sensitivities import Partials
@@ -29,6 +32,9 @@ from .solve import Motion
 from .spinor_derivatives import NutationDerivatives
 from .steady_neighbours import SteadyDerivatives
 from .times import check_times, times_of
+
+_DIGITS = 48
+"""Digits of the constants of series, if nothing is small."""
 
 
 class AngleSensitivities(NamedTuple):
@@ -84,6 +90,22 @@ def _chained_arrays(partials: Array, by: dict[str, Fraction]) -> Array:
     return total
 
 
+def sharp_partials(scene: Exact) -> Partials:
+    """Return the derivatives of the gaps of a top with as many digits as its series need.
+
+    These are two for each order of magnitude by which something is small.  Raises LagtopError if no
+    precision tells the roots apart.
+    """
+
+    def sharp(digits: int) -> Partials:
+        partials = Partials(scene, digits)
+        if digits < _DIGITS + 2 * smallness(partials.near):
+            raise TooFewDigitsError
+        return partials
+
+    return decided("the roots of the cubic", sharp, _DIGITS)
+
+
 class Model(Protocol):
     """Some motions next to a top."""
 
@@ -101,7 +123,7 @@ class AngleDerivatives:
 
         Where the parts of one cancel beyond that, it takes some milliseconds per time.
         """
-        partials = Partials(scene)
+        partials = sharp_partials(scene)
         near, facts = partials.near, scene.facts
         self.arc = unit_in_radians(radians=scene.top.theta0_deg is None)
         kept = [i for i, name in enumerate(PARAMETERS) if name not in near.broken]
@@ -113,7 +135,8 @@ class AngleDerivatives:
             self.models = [(SteadyDerivatives(near), every)]
         else:
             tilt = abs(float(scene.top.theta0_deg or scene.top.theta0_rad or 0))
-            self.models = [(NutationDerivatives(partials.here, tilt, kept, tolerance), kept)]
+            here = middle_of(partials.here)
+            self.models = [(NutationDerivatives(here, tilt, kept, tolerance), kept)]
             if facts.free and not (facts.over_bottom or facts.over_top):
                 self.models.append((TorqueDerivatives(partials), [PARAMETERS.index("a")]))
         self.max_time = self.models[0][0].max_time
@@ -140,7 +163,8 @@ class TorqueDerivatives:
     """Angles of a torque-free motion, of whose derivatives the one by a is right."""
 
     def __init__(self, partials: Partials) -> None:
-        self.series = SeriesDerivatives(partials.generic, partials.generic_means)
+        motion, means = middle_of(partials.generic), middle_of(partials.generic_means)
+        self.series = SeriesDerivatives(motion, means)
         self.max_time = self.series.max_time
 
     def at(self, t: Array) -> tuple[Array, Array]:

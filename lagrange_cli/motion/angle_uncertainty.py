@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.names import ANGLES
 from .angle_sensitivities import AngleDerivatives
@@ -24,7 +25,7 @@ class AngleStds:
     def __init__(self, scene: Exact, stds: Mapping[str, float], given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as they were given, and the names of all inputs."""
         self.neighbours, solved = AngleDerivatives(scene, _TOLERANCE), by_inputs(scene)
-        inputs = by_given(scene.top, given)
+        inputs = by_given(DOUBLES, scene.top, given)
         self.moved = np.zeros((len(stds), len(PARAMETERS)))
         """How far one uncertainty moves each parameter."""
         for row, (name, std) in zip(self.moved, stds.items(), strict=True):

@@ -127,3 +127,9 @@ def chosen_columns(names: Sequence[str]) -> list[Part]:
 def needs_of(chosen: Sequence[Part]) -> Needs:
     """Return what some columns need together."""
     return reduce(Needs.__or__, (part.needs for part in chosen), NOTHING)
+
+
+def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
+    """Return the header of some columns.  Raises LagtopError for an unknown one."""
+    unit = "rad" if radians else "deg"
+    return [column.heading.replace("*", unit) for column in chosen_columns(columns)]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .regime import Exact
 
 
-constant_key = partial(key, "Constants of section 4", cancels=True)
+constant_key = partial(key, "Constants of section 4")
 
 
 class EnergyMomentum(Generic[R]):
@@ -67,7 +67,7 @@ class EnergyMomentum(Generic[R]):
         """The cubic (4,9) at u = -1, -(beta + b)^2: negative, or 0 where -1 is a root."""
         return 0 - self.gaps.beta_plus_b * self.gaps.beta_plus_b
 
-    @constant_key("f'(u1)", "slope of (4,9) at u1", "1/time²", "(4,9)", cancels=False)
+    @constant_key("f'(u1)", "slope of (4,9) at u1", "1/time²", "(4,9)")
     def f_slope_u1(self) -> R:
         """The slope of (4,9) at u1, -a (u1 - u2)(u3 - u1): after rest -a sin^2 theta0."""
         return 0 - self.gaps.a_u3_u1 * self.gaps.u1_u2

@@ -12,12 +12,18 @@ from collections.abc import Callable
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.ball import Ball, TooFewDigitsError
+from ..arithmetic.balls import Balls
+from ..arithmetic.decimals import Decimals, decimals
 from ..arithmetic.numbers import R, absolute
 from ..arithmetic.values import Over, Values
 from .regime import Exact, Facts
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
+
+FindRoot = Callable[..., R]
+"""A function of an arithmetic, c2, c1, c0 and a number above: see `gaps_from_start`."""
 
 
 class State(Values, Over[R]):
@@ -38,18 +44,12 @@ class State(Values, Over[R]):
     cos: R
     sin_half: R
     cos_half: R
+    below: R
+    """1 + cos(theta0)."""
+    above: R
+    """1 - cos(theta0)."""
     theta_rate: R
     psi_rate: R
-
-    @property
-    def below(self) -> R:
-        """1 + cos(theta0)."""
-        return 2 * self.cos_half * self.cos_half
-
-    @property
-    def above(self) -> R:
-        """1 - cos(theta0)."""
-        return 2 * self.sin_half * self.sin_half
 
 
 class Gaps(Values, Over[R]):
@@ -85,8 +85,15 @@ class Gaps(Values, Over[R]):
 def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
     """Return constants and start of one top in an arithmetic."""
     a, b, r0 = exact.a, exact.b, exact.r0
-    tilt = exact.top.tilt(ar)
-    cosine = exact.cosine.rational
+    tilt = exact.cosine.tilt(ar)
+    below, cos, above = (
+        2 * tilt.cos_half * tilt.cos_half,
+        tilt.cos,
+        2 * tilt.sin_half * tilt.sin_half,
+    )
+    u = exact.cosine.rational
+    if u is not None:
+        below, cos, above = ar.convert(1 + u), ar.convert(u), ar.convert(1 - u)
     return State(
         a=ar.convert(a),
         b=ar.convert(b),
@@ -95,18 +102,23 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
         spin_drift=ar.convert(r0 - b / 2),
         pole_drift=ar.convert(r0 - b),
         sin=tilt.sin,
-        cos=tilt.cos if cosine is None else ar.convert(cosine),
+        cos=cos,
         sin_half=tilt.sin_half,
         cos_half=tilt.cos_half,
+        below=below,
+        above=above,
         theta_rate=ar.convert(exact.theta_rate),
         psi_rate=ar.convert(exact.psi_rate),
     )
 
 
 def gaps_of(
-    ar: Arithmetic[R], facts: Facts, state: State[R], find_root: Callable[..., R] | None = None
+    ar: Arithmetic[R], facts: Facts, state: State[R], find_root: FindRoot[R] | None = None
 ) -> Gaps[R]:
-    """Return the gaps of any top; `find_root` may replace `largest_root`."""
+    """Return the gaps of any top; `find_root` gives the largest root of a cubic.
+
+    A release from rest and a steady motion do without it.
+    """
     if released(facts):
         return gaps_from_rest(ar, state)
     return gaps_from_start(ar, state, facts, find_root)
@@ -158,13 +170,13 @@ def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
 
 
 def gaps_from_start(
-    ar: Arithmetic[R], start: State[R], facts: Facts, find_root: Callable[..., R] | None = None
+    ar: Arithmetic[R], start: State[R], facts: Facts, find_root: FindRoot[R] | None
 ) -> Gaps[R]:
     """Return the gaps of any start: the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0 in x = u - u0.
 
     D = a (u3 - u0) is its largest root times a; the other two solve a quadratic equation whose
     discriminant is a sum of positive terms.  A gap that is exactly 0 is put in as 0.  `find_root`
-    may replace `largest_root`.
+    gives the largest root of x^3 + c2 x^2 + c1 x + c0 from c2, c1, c0 and a number above it.
     """
     a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
     zero = 0 * u0
@@ -176,8 +188,8 @@ def gaps_from_start(
     elif facts.steady:
         D = -c2
     else:
-        bound = energy + b * b + 2 * a
-        D = (find_root or largest_root)(ar, c2, a * c1, a * a_c0, bound)
+        assert find_root is not None
+        D = find_root(ar, c2, a * c1, a * a_c0, energy + b * b + 2 * a)
     if facts.steady:
         x1, x2 = zero, zero
     elif separatrix:
@@ -222,25 +234,55 @@ def cubic(start: State[R]) -> tuple[R, R, tuple[R, R, R]]:
 
 def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
     """Return the roots x1 >= 0 >= x2 of x^2 - total x + product, for product <= 0."""
-    spread = ar.sqrt(total * total - 4 * product)
-    larger = (absolute(total) + spread) / 2
+    upward = ar.either(total >= 0)  # next to 0 nothing cancels in either
+    larger = (ar.where(upward, total, -total) + ar.sqrt(total * total - 4 * product)) / 2
     smaller = -product / larger
-    upward = total >= 0
     return ar.where(upward, larger, smaller), -ar.where(upward, smaller, larger)
 
 
-def largest_root(ar: Arithmetic[R], c2: R, c1: R, c0: R, bound: R) -> R:
-    """Return the largest root of x^3 + c2 x^2 + c1 x + c0 by Newton's method, from a bound.
+def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
+    """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
-    Above the root the method falls monotonically; it has settled where it falls no more.
+    A point p next to it proves nothing.  If p - f(p)/f'(X) is within a ball X around p, then X
+    holds a root, and just one (Moore 1966); if f' and f'' are positive in X, they are so beyond,
+    and no root is larger.  Raises TooFewDigitsError if these digits do not prove it.
     """
-    x = bound
-    while True:
-        slope = (3 * x + 2 * c2) * x + c1
-        following = x - (((x + c2) * x + c1) * x + c0) / slope
-        if not ar.anywhere(following < x):
-            return x
-        x = following
+
+    def cubic(x: Ball) -> Ball:
+        return ((x + c2) * x + c1) * x + c0
+
+    def slope(x: Ball) -> Ball:
+        return (3 * x + 2 * c2) * x + c1
+
+    middles = (x.middle for x in (c2, c1, c0, above))
+    point = ar.exact(near_largest_root(decimals(ar.digits), *middles))
+    step = cubic(point) / slope(point)
+    around = point.enlarged((4 * step).greatest).enlarged((16 * ar.eps * point).greatest)
+    root = point - cubic(point) / slope(around)
+    if not (around.holds(root) and slope(around) > 0 and 3 * around + c2 > 0):
+        raise TooFewDigitsError
+    return root
+
+
+def near_largest_root(
+    ar: Decimals, c2: Decimal, c1: Decimal, c0: Decimal, above: Decimal
+) -> Decimal:
+    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, all of them real.
+
+    Laguerre's method falls to it from a point above, three times as many digits at each step, but
+    for a double root.
+    """
+    with ar.working():
+        x, least = above, 1000 * ar.eps
+        for _ in range(4 * ar.digits):
+            value, slope = ((x + c2) * x + c1) * x + c0, (3 * x + 2 * c2) * x + c1
+            curved = max(4 * slope * slope - 12 * value * (3 * x + c2), Decimal(0))
+            divisor = slope + curved.sqrt()
+            step = 3 * value / divisor if divisor else divisor
+            x -= step
+            if not step > least * abs(x):
+                break
+        return x
 
 
 def are_told_apart(facts: Facts, gaps: Gaps[Any]) -> bool:
@@ -254,9 +296,3 @@ def are_told_apart(facts: Facts, gaps: Gaps[Any]) -> bool:
         "a_u3_above": facts.upper_root == 3 or touches,
     }
     return facts.steady or all(zero or getattr(gaps, name) > 0 for name, zero in zeros.items())
-
-
-def agree(gaps: Gaps[Decimal], others: Gaps[Decimal], digits: int) -> bool:
-    """Return whether two computations of the same gaps agree to so many digits of each."""
-    tolerance = Decimal(10) ** -digits
-    return all(abs(x - y) <= tolerance * abs(x) for x, y in zip(gaps, others, strict=True))

@@ -2,24 +2,23 @@
 
 Half a period on, sn^2 becomes cn^2/dn^2, so that u(T/2) = (u3 (u1 + u2) - u1 u2 - u0 u3)/(u3 - u0).
 With x = u3 and the sums and products of the roots of (4,9) this is N(x)/M(x), and a rate (4,7),
-(4,8) is 0 where a polynomial P(x) is.  It is 0 at some root of the cubic just if the product of its
-values at all three is 0, which is a polynomial in cos(theta0); digits tell first whether it may be
-0 at u3.
+(4,8) is 0 where a polynomial P(x) is.  The number of roots of the cubic at which it is 0 follows
+from the rank of a matrix of polynomials in cos(theta0), and enclosures exclude the other roots.
 """
 
 from __future__ import annotations
 
-from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 
-from ..arithmetic.decimals import Decimals, decimals
+from ..arithmetic.ball import TooFewDigitsError
+from ..arithmetic.balls import balls
 from ..arithmetic.exact_cosine import Polynomial, U, value_at
+from ..arithmetic.rounding import FIRST_DIGITS, decided
 from .gaps import largest_root
 from .regime import Exact
 
 HALF_RATES = ("spin_rate_half", "precession_rate_half")
-_DIGITS, _ZERO = 80, Decimal("1e-60")
 
 InU3 = list[Polynomial]
 """A polynomial in u3, the lowest power first, with polynomials in cos(theta0) as coefficients."""
@@ -49,20 +48,49 @@ def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
 def _is_zero_at_u3(exact: Exact, P: InU3, cubic: InU3) -> bool:
     """Return whether P is exactly 0 at the greatest root of a cubic that begins with a rational.
 
-    Digits come first: they are cheap, and nearly always see that it is not.
+    Balls come first: they are cheap, and nearly always prove that it is not.  P is 0 at as many
+    roots as the products of P with 1, x and x^2, reduced by the cubic, lack in rank.
     """
-    ar = decimals(_DIGITS)
-    with ar.working():
-        values, terms = (_in_digits(exact, ar, y) for y in (cubic, P))
-        c0, c1, c2, one = (c / values[3] for c in values)
-        root = largest_root(ar, c2, c1, c0, 1 + max(map(abs, (c0, c1, c2, one))))
-        size = sum(abs(c) * abs(root) ** i for i, c in enumerate(terms))
-        if abs(value_at(terms, root)) > _ZERO * size:
-            return False
-    (p, q, r), (s, t, u), (v, w, x) = (
-        _reduced([Polynomial(0)] * shift + P, cubic) for shift in range(3)
-    )
-    return exact.cosine.vanishes(p * (t * x - u * w) - q * (s * x - u * v) + r * (s * w - t * v))
+    if not _zeros_possible(exact, P, cubic, FIRST_DIGITS)[0]:
+        return False
+    shared = _shared_roots(exact, [_reduced([Polynomial(0)] * i + P, cubic) for i in range(3)])
+    if not shared:
+        return False
+
+    def at_u3(digits: int) -> bool:
+        possible = _zeros_possible(exact, P, cubic, digits)
+        if sum(possible) > shared:
+            raise TooFewDigitsError
+        return possible[0]
+
+    return decided("a rate at T/2", at_u3)
+
+
+def _zeros_possible(exact: Exact, P: InU3, cubic: InU3, digits: int) -> list[bool]:
+    """Return whether P may be 0 at u3, and at the other two roots of the cubic."""
+    ar = balls(digits)
+    c0, c1, c2, a = (exact.cosine.at(ar, x) for x in cubic)
+    c0, c1, c2 = c0 / a, c1 / a, c2 / a
+    u3 = largest_root(ar, c2, c1, c0, 1 + abs(c0) + abs(c1) + abs(c2))
+    total, product = -c2 - u3, -c0 / u3
+    spread = ar.sqrt(total * total - 4 * product)
+    terms = [exact.cosine.at(ar, x) for x in P]
+    values = (value_at(terms, u) for u in (u3, (total + spread) / 2, (total - spread) / 2))
+    return [(abs(value) > 0) is not True for value in values]
+
+
+def _shared_roots(exact: Exact, rows: list[InU3]) -> int:
+    """Return how much the rank of a matrix of three rows is less than three."""
+    minors = [
+        [p[i] * q[j] - p[j] * q[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+        for p, q in ((rows[1], rows[2]), (rows[2], rows[0]), (rows[0], rows[1]))
+    ]
+    determinant = sum((x * y for x, y in zip(rows[0], minors[0], strict=True)), Polynomial(0))
+    if not exact.cosine.vanishes(determinant):
+        return 0
+    if not all(exact.cosine.vanishes(minor) for row in minors for minor in row):
+        return 1
+    return 2 if any(not exact.cosine.vanishes(x) for row in rows for x in row) else 3
 
 
 def _product(*factors: InU3) -> InU3:
@@ -91,8 +119,3 @@ def _reduced(P: InU3, cubic: InU3) -> InU3:
         for i in range(3):
             rest[len(rest) - 3 + i] -= factor * cubic[i]
     return rest + [Polynomial(0)] * (3 - len(rest))
-
-
-def _in_digits(exact: Exact, ar: Decimals, P: InU3) -> list[Decimal]:
-    cosine = exact.cosine.value(ar)
-    return [value_at([ar.convert(Fraction(x)) for x in y.coefficients], cosine) for y in P]

@@ -144,6 +144,5 @@ def imaginary_form(motion: Motion, digits: int = 30) -> ImaginaryForm:
         )
     ar = ManyDigits(digits + 10)
     names = ["r0", "a", "u1", "u2", "u3"]
-    return ImaginaryForm(
-        ar, **{name: ar.mpf(text) for name, text in motion.digits(digits + 10, keys=names).items()}
-    )
+    numbers = motion.record(digits=digits + 10, keys=names)
+    return ImaginaryForm(ar, **{name: ar.mpf(text) for name, text in numbers.items()})

@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-import math
 from decimal import Decimal
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.numbers import R
 from .moduli import Moduli
 from .quantity import quantity
@@ -26,12 +27,21 @@ class Nutating(SpinPrecession[R]):
     lacks: frozenset[str] = frozenset()
 
     def remark(self, *, radians: bool = False) -> str | None:
-        """Return what there is to say of a fast top, with its nutation in degrees or `radians`."""
+        """Return a line on a fast top, with its nutation in degrees or `radians`.
+
+        Raises TooFewDigitsError if the ends of an enclosure would be printed differently.
+        """
         if not self.facts.fast:
             return None
-        numbers: Any = self.fast_numbers
-        nodding, *others = map(float, numbers)
-        return fast_remark(nodding if radians else math.degrees(nodding), *others, radians=radians)
+        nodding, *others = self.fast_numbers
+        numbers: Any = nodding if radians else nodding / self.degree, *others
+        lines = {
+            fast_remark(*ends, radians=radians)
+            for ends in zip(*(number.ends() for number in numbers), strict=True)
+        }
+        if len(lines) > 1:
+            raise TooFewDigitsError
+        return lines.pop()
 
     @property
     def fast_numbers(self) -> tuple[R, R, R, R]:
@@ -168,19 +178,24 @@ def vertical_remark(regime: Regime, stable: bool) -> str:
 
 
 def fast_remark(
-    nodding: float, period: float, elementary: float, excess: float, *, radians: bool
+    nodding: Real, period: Real, elementary: Real, excess: Real, *, radians: bool
 ) -> str:
     """Return what a pseudo-regular precession is in numbers.
 
     `nodding` is the greatest nutation in degrees or radians, `excess` how far the mean precession
     exceeds the elementary rate, relative to that.
     """
-    parts = round(excess * 1e6)
+    parts = round(Fraction(excess) * 10**6)
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
-        f"pseudo-regular precession: nods by {nodding:.3g} {'rad' if radians else 'deg'} in "
-        f"{period:.3g} time; its mean is {where} mgs/(C r0) = {elementary:.3g} rad/time"
+        f"pseudo-regular precession: nods by {_figures(nodding)} {'rad' if radians else 'deg'} in "
+        f"{_figures(period)} time; its mean is {where} mgs/(C r0) = {_figures(elementary)} rad/time"
     )
+
+
+def _figures(x: Real) -> str:
+    """Return three significant digits, written as those of a double."""
+    return f"{float(f'{x:.3g}'):.3g}"
 
 
 class Separatrix(SpinPrecession[R]):
@@ -223,6 +238,7 @@ class Separatrix(SpinPrecession[R]):
         return separatrix_sampler(self)
 
 
+Real = float | Decimal
 Kind: TypeAlias = Nutating[R] | Steady[R] | Vertical[R] | Separatrix[R]
 """Any of the four."""
 
@@ -234,6 +250,12 @@ def kind_of(facts: Facts) -> type[Kind[Any]]:
     if facts.steady:
         return Steady
     return Separatrix if facts.regime is Regime.SEPARATRIX else Nutating
+
+
+def middle_of(kind: Any) -> Any:
+    """Return a motion in decimals, from the middles of the balls of its start and its gaps."""
+    middles = (type(x)(*(number.middle for number in x)) for x in (kind.state, kind.gaps))
+    return type(kind)(kind.ar.middles, kind.facts, *middles)
 
 
 def rate_parts(kind: Kind[R]) -> tuple[R, R, R]:

@@ -40,16 +40,16 @@ class Moduli(Over[R]):
         """One degree in radians."""
         return self.ar.pi / 180
 
-    @key("Roots", "u1", "cos ϑ, highest", "", "(4,9)", cancels=True)
+    @key("Roots", "u1", "cos ϑ, highest", "", "(4,9)")
     def u1(self) -> R:
         """The upper turning point (4,9)."""
         return self.state.cos + self.gaps.u1_u
 
-    @key("Roots", "u2", "cos ϑ, lowest", "", "(4,11)", cancels=True)
+    @key("Roots", "u2", "cos ϑ, lowest", "", "(4,11)")
     def u2(self) -> R:
         """The lower turning point (4,11), counted from the nearer pole."""
         below, above = self.gaps.below_u2, self.gaps.above_u2
-        return self.ar.where(above < below, 1 - above, below - 1)
+        return self.ar.where(self.ar.either(above < below), 1 - above, below - 1)
 
     @key("Roots", "u3", "third root", "", "(4,11)")
     def u3(self) -> R | None:

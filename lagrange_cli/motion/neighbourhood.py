@@ -8,24 +8,21 @@ along which parameters it is not.  Equation numbers are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from decimal import Decimal, DivisionByZero, InvalidOperation
 from fractions import Fraction
 
-from ..arithmetic.correct_rounding import precisions
+from ..arithmetic.ball import Ball, TooFewDigitsError
+from ..arithmetic.balls import balls
 from ..arithmetic.duals import Dual, Duals, independent
 from ..arithmetic.values import Values
-from ..errors import LagtopError
 from .gaps import Gaps, State, are_told_apart, gaps_from_start, largest_root, state
 from .regime import Exact, Facts, Regime
 
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
 """What the partial derivatives are by; the tilt in degrees or radians, as it was given."""
 
-FIRST_DIGITS, _MOST_DIGITS = 48, 800
+
 _USUAL = 8
-"""Orders of magnitude that the digits of the first neighbourhood have to spare."""
-_AGREED, _NOISE = Decimal("1e-22"), Decimal("1e-36")
-"""How well two precisions agree, of each derivative and beside the largest one and the value."""
+"""Orders of magnitude that the digits of a neighbourhood have to spare."""
 
 
 class Neighbourhood(Values):
@@ -43,41 +40,19 @@ class Neighbourhood(Values):
     """The parameters along which the degenerate facts of the top do not hold."""
 
 
-def neighbourhood(exact: Exact, first: int = FIRST_DIGITS) -> Neighbourhood:
-    """Return the dual numbers of a top, with so many digits that the gaps settle.
+def neighbourhood(exact: Exact, digits: int) -> Neighbourhood:
+    """Return the dual numbers of a top over balls of so many digits.
 
-    Raises LagtopError where no precision tells the roots apart.
+    Raises TooFewDigitsError if these do not tell the roots apart.
     """
     facts = exact.facts.replace(at_rest=False, cusp=False, drifts=False)
-    broken = frozenset(broken_by(exact))
-    previous: Neighbourhood | None = None
-    for digits in precisions(first):
-        ar = Duals(digits)
-        with ar.working():
-            moved = dual_state(ar, exact)
-            begin = moved.replace(a=Dual(Decimal(0))) if facts.free else moved
-            try:
-                gaps = dual_gaps(ar, begin, facts)
-            except (InvalidOperation, DivisionByZero):
-                continue
-            if not are_told_apart(facts, _values(gaps)):
-                continue
-            found = Neighbourhood(ar, facts, begin, gaps, moved, broken)
-            if facts.steady or (previous is not None and _agree(gaps, previous.gaps)):
-                return found
-            previous = found
-    raise LagtopError("the roots of the cubic cannot be told apart")
-
-
-def fine_neighbourhood(exact: Exact) -> Neighbourhood:
-    """Return the dual numbers of a top with two digits more for each order of its smallness.
-
-    A derivative may be smaller than its number by as many orders, and its noise larger.  Raises
-    LagtopError where no precision tells the roots apart.
-    """
-    near = neighbourhood(exact)
-    orders = smallness(near)
-    return neighbourhood(exact, min(FIRST_DIGITS + 2 * orders, _MOST_DIGITS)) if orders else near
+    ar = Duals(balls(digits))
+    moved = dual_state(ar, exact)
+    begin = moved.replace(a=ar.convert(0)) if facts.free else moved
+    gaps = dual_gaps(ar, begin, facts)
+    if not are_told_apart(facts, gaps):
+        raise TooFewDigitsError
+    return Neighbourhood(ar, facts, begin, gaps, moved, frozenset(broken_by(exact)))
 
 
 def smallness(near: Neighbourhood) -> int:
@@ -85,16 +60,14 @@ def smallness(near: Neighbourhood) -> int:
 
     Gaps are those of the cosines, rates are compared with the fastest one; what is 0 is not small.
     """
-    start, gaps = near.moved, _values(near.gaps)
-    with near.ar.working():
-        rates = [start.a.value.sqrt()]
-        rates += [abs(x.value) for x in (start.b, start.r0, start.theta_rate, start.psi_rate)]
-        fastest = max(rates)
-        cosines = start.above.value, start.below.value, *list(gaps)[:7]
-        moduli = [start.a.value * gaps.u1_u2 / gaps.a_u3_u2] if gaps.a_u3_u2 else []
-        sizes = [*cosines, *moduli, *(rate / fastest for rate in rates if fastest)]
-        least: Decimal = min(size for size in sizes if size > 0)
-        return max(-least.adjusted() - _USUAL, 0)
+    start, gaps = near.moved, near.gaps
+    rates = [near.ar.plain.sqrt(start.a.value).least]
+    rates += [x.value.least for x in (start.b, start.r0, start.theta_rate, start.psi_rate)]
+    cosines = [x.value.least for x in (start.above, start.below, *list(gaps)[:7])]
+    widths = [(start.a * gaps.u1_u2 / gaps.a_u3_u2).value.least] if gaps.a_u3_u2 else []
+    orders = [size.adjusted() for size in (*cosines, *widths) if size]
+    orders += [rate.adjusted() - max(rates).adjusted() for rate in rates if rate]
+    return int(max(-min(orders) - _USUAL, 0))
 
 
 def broken_by(exact: Exact) -> Iterable[str]:
@@ -120,11 +93,12 @@ def broken_by(exact: Exact) -> Iterable[str]:
 def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
     """Return the start of a top with its derivatives by the parameters."""
     plain = state(ar.plain, exact)
-    arc = Decimal(1) if exact.top.theta0_rad is not None else ar.plain.pi / 180
-    parameters = plain.a, plain.b, plain.r0, Decimal(0), plain.theta_rate, plain.psi_rate
+    zero = ar.plain.convert(0)
+    arc = zero + 1 if exact.top.theta0_rad is not None else ar.plain.pi / 180
+    parameters = plain.a, plain.b, plain.r0, zero, plain.theta_rate, plain.psi_rate
     a, b, r0, tilt, theta_rate, psi_rate = independent(parameters)
 
-    def turned(value: Decimal, slope: Decimal) -> Dual:
+    def turned(value: Ball, slope: Ball) -> Dual:
         """Return a function of the tilt by its value and slope."""
         return Dual(value) + tilt * Dual(slope * arc)
 
@@ -139,6 +113,8 @@ def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
         cos=turned(plain.cos, -plain.sin),
         sin_half=turned(plain.sin_half, plain.cos_half / 2),
         cos_half=turned(plain.cos_half, -plain.sin_half / 2),
+        below=turned(plain.below, -plain.sin),
+        above=turned(plain.above, plain.sin),
         theta_rate=theta_rate,
         psi_rate=psi_rate,
     )
@@ -152,7 +128,7 @@ def dual_gaps(ar: Duals, begin: State[Dual], facts: Facts) -> Gaps[Dual]:
         "above_u1": facts.upper_root == 1,
         "a_u3_above": facts.upper_root == 3,
     }
-    return gaps.replace(**{name: Dual(Decimal(0)) for name, zero in zeros.items() if zero})
+    return gaps.replace(**{name: ar.convert(0) for name, zero in zeros.items() if zero})
 
 
 def generic_gaps(near: Neighbourhood) -> Gaps[Dual]:
@@ -164,15 +140,17 @@ def generic_gaps(near: Neighbourhood) -> Gaps[Dual]:
         return Gaps(**{name: _with_value(x, y.value) for name, x, y in values})
 
 
-def dual_root(ar: Duals, c2: Dual, c1: Dual, c0: Dual, bound: Dual) -> Dual:
-    """Return the largest root of a cubic: that of the values, and a last step of Newton's method.
+def dual_root(ar: Duals, c2: Dual, c1: Dual, c0: Dual, above: Dual) -> Dual:
+    """Return the largest root of x^3 + c2 x^2 + c1 x + c0 with its derivatives."""
+    x = largest_root(ar.plain, c2.value, c1.value, c0.value, above.value)
+    return moving_root(ar.convert(1), c2, c1, c0, x)
 
-    From a root the step has the value 0 and the derivatives of the implicit function.
-    """
-    x = largest_root(ar.plain, c2.value, c1.value, c0.value, bound.value)
-    root = Dual(x)
-    slope = (3 * x + 2 * c2.value) * x + c1.value
-    return root - (((root + c2) * root + c1) * root + c0) / Dual(slope)
+
+def moving_root(c3: Dual, c2: Dual, c1: Dual, c0: Dual, x: Ball) -> Dual:
+    """Return a simple root of a cubic whose value is known, by the implicit function theorem."""
+    cubic = ((c3 * Dual(x) + c2) * Dual(x) + c1) * Dual(x) + c0
+    slope = (3 * c3.value * x + 2 * c2.value) * x + c1.value
+    return Dual(x, [-partial / slope for partial in cubic.partials or ()])
 
 
 def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
@@ -196,21 +174,5 @@ def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
     return {name: {by: x for by, x in row.items() if x} for name, row in derivatives.items()}
 
 
-def _with_value(x: Dual, value: Decimal) -> Dual:
+def _with_value(x: Dual, value: Ball) -> Dual:
     return Dual(value, x.partials)
-
-
-def _values(gaps: Gaps[Dual]) -> Gaps[Decimal]:
-    return Gaps(*(x.value for x in gaps))
-
-
-def _agree(gaps: Gaps[Dual], others: Gaps[Dual]) -> bool:
-    """Return whether two computations of the same gaps agree in values and derivatives."""
-    for x, y in zip(gaps, others, strict=True):
-        if abs(x.value - y.value) > _AGREED * abs(x.value):
-            return False
-        ours, theirs = x.partials or (), y.partials or ()
-        noise = _NOISE * max(map(abs, (x.value, *ours)))
-        if any(abs(p - q) > _AGREED * abs(p) + noise for p, q in zip(ours, theirs, strict=True)):
-            return False
-    return True

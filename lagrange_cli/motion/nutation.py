@@ -6,6 +6,7 @@ Equation numbers in parentheses are Chrapan's.
 from __future__ import annotations
 
 from ..arithmetic.numbers import R
+from ..elliptic.landen import first_kind
 from .moduli import Moduli
 from .quantity import key, quantity
 
@@ -18,7 +19,7 @@ class Nutation(Moduli[R]):
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate
 
-    @key("Turning points", "u(T/4)", "cos ϑ at T/4", "", "(5,2)", cancels=True)
+    @key("Turning points", "u(T/4)", "cos ϑ at T/4", "", "(5,2)")
     def u_quarter(self) -> R | None:
         """u(T/4) after a start at u1 (5,2), written from u1 downwards: a large u3 does no harm."""
         value = self.u1 - self.gaps.u1_u2 * (self.k_prime / (1 + self.k_prime))
@@ -61,13 +62,12 @@ class Nutation(Moduli[R]):
 
         sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
         """
-        from ..elliptic.carlson import carlson_rf  # for few keys
-
-        gaps, size = self.gaps, self.ar.sqrt(self.gaps.above_u1 * self.gaps.a_u3_u2)
-        integral: R = carlson_rf(
-            self.ar,
-            gaps.a_u3_above * gaps.u1_u2,
-            gaps.u1_u2 * gaps.a_u3_u1,
-            gaps.a_u3_u1 * gaps.above_u2,
+        gaps, ar = self.gaps, self.ar
+        scale = gaps.a_u3_u1 * gaps.above_u2
+        return first_kind(
+            ar,
+            m=self.k_prime * self.k_prime,
+            k_prime=self.k,
+            sn=ar.sqrt(gaps.above_u1 * gaps.a_u3_u2 / scale),
+            cn2=gaps.a_u3_above * gaps.u1_u2 / scale,
         )
-        return size * integral

@@ -18,8 +18,6 @@ class Key(Values):
     meaning: str
     unit: str = ""
     equation: str = ""
-    cancels: bool = False
-    """A difference of numbers that may be as good as equal: only a proved zero is 0."""
 
 
 class quantity(Over[V]):
@@ -46,11 +44,9 @@ def key(
     meaning: str,
     unit: str = "",
     equation: str = "",
-    *,
-    cancels: bool = False,
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
     """Make a method a quantity that is a key of the record; see `Key` for what is shown."""
-    shown = Key(group, symbol, meaning, unit, equation, cancels)
+    shown = Key(group, symbol, meaning, unit, equation)
 
     def decorate(formula: Callable[[Any], V]) -> quantity[V]:
         return quantity(formula, shown)

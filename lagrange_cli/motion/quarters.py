@@ -16,8 +16,8 @@ from .energy_momentum import EnergyMomentum
 from .kinds import Nutating
 from .quantity import key, quantity
 
-angle_key = partial(key, "Angles after half a period and a whole one", unit="angle", cancels=True)
-rate_key = partial(key, "Mean rates of the quarters", unit="rad/time", cancels=True)
+angle_key = partial(key, "Angles after half a period and a whole one", unit="angle")
+rate_key = partial(key, "Mean rates of the quarters", unit="rad/time")
 
 
 class Turned(NamedTuple, Generic[R]):

@@ -15,6 +15,9 @@ from .half_rates import HALF_RATES, vanishing_half_rates
 from .record import NUMBER_KEYS
 from .regime import Exact
 
+_MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
+"""The rates that periods are made of."""
+
 
 def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
     """Return a number of a motion, of its record or on request, where it is known as a fraction.
@@ -33,6 +36,11 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
         return known
     at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
     return exact.cosine.radians if at is not None and at(exact) else None
+
+
+def is_endless(exact: Exact, name: str) -> bool:
+    """Return whether a key is the period of a mean rate that is exactly 0."""
+    return name in _MEAN_RATES and known_fraction(exact, _MEAN_RATES[name]) == 0
 
 
 @lru_cache(maxsize=8)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.ball import Ball
+from ..arithmetic.balls import balls
+from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounding_of, settled
+from ..errors import OutOfRangeError
 from .quantity import Key, keys_of
 from .spin_precession import SpinPrecession
 
 if TYPE_CHECKING:
-    from .certified import Certified
-    from .kinds import Kind
-    from .regime import Exact
+    from ..inputs.top import Top
     from .solve import Motion
 
 _INPUTS = {
@@ -42,7 +45,6 @@ NUMBER_KEYS = list(_NUMBERS)
 """The numbers of a record, in its order: `regime` precedes, `path` and `remark` follow them."""
 TEXT_KEYS = ("regime", "path", "remark")
 """The keys of a record that hold words."""
-CANCELLING = {name for name, key in _NUMBERS.items() if key.cancels}
 KEYS = (
     _INPUTS
     | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
@@ -69,18 +71,6 @@ def requested_keys() -> dict[str, Key]:
     return REQUESTED
 
 
-def source_of(name: str, kind: Kind[Any], exact: Exact) -> Any:
-    """Return the object that computes a number: a kind, or what stands on it for those on request.
-
-    Such objects are made anew for each number; what they share is computed by the kind.
-    """
-    if name in _NUMBERS:
-        return kind
-    from .worked_example import WorkedExample  # the last of the classes with such keys
-
-    return WorkedExample(kind, exact)
-
-
 def all_keys(*, radians: bool = False) -> list[str]:
     """Return the keys of a record and those on request, in their order."""
     names = record_keys(radians=radians)
@@ -93,27 +83,55 @@ def record_keys(*, radians: bool = False) -> list[str]:
     return [unit_name(name, radians=radians) for name in names]
 
 
-def record_of(
-    motion: Motion | Certified,
-    inputs: Mapping[str, Any],
-    number: Callable[[str, bool], Any],
+def record_in_range(
+    motion: Motion,
     *,
-    radians: bool,
-    keys: Collection[str] | None,
-) -> dict[str, Any]:
-    """Return inputs and results by key in their order, or some of them; `number` gives a number."""
+    digits: int | None = None,
+    radii: bool = False,
+    radians: bool = False,
+    keys: Collection[str] | None = None,
+) -> tuple[dict[str, Any], list[OutOfRangeError]]:
+    """Return `Motion.record`, and an error for each number beyond the range of doubles."""
     names = record_keys(radians=radians)
     wanted = set(names if keys is None else keys)
     numbers = NUMBER_KEYS
     if not wanted <= set(names):
         names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
-    values = dict(inputs) | {"regime": motion.regime.value}
+    found, beyond = _inputs(motion.top, digits, radians=radians), []
     for name in numbers:
         shown = unit_name(name, radians=radians)
         if shown in wanted:
-            values[shown] = number(name, radians)
+            try:
+                found[shown] = motion.number(name, digits, radians=radians)
+            except OutOfRangeError as error:
+                found[shown] = None
+                beyond.append(error)
+    values = {name: None if number is None else number.value for name, number in found.items()}
+    values["regime"] = motion.regime.value
     if "path" in wanted:
         values["path"] = motion.path
     if "remark" in wanted:
         values["remark"] = motion.remark_in(radians=radians)
-    return {name: values[name] for name in names if name in wanted}
+    record = {name: values[name] for name in names if name in wanted}
+    if radii:
+        known = {name: found[name] for name in record if name in found}
+        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
+    return record, beyond
+
+
+def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
+    """Return the inputs as they are printed."""
+
+    def shown(name: str, value: Any) -> Settled | None:
+        rounding = rounding_of(name, digits)
+        if not isinstance(value, Ball):
+            return Settled(rounding(Fraction(value)), (Fraction(value),))
+        return settled(
+            name,
+            lambda working: top.inputs(radians=radians, ar=balls(working))[name],
+            rounding,
+            digits=digits or 0,
+        )
+
+    given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))
+    return {name: shown(name, value) for name, value in given.items()}

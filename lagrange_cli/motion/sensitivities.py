@@ -8,34 +8,32 @@ why.  Equation numbers are Chrapan's.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
-from decimal import Decimal, DivisionByZero, InvalidOperation
-from fractions import Fraction
+from collections.abc import Collection, Mapping
 from functools import cached_property
 from typing import Any
 
+from ..arithmetic.ball import Ball, UndefinedError
+from ..arithmetic.balls import balls
 from ..arithmetic.duals import Dual
+from ..arithmetic.rounding import decided, rounded
 from ..arithmetic.values import Values
 from ..inputs.names import check_names
 from ..inputs.top import Top
 from .gaps import Gaps, cubic
-from .kinds import Nutating, Steady, kind_of
+from .kinds import Steady, kind_of
 from .neighbourhood import (
     PARAMETERS,
     Neighbourhood,
     by_inputs,
-    fine_neighbourhood,
     generic_gaps,
+    moving_root,
     neighbourhood,
-    smallness,
 )
 from .quantity import quantity
+from .rational_keys import is_endless
 from .record import NUMBER_KEYS
 from .regime import Exact, Regime, exact
 
-_NAN = Decimal("NaN")
-_NONE = [Decimal(0)] * len(PARAMETERS)
-_SPARE, _NOISY = 4, 15
 _MEANS = frozenset("mean_spin_rate mean_precession_rate T_spin T_precession".split())
 _OF_THE_START = frozenset("spin_rate_start precession_rate_start".split())
 _AFTER_REST = frozenset("amplitude_deg alpha".split())
@@ -56,90 +54,95 @@ class Sensitivities(Values):
 def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivities:
     """Return the derivatives of all numbers of the record of a top by all inputs, or of some keys.
 
-    Each is the nearest double.  Angles are in degrees, by `theta0_rad` too.  Next to a steady
-    precession, over a pole or on the separatrix some numbers have a kink or leap: their derivatives
-    are NaN.  Raises LagtopError for an unknown key.
+    Each is the nearest double, proved by an enclosure.  Angles are in degrees, by `theta0_rad` too.
+    Next to a steady precession, over a pole or on the separatrix some numbers have a kink or leap:
+    their derivatives are NaN.  Raises LagtopError for an unknown key.
     """
     check_names("keys", list(NUMBER_KEYS if keys is None else keys), NUMBER_KEYS)
-    partials = Partials(exact(top))
-    chain = by_inputs(partials.exact)
-    found = {key: partials.of(key) for key in NUMBER_KEYS if keys is None or key in keys}
-    derivatives = {}
-    for key, row in found.items():
-        if row is not None:
-            with partials.near.ar.working():
-                noise = partials.noise
-                derivatives[key] = {name: chained(row, by, noise) for name, by in chain.items()}
-    missing = (key for key, row in derivatives.items() if any(map(math.isnan, row.values())))
-    reasons = {key: partials.reason(key) for key in missing}
-    return Sensitivities(top, tuple(chain), derivatives, reasons)
+    slopes = Slopes(exact(top))
+    names = tuple(slopes.chain)
+    rows = {
+        key: {name: slopes.derivative(key, name) for name in names}
+        for key in NUMBER_KEYS
+        if (keys is None or key in keys) and slopes.has(key)
+    }
+    missing = [key for key, row in rows.items() if any(map(math.isnan, row.values()))]
+    return Sensitivities(top, names, rows, {key: slopes.reason(key) for key in missing})
 
 
-def chained(partials: list[Decimal], by: dict[str, Fraction], noise: Decimal) -> float:
-    """Return the derivative by an input, from those by the parameters that hang on it.
+class Slopes:
+    """Derivatives of the numbers of one motion by its inputs, in balls of any number of digits."""
 
-    What is left of parts that cancel is 0 below the `noise`, relative to them.
-    """
-    terms = [
-        partial * by[name].numerator / by[name].denominator
-        for name, partial in zip(PARAMETERS, partials, strict=True)
-        if name in by
-    ]
-    total, size = sum(terms, Decimal(0)), sum(map(abs, terms), Decimal(0))
-    cancelled = size.is_finite() and abs(total) <= noise * size
-    return 0.0 if cancelled else float(total)
+    def __init__(self, scene: Exact) -> None:
+        self.exact, self.chain = scene, by_inputs(scene)
+        self._partials: dict[int, Partials] = {}
+
+    def at(self, digits: int) -> Partials:
+        """Return the derivatives by the parameters of the neighbourhood, with so many digits.
+
+        Raises TooFewDigitsError if these do not tell the roots apart.
+        """
+        if digits not in self._partials:
+            self._partials[digits] = Partials(self.exact, digits)
+        return self._partials[digits]
+
+    def has(self, key: str) -> bool:
+        """Return whether the motion has a key."""
+        return decided(key, lambda digits: self.at(digits).of(key)) is not None
+
+    def enclosure(self, key: str, by: Mapping[str, Ball | int], digits: int) -> Ball:
+        """Return a ball that holds the sum of derivatives by inputs, each with its weight.
+
+        It is NaN where one of them does not exist, or where the motion has no such key.
+        """
+        partials, ar = self.at(digits).of(key), balls(digits)
+        if partials is None:
+            return ar.nan
+        total = ar.convert(0)
+        for name, weight in by.items():
+            for parameter, factor in self.chain[name].items():
+                slope = partials[PARAMETERS.index(parameter)] * ar.convert(factor)
+                total = total + slope * weight
+        return total
+
+    def derivative(self, key: str, name: str) -> float:
+        """Return the derivative of a key by an input, rounded to a double; NaN for none."""
+        return rounded(f"a derivative of {key}", lambda x: self.enclosure(key, {name: 1}, x))
+
+    def reason(self, key: str) -> str:
+        """Return why a key has no derivative along some parameters."""
+        return decided(key, lambda digits: self.at(digits).reason(key))
 
 
 class Partials:
-    """Derivatives of the numbers of one motion by the parameters of its neighbourhood."""
+    """Derivatives of the numbers of one motion by the parameters of its neighbourhood, in balls."""
 
-    def __init__(
-        self, scene: Exact, near: Neighbourhood | None = None, spare: int = _SPARE
-    ) -> None:
-        """Take a motion; a difference may lose so many digits before more are taken."""
-        self.exact, self.near, self.spare = scene, near or fine_neighbourhood(scene), spare
-        self.noise = self.near.ar.plain.eps.scaleb(_NOISY + smallness(self.near))
-        """What is left of parts that cancel is 0 below it, relative to them."""
+    def __init__(self, scene: Exact, digits: int) -> None:
+        """Raise TooFewDigitsError if so many digits do not tell the roots apart."""
+        self.exact, self.near = scene, neighbourhood(scene, digits)
+        self._none = [self.near.ar.plain.convert(0)] * len(PARAMETERS)
+        self._nan = self.near.ar.plain.nan
 
-    def of(self, key: str) -> list[Decimal] | None:
+    def of(self, key: str) -> list[Ball] | None:
         """Return the derivatives of a key by `PARAMETERS`, or None where the motion has no such."""
         kind = self._at_rest if key in _AFTER_REST else self.here
-        if key in kind.lacks:
+        if key in kind.lacks or is_endless(self.exact, key):
             return None
         value: Dual | None = getattr(kind, key)
         if value is None:
             return None
         if key == "a":  # without torque it is a constant of the motion, but not of its neighbours
-            return self._without_noise(list(self.near.moved.a.partials or ()), value.value)
-        if key in _MEANS and self._loses_digits:
-            return self._finer.of(key)
+            return list(self.near.moved.a.partials or ())
         beside = self._beside(key) if self.near.broken else []
         partials = []
         for i, name in enumerate(PARAMETERS):
             if name in self._leaves(key):
-                partials.append(_NAN)
+                partials.append(self._nan)
             elif name in self.near.broken:
                 partials.append(beside[i])
             else:
-                partials.append((value.partials or _NONE)[i])
-        return self._without_noise(partials, value.value)
-
-    def _without_noise(self, partials: list[Decimal], value: Decimal) -> list[Decimal]:
-        """Return derivatives, 0 where a parameter of its usual size would move the last digits."""
-        with self.near.ar.working():
-            least = abs(value) * self.noise
-            pairs = zip(partials, self._sizes, strict=True)
-            return [x if x.is_nan() or abs(x) * size > least else Decimal(0) for x, size in pairs]
-
-    @cached_property
-    def _sizes(self) -> list[Decimal]:
-        """How large the parameters are as a rule: rates and their squares, and a radian."""
-        state = self.near.moved
-        with self.near.ar.working():
-            rates = state.r0, state.b, state.theta_rate, state.psi_rate
-            rate = state.a.value.sqrt() + sum(abs(x.value) for x in rates) or Decimal(1)
-            radian = Decimal(1 if self.exact.top.theta0_deg is None else 60)
-            return [rate * rate, rate, rate, radian, rate, rate]
+                partials.append((value.partials or self._none)[i])
+        return partials
 
     def reason(self, key: str) -> str:
         """Return why a key has no derivative along some parameters."""
@@ -160,24 +163,6 @@ class Partials:
             return frozenset({"theta_rate", "psi_rate"})
         leaves = key == "u_quarter" and not self.exact.facts.pole
         return frozenset({"theta_rate"} if leaves else ())
-
-    @cached_property
-    def _loses_digits(self) -> bool:
-        """Whether the mean rates are small differences of what they are made of."""
-        if not isinstance(self.here, Nutating):
-            return False
-        with self.near.ar.working():
-            rates = self.here.mean_spin_rate.value, self.here.mean_precession_rate.value
-            parts = max(abs(self.here.r0.value), *map(abs, rates))
-            least = parts * Decimal(10) ** -self.spare
-            return any(0 < abs(rate) < least for rate in rates)
-
-    @cached_property
-    def _finer(self) -> Partials:
-        """Derivatives computed in more digits."""
-        digits = self.near.ar.digits
-        near = neighbourhood(self.exact, 2 * digits)
-        return Partials(self.exact, near, self.spare + near.ar.digits - digits)
 
     @cached_property
     def here(self) -> Any:
@@ -214,10 +199,16 @@ class Partials:
         near = self.near
         return NearSteady(near.ar, near.facts, near.moved, mean_gaps(near))
 
-    def _beside(self, key: str) -> list[Decimal]:
+    def _beside(self, key: str) -> list[Ball]:
         """Return the derivatives of a key by the formulas that hold next to a degenerate top."""
         kind = self._kind_beside(key)
-        return [_NAN] * len(PARAMETERS) if kind is None else _partials(kind, key)
+        try:
+            value: Dual | None = None if kind is None else getattr(kind, key)
+        except UndefinedError:  # the formula divides by 0
+            value = None
+        if value is None or value.value.is_nan:
+            return [self._nan] * len(PARAMETERS)
+        return list(value.partials or self._none)
 
     def _kind_beside(self, key: str) -> Any:
         """Return the motion whose formulas hold next to a degenerate top, or None."""
@@ -232,15 +223,6 @@ class Partials:
             mean = key in _MEANS | {"T_nutation", "u3"} and not (vertical or stands)
             return self._about_steady if mean else None
         return self.generic_means if key in _MEANS else self.generic
-
-
-def _partials(kind: Any, key: str) -> list[Decimal]:
-    """Return the derivatives of a key, NaN where a formula divides by 0."""
-    try:
-        value: Dual | None = getattr(kind, key)
-    except (DivisionByZero, InvalidOperation):
-        value = None
-    return [_NAN] * len(PARAMETERS) if value is None else list(value.partials or _NONE)
 
 
 class NearSteady(Steady[Dual]):
@@ -265,35 +247,27 @@ def mean_gaps(near: Neighbourhood) -> Gaps[Dual]:
 
     There c0 and c1 vanish, so that D = a (u3 - u0) = -c2 - a (x1 + x2) and x1 + x2 = c1/D.
     """
-    with near.ar.working():
-        _, momentum, (_, c1, c2) = cubic(near.moved)
-        x = c1 / -c2 / 2
-        D = -c2 - 2 * near.moved.a * x
-        x = Dual(Decimal(0), x.partials)
-        gap = D - near.moved.a * x
-        below, above = near.moved.below + x, near.moved.above - x
-        return near.gaps.replace(
-            u1_u=x,
-            below_u1=below,
-            above_u1=above,
-            a_u3_u=D,
-            a_u3_u1=gap,
-            a_u3_u2=gap,
-            a_u3_above=D - near.moved.a * near.moved.above,
-            momentum_u1=momentum - near.moved.b * x,
-        )
+    _, momentum, (_, c1, c2) = cubic(near.moved)
+    x = c1 / -c2 / 2
+    D = -c2 - 2 * near.moved.a * x
+    x = Dual(near.ar.plain.convert(0), x.partials)
+    gap = D - near.moved.a * x
+    below, above = near.moved.below + x, near.moved.above - x
+    return near.gaps.replace(
+        u1_u=x,
+        below_u1=below,
+        above_u1=above,
+        a_u3_u=D,
+        a_u3_u1=gap,
+        a_u3_u2=gap,
+        a_u3_above=D - near.moved.a * near.moved.above,
+        momentum_u1=momentum - near.moved.b * x,
+    )
 
 
 def lowest_gaps(near: Neighbourhood) -> Gaps[Dual]:
-    """Return the gaps next to the separatrix, of which only those of the simple root u2 are right.
-
-    As in `dual_root` a step of Newton's method from the root has the derivatives of the root.
-    """
-    with near.ar.working():
-        _, _, (c0, c1, c2) = cubic(near.moved)
-        a, x = near.moved.a, -near.gaps.u_u2.value
-        slope = (3 * a.value * x + 2 * c2.value) * x + c1.value
-        root = Dual(x)
-        root = root - (((a * root + c2) * root + c1) * root + c0) / Dual(slope)
-        below, above = near.moved.below + root, near.moved.above - root
-        return near.gaps.replace(u_u2=-root, below_u2=below, above_u2=above)
+    """Return the gaps next to the separatrix; only those of the simple root u2 are right."""
+    _, _, (c0, c1, c2) = cubic(near.moved)
+    root = moving_root(near.moved.a, c2, c1, c0, -near.gaps.u_u2.value)
+    below, above = near.moved.below + root, near.moved.above - root
+    return near.gaps.replace(u_u2=-root, below_u2=below, above_u2=above)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 from ..arithmetic.numbers import R
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import Value
-from ..elliptic.carlson import carlson_rf
+from ..elliptic.landen import place
 from .multiple_angles import Coefficients
 from .theta_series import (
     Component,
@@ -68,18 +68,19 @@ def theta_constants(
 def periods_since_top(motion: Nutating[R]) -> R:
     """Return w/2K for the argument w of (4,22)-(4,24) at t = 0, with the sign of theta'.
 
-    sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)); on a turning point it is 0 or 1/2 exactly.
+    sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)) and, counted from u2, sn^2 = (u - u2)/(u1 - u2).
+    As a (u1 - u) (u - u2) (u3 - u) is the square of sin(theta) theta', both are written with that:
+    it is smooth at the turning points, and 0 there.
     """
-    ar, gaps = motion.ar, motion.gaps
-    zero = 0 * motion.K
-    if not gaps.u1_u > 0:
-        return zero
-    if not gaps.u_u2 > 0:
-        return zero + 1 / (zero + 2)
-    scale = gaps.a_u3_u * gaps.u1_u2
-    sn2, cn2 = gaps.u1_u * gaps.a_u3_u2 / scale, gaps.a_u3_u1 * gaps.u_u2 / scale
-    w: R = ar.sqrt(sn2) * carlson_rf(ar, cn2, gaps.a_u3_u1 / gaps.a_u3_u, zero + 1)
-    return direction(motion) * w / (2 * motion.K)
+    ar, gaps, state = motion.ar, motion.gaps, motion.state
+    m, k_prime, swing = motion.m, motion.k_prime, state.sin * state.theta_rate
+    if ar.either(gaps.u1_u <= gaps.u_u2):
+        sn = swing * ar.sqrt(gaps.a_u3_u2 / (gaps.u_u2 * gaps.u1_u2)) / gaps.a_u3_u
+        cn2 = gaps.a_u3_u1 * gaps.u_u2 / (gaps.a_u3_u * gaps.u1_u2)
+        return place(ar, m=m, k_prime=k_prime, sn=sn, cn2=cn2) / ar.pi
+    sn = swing / ar.sqrt(gaps.u1_u * gaps.a_u3_u * gaps.u1_u2)
+    half = (0 * swing + 1) / 2
+    return half - place(ar, m=m, k_prime=k_prime, sn=sn, cn2=gaps.u1_u / gaps.u1_u2) / ar.pi
 
 
 def direction(motion: Nutating[R] | Separatrix[R]) -> int:

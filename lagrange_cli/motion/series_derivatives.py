@@ -19,7 +19,6 @@ from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.sums_of_doubles import Pair, pair
 from ..arithmetic.types import Array
 from ..arithmetic.workspace import Workspace
-from ..elliptic.carlson import carlson_rf
 from .attitude import Growths, growths
 from .kinds import Nutating
 from .multiple_angles import Coefficients
@@ -30,6 +29,7 @@ from .series_constants import (
     direction,
     greatest_argument,
     needed,
+    periods_since_top,
     series_from_start,
     theta_constants,
 )
@@ -68,7 +68,7 @@ class SeriesDerivatives:
         ar: Any = motion.ar
         with ar.working():
             constants = theta_constants(
-                motion, smooth_offset(motion), direction(motion), rates=True
+                motion, periods_since_top(motion), direction(motion), rates=True
             )
             found = series_from_start(ar, constants)
             series, (x_start, y_start) = found.series, found.starts
@@ -169,24 +169,6 @@ class SeriesDerivatives:
             (real[0] * imag[1:] - imag[0] * real[1:]) / square,
             (real_size[0] * imag_size[1:] + imag_size[0] * real_size[1:]) / square,
         )
-
-
-def smooth_offset(motion: Nutating[Dual]) -> Dual:
-    """Return w/2K for the argument w of (4,22)-(4,24) at t = 0, counted from a passage of u1.
-
-    sn w and, counted from u2, cn w/dn w go as sin(theta) theta': a (u1 - u) (u - u2) (u3 - u) is
-    its square.  So they are smooth where the start is a turning point.
-    """
-    ar, gaps, state = motion.ar, motion.gaps, motion.state
-    swing, one = state.sin * state.theta_rate, 0 * motion.K + 1
-    if gaps.u1_u <= gaps.u_u2:
-        sine = swing * ar.sqrt(gaps.a_u3_u2 / (gaps.u_u2 * gaps.u1_u2)) / gaps.a_u3_u
-        cosine2 = gaps.a_u3_u1 * gaps.u_u2 / (gaps.a_u3_u * gaps.u1_u2)
-        integral: Dual = carlson_rf(ar, cosine2, gaps.a_u3_u1 / gaps.a_u3_u, one)
-        return sine * integral / (2 * motion.K)
-    sine = swing / ar.sqrt(gaps.u1_u * gaps.a_u3_u * gaps.u1_u2)
-    integral = carlson_rf(ar, gaps.u1_u / gaps.u1_u2, gaps.a_u3_u / gaps.a_u3_u2, one)
-    return one / 2 - sine * integral / (2 * motion.K)
 
 
 def _in_doubles(ar: Any, found: SeriesFromStart) -> tuple[list[tuple[Rows, Rows]], list[Array]]:

@@ -4,34 +4,29 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Collection, Sequence
-from decimal import Decimal, DivisionByZero, InvalidOperation
+from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..arithmetic.correct_rounding import (
-    TooFewDigitsError,
-    correctly_rounded,
-    nearest_double,
-    precisions,
-    text_of,
-)
-from ..arithmetic.decimals import decimals
-from ..errors import LagtopError, OutOfRangeError, OutOfRangeWarning
+from ..arithmetic.ball import Ball, TooFewDigitsError
+from ..arithmetic.balls import balls
+from ..arithmetic.rounding import Settled, decided, rounding_of, settled
+from ..errors import OutOfRangeWarning
 from ..inputs.top import Top
-from .gaps import agree, are_told_apart, gaps_of, released, state
-from .kinds import Kind, kind_of
-from .record import NUMBER_KEYS, number_key, record_of, requested_keys, source_of
+from .gaps import are_told_apart, gaps_of, largest_root, state
+from .kinds import Kind, kind_of, middle_of
+from .record import NUMBER_KEYS, number_key, record_in_range, requested_keys
 from .regime import Exact, Regime, exact
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
     from .notebook import Document
     from .samplers import Angles, Sampler
+    from .worked_example import WorkedExample
 
-T = TypeVar("T")
+S = TypeVar("S")
 
 SAMPLER_DIGITS = 40
 """Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
@@ -45,16 +40,17 @@ def solve(top: Top) -> Motion:
 class Motion:
     """The motion of one top: the numbers of its record as attributes, and its angles over time.
 
-    Each number is the double nearest to its exact value, computed when it is first asked for; one
-    that the regime does not have is None.  Their names are those of `lagtop solve`: a, b, u1, u2,
-    u3, k, T_nutation, mean_precession_rate ...; `record` gives all of them.
+    Each number is the double nearest to its exact value, proved by an enclosure when it is first
+    asked for; one that the regime does not have is None.  Their names are those of `lagtop solve`:
+    a, b, u1, u2, u3, k, T_nutation, mean_precession_rate ...; `record` gives all of them.
     """
 
     def __init__(self, scene: Exact) -> None:
         self.exact = scene
         self.kind_class = kind_of(scene.facts)
-        self._kinds: dict[int, Kind[Decimal]] = {}
-        self._doubles: dict[str, float | None] = {}
+        self._kinds: dict[int, Kind[Ball]] = {}
+        self._requested: dict[int, WorkedExample[Ball]] = {}
+        self._doubles: dict[str, Settled | None] = {}
         self._sampler: Sampler | None = None
 
     @property
@@ -70,8 +66,7 @@ class Motion:
     @property
     def path(self) -> str | None:
         """Path of the figure axis: `cusped`, `looping` or `wavy`; None where it has none."""
-        path: str | None = self._settled_kind.path
-        return path
+        return self.decide("path", lambda kind: kind.path)
 
     @property
     def remark(self) -> str | None:
@@ -80,15 +75,14 @@ class Motion:
 
     def remark_in(self, *, radians: bool = False) -> str | None:
         """Return the remark, with angles in degrees or `radians`."""
-        return self._settled_kind.remark(radians=radians)
+        return self.decide("remark", lambda kind: kind.remark(radians=radians))
 
     def __getattr__(self, name: str) -> Any:
         """Return a number by its key, a float, or None where the motion has none."""
         if number_key(name) is None:
             raise AttributeError(f"a motion has no {name!r}")
-        if name not in self._doubles:
-            self._doubles[name] = self._number(name, nearest_double(name), float)
-        return self._doubles[name]
+        found = self.number(name)
+        return None if found is None else found.value
 
     def __dir__(self) -> Sequence[str]:
         """Return all names, the keys of the record among them."""
@@ -111,141 +105,122 @@ class Motion:
         return {name: record[name] for name in NUMBER_KEYS}
 
     def record(
-        self, *, radians: bool = False, keys: Collection[str] | None = None
+        self,
+        *,
+        digits: int | None = None,
+        radii: bool = False,
+        radians: bool = False,
+        keys: Collection[str] | None = None,
     ) -> dict[str, Any]:
         """Return inputs and results by key, in the order of the paper; `radians` for all angles.
 
-        A number beyond the range of doubles is None, and an OutOfRangeWarning names it.  `keys`
-        asks for some of them only; of these it raises OutOfRangeError.
+        Numbers are doubles or, with `digits`, texts of so many significant digits; inputs then
+        count as decimals.  `radii` adds KEY_radius: the greatest distance of the exact value from
+        the number under KEY.  A number beyond the range of doubles is None, and an
+        OutOfRangeWarning names it.  `keys` asks for some of them only; of these it raises
+        OutOfRangeError.  Raises LagtopError if no precision tells a number from 0.
         """
-        record, beyond = self.record_in_range(radians=radians, keys=keys)
+        record, beyond = record_in_range(
+            self, digits=digits, radii=radii, radians=radians, keys=keys
+        )
         if beyond and keys is not None:
             raise beyond[0]
         if beyond:
             warnings.warn("; ".join(map(str, beyond)), OutOfRangeWarning, stacklevel=2)
         return record
 
-    def record_in_range(
-        self, *, radians: bool = False, keys: Collection[str] | None = None
-    ) -> tuple[dict[str, Any], list[OutOfRangeError]]:
-        """Return the record, and what is to be said of numbers beyond the range of doubles."""
-        beyond = []
+    def number(
+        self, name: str, digits: int | None = None, *, radians: bool = False
+    ) -> Settled | None:
+        """Return the double nearest to a number, or so many digits of it; None if it has none.
 
-        def number(name: str, radians: bool) -> float | None:
-            try:
-                return self._double_in(name, radians)
-            except OutOfRangeError as error:
-                beyond.append(error)
-                return None
-
-        with decimals(40).working():
-            given = self.top.inputs(radians=radians, ar=decimals(40))
-        inputs = {name: float(x) for name, x in given.items()}
-        return record_of(self, inputs, number, radians=radians, keys=keys), beyond
-
-    def digits(
-        self, digits: int, *, radians: bool = False, keys: Collection[str] | None = None
-    ) -> dict[str, Any]:
-        """Return the record with every number written out to so many significant digits.
-
-        `keys` asks for some of them only.  The inputs count as decimals and stand as they were
-        given.  Raises LagtopError where no precision tells a number from 0.
+        Raises LagtopError if no precision tells it from 0 or a tie.
         """
+        in_radians = radians and name.endswith("_deg")
+        is_usual = digits is None and not in_radians
+        if is_usual and name in self._doubles:
+            return self._doubles[name]
+        found = settled(
+            name,
+            lambda working: self.enclosure(name, working, radians=in_radians),
+            rounding_of(name, digits),
+            digits=digits or 0,
+            exactly=lambda: self._known(name, radians=in_radians),
+        )
+        if is_usual:
+            self._doubles[name] = found
+        return found
 
-        def number(name: str, radians: bool) -> NumberText | None:
-            return self._number(
-                name, lambda x: text_of(x, digits), lambda x: text_of(x, digits), digits, radians
-            )
+    def _known(self, name: str, *, radians: bool = False) -> Fraction | None:
+        """Return a number if it is known as a fraction."""
+        from .rational_keys import known_fraction  # for few tops only
 
-        ar = decimals(digits + 10)
-        with ar.working():
-            inputs = {
-                name: text_of(x if isinstance(x, Decimal) else Fraction(x), digits)
-                for name, x in self.top.inputs(radians=radians, ar=ar).items()
-            }
-        return record_of(self, inputs, number, radians=radians, keys=keys)
+        return known_fraction(self.exact, name, radians=radians)
 
-    def _double_in(self, name: str, radians: bool) -> float | None:
-        if not (radians and name.endswith("_deg")):
-            value: float | None = getattr(self, name)
-            return value
-        return self._number(name, nearest_double(name), float, radians=True)
+    def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
+        """Return a ball that holds a number, by its key; None if the motion has none.
 
-    def _number(
-        self,
-        name: str,
-        rounding: Callable[[Decimal], T],
-        of_fraction: Callable[[Fraction], T],
-        digits: int = 0,
-        radians: bool = False,
-    ) -> T | None:
-        """Return a number of the record, rounded correctly: the fraction where it is one."""
+        Angles are in degrees or `radians`.  Raises TooFewDigitsError if these digits leave open
+        which formula holds.
+        """
         if name in self.kind_class.lacks:
             return None
-        in_radians = radians and name.endswith("_deg")
-        declared = number_key(name)
-        cancels = declared is not None and declared.cancels
+        kind = self.kind(digits)
+        try:
+            source = kind if name in NUMBER_KEYS else self._on_request(digits)
+            value: Ball | None = getattr(source, name)
+        except TooFewDigitsError:
+            from .rational_keys import is_endless  # for few tops only
 
-        def exactly() -> T | None:
-            from .rational_keys import known_fraction  # for few tops only
+            if is_endless(self.exact, name):
+                return None
+            raise
+        return value * kind.degree if radians and value is not None else value
 
-            known = known_fraction(self.exact, name, radians=in_radians)
-            return None if known is None else of_fraction(known)
+    def _on_request(self, digits: int) -> WorkedExample[Ball]:
+        """Return the keys on request in balls of so many digits."""
+        from .worked_example import WorkedExample  # the last of the classes with such keys
 
-        def value_in(digits: int) -> Decimal | None:
-            kind = self.kind(digits)
-            value: Decimal | None = getattr(source_of(name, kind, self.exact), name)
-            if not in_radians or value is None:
-                return value
-            with kind.ar.working():
-                return value * kind.degree
+        if digits not in self._requested:
+            self._requested[digits] = WorkedExample(self.kind(digits), self.exact)
+        return self._requested[digits]
 
-        return correctly_rounded(
-            name,
-            value_in,
-            rounding,
-            first=max(32, digits + 10),
-            zero_is_proved=not cancels,
-            exactly=exactly,
-            lost=8 if self.exact.facts.at_rest and not cancels else None,
-        )
+    def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
+        """Return an answer of the motion, at the first precision that decides it.
 
-    def kind(self, digits: int) -> Kind[Decimal]:
-        """Return the motion computed with so many decimal digits.
+        Raises LagtopError if none does.
+        """
+        return decided(what, lambda digits: ask(self.kind(digits)))
 
-        Raises TooFewDigitsError where these do not tell the roots apart.
+    def kind(self, digits: int) -> Kind[Ball]:
+        """Return the motion in balls of so many digits.
+
+        Raises TooFewDigitsError if these do not tell the roots apart.
         """
         if digits not in self._kinds:
-            ar = decimals(digits)
-            with ar.working():
-                start = state(ar, self.exact)
-                gaps = gaps_of(ar, self.exact.facts, start)
-                if not are_told_apart(self.exact.facts, gaps):
-                    raise TooFewDigitsError
-            self._kinds[digits] = self.kind_class(ar, self.exact.facts, start, gaps)
+            ar, facts = balls(digits), self.exact.facts
+            start = state(ar, self.exact)
+            gaps = gaps_of(ar, facts, start, largest_root)
+            if not are_told_apart(facts, gaps):
+                raise TooFewDigitsError
+            self._kinds[digits] = self.kind_class(ar, facts, start, gaps)
         return self._kinds[digits]
 
-    @property
-    def _settled_kind(self) -> Kind[Decimal]:
-        return self.settled_kind(8)
+    def middle(self, digits: int = SAMPLER_DIGITS) -> Kind[Decimal]:
+        """Return the motion in decimals, from a start and gaps that are proved to so many digits.
 
-    def settled_kind(self, digits: int) -> Kind[Decimal]:
-        """Return the motion computed with enough digits that so many of every gap are right."""
-        previous: Kind[Decimal] | None = None
-        first = max(32, digits * 6 // 5)
-        for working in precisions(first):
-            try:
-                kind = self.kind(working)
-            except (TooFewDigitsError, InvalidOperation, DivisionByZero):
-                continue
-            if released(self.exact.facts):
-                return kind
-            if previous is not None:
-                with kind.ar.working():
-                    if agree(kind.gaps, previous.gaps, digits):
-                        return previous
-            previous = kind
-        raise LagtopError("the roots of the cubic cannot be told apart")
+        Nothing cancels in the constants of its series, which need no balls.
+        """
+
+        def sharp(working: int) -> Kind[Ball]:
+            kind = self.kind(working)
+            constant = kind.facts.steady  # none of the gaps is used
+            if not (constant or all(gap.is_known_to(digits) for gap in kind.gaps)):
+                raise TooFewDigitsError
+            return kind
+
+        middle: Kind[Decimal] = middle_of(decided("the roots of the cubic", sharp, digits))
+        return middle
 
     def __repr__(self) -> str:
         return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
@@ -292,5 +267,5 @@ class Motion:
     def sampler(self) -> Sampler:
         """Return the series behind `angles`, made once."""
         if self._sampler is None:
-            self._sampler = self.settled_kind(SAMPLER_DIGITS).sampler()
+            self._sampler = self.middle().sampler()
         return self._sampler

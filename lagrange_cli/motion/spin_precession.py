@@ -67,7 +67,7 @@ class SpinPrecession(Nutation[R]):
         gaps = self.gaps
         return self._mean(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
 
-    @key("Mean rates", "φ' mean", "spin", "rad/time", "(6,3)", cancels=True)
+    @key("Mean rates", "φ' mean", "spin", "rad/time", "(6,3)")
     def mean_spin_rate(self) -> R:
         """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation.
 
@@ -82,29 +82,29 @@ class SpinPrecession(Nutation[R]):
             return self.state.pole_drift + self._south - self._north
         return self.r0 + self._whole_south - self._whole_north
 
-    @key("Mean rates", "ψ' mean", "precession", "rad/time", "(7,3)", cancels=True)
+    @key("Mean rates", "ψ' mean", "precession", "rad/time", "(7,3)")
     def mean_precession_rate(self) -> R:
         """The mean precession rate (7,3)."""
         if self.facts.free or self._meets_a_pole:
             return self._south + self._north
         return self._whole_south + self._whole_north
 
-    @key("Periods", "Tφ", "of the mean spin", "time", "§8", cancels=True)
+    @key("Periods", "Tφ", "of the mean spin", "time", "§8")
     def T_spin(self) -> R | None:
         """One turn at the mean spin rate (section 8)."""
         return period_of(self.ar, self.mean_spin_rate)
 
-    @key("Periods", "Tψ", "of the mean precession", "time", "§8", cancels=True)
+    @key("Periods", "Tψ", "of the mean precession", "time", "§8")
     def T_precession(self) -> R | None:
         """One turn at the mean precession rate (section 8)."""
         return period_of(self.ar, self.mean_precession_rate)
 
-    @key("Rates", "φ'(0)", "spin at the start", "rad/time", "(6,2)", cancels=True)
+    @key("Rates", "φ'(0)", "spin at the start", "rad/time", "(6,2)")
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
         return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
-    @key("Rates", "φ'(T/2)", "spin at T/2", "rad/time", "(6,2)", cancels=True)
+    @key("Rates", "φ'(T/2)", "spin at T/2", "rad/time", "(6,2)")
     def spin_rate_half(self) -> R | None:
         """The spin rate (4,8) half a period after the start; None over a pole."""
         if self.precession_rate_half is None:
@@ -117,7 +117,7 @@ class SpinPrecession(Nutation[R]):
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
 
-    @key("Rates", "ψ'(T/2)", "precession at T/2", "rad/time", "(4,7)", cancels=True)
+    @key("Rates", "ψ'(T/2)", "precession at T/2", "rad/time", "(4,7)")
     def precession_rate_half(self) -> R | None:
         """The precession rate (4,7) half a period after the start; None over a pole."""
         if self._half_over_pole:

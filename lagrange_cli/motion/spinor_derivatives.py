@@ -16,7 +16,7 @@ from ..arithmetic.duals import Dual
 from ..arithmetic.types import Array
 from .kinds import Nutating
 from .neighbourhood import PARAMETERS
-from .series_derivatives import SeriesDerivatives, smooth_offset
+from .series_derivatives import SeriesDerivatives
 from .spinors import Spinor, nutating_spinor
 
 _LOST = 1e-15
@@ -69,7 +69,7 @@ class NutationDerivatives:
 
     @cached_property
     def _spinor(self) -> Spinor[Dual]:
-        return nutating_spinor(self.motion, smooth_offset(self.motion))
+        return nutating_spinor(self.motion)
 
     def _in_digits(self, t: Array) -> Array:
         """Return the derivatives in dual numbers, which takes some milliseconds per time."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 
-from ..arithmetic.numbers import R, absolute
+from ..arithmetic.numbers import R
 from .series_constants import direction, periods_since_top, swing_of, theta_constants
 from .theta_series import ThetaConstants, evaluate, theta_series
 
@@ -25,8 +25,6 @@ class Attitude(NamedTuple, Generic[R]):
     """Spin, counted on from 0 at t = 0."""
     psi: R
     """Precession, counted on from 0 at t = 0."""
-    size: R
-    """Greatest number that was added up to give the angles: their noise is eps times it."""
     tilting: R
     """A number that has the sign of the nutation rate."""
 
@@ -35,12 +33,11 @@ Spinor = Callable[[R], Attitude[R]]
 """The attitude as a function of time."""
 
 
-def nutating_spinor(motion: Nutating[R], offset: R | None = None) -> Spinor[R]:
-    """Return the attitude of a nutating top by its theta series; `offset` is that at t = 0."""
+def nutating_spinor(motion: Nutating[R]) -> Spinor[R]:
+    """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     with ar.working():
-        first = periods_since_top(motion) if offset is None else offset
-        constants = theta_constants(motion, first, direction(motion))
+        constants = theta_constants(motion, periods_since_top(motion), direction(motion))
         series = theta_series(ar, constants, _terms(ar, constants))
 
     def position(t: R) -> tuple[int, R, tuple[R, R, R, R]]:
@@ -53,18 +50,17 @@ def nutating_spinor(motion: Nutating[R], offset: R | None = None) -> Spinor[R]:
     with ar.working():
         _, since_first, (_, x_start, _, y_start) = position(0 * motion.K)
         rates = motion.mean_spin_rate, motion.mean_precession_rate
-        rate_size = abs(rates[0]) + abs(rates[1]) + 4 / constants.period
 
     def spinor(t: R) -> Attitude[R]:
         with ar.working():
             odd, phase, (x, arg_x, y, arg_y) = position(t)
-            within, size = phase - since_first, 8 + abs(t) * rate_size
+            within = phase - since_first
             plus, minus = arg_x - x_start, arg_y - y_start
             phi = t * rates[0] + within * series.spin_slope + (plus - minus)
             psi = t * rates[1] + within * series.precession_slope + (plus + minus)
             if motion.facts.plane:
                 phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
-            return Attitude(x, y, phi, psi, size, -phase if odd else phase)
+            return Attitude(x, y, phi, psi, -phase if odd else phase)
 
     return spinor
 
@@ -95,8 +91,7 @@ def constant_spinor(motion: Constant[R]) -> Spinor[R]:
     def spinor(t: R) -> Attitude[R]:
         with motion.ar.working():
             phi, psi = motion.mean_spin_rate * t, state.psi_rate * t
-            size = absolute(phi) + absolute(psi)
-            return Attitude(state.cos_half, state.sin_half, phi, psi, size, 0 * t)
+            return Attitude(state.cos_half, state.sin_half, phi, psi, 0 * t)
 
     return spinor
 
@@ -113,12 +108,11 @@ def separatrix_spinor(motion: Separatrix[R]) -> Spinor[R]:
             sinh, cosh = ar.sinh(h), ar.cosh(h)
             real, imag = swing.x * cosh, swing.sign * swing.y * sinh
             turned = ar.atan2(imag, real) - swing.start if t else 0 * t
-            half_spin, half_b = motion.r0 * t / 2, motion.b * t / 2
+            half_b = motion.b * t / 2
             phi, psi = motion.r0 * t - half_b + turned, half_b + turned
             if motion.facts.plane:
                 phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
             x = ar.sqrt(real * real + imag * imag)
-            size = 8 + abs(h) + abs(half_spin) + abs(half_b)
-            return Attitude(x, swing.y, phi, psi, size, -h)
+            return Attitude(x, swing.y, phi, psi, -h)
 
     return spinor

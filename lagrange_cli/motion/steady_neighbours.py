@@ -16,7 +16,7 @@ from ..arithmetic.duals import Dual
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.sums_of_doubles import Pair, pair
 from ..arithmetic.types import Array
-from .gaps import cubic
+from .gaps import State, cubic
 from .neighbourhood import PARAMETERS, Neighbourhood
 
 _SMALL = 0.5
@@ -26,13 +26,14 @@ class SteadyDerivatives:
     """Angles of a steady precession over time, and their derivatives by `PARAMETERS`."""
 
     def __init__(self, near: Neighbourhood) -> None:
-        with near.ar.working():
-            state = near.moved
+        ar = near.ar.middles
+        with ar.working():
+            state = State(*(x.middle for x in near.moved))
             _, _, (_, c1, c2) = cubic(state)
             self.force = _partials(c1) / 2
-            frequency = (-c2.value).sqrt()
+            frequency = ar.plain.sqrt(-c2.value)
             self.frequency = float(frequency)
-            self.turns = pair(frequency / (2 * near.ar.plain.pi))
+            self.turns = pair(frequency / (2 * ar.plain.pi))
             self.sine, self.cosine, self.psi_rate, self.b = (
                 float(x.value) for x in (state.sin, state.cos, state.psi_rate, state.b)
             )

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from itertools import islice
+from functools import cache
 from typing import TYPE_CHECKING
 
 from ..arithmetic.points import EvenPoints, Points
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
+from .columns import chosen_columns, headings, name_of
 from .solve import Motion
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
     from .angle_uncertainty import AngleStds
 
 DEFAULT_ROWS = 101
-DIGIT_ROWS = 256
-"""Rows that settle together under --digits."""
 DEFAULT_COLUMNS = ("t", *ANGLES)
 
 
@@ -73,7 +71,6 @@ def rows(
     """
     import numpy as np
 
-    from .columns import chosen_columns
     from .sample import samples
 
     chosen, header = chosen_columns(columns), headings(columns, radians=radians)
@@ -83,6 +80,8 @@ def rows(
     angles = [i for i, name in enumerate(ANGLES) if stds is not None and name in columns]
     names = [f"{heading}_std" for i in angles for heading in headings([ANGLES[i]], radians=radians)]
 
+    start = _start(motion, columns, radians=radians, wrap=wrap)
+
     def blocks() -> Iterator[Array]:
         for t in times.blocks():
             for _, sample in samples(motion, t, chosen, wrap=wrap):
@@ -91,20 +90,14 @@ def rows(
                     sample.write(column, target)
                     if heading.endswith("_deg"):
                         np.degrees(target, out=target)
+                if (first := sample.t == 0).any():
+                    block[first, : len(chosen)] = start()
                 if stds is not None:
                     spread = stds.at(sample.t)[angles]
                     block.T[len(chosen) :] = spread if radians else np.degrees(spread)
                 yield block
 
     return [*header, *names], blocks()
-
-
-def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
-    """Return the header of some columns.  Raises LagtopError for an unknown one."""
-    from .columns import chosen_columns
-
-    unit = "rad" if radians else "deg"
-    return [column.heading.replace("*", unit) for column in chosen_columns(columns)]
 
 
 def table(
@@ -114,7 +107,6 @@ def table(
     import numpy as np
 
     from ..arithmetic.arrays import ARRAYS
-    from .columns import chosen_columns, name_of
     from .sample import samples
     from .times import times_of
 
@@ -126,15 +118,23 @@ def table(
         for part, sample in samples(motion, flat, chosen, wrap=wrap):
             for column in chosen:
                 sample.write(column, found[name_of(column)][part])
+    if (first := flat == 0).any():
+        row = _start(motion, columns, radians=True, wrap=wrap)()
+        for values, value in zip(found.values(), row, strict=True):
+            values[first] = value
     return {name: values.reshape(times.shape) for name, values in found.items()}
 
 
-def digit_rows(
-    motion: Motion, times: Points, digits: int, *, radians: bool = False, wrap: bool = False
-) -> Iterator[list[list[NumberText]]]:
-    """Yield lists of rows, t and the three angles to so many digits; times read as decimals."""
-    from .digits import rows_in_digits
+def _start(
+    motion: Motion, columns: Sequence[str], *, radians: bool, wrap: bool
+) -> Callable[[], list[float]]:
+    """Return what gives the columns at t = 0 as the nearest doubles, computed once, if at all."""
 
-    waiting = times.decimals()
-    while block := list(islice(waiting, DIGIT_ROWS)):
-        yield rows_in_digits(motion, block, digits, radians=radians, wrap=wrap)
+    @cache
+    def row() -> list[float]:
+        from .proved_table import ProvedTable
+
+        table = ProvedTable(motion, columns, radians=radians, wrap=wrap)
+        return [number.value for number in table.row(Fraction(0))]
+
+    return row

@@ -108,8 +108,7 @@ class Series(NamedTuple):
 
 def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in the smaller nome."""
-    # either is right next to K = K', where balls may leave the question open
-    hyperbolic = c.quarter_prime is not None and (c.quarter > c.quarter_prime) is True
+    hyperbolic = c.quarter_prime is not None and ar.either(c.quarter > c.quarter_prime)
     return (hyperbolic_series if hyperbolic else circular_series)(ar, c, terms)
 
 
@@ -194,7 +193,11 @@ def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Valu
         weights.append(weights[-1] * power)
         power = power * q * q
     last, factor = weights[-1], 4 * (2 * terms + 1) * (2 * terms + 1)
-    return [ar.widened(weight, lambda: factor * last) for weight in weights[:2]] + weights[2:]
+    first_two = (
+        ar.widened(weight, lambda: (last,), lambda last: factor * last, values_only=True)
+        for weight in weights[:2]
+    )
+    return [*first_two, *weights[2:]]
 
 
 def _hyperbolic_components(

@@ -1,15 +1,26 @@
-"""First-order propagation of uncertainties (GUM 5.1.2), by the exact derivatives of the record."""
+"""First-order propagation of uncertainties (GUM 5.1.2), by the exact derivatives of the record.
+
+Every number is rounded from an enclosure, as those of the record are.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from fractions import Fraction
+from functools import partial
 from typing import Any, NamedTuple
 
-from ..arithmetic.angles import PER_RADIAN, unit_in_radians
+from ..arithmetic.ball import Ball
+from ..arithmetic.balls import balls
+from ..arithmetic.numbers import R
+from ..arithmetic.protocol import Arithmetic
+from ..arithmetic.rounding import rounded
 from ..inputs.top import Top
-from .record import TEXT_KEYS
-from .sensitivities import sensitivities
+from .record import NUMBER_KEYS, TEXT_KEYS
+from .regime import exact
+from .sensitivities import Slopes
+from .solve import Motion
 
 
 class Contribution(NamedTuple):
@@ -29,86 +40,129 @@ class Contribution(NamedTuple):
 
 
 class FirstOrder:
-    """Standard uncertainties of the record of a top, whose inputs are not correlated."""
+    """Standard uncertainties of the record of a top, whose inputs are not correlated.
+
+    A key in radians ends in `_rad`.
+    """
 
     def __init__(self, top: Top, stds: Mapping[str, float], given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as they were given, and the names of all inputs.
 
         Raises LagtopError for a top that has no motion.
         """
-        self.top, self.stds, self.by_given = top, stds, by_given(top, given)
-        self.sensitivities = sensitivities(top)
+        self.top, self.stds, self.given = top, stds, given
+        self.motion = Motion(exact(top))
+        self.slopes = Slopes(self.motion.exact)
+
+    @staticmethod
+    def name_of(key: str) -> str:
+        """Return the name of a key in degrees."""
+        return f"{key.removesuffix('_rad')}_deg" if key.endswith("_rad") else key
+
+    def has(self, key: str) -> bool:
+        """Return whether a key is an input, or a number that the motion has."""
+        name = self.name_of(key)
+        if name in self.top.fields or name in self.given:
+            return True
+        return name in NUMBER_KEYS and self.slopes.has(name)
+
+    def slope(self, key: str, name: str, digits: int) -> Ball:
+        """Return the derivative of a key, or an input, by an input that was given; NaN for none."""
+        ar = balls(digits)
+        row = by_given(ar, self.top, self.given)[name]
+        tilt = "theta0_deg" if self.top.theta0_rad is None else "theta0_rad"
+        same = tilt if self.name_of(key) == "theta0_deg" else self.name_of(key)
+        if same in self.slopes.chain or same in self.given:
+            total = row.get(same, ar.convert(0))
+        else:
+            total = self.slopes.enclosure(same, row, digits)
+        if same == key:
+            return total
+        return total * (ar.pi / 180) if key.endswith("_rad") else total * 180 / ar.pi
 
     def derivative(self, key: str, name: str) -> float | None:
         """Return the derivative of a key, or an input, by an input that was given.
 
         None says that the motion has no such key, NaN that it has no derivative.
         """
-        by = self.by_given[name]
-        if key in self.sensitivities.inputs or key in self.by_given:
-            return by.get(key, 0.0)
-        row = self.sensitivities.derivatives.get(key)
-        return None if row is None else sum(row[one] * x for one, x in by.items())
+        return self._rounded(key, lambda digits: self.slope(key, name, digits))
 
     def std(self, key: str) -> float | None:
         """Return the standard uncertainty of a key or of an input; None where there is none."""
-        parts = [(self.derivative(key, name), std) for name, std in self.stds.items()]
-        if any(slope is None or math.isnan(slope) for slope, _ in parts):
-            return None
-        return math.hypot(*(slope * std for slope, std in parts if slope is not None))
+        std = self._rounded(key, lambda digits: balls(digits).sqrt(self._variance(key, digits)))
+        return None if std is None or math.isnan(std) else std
 
-    def budget(self, key: str, value: float, given: Mapping[str, float]) -> list[Contribution]:
+    def _rounded(self, key: str, enclosure: Any) -> float | None:
+        return rounded(f"the uncertainty of {key}", enclosure) if self.has(key) else None
+
+    def _part(self, key: str, name: str, digits: int) -> Ball:
+        return self.slope(key, name, digits) * balls(digits).convert(self.stds[name])
+
+    def _variance(self, key: str, digits: int) -> Ball:
+        parts = [self._part(key, name, digits) for name in self.stds]
+        return sum((part * part for part in parts), balls(digits).convert(0))
+
+    def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
         """Return what each uncertain input contributes to a key, the greatest first.
 
-        `value` is that of the key, `given` has those of the inputs.
+        `given` has the values of the inputs.
         """
-        whole = self.std(key)
-        lines = []
-        for name, std in self.stds.items():
-            slope = self.derivative(key, name)
-            assert slope is not None
-            part = slope * std
-            elasticity = slope * given[name] / value if value else None
-            share = part * part / (whole * whole) if whole else None
-            lines.append(Contribution(name, given[name], std, slope, part, elasticity, share))
+        value, whole = self.motion.number(self.name_of(key)), self.std(key)
+        assert value is not None
+        lines = [
+            Contribution(
+                name,
+                given[name],
+                std,
+                rounded(key, partial(self.slope, key, name)),
+                rounded(key, partial(self._part, key, name)),
+                rounded(key, partial(self._elasticity, key, name, given)) if value.value else None,
+                rounded(key, partial(self._share, key, name)) if whole else None,
+            )
+            for name, std in self.stds.items()
+        ]
         return sorted(lines, key=lambda line: -abs(line.contribution))
 
+    def _elasticity(self, key: str, name: str, given: Mapping[str, float], digits: int) -> Ball:
+        """Return the relative change of a key over that of an input."""
+        in_degrees = self.name_of(key)
+        value = self.motion.enclosure(in_degrees, digits)
+        assert value is not None
+        slope = self.slope(in_degrees, name, digits)
+        return slope * balls(digits).convert(given[name]) / value
 
-def by_given(top: Top, given: Collection[str]) -> dict[str, dict[str, float]]:
+    def _share(self, key: str, name: str, digits: int) -> Ball:
+        """Return the share of an input in the variance of a key."""
+        part = self._part(key, name, digits)
+        return part * part / self._variance(key, digits)
+
+
+def by_given(ar: Arithmetic[R], top: Top, given: Collection[str]) -> dict[str, dict[str, R]]:
     """Return the derivatives of the inputs of a solved top by those that were given.
 
     These are the same but for A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
     """
     tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
-    angle = float(top.theta0_rad or 0) if top.theta0_deg is None else math.radians(top.theta0_deg)
-    arc = unit_in_radians(radians=top.theta0_deg is None)
-    m, s, psi_rate = float(top.m), float(top.s), float(top.psidot0)
+    one, m, s = (ar.convert(Fraction(x)) for x in (1, top.m, top.s))
     names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
-    chain = {name: {name: 1.0} for name in names}
+    chain = {name: {name: one} for name in names}
     if "A_cm" in given:
         del chain["A"]
-        chain["A_cm"] = {"A": 1.0}
+        chain["A_cm"] = {"A": one}
         chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
     if "phidot0" in given:
+        angle, arc = top.tilt(ar), one if top.theta0_deg is None else ar.pi / 180
         del chain["r0"]
-        chain["phidot0"] = {"r0": 1.0}
-        chain["psidot0"]["r0"] = math.cos(angle)
-        chain[tilt]["r0"] = -psi_rate * math.sin(angle) * arc
+        chain["phidot0"] = {"r0": one}
+        chain["psidot0"]["r0"] = angle.cos
+        chain[tilt]["r0"] = -ar.convert(Fraction(top.psidot0)) * angle.sin * arc
     return chain
 
 
 def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
     """Return `KEY_std` for every number of a record, in its units."""
-    stds = {}
-    for name, value in record.items():
-        if isinstance(value, str) or name in TEXT_KEYS:
-            continue
-        degrees = f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name
-        tilt = {"theta0_deg", "theta0_rad"} & uncertain.by_given.keys()
-        key = tilt.pop() if degrees == "theta0_deg" else degrees
-        std = None if value is None else uncertain.std(key)
-        scale = 1.0
-        if key != name:  # the other unit of an angle
-            scale = 1 / PER_RADIAN if name.endswith("_rad") else PER_RADIAN
-        stds[f"{name}_std"] = None if std is None else std * scale
-    return stds
+    return {
+        f"{name}_std": None if value is None else uncertain.std(name)
+        for name, value in record.items()
+        if not isinstance(value, str) and name not in TEXT_KEYS
+    }

@@ -39,7 +39,7 @@ class WorkedExample(Quarters[R]):
             return None
         return self.state.b * self.state.b / self.state.a
 
-    @step_key("u3 u2", "b² u1/a - 1", equation="(4,12)", cancels=True)
+    @step_key("u3 u2", "b² u1/a - 1", equation="(4,12)")
     def roots_product(self) -> R | None:
         """The product u3 u2 = b^2 u1/a - 1 (4,12)."""
         if self.roots_sum is None:
@@ -51,7 +51,7 @@ class WorkedExample(Quarters[R]):
         """The square of the sum of the roots."""
         return None if self.roots_sum is None else self.roots_sum * self.roots_sum
 
-    @step_key("-4 u3 u2", "four times the product", equation="§8", cancels=True)
+    @step_key("-4 u3 u2", "four times the product", equation="§8")
     def roots_product_fourfold(self) -> R | None:
         """The product of the roots times -4."""
         return None if self.roots_product is None else -4 * self.roots_product
@@ -72,7 +72,7 @@ class WorkedExample(Quarters[R]):
         u3 = self.kind.u3 if self.follows else None
         return None if u3 is None else 2 * u3
 
-    @step_key("2 u2", "sum less distance", equation="§8", cancels=True)
+    @step_key("2 u2", "sum less distance", equation="§8")
     def u2_twice(self) -> R | None:
         """Twice the root u2."""
         return 2 * self.kind.u2 if self.follows else None

@@ -231,7 +231,7 @@ class _Block:
             return
         try:
             motion = solve(Top(**self.tops.one(row)))
-            record, beyond = motion.record_in_range(radians=self.radians, keys=keys)
+            record, beyond = motion_record.record_in_range(motion, radians=self.radians, keys=keys)
         except LagtopError as error:
             self.columns["error"][row] = str(error)
             return

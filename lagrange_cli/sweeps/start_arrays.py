@@ -22,7 +22,6 @@ from ..arithmetic.formulas import polynomial
 from ..arithmetic.types import Array, Mask
 from ..motion.gaps import Gaps, State, gaps_from_start
 from ..motion.kinds import Nutating
-from ..motion.record import CANCELLING
 from ..motion.regime import Facts, Regime
 from .mean_rates import MeanRates
 from .top_arrays import TopArrays
@@ -45,6 +44,8 @@ _MEANS = {
     "T_precession": "precession",
 }
 """The keys of the mean rates, and which of them."""
+_DIFFERENCES = frozenset("u1 u2 spin_rate_start spin_rate_half precession_rate_half".split())
+"""Keys in which larger numbers may cancel, so that they are computed in pairs."""
 
 
 class StartArrays:
@@ -79,7 +80,7 @@ class StartArrays:
             if key in _MEANS:
                 mean: Array = getattr(self.means, _MEANS[key])
                 return 2 * np.pi / abs(mean) if key.startswith("T_") else mean
-            if key in CANCELLING and key != "u_quarter":
+            if key in _DIFFERENCES:
                 value: Any = getattr(self.fine, key)
                 return None if value is None else value.high
             rough: Array | None = getattr(self.rough, key)
@@ -251,6 +252,8 @@ def pair_state(tops: TopArrays) -> State[DoubleDouble]:
         cos=(cosine - sine) * (cosine + sine),
         sin_half=sine,
         cos_half=cosine,
+        below=(cosine * cosine).scaled(2),
+        above=(sine * sine).scaled(2),
         theta_rate=theta_rate,
         psi_rate=psi_rate,
     )

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.double_double import DoubleDouble, two_sum
+from ..arithmetic.exact_cosine import Tilt
 from ..arithmetic.types import Array, Mask
-from ..inputs.top import Tilt
 from ..motion.gaps import State
 from ..motion.regime import FAST, Regime, regimes
 
@@ -139,6 +139,8 @@ class TopArrays(NamedTuple):
             cos=cos,
             sin_half=sin_half,
             cos_half=cos_half,
+            below=2 * cos_half * cos_half,
+            above=2 * sin_half * sin_half,
             theta_rate=zero,
             psi_rate=zero,
         )
