@@ -8,6 +8,7 @@ numbers in parentheses are Chrapan's.
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.types import Array
+from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.solve import solve
 from .method import Method, NotApplicableError, Sample, Sampled
@@ -27,12 +29,16 @@ def _ours(top: Top, _: str) -> Sample:
 def _ours_in_digits(top: Top, digits: int) -> Sample:
     import mpmath
 
-    from ..motion.digits import rows_in_digits
+    from ..motion.proved_table import ProvedTable
 
     def sample(t: Array) -> Sampled:
-        rows = rows_in_digits(solve(top), t.tolist(), digits, radians=True)
+        table = ProvedTable(solve(top), ANGLES, digits, radians=True)
+        rows = [table.row(Fraction(time)) for time in t.tolist()]
         with mpmath.workdps(digits + 10):
-            return [[mpmath.mpf(row[i]) for row in rows] for i in (1, 2, 3)]
+            return [
+                [mpmath.mpf(number.value) for number in column]
+                for column in zip(*rows, strict=True)
+            ]
 
     return sample
 

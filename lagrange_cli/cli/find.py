@@ -158,9 +158,10 @@ def _write(
     output: str,
 ) -> None:
     """Write the records as `lagtop sweep` does, a row for each motion."""
+    from ..motion.record import record_in_range
     from ..output.write import block_text, write_text_blocks
 
-    records = [motion.record_in_range(radians=radians, keys=keys)[0] for motion in motions]
+    records = [record_in_range(motion, radians=radians, keys=keys)[0] for motion in motions]
     if system is not None:
         for record in records:
             if record.get("remark"):

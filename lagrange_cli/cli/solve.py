@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import AbsentError, LagtopError
-from ..motion.record import all_keys, record_keys
+from ..motion.record import all_keys, record_in_range, record_keys
 from ..output.write import write_record, write_values
 from .command import (
     ExamplesFirst,
@@ -79,7 +79,7 @@ if TYPE_CHECKING:
     metavar="KEY,...",
     help="Print values of the record, bare, one per line; the keys stand below.",
 )
-@certify_option("JSON and CSV have KEY_radius beside every number.")
+@certify_option
 @click.option(
     "--budget", metavar="KEY", help="What each uncertain input contributes to a number (GUM)."
 )
@@ -144,8 +144,6 @@ def command(
     chosen = _steps(motion, rad) if derivation else keys
     wanted = list(dict.fromkeys(key.removesuffix("_std") for key in chosen)) if chosen else None
     record = _record(motion, digits, rad, wanted, certify)
-    if certify and fmt == "table" and keys is None:
-        record = _with_proof(record)
     if found.system is not None and record.get("remark"):
         record["remark"] = found.system.in_words(record["remark"])
     if found.stds:
@@ -171,12 +169,6 @@ def _check_keys(keys: list[str], radians: bool) -> None:
     check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
 
 
-def _with_proof(record: dict[str, Any]) -> dict[str, Any]:
-    """Return a record whose remark, which a drawn table ends with, says that it is proved."""
-    words = [record.get("remark"), "every digit is proved by an enclosure in balls (Arb)"]
-    return record | {"remark": "; ".join(filter(None, words))}
-
-
 def _write(
     record: dict[str, Any],
     system: System | None,
@@ -198,14 +190,9 @@ def _record(
     motion: Motion, digits: int | None, radians: bool, keys: list[str] | None, certify: bool
 ) -> dict[str, Any]:
     """Return the record, or some keys of it; of what is beyond the range of doubles, say so."""
-    if certify:
-        from ..motion.certified import Certified
-
-        record, beyond = Certified(motion.exact).record_in_range(digits, radians=radians, keys=keys)
-    elif digits:
-        return motion.digits(digits, radians=radians, keys=keys)
-    else:
-        record, beyond = motion.record_in_range(radians=radians, keys=keys)
+    record, beyond = record_in_range(
+        motion, digits=digits, radii=certify, radians=radians, keys=keys
+    )
     if beyond and keys:
         raise beyond[0]
     if beyond:

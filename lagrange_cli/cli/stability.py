@@ -8,7 +8,7 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_report
-from .options import COUNT, FILE, STRATUM_NAMES, certify_option, exclude, output_options
+from .options import COUNT, FILE, STRATUM_NAMES, exclude, output_options
 from .progress import with_steps
 from .row_options import jobs_option
 
@@ -47,7 +47,9 @@ class _ListingStrata(ExamplesFirst):
 )
 @click.option("--strata", type=STRATUM_NAMES, help="Only these, with commas between.")
 @jobs_option
-@certify_option("Errors are then upper bounds; no other methods run beside.")
+@click.option(
+    "--certify", is_flag=True, help="Print proved upper bounds of lagtop's errors; run no others."
+)
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
 @click.pass_context

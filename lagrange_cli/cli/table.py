@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -86,7 +86,7 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 @jobs_option
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
-@certify_option("CSV and JSON have KEY_radius after the columns.")
+@certify_option
 @output_options("csv", "json", "table", "parquet", "npy")
 def command(
     scene: str | None,
@@ -120,7 +120,6 @@ def command(
 
     options, interval = in_seconds(options, t_min=t_min, t_max=t_max, dt=dt)
     exclude({"--n": count, "--dt": dt})
-    exclude({"--columns": columns, "--digits": digits})
     if jobs is not None and tops is None:
         raise LagtopError("--jobs shares out many tops: it needs --tops")
     exclude({"--tops": tops, "--digits": digits})
@@ -144,9 +143,11 @@ def command(
         motion = motion_of(found, digits is not None)
         for name, value in {"--digits": digits, "--certify": certify or None}.items():
             exclude({name: value, "uncertain inputs": found.stds or None})
-        write = _write_certified if certify else partial(_write_one, found=found)
         with blaming(times):
-            write(motion, wish, digits, fmt, output)
+            if certify or digits is not None:
+                _write_proved(motion, wish, digits, certify, fmt, output)
+            else:
+                _write_one(motion, wish, found, fmt, output)
     else:
         _write_many(tops, scene, options, wish, fmt, output)
 
@@ -217,44 +218,37 @@ def _grid(motion: Motion, **interval: Any) -> Points:
     return grid(motion, **interval)
 
 
-def _write_one(
-    motion: Motion,
-    wish: Wish,
-    digits: int | None,
-    fmt: str,
-    output: str,
-    *,
-    found: Given,
-) -> None:
-    from ..motion.columns import chosen_columns
-    from ..motion.table import digit_rows, rows
-
-    times, shown = wish.times(motion), {"radians": wish.radians, "wrap": wish.wrap}
+def _times(motion: Motion, wish: Wish, fmt: str) -> Points:
+    """Return the times of a table.  Raises LagtopError for more rows than can be drawn."""
+    times = wish.times(motion)
     if fmt == "table" and times.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
-    header, blocks = rows(motion, times, wish.columns, stds=angle_stds(found, motion), **shown)
-    parts: Iterator[Any] = blocks if digits is None else digit_rows(motion, times, digits, **shown)
-    long = LONG if digits is None else LONG_IN_DIGITS
+    return times
+
+
+def _write_one(motion: Motion, wish: Wish, found: Given, fmt: str, output: str) -> None:
+    from ..motion.columns import chosen_columns
+    from ..motion.table import rows
+
+    times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
+    header, parts = rows(motion, times, wish.columns, stds=angle_stds(found, motion), **shown)
     if fmt == "table":
         units = [part.unit for part in chosen_columns(wish.columns)]
         if found.system is not None:
             units = [found.system.named(unit) for unit in units]
         named = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
         header = [*named, *header[len(named) :]]
-    write_table(header, with_progress(parts, times.count, long), fmt, output, times.count)
+    write_table(header, with_progress(parts, times.count, LONG), fmt, output, times.count)
 
 
-def _write_certified(motion: Motion, wish: Wish, digits: int | None, fmt: str, output: str) -> None:
-    """Write a table whose numbers are proved, with their radii but where it is drawn."""
-    from ..motion.certified import Certified
-    from ..motion.certified_table import CertifiedTable, certified_rows
+def _write_proved(
+    motion: Motion, wish: Wish, digits: int | None, radii: bool, fmt: str, output: str
+) -> None:
+    """Write a table whose numbers are rounded from enclosures."""
+    from ..motion.proved_table import ProvedTable
 
-    times = wish.times(motion)
-    if fmt == "table" and times.count > MAX_TABLE_ROWS:
-        raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
-    units = {"radians": wish.radians, "wrap": wish.wrap}
-    table = CertifiedTable(Certified(motion.exact), wish.columns, digits, **units)
-    header, parts = certified_rows(table, times, radii=fmt != "table")
+    times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
+    header, parts = ProvedTable(motion, wish.columns, digits, **shown).rows(times, radii=radii)
     write_table(header, with_progress(parts, times.count, LONG_IN_DIGITS), fmt, output, times.count)
 
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.angles import PER_RADIAN
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
 from ..inputs.measured import AS_SOLVED
@@ -64,8 +63,8 @@ def with_stds(
     stds = stds_of(record, uncertain)
     lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
     if lost := [key for key in lost if stds[f"{key}_std"] is None]:
-        reasons = uncertain.sensitivities.reasons
-        reason = next((reasons[key] for key in lost if key in reasons), "keys on request have none")
+        known = next((key for key in map(uncertain.name_of, lost) if key in NUMBER_KEYS), None)
+        reason = "keys on request have none" if known is None else uncertain.slopes.reason(known)
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
     return shown_with(record, stds) if shown else dict(record) | stds
 
@@ -107,31 +106,30 @@ def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
 
     Raises AbsentError where the motion has no such key, or it has no derivative.
     """
-    name = next(x for x in NUMBER_KEYS if unit_name(x, radians=radians) == key)
-    value, uncertain = getattr(motion, name), first_order(found, motion)
+    value, uncertain = motion.record(radians=radians, keys=[key])[key], first_order(found, motion)
     if value is None:
         raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
-    whole = uncertain.std(name)
+    whole = uncertain.std(key)
     if whole is None:
-        raise AbsentError(f"no uncertainty of first order: {uncertain.sensitivities.reasons[name]}")
+        reason = uncertain.slopes.reason(uncertain.name_of(key))
+        raise AbsentError(f"no uncertainty of first order: {reason}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units = _units(found, [key, *given])
-    scale = 1 / PER_RADIAN if key != name else 1.0
     lines = [
         _BudgetLine(
             line.input,
             line.value,
             line.std,
-            line.sensitivity * scale,
+            line.sensitivity,
             _over(units.get(key, "1"), units.get(line.input, "1")),
-            line.contribution * scale,
+            line.contribution,
             line.elasticity,
             line.share,
         )
-        for line in uncertain.budget(name, value, given)
+        for line in uncertain.budget(key, given)
     ]
-    lines.append(_BudgetLine(key, value * scale, whole * scale))
-    shown = f"{key} = {uncertain_text(value * scale, whole * scale)} {units.get(key, '')}".rstrip()
+    lines.append(_BudgetLine(key, value, whole))
+    shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
     conclusions = [f"{shown}, to first order; inputs are taken as independent."]
     return Findings({"key": key}, _budget_fields(units, key), lines, conclusions, units)
 
@@ -184,10 +182,11 @@ def sampled(
 
     uncertain = first_order(found, motion)
     numbers = {}
-    for key, value in motion.numbers().items():
-        scale = 1 / PER_RADIAN if radians and key.endswith("_deg") else 1.0
-        if value is not None and (std := uncertain.std(key)) != 0:
-            numbers[key] = value * scale, None if std is None else std * scale
+    record = motion.record(radians=radians)
+    for key in NUMBER_KEYS:
+        name = unit_name(key, radians=radians)
+        if record[name] is not None and (std := uncertain.std(name)) != 0:
+            numbers[key] = record[name], std
 
     def steps(blocks: Iterable[int], count: int) -> Iterable[int]:
         return with_progress(blocks, count, _LONG, lambda _: monte_carlo.BLOCK, "samples")

@@ -14,6 +14,7 @@ from ..inputs.mixed_body import warn_of
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
+from ..motion.record import record_in_range
 from ..motion.solve import Motion, solve
 from .roots import roots
 from .search import Scan, Search, Watch, scan_of, search_of
@@ -75,7 +76,7 @@ def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found
     motions, broken = [], None
     for point in points:
         motion = solve(search.top(point))
-        record = motion.record_in_range(radians=search.radians, keys=search.conditions.keys)[0]
+        record = record_in_range(motion, radians=search.radians, keys=search.conditions.keys)[0]
         fault = search.conditions.broken_by(record)
         broken = broken or fault
         if fault is None:

@@ -83,7 +83,8 @@ def _cells(record: Mapping[str, Any], line: Line, angle: str, view: View) -> lis
     if value is None:
         return []
     unit = angle if is_angle else line.unit
-    cells = (line.symbol, line.name, value_text(value), unit, line.equation)
+    last = record.get(f"{line.key}_{angle}_radius" if is_angle else f"{line.key}_radius")
+    cells = (line.symbol, line.name, value_text(value), unit, last or line.equation)
     return [spelt(cell, view) for cell in cells]
 
 
