@@ -149,6 +149,24 @@ class Judge:
             gap = abs(ball(Fraction(outward)) - ball(Fraction(computed)))
             return float((abs(away) / gap).abs_upper())
 
+    def away(self, key: str, computed: Fraction, digits: int) -> arb:
+        """Return the distance of a number of so many digits from the exact value, for sure."""
+        bits = 4 * digits + FIRST_BITS
+
+        def good(exact: arb | None) -> bool:
+            return exact is not None and (
+                exact.rel_accuracy_bits() >= 4 * digits or bool(exact == 0)
+            )
+
+        def number(motion: Requested) -> arb | None:
+            record = motion.record()
+            return record[key] if key in record else motion.requested().get(key)
+
+        exact = self._raised(number, good, bits)
+        with _precision(bits):
+            assert exact is not None
+            return abs(exact - ball(computed))
+
     def relative(self, key: str, computed: float, absolute: float | None = None) -> float:
         """Return the error of a key in eps of its exact value, or of the size given instead."""
         exact = self.record.get(key)

@@ -31,9 +31,7 @@ from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
-from lagrange_cli.motion.certified import Certified, certified
-from lagrange_cli.motion.certified_table import CertifiedTable
-from lagrange_cli.motion.digits import DigitTable
+from lagrange_cli.motion.proved_table import ProvedTable
 from lagrange_cli.motion.table import DEFAULT_COLUMNS
 from lagrange_cli.output.write import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
@@ -377,28 +375,21 @@ def angles(t: Array) -> None:
         print(f"{name:55} {cost:8.1f} ns  {cost / least:6.2f} x floor")
 
 
-def certify() -> None:
-    """Compare a proved row of t and three angles, and a proved record, with those of --digits."""
+def proofs() -> None:
+    """Time proved numbers: rows of t and three angles, records, and their radii."""
     count, motion = 40, solve(Top(psidot0=3.0, thetadot0=2.0))
     times = [Fraction(i, 7) for i in range(count)]
 
-    def proved(digits: int | None) -> Callable[[], object]:
-        table = CertifiedTable(Certified(motion.exact), DEFAULT_COLUMNS, digits)
+    def rows_with(digits: int | None) -> Callable[[], object]:
+        table = ProvedTable(motion, DEFAULT_COLUMNS, digits)
         return lambda: [table.row(t) for t in times]
 
-    def by_digits(digits: int) -> Callable[[], object]:
-        table = DigitTable(motion)
-        return lambda: [table.row(t, digits) for t in times]
-
-    rows = {f"--digits {n}": by_digits(n) for n in (20, 50, 100)}
-    rows |= {"--certify, doubles": proved(None)}
-    rows |= {f"--certify --digits {n}": proved(n) for n in (20, 50, 100)}
+    rows = {f"--digits {n}": rows_with(n) for n in (20, 50, 100)} | {"--certify": rows_with(None)}
     shown("A row, CPU", cpu_of(rows, count, 3), "--digits 20")
     records: dict[str, Callable[[], object]] = {
         "a record in doubles": lambda: solve(motion.top).record(),
-        "--digits 50": lambda: solve(motion.top).digits(50),
-        "--certify": lambda: certified(motion.top).record(),
-        "--certify --digits 50": lambda: certified(motion.top).record(50),
+        "--digits 50": lambda: solve(motion.top).record(digits=50),
+        "--certify": lambda: solve(motion.top).record(radii=True),
     }
     shown("A record, CPU", cpu_of(records, 1, 9), "doubles")
 
@@ -420,7 +411,7 @@ def main() -> None:
         "writing": partial(writing, t),
         "start_up": start_up,
         "jobs": jobs,
-        "certify": certify,
+        "proofs": proofs,
     }
     for name in sys.argv[1:] or sections:
         sections[name]()

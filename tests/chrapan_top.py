@@ -12,19 +12,23 @@ import pytest
 
 from lagrange_cli import Top
 from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.motion.digits import DigitTable, rows_in_digits
+from lagrange_cli.motion.proved_table import ProvedTable
 from lagrange_cli.motion.solve import solve
+from lagrange_cli.motion.table import DEFAULT_COLUMNS
 
 
 def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
     """Return the record of a top with so many digits."""
-    record: dict[str, Any] = solve(top).digits(digits, radians=radians)
+    record: dict[str, Any] = solve(top).record(digits=digits, radians=radians)
     return record
 
 
-def rows_of(top: Top, times: Sequence[Any], digits: int, **options: bool) -> list[list[Any]]:
+def rows_of(
+    top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
+) -> list[list[Any]]:
     """Return rows of t and the three angles with so many digits."""
-    return [list(row) for row in rows_in_digits(solve(top), times, digits, **options)]
+    table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, radians=radians)
+    return [[number.value for number in table.row(Fraction(t))] for t in times]
 
 
 DIGITS = 150
@@ -42,7 +46,7 @@ class Motion:
         self.m, self.A, self.C, self.s, self.g, self.r0 = map(ar.mpf, inputs_in_order)
         self.mgs, self.sigma = self.m * self.g * self.s, ar.sign(self.r0)
         self._rows: dict[Fraction, tuple[Any, Any, Any]] = {}
-        self._table = DigitTable(solve(top), radians=True)
+        self._table = ProvedTable(solve(top), DEFAULT_COLUMNS, DIGITS, radians=True)
 
     @cached_property
     def numbers(self) -> dict[str, Any]:
@@ -76,7 +80,7 @@ class Motion:
         """Return theta, phi, psi at a time, computed once."""
         exact = _fraction(t)
         if exact not in self._rows:
-            theta, phi, psi = (ar.mpf(text) for text in self._table.row(exact, DIGITS)[1:])
+            theta, phi, psi = (ar.mpf(number.value) for number in self._table.row(exact)[1:])
             self._rows[exact] = theta, phi, psi
         return self._rows[exact]
 

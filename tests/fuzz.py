@@ -2,7 +2,7 @@
 
     python tests/fuzz.py --scenes 20000 --seed 1
     python tests/fuzz.py --scenes 2000 --kinds 'over a pole,cusp' --sweep
-    python tests/fuzz.py --scenes 100000 --certify
+    python tests/fuzz.py --scenes 100000 --numbers
 
 Each scene is judged at twenty times: fifteen next to a whole, half or quarter number of periods
 (the double and both its neighbours), five anywhere, from 1 to 1e14 periods on both sides of the
@@ -10,8 +10,8 @@ start.  The report is the worst error of every kind, in units of `Judge.errors`;
 `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
 10 eps, and angles of all scenes at once (`sweep_angles`), up to 1e5 periods from the start.  What
 exceeds the bounds is listed with a command that shows it, and the exit code is 1.
-About 20 to 40 scenes a second and core.  With --certify the judge is the program's own arithmetic
-of balls (`solve --certify`), for the keys of `solve` alone: about 100 scenes a second and core.
+A third of the scenes are judged as decimals of twenty to sixty digits, in so many digits.  About 20
+to 40 scenes a second and core; with --numbers, without times, more.
 """
 
 from __future__ import annotations
@@ -22,21 +22,24 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from arb_balls import arb_bits as precision
 from ball_judge import Judge
-from balls.scene import Undecided
-from fuzz_scenes import KINDS, Scene
+from balls.requested import Requested
+from balls.scene import Undecided, ball
+from flint import arb
+from fuzz_scenes import KINDS, Scene, as_decimals
 
 from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.errors import OutOfRangeError
-from lagrange_cli.motion.certified import Certified
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 from lagrange_cli.motion.table import rows
 from lagrange_cli.sweeps.angles import sweep_angles
@@ -121,16 +124,91 @@ def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[flo
             tally.note(name, error, UNITS, show.format(f"t,{name}"))
 
 
+def number_of(motion: Motion, key: str) -> float | None:
+    """Return a number; one that is smaller than all doubles as 0."""
+    try:
+        value: float | None = getattr(motion, key)
+        return value
+    except OutOfRangeError as error:
+        return 0.0 if "5e-324" in str(error) else math.inf
+
+
 def judge_record(tally: Tally, judge: Judge, motion: Motion) -> None:
     """Judge every number of a record and on request: the nearest double, or rightly none."""
     for key in (*NUMBER_KEYS, *requested_keys()):
-        value, exact = getattr(motion, key), judge.exact(key)
+        value, exact = number_of(motion, key), judge.exact(key)
         show = f"lagtop solve {motion.top.options()} --get {key}"
+        tally.counts["numbers"] += 1
         if (value is None) != (exact is None):
             tally.counts[f"absent {key}"] += 1
             tally.violations.append(f"{key} is {value!r}, the judge has {exact}: {show}")
-        elif value is not None:
+        elif value is not None and not (value == math.inf and is_beyond(exact)):
             tally.note("key", judge.ulps(key, value), HALF_ULP, show + f"  # {key} {value!r}")
+
+
+def is_beyond(exact: arb | None) -> bool:
+    """Return whether a number is beyond all doubles."""
+    return exact is not None and bool(abs(exact) > arb(1.7976931348623157e308))
+
+
+def judge_digits(tally: Tally, judge: Judge, motion: Motion, digits: int) -> None:
+    """Judge every number of a record and on request in so many digits."""
+    found = motion.record(digits=digits, keys=[*NUMBER_KEYS, *requested_keys()])
+    for key, value in found.items():
+        exact = judge.exact(key)
+        show = f"{typed(motion.top)} --digits {digits} --get {key}  # {value}"
+        tally.counts["numbers in digits"] += 1
+        if (value is None) != (exact is None):
+            tally.counts[f"absent {key}"] += 1
+            tally.violations.append(f"{key}, the judge has {exact}: {show}")
+        elif value is not None and Decimal(value):
+            last = Decimal(value).adjusted() + 1 - digits
+            away = judge.away(key, Fraction(value), digits) / arb(10) ** last
+            tally.note("digits", float(away.abs_upper()), HALF_ULP, show)
+        elif exact is not None and not exact.contains(0):
+            tally.violations.append(f"{key} is no zero: {show}")
+
+
+def judge_path(tally: Tally, judge: Judge, motion: Motion) -> None:
+    """Judge the path by the signs of b (beta - b u) at both turning points, where these tell."""
+    if judge.facts.steady or motion.path is None:
+        return
+    scene = judge.scene
+    for bits in (160, 640, 4000):
+        with precision(bits):
+            inner = Requested(scene, Fraction(1), Fraction(1))
+            beta = ball(scene.psi_rate) * (1 - inner.u0 * inner.u0) + ball(scene.b) * inner.u0
+            first, last = ((beta - ball(scene.b) * u) * ball(scene.b) for u in (inner.u1, inner.u2))
+        if (first < 0 or first > 0) and (last < 0 or last > 0):
+            break
+    tally.counts["paths"] += 1
+    expected = None
+    if first < 0 and last > 0:
+        expected = "looping"
+    elif first > 0 or last < 0:
+        expected = "wavy"
+    if expected not in (None, motion.path):
+        tally.violations.append(f"path is {motion.path}, not {expected}: {typed(motion.top)}")
+
+
+def typed(top: Top) -> str:
+    """Return the command that solves a top, with all digits of its inputs."""
+    words = [
+        f"--{_TYPED.get(name, name)} {decimal_text(Fraction(x))}"
+        for name, x in top.as_dict().items()
+        if x is not None
+    ]
+    return f"lagtop solve {' '.join(words)}"
+
+
+_TYPED = {"theta0_deg": "theta0", "theta0_rad": "rad --theta0"}
+
+
+def decimal_text(x: Fraction) -> str:
+    """Return all digits of a fraction whose denominator is a product of twos and fives."""
+    with localcontext() as context:
+        context.prec = 2000
+        return f"{(Decimal(x.numerator) / Decimal(x.denominator)).normalize():g}"
 
 
 def inputs_of(judges: Sequence[tuple[Scene, Judge]]) -> dict[str, list[float]]:
@@ -194,51 +272,30 @@ def sweep_error(judge: Judge, key: str, value: float) -> float:
     return judge.relative(key, value)
 
 
-def certify_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
-    """Prove of some scenes of one kind that every number of `solve` is the nearest double."""
-    kind, seed, first, count, _ = task
-    tally = Tally()
-    for i in range(first, first + count):
-        scene = KINDS[kind](random.Random(f"{seed} {kind} {i}"))
-        tally.scenes += 1
-        try:
-            motion = solve(Top(**scene))
-            proofs = Certified(motion.exact)
-            record, _ = motion.record_in_range()
-        except LagtopError as error:
-            tally.counts[f"refused: {str(error)[:60]}"] += 1
-            continue
-        for key in NUMBER_KEYS:
-            value = record[key]
-            show = f"lagtop solve {motion.top.options()} --get {key}  # {value!r}"
-            try:
-                found = proofs.number(key)
-                proved = None if found is None else found.value
-            except OutOfRangeError:
-                proved = None
-            except LagtopError:
-                tally.counts["undecided keys"] += 1
-                tally.violations.append(f"undecided {key}: {show}")
-                continue
-            tally.counts["proved keys"] += 1
-            if value != proved:
-                tally.counts["not nearest"] += 1
-                tally.violations.append(f"{key} is not {proved!r}: {show}")
-    return kind, tally
+Task = tuple[str, int, int, int, str]
+"""A kind, a seed, the first scene, how many, and what is judged besides numbers and angles."""
 
 
-def run_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
+def run_chunk(task: Task) -> tuple[str, Tally]:
     """Judge some scenes of one kind."""
-    kind, seed, first, count, with_sweep = task
+    kind, seed, first, count, what = task
     tally, judges = Tally(), []
     for i in range(first, first + count):
         rng = random.Random(f"{seed} {kind} {i}")
-        scene = KINDS[kind](rng)
+        scene, digits = KINDS[kind](rng), 0
+        if rng.random() < 1 / 3 or any(isinstance(x, Fraction) for x in scene.values()):
+            scene, digits = as_decimals(rng, scene), rng.randrange(5, 40)
         tally.scenes += 1
         try:
             motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
             judge.record, judge.requested  # noqa: B018 - made here, so that what is undecided is counted once
+            judge_path(tally, judge, motion)
+            if digits:
+                judge_digits(tally, judge, motion, digits)
+                continue
             judge_record(tally, judge, motion)
+            if what == "numbers":
+                continue
             judge_angles(tally, judge, motion, times_of(rng, period_of(judge)))
         except LagtopError as error:
             tally.counts["refused"] += 1
@@ -248,38 +305,30 @@ def run_chunk(task: tuple[str, int, int, int, bool]) -> tuple[str, Tally]:
             tally.counts["undecided scenes"] += 1
             continue
         judges.append((scene, judge))
-    if with_sweep and judges:
+    if what == "sweep" and judges:
         judge_sweep(tally, judges)
         judge_many(tally, judges, random.Random(f"{seed} {kind} {first} many"))
     return kind, tally
 
 
-def run(
-    kinds: Sequence[str],
-    scenes: int,
-    seed: int,
-    *,
-    jobs: int,
-    with_sweep: bool,
-    judge: Callable[..., Any] = run_chunk,
-) -> Any:
+def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str) -> Any:
     """Yield the tally of each chunk, as they come."""
     share = -(-scenes // len(kinds))
     tasks = [
-        (kind, seed, first, min(CHUNK, share - first), with_sweep)
+        (kind, seed, first, min(CHUNK, share - first), what)
         for first in range(0, share, CHUNK)
         for kind in kinds
     ]
     with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(judge, tasks)
+        yield from pool.map(run_chunk, tasks)
 
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    names = "theta    phi    psi   quat   dphi   dpsi    key  sweep   many"
+    names = "theta    phi    psi   quat   dphi   dpsi    key digits  sweep   many"
     yield f"{'kind':24} scenes  times  {names}  beyond"
     for kind, tally in tallies.items():
-        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "sweep", "many")]
+        worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "digits", "sweep", "many")]
         shown = " ".join(f"{error:6.3g}" for error in worst)
         beyond = len(tally.violations)
         yield f"{kind:24} {tally.scenes:6} {tally.times:6} {shown}  {beyond}"
@@ -296,16 +345,15 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", help="only these, with commas between: " + ", ".join(KINDS))
     parser.add_argument("--sweep", action="store_true", help="judge `sweep` too")
-    parser.add_argument("--certify", action="store_true", help="prove the keys of `solve` alone")
+    parser.add_argument("--numbers", action="store_true", help="judge the keys of `solve` alone")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     options = parser.parse_args()
     kinds = [kind.strip() for kind in options.kinds.split(",")] if options.kinds else list(KINDS)
     if unknown := set(kinds) - set(KINDS):
         parser.error(f"kinds must be among {', '.join(KINDS)}, got {min(unknown)!r}")
     tallies, begun = {kind: Tally() for kind in kinds}, time.monotonic()
-    how: dict[str, Any] = {"jobs": options.jobs, "with_sweep": options.sweep}
-    how["judge"] = certify_chunk if options.certify else run_chunk
-    for kind, tally in run(kinds, options.scenes, options.seed, **how):
+    what = "numbers" if options.numbers else "sweep" if options.sweep else ""
+    for kind, tally in run(kinds, options.scenes, options.seed, jobs=options.jobs, what=what):
         tallies[kind].add(tally)
     print("\n".join(lines_of(tallies)))
     done = sum(tally.scenes for tally in tallies.values())

@@ -9,8 +9,11 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
 
-Scene = dict[str, float]
+Scene = dict[str, Any]
 TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
 """Degrees whose cosine is rational."""
 
@@ -237,6 +240,88 @@ def nice_numbers(rng: random.Random) -> Scene:
     }
 
 
+def tiny_tilt_with_rates(rng: random.Random) -> Scene:
+    """Return a start with rates next to a pole: 1e-150 to 0.1 degrees, or 180 less 1e-300 to 0.1.
+
+    Smaller tilts are refused; the latter are decimals.
+    """
+    scene = body(rng) | {"r0": signed(rng, power(rng, -3, 3))}
+    tilt: float | Fraction = power(rng, -150, -1)
+    if rng.random() < 0.4:
+        tilt = 180 - Fraction(f"{rng.uniform(1, 9):.3f}e{rng.randrange(-300, -1)}")
+    rates = {
+        "thetadot0": rng.choice([0, signed(rng, power(rng, -25, 1)), 1]),
+        "psidot0": rng.choice([0, signed(rng, power(rng, -25, 1)), 1]),
+    }
+    return scene | {"theta0_deg": tilt} | rates
+
+
+def special_radians(rng: random.Random) -> Scene:
+    """Return a tilt in radians next to 0, pi/2 or pi: within an ulp, or within 1e-30 of it."""
+    scene, digits = generic(rng), rng.randrange(20, 60)
+    del scene["theta0_deg"]
+    quarters = rng.randrange(3)
+    exact = Decimal(quarters) * _HALF_PI
+    away = Decimal(power(rng, -30, -1))
+    inwards = 1 if quarters == 0 else -1 if quarters == 2 else rng.choice([-1, 1])
+    near_pole = exact + inwards * away
+    tilt: float | Fraction = Fraction(f"{near_pole:.{digits}f}")
+    if rng.random() < 0.5:
+        tilt = float(near_pole) if 0 < float(near_pole) < math.pi else math.nextafter(math.pi, 0)
+    if rng.random() < 0.5:
+        scene |= {"thetadot0": 0, "psidot0": 0}
+    return scene | {"theta0_rad": tilt if tilt > 0 else 1e-9}
+
+
+_HALF_PI = Decimal("1.57079632679489661923132169163975144209858469968755291048747")
+
+
+def any_spin(rng: random.Random) -> Scene:
+    """Return |r0| from 1e-300 to 1e100 with both rates."""
+    scene = generic(rng) | {"r0": signed(rng, power(rng, -300, 100))}
+    return scene | {
+        "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
+        "psidot0": signed(rng, rng.choice([1, 3, power(rng, -6, 6)])),
+    }
+
+
+def next_to_a_cusp(rng: random.Random) -> Scene:
+    """Return a start just off a cusp, or off two that coincide, by 1e-60 to 1e-3."""
+    if rng.random() < 0.5:  # a double cusp: with b = a/2 the cubic at beta/b has a double root
+        turn = Fraction(rng.randrange(1, 9), 4)
+        m = rng.choice([1, 2, 5])
+        off = Fraction(f"{rng.choice([-1, 1])}e{rng.randrange(-60, -2)}")
+        scene: Scene = {"m": m, "A": 1, "C": 1, "s": 1, "g": 1, "r0": m / turn}
+        rise = rng.choice([Fraction(1), Fraction(1, 2)])
+        return scene | {"theta0_deg": 90, "thetadot0": rise, "psidot0": turn * (1 + off)}
+    scene = cusp(rng)
+    digits = rng.randrange(20, 60)
+    rate = Fraction(scene["psidot0"]) * (1 + Fraction(f"{rng.uniform(-9, 9):.3f}e-{digits}"))
+    return scene | {"psidot0": rate}
+
+
+def in_doubles(scene: Scene) -> Scene:
+    """Return a scene with each input rounded to the nearest double."""
+    return {name: float(value) for name, value in scene.items()}
+
+
+def as_decimals(rng: random.Random, scene: Scene) -> Scene:
+    """Return a scene whose inputs, but for integers, have 20 to 60 digits more at random."""
+
+    def longer(x: float | Fraction) -> float | Fraction:
+        if isinstance(x, Fraction) or x == int(x) or not 1e-290 < abs(x) < 1e90:
+            return x
+        more = "".join(rng.choice("0123456789") for _ in range(rng.randrange(3, 43)))
+        mantissa, _, exponent = repr(float(x)).partition("e")
+        exact = Fraction(f"{mantissa}{more}e{exponent or 0}")
+        return exact if abs(exact) <= 180 or exact != x else x
+
+    longer_scene = {name: longer(x) for name, x in scene.items()}
+    if scene["C"] == 2 * scene["A"]:  # no rigid body has more
+        longer_scene["C"] = 2 * longer_scene["A"]
+    return longer_scene
+
+
 KINDS: dict[str, Callable[[random.Random], Scene]] = {
     function.__name__.replace("_", " "): function
     for function in (
@@ -257,6 +342,10 @@ KINDS: dict[str, Callable[[random.Random], Scene]] = {
         no_torque,
         no_spin,
         tiny_tilt,
+        tiny_tilt_with_rates,
+        special_radians,
+        any_spin,
+        next_to_a_cusp,
         nice_numbers,
     )
 }

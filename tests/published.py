@@ -16,7 +16,8 @@ from ball_judge import Judge
 from conftest import ROOT
 
 from lagrange_cli import Motion, read_scene, solve
-from lagrange_cli.motion.digits import DigitTable
+from lagrange_cli.inputs.names import ANGLES
+from lagrange_cli.motion.proved_table import ProvedTable
 
 Many = Any
 """An mpf with many digits."""
@@ -201,15 +202,17 @@ def motion(scene: str) -> Motion:
 @cache
 def _angles(scene: str, t: Fraction) -> list[Many]:
     """Return the angles that lagtop gives at a time."""
-    row = DigitTable(motion(scene), radians=True).row(t, DIGITS)
-    return [mpmath.mpf(str(text)) for text in row[1:]]
+    row = ProvedTable(motion(scene), ANGLES, DIGITS, radians=True).row(t)
+    return [mpmath.mpf(number.value) for number in row]
 
 
 def exact(x: Printed) -> Many:
     """Return the exact value of a printed number, by lagtop."""
     with mpmath.workdps(DIGITS):
         if not x.t:
-            return mpmath.mpf(str(motion(x.scene).digits(DIGITS, keys=[x.quantity])[x.quantity]))
+            return mpmath.mpf(
+                str(motion(x.scene).record(digits=DIGITS, keys=[x.quantity])[x.quantity])
+            )
         t, step = Fraction(x.t), mpmath.mpf(STEP.numerator) / STEP.denominator
         before, after = _angles(x.scene, t - STEP), _angles(x.scene, t + STEP)
         rates = [(b - a) / (2 * step) for a, b in zip(before, after, strict=True)]

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from conftest import Lagtop, assert_one_line
+from conftest import Lagtop
 from scenes import UNIT
 
 from lagrange_cli import Top, solve
+from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.balls import balls
-from lagrange_cli.arithmetic.correct_rounding import TooFewDigitsError
+from lagrange_cli.arithmetic.rounding import Settled
 from lagrange_cli.bench import battery, proofs
 from lagrange_cli.bench.hard_scenes import hard_scene
 from lagrange_cli.bench.reference import Reference, angle_units, quaternion_units
-from lagrange_cli.motion.certified import Certified
-from lagrange_cli.motion.certified_table import CertifiedTable
+from lagrange_cli.motion.proved_table import ProvedTable
 
 START = {"r0": 40.0, "psidot0": 3.0, "thetadot0": 2.0}
 
@@ -32,7 +31,8 @@ def test_bounds_are_the_errors_that_the_reference_finds(stratum: str) -> None:
     """Both judges see the same scene at the same times, and share no formula."""
     scene = hard_scene(stratum, 11, 0, 2)
     proved, found = proofs.prove(scene), battery.judge(scene, peers=False)
-    assert proved.key_ulps == pytest.approx(found.key_ulps, abs=1e-9)
+    assert found.key_ulps * (1 - 1e-12) <= proved.key_ulps  # which is rounded up to six digits
+    assert proved.key_ulps <= found.key_ulps * (1 + 1e-5) + 1e-9
     assert proved.key_ulps <= 0.5
     for name in ("theta_units", "phi_units", "psi_units", "quaternion_units"):
         assert getattr(proved, name) == pytest.approx(getattr(found, name), rel=0.01, abs=0.01)
@@ -42,54 +42,51 @@ def test_bounds_are_the_errors_that_the_reference_finds(stratum: str) -> None:
 @pytest.mark.parametrize("t", [0.3, -1e3, 1e12])
 def test_a_wrong_angle_is_seen(t: float) -> None:
     motion = solve(Top(**START))
-    exactly = Certified(motion.exact)
-    table = CertifiedTable(exactly, proofs.COLUMNS, radians=True)
+    table = ProvedTable(motion, proofs.COLUMNS, radians=True)
     values = [float(x.value) for x in table.row(Fraction(t))]
-    right = proofs.bounds_at(exactly, t, values)
+    right = proofs.bounds_at(table, t, values)
     assert max(right) <= 0.5
     exact = Reference(Top(**START), 80).at(t)
     for i in range(7):
         wrong = [x + (1e-6 * max(1, abs(x)) if i == j else 0) for j, x in enumerate(values)]
-        bounds = proofs.bounds_at(exactly, t, wrong)
+        bounds = proofs.bounds_at(table, t, wrong)
         errors = *angle_units(wrong[:3], exact), quaternion_units(wrong[3:], exact)
         assert [n for n in range(7) if bounds[n] != right[n]] == [i]
         assert bounds[i] == pytest.approx(errors[min(i, 3)], rel=1e-3)
     turned = [*values[:2], values[2] + 2 * math.pi, *values[3:]]
-    assert proofs.bounds_at(exactly, t, turned)[2] > 1e3
-    assert proofs.bounds_at(exactly, t, [math.nan] * 7) == [math.inf] * 7
+    assert proofs.bounds_at(table, t, turned)[2] > 1e3
+    assert proofs.bounds_at(table, t, [math.nan] * 7) == [math.inf] * 7
 
 
 def test_a_key_one_double_off_is_seen() -> None:
     motion = solve(Top(**START))
-    proved = Certified(motion.exact)
-    assert proofs.worst_key(motion, proved)[0] <= 0.5
-    motion._doubles["K"] = math.nextafter(motion.K, np.inf)
-    ulps, key = proofs.worst_key(motion, proved)
+    assert proofs.worst_key(motion)[0] <= 0.5
+    motion._doubles["K"] = Settled(math.nextafter(motion.K, np.inf), ())
+    ulps, key = proofs.worst_key(motion)
     assert key == "K"
     assert 0.5 < ulps < 1.5
     motion._doubles["K"] = None
-    assert proofs.worst_key(motion, proved) == (math.inf, "K")
+    assert proofs.worst_key(motion) == (math.inf, "K")
 
 
 def test_a_gap_is_that_on_the_side_of_the_exact_value() -> None:
     """Next to 1 gaps are 2^-52 above and 2^-53 below."""
-    third, ar = Fraction(1, 3) / 2**52, balls(192)
-    with ar.working():
-        assert proofs.ulps(1.0, ar.convert(1 + third)) == pytest.approx(1 / 3)
-        assert proofs.ulps(1.0, ar.convert(1 - third)) == pytest.approx(2 / 3)
-        wide = ar.widened(ar.convert(1 + third), lambda: ar.convert(third / 100))
-        with pytest.raises(TooFewDigitsError):
-            proofs.ulps(1.0, wide)
+    third, ar = Fraction(1, 3) / 2**52, balls(60)
+    assert proofs.ulps(1.0, ar.convert(1 + third)) == pytest.approx(1 / 3, rel=1e-5)
+    assert proofs.ulps(1.0, ar.convert(1 - third)) == pytest.approx(2 / 3, rel=1e-5)
+    wide = ar.convert(1 + third).enlarged(ar.convert(third / 100).greatest)
+    with pytest.raises(TooFewDigitsError):
+        proofs.ulps(1.0, wide)
 
 
 def test_a_tie_and_a_zero_are_judged_by_the_fraction() -> None:
     """Take a = 3 + 3 eps, midway between two doubles, and no spin."""
     motion = solve(Top(**UNIT | {"m": 1 + 2.0**-52, "s": 1.5, "r0": 0.0, "theta0_deg": 60.0}))
-    ulps, key = proofs.worst_key(motion, Certified(motion.exact))
+    ulps, key = proofs.worst_key(motion)
     assert key == "a"
-    assert ulps == pytest.approx(0.5)
-    motion._doubles["spin_rate_half"] = 5e-324
-    assert proofs.worst_key(motion, Certified(motion.exact))[0] >= 1
+    assert ulps == pytest.approx(0.5, rel=1e-5)
+    motion._doubles["spin_rate_half"] = Settled(5e-324, ())
+    assert proofs.worst_key(motion)[0] >= 1
 
 
 def test_the_report_has_a_column_of_bounds(lagtop: Lagtop) -> None:
@@ -109,14 +106,3 @@ def test_a_broken_promise_is_told(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatc
     result = lagtop("stability", "--strata", "fast", "--samples", 1, "--certify")
     assert result.exit_code == 1
     assert "Exceeded in: fast." in result.stdout
-
-
-def test_without_the_package_there_is_a_remedy(
-    lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delattr(sys.modules["lagrange_cli.bench"], "proofs")
-    for name in ("bench.proofs", "motion.certified", "arithmetic.balls"):
-        monkeypatch.delitem(sys.modules, f"lagrange_cli.{name}")
-    monkeypatch.setitem(sys.modules, "flint", None)
-    result = lagtop("stability", "--certify", "--samples", 1)
-    assert_one_line(result, 69, "proved digits need python-flint: pip install 'lagtop[certify]'")

@@ -13,6 +13,7 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.arithmetic.doubles import DOUBLES
 from lagrange_cli.inputs.uncertain import Uncertain, parse_uncertain
 from lagrange_cli.motion.uncertainty import by_given
 from lagrange_cli.output.uncertain_text import uncertain_text
@@ -88,7 +89,7 @@ def test_measured_inputs_hand_their_uncertainty_on() -> None:
     """A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0): differences of both."""
     given = {"m": 2.0, "A_cm": 3.0, "s": 0.5, "phidot0": 4.0, "psidot0": 1.5, "theta0_deg": 50.0}
     top = Top(C=1, g=1, **given)
-    chain = by_given(top, given)
+    chain = by_given(DOUBLES, top, given)
     for name, row in chain.items():
         if name not in given:
             continue

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.arithmetic.correct_rounding import text_of
 from lagrange_cli.arithmetic.points import EvenPoints
+from lagrange_cli.arithmetic.rounding import text_of
 from lagrange_cli.inputs.ranges import parse_values
 
 
@@ -72,7 +72,7 @@ def test_what_is_no_double_is_not_rounded(value: Any) -> None:
     longer = np.finfo(np.longdouble).nmant > 52
     assert (top.thetadot0 != 1 / 3) == longer
     motion = solve(top)
-    assert motion.digits(25, keys=["r0"])["r0"] == text_of(exact, 25)
+    assert motion.record(digits=25, keys=["r0"])["r0"] == text_of(exact, 25)
     assert json.dumps(motion.record(keys=["r0"])) == json.dumps({"r0": float(exact)})
 
 

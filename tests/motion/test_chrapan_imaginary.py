@@ -190,8 +190,8 @@ class TestChrapan(EquationTests):
 def test_the_form_of_a_motion_has_the_digits_asked_for() -> None:
     motion = solve(Top())
     ours = imaginary_form(motion)
-    psi = motion.digits(30, keys=["psi_half_rad"], radians=True)["psi_half_rad"]
-    half = ours.ar.mpf(motion.digits(40, keys=["T_nutation"])["T_nutation"]) / 2
+    psi = motion.record(digits=30, keys=["psi_half_rad"], radians=True)["psi_half_rad"]
+    half = ours.ar.mpf(motion.record(digits=40, keys=["T_nutation"])["T_nutation"]) / 2
     assert abs(ours.psi(half) - ours.ar.mpf(psi)) < 1e-29
 
 

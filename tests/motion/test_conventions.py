@@ -51,11 +51,11 @@ def test_books_would_swap_spin_and_precession(motion: Motion) -> None:
 
 def test_at_the_start_both_x_axes_are_the_line_of_nodes(motion: Motion) -> None:
     start = attitude(motion, np.zeros(1))[0]
-    """Worst seen: 2.3e-16."""
-    assert start.apply(SPACE[0]) == pytest.approx(SPACE[0], rel=0, abs=3e-16)
+    """Worst seen: 3.4e-16, by the product of scipy."""
+    assert start.apply(SPACE[0]) == pytest.approx(SPACE[0], rel=0, abs=4e-16)
     tilt = np.radians(motion.top.inputs()["theta0_deg"])
     assert start.apply(SPACE[2]) == pytest.approx(
-        [0, -np.sin(tilt), np.cos(tilt)], rel=0, abs=3e-16
+        [0, -np.sin(tilt), np.cos(tilt)], rel=0, abs=4e-16
     )
     at = motion.table([0.0], ["phi", "psi"])
     assert at["phi"] == at["psi"] == 0.0

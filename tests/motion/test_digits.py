@@ -15,18 +15,22 @@ from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.bench.reference import Reference
-from lagrange_cli.motion.digits import rows_in_digits
+from lagrange_cli.motion.proved_table import ProvedTable
+from lagrange_cli.motion.table import DEFAULT_COLUMNS
 
 
 def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
     """Return the record of a top with so many digits."""
-    record: dict[str, Any] = solve(top).digits(digits, radians=radians)
+    record: dict[str, Any] = solve(top).record(digits=digits, radians=radians)
     return record
 
 
-def rows_of(top: Top, times: Sequence[Any], digits: int, **options: bool) -> list[list[Any]]:
+def rows_of(
+    top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
+) -> list[list[Any]]:
     """Return rows of t and the three angles with so many digits."""
-    return [list(row) for row in rows_in_digits(solve(top), times, digits, **options)]
+    table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, radians=radians)
+    return [[number.value for number in table.row(Fraction(t))] for t in times]
 
 
 def same(text: Any, true: Any, digits: int) -> bool:
@@ -39,7 +43,7 @@ def same(text: Any, true: Any, digits: int) -> bool:
 
 @pytest.mark.parametrize("digits", [1, 20, 50, 200])
 def test_the_worked_example(digits: int) -> None:
-    record = solve(Top()).digits(digits)
+    record = solve(Top()).record(digits=digits)
     for key, true in oracle.constants(oracle.Scene(), dps=digits + 30).items():
         assert same(record[key], true, digits) or abs(true) < 1e-60, key
 
@@ -230,7 +234,7 @@ def test_a_tilt_that_falls_to_0_on_the_separatrix_keeps_its_digits(t: int) -> No
     """A pendulum by the textbook: sin(theta/2) = 1/cosh(sqrt(a/2) t - asinh 1)."""
     motion = solve(Top(m=1, A=1, C=1, s=1, g=2, r0=0, theta0_deg=90, thetadot0=2))
     assert motion.regime == "separatrix"
-    ((_, theta, phi, psi),) = rows_in_digits(motion, [t], 30, radians=True)
+    ((_, theta, phi, psi),) = rows_of(motion.top, [t], 30, radians=True)
     with mpmath.workdps(60):
         exact = 2 * mpmath.asin(mpmath.sech(mpmath.sqrt(2) * t - mpmath.asinh(1)))
         assert abs(mpmath.mpf(theta) / exact - 1) < 1e-29

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import csv_text, double_text, parse_number, value_text
 from lagrange_cli.cli.group import main
-from lagrange_cli.motion.record import NUMBER_KEYS
+from lagrange_cli.motion.record import NUMBER_KEYS, record_in_range
 from lagrange_cli.output.formats import FORMATS
 from lagrange_cli.output.write import block_text
 
@@ -88,7 +88,7 @@ def test_every_start_gives_numbers_or_one_clear_error(
         with pytest.raises(LagtopError, match=r"^\w+ must be "):
             solve(Top(**start))
         return
-    record, _ = motion.record_in_range()
+    record, _ = record_in_range(motion)
     assert all(math.isfinite(record[key] or 0) for key in NUMBER_KEYS)
     t = np.linspace(-1, 1, 101) * float(motion.T_nutation or 1)
     angles = motion.angles(t)
@@ -112,6 +112,6 @@ def test_json_is_json_and_carries_the_doubles(r0: float, theta0: float) -> None:
         return
     record = json.loads(result.stdout, parse_constant=pytest.fail)
     assert record["r0"] == r0
-    expected, beyond = solve(Top(r0=r0, theta0_deg=theta0)).record_in_range()
+    expected, beyond = record_in_range(solve(Top(r0=r0, theta0_deg=theta0)))
     assert record == expected
     assert result.stderr == (f"Warning: {'; '.join(map(str, beyond))}\n" if beyond else "")

@@ -43,7 +43,7 @@ def test_a_key_that_is_asked_for_is_an_error(key: str) -> None:
 def test_other_keys_do_not_warn() -> None:
     """Warnings are errors in these tests."""
     assert solve(Top(**SCENE)).record(keys=["T_nutation", "spin_rate_start"])
-    assert solve(Top(**SCENE)).digits(20)["spin_rate_half"].startswith("3.56")
+    assert solve(Top(**SCENE)).record(digits=20)["spin_rate_half"].startswith("3.56")
 
 
 def test_sweep() -> None:

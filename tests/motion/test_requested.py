@@ -29,7 +29,7 @@ DIGITS = 40
 
 def requested(motion: Motion) -> dict[str, Any]:
     """Return the keys on request of a motion of the text in 40 digits."""
-    texts = solve(motion.top).digits(DIGITS, keys=requested_keys())
+    texts = solve(motion.top).record(digits=DIGITS, keys=requested_keys())
     return {key: ar.mpf(text) for key, text in texts.items()}
 
 

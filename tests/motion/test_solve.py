@@ -17,7 +17,7 @@ from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.arithmetic.doubles import DOUBLES
 from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.motion.gaps import State, gaps_from_rest, gaps_of, state
+from lagrange_cli.motion.gaps import State, gaps_from_rest, state
 from lagrange_cli.motion.kinds import kind_of
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import Regime
@@ -29,7 +29,7 @@ def numbers_in(ar: Any, top: Top) -> dict[str, Any]:
     exact = exact_of(top)
     with ar.working():
         start = state(ar, exact)
-        motion = kind_of(exact.facts)(ar, exact.facts, start, gaps_of(ar, exact.facts, start))
+        motion = kind_of(exact.facts)(ar, exact.facts, start, gaps_from_rest(ar, start))
     return {key: None if key in motion.lacks else getattr(motion, key) for key in NUMBER_KEYS}
 
 

@@ -67,7 +67,7 @@ def test_one_top(top: Top) -> None:
     """A record, its digits, the angles and a table are those of a program without settings."""
     times = TIMES * (solve(top).T_nutation or 1.0)
     same(lambda: solve(top).record().values())
-    same(lambda: solve(top).digits(20).values())
+    same(lambda: solve(top).record(digits=20).values())
     same(lambda: solve(top).angles(times))
     same(lambda: solve(top).table(times, ["axis", "quaternion", "energy"]).values())
 

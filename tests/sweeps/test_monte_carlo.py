@@ -9,6 +9,7 @@ import pytest
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve, sweep
+from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.uncertainty import FirstOrder
 from lagrange_cli.sweeps.monte_carlo import (
     FAILS,
@@ -98,7 +99,7 @@ def test_numbers_correlate_with_inputs_by_the_signs_of_the_derivatives(regime: s
         assert motion.regime == regime
         record = motion.numbers()
         drawn = {x: rng.normal(inputs[x], std, samples) for x, std in uncertain.stds.items()}
-        wholes = {key: uncertain.std(key) or 0.0 for key in uncertain.sensitivities.derivatives}
+        wholes = {key: uncertain.std(key) or 0.0 for key in NUMBER_KEYS if uncertain.has(key)}
         moved = [key for key, std in wholes.items() if std > 1e-12 * (1 + abs(record[key] or 0))]
         found = sweep(keys=moved, **inputs | drawn)
         for key in moved:

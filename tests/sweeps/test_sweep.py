@@ -23,6 +23,7 @@ from scenes import EPS, random_scene
 from lagrange_cli import LagtopError, Motion, Top, solve
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.bench.hard_scenes import STRATA
+from lagrange_cli.errors import OutOfRangeWarning
 from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.motion.gaps import state as state_of
 from lagrange_cli.motion.record import NUMBER_KEYS
@@ -182,7 +183,7 @@ SPECIAL: list[dict[str, Any]] = [
     {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": math.nextafter(2, 3), "theta0_deg": 0},
     {"m": 1, "A": 1, "C": 1, "s": 1, "g": 1, "r0": 2, "theta0_deg": 0},
     {"m": 1e-40, "A": 1e-40, "C": 1e-40},
-    {"r0": 1e90},
+    {"r0": 1e70},
     {"theta0_deg": 1e-100},
 ]
 
@@ -199,6 +200,16 @@ def test_every_regime_as_solve(inputs: dict[str, Any], radians: bool) -> None:
             assert float(found[key]) == pytest.approx(value, rel=2e-15, abs=1e-15), key
         else:
             assert value == found[key].item() or (value is None and np.isnan(found[key])), key
+
+
+def test_a_number_smaller_than_all_doubles_is_missing_and_named() -> None:
+    """The nome of a top with r0 = 1e90 is 3.975e-356, not 0."""
+    motion, found = solve(Top(r0=1e90)), sweep(r0=1e90)
+    with pytest.warns(OutOfRangeWarning, match=r"nome .* got 3.975e-356: use --digits"):
+        assert motion.record()["nome"] is None
+    assert math.isnan(found["nome"])
+    assert "nome must be 0 or at least 5e-324" in str(found["error"].item())
+    assert motion.record(digits=4, keys=["nome"]) == {"nome": "3.975e-356"}
 
 
 def test_shapes_and_keys() -> None:

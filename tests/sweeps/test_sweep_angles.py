@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from ball_judge import Judge
 from fuzz import inputs_of, period_of, times_of
-from fuzz_scenes import KINDS
+from fuzz_scenes import KINDS, in_doubles
 
 from lagrange_cli import LagtopError, Top, solve, sweep_angles
 from lagrange_cli.sweeps import angles
@@ -49,7 +49,7 @@ def top_of(inputs: dict[str, Any], i: int) -> Top:
 def test_hard_scenes_against_balls(kind: str) -> None:
     """Worst of 720 other scenes: 3.7 units, without spin."""
     rng = random.Random(f"many {kind}")
-    scenes = [KINDS[kind](rng) for _ in range(6)]
+    scenes = [in_doubles(KINDS[kind](rng)) for _ in range(6)]
     judges = []
     for scene in scenes:
         try:

@@ -1,0 +1,221 @@
+"""Numbers of `solve` against the judge in Arb's balls, which has formulas of its own."""
+
+from __future__ import annotations
+
+import json
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from arb_balls import arb_bits, exact_arb, holds
+from ball_judge import Judge
+from conftest import Lagtop
+from scenes import EVERY_KIND as SCENES
+from scenes import UNIT
+
+from lagrange_cli import Top, solve
+from lagrange_cli.arithmetic.ball import TooFewDigitsError
+from lagrange_cli.arithmetic.balls import balls
+from lagrange_cli.errors import OutOfRangeWarning
+from lagrange_cli.motion import gaps
+from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
+
+BODY = "--m 1 --A 1 --C 1 --s 1 --g 1".split()
+MUST_PRINT = {
+    "a tiny tilt with a nutation rate": (
+        "--r0 1 --theta0 1e-100 --thetadot0 1 --get mean_precession_rate",
+        "0.22824829393166618",
+    ),
+    "a tiny tilt with both rates": (
+        "--r0 1 --theta0 1e-100 --thetadot0 1 --psidot0 1 --get mean_precession_rate",
+        "1.8012981597779512",
+    ),
+    "a tiny tilt in few digits": (
+        "--r0 1 --theta0 1e-70 --thetadot0 1 --digits 10 --get mean_precession_rate",
+        "0.2282482939",
+    ),
+    "next to the bottom": (
+        f"--r0 1 --theta0 179.{'9' * 100} --thetadot0 1 --digits 10 --get mean_precession_rate",
+        "0.5432649536",
+    ),
+    "a period whose rate is far below its parts": (
+        "--r0 1e35 --theta0 89 --psidot0 1 --get T_precession",
+        "6.283185307179586e+35",
+    ),
+    "the same in digits": (
+        "--r0 1e60 --theta0 60 --psidot0 -3 --digits 30 --get T_precession",
+        "6.28318530717958647692528676656e+60",
+    ),
+    "quarters of a fast top": (
+        "--r0 1e25 --theta0 159 --get precession_rate_upper,precession_rate_lower",
+        "3.633802276324186e-26\n1.6366197723675812e-25",
+    ),
+    "the same in twenty digits": (
+        "--r0 1e25 --theta0 159 --digits 20 --get precession_rate_upper,precession_rate_lower",
+        "3.6338022763241865692e-26\n1.6366197723675813431e-25",
+    ),
+    "radians next to pi": (
+        "--rad --theta0 3.141592653589793 --r0 5 --get nome",
+        "4.458263325391967e-36",
+    ),
+    "a double cusp": (
+        f"--m 5 --r0 5 --theta0 90 --thetadot0 1 --psidot0 1.{'0' * 29}1 --digits 250 --get path",
+        "looping",
+    ),
+}
+"""Numbers that were wrong or missing when two precisions that agree were taken for a proof."""
+OF_THE_EXAMPLE = {
+    "radians at pi": (
+        "--rad --theta0 3.14159265358979323846264338327950288 --digits 10 --get k",
+        "1.176543587e-36",
+    ),
+    "radians at pi with a rate": (
+        "--rad --theta0 3.141592653589793238462643383 --r0 5 --thetadot0 3 --digits 10 "
+        "--get mean_precession_rate",
+        "11.51093365",
+    ),
+}
+
+
+@pytest.mark.parametrize(("arguments", "text"), MUST_PRINT.values(), ids=MUST_PRINT)
+def test_what_two_precisions_had_wrong(arguments: str, text: str, lagtop: Lagtop) -> None:
+    """Each value is of Arb or of mpmath in 400 digits, by other formulas."""
+    assert lagtop("solve", *BODY, *arguments.split()).stdout == f"{text}\n"
+
+
+@pytest.mark.parametrize(("arguments", "text"), OF_THE_EXAMPLE.values(), ids=OF_THE_EXAMPLE)
+def test_what_two_precisions_had_wrong_of_the_example(
+    arguments: str, text: str, lagtop: Lagtop
+) -> None:
+    assert lagtop("solve", *arguments.split()).stdout == f"{text}\n"
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_every_number_is_the_nearest_double_and_its_radius_holds(scene: dict[str, Any]) -> None:
+    top = Top(**scene)
+    record, judge = solve(top).record(radii=True), Judge(top.as_dict())
+    assert {key: record[key] for key in solve(top).record()} == solve(top).record()
+    with arb_bits(400):
+        for key in NUMBER_KEYS:
+            exact = judge.record.get(key)
+            assert (record[key] is None) == (exact is None) == (record[f"{key}_radius"] is None)
+            if exact is not None:
+                away = abs(exact - exact_arb(record[key]))
+                radius = exact_arb(record[f"{key}_radius"])
+                assert not away > radius, key
+                assert radius <= abs(exact) * 2.0**-52 or away.contains(0), key
+                assert judge.ulps(key, record[key]) <= 0.5 + 1e-9, key
+
+
+@pytest.mark.parametrize("name", ["worked example", "any start", "over the top", "torque-free"])
+def test_enclosures_of_numbers_on_request_hold_the_judges(name: str) -> None:
+    top = Top(**SCENES[name])
+    motion, judge = solve(top), Judge(top.as_dict())
+    with arb_bits(400):
+        for key in requested_keys():
+            exact, found = judge.requested.get(key), motion.enclosure(key, 48)
+            assert (exact is None) == (found is None), key
+            assert exact is None or holds(found, exact), key  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("digits", [1, 20, 150])
+@pytest.mark.parametrize("name", ["worked example", "any start", "separatrix", "radians"])
+def test_digits_are_those_of_the_judge(digits: int, name: str) -> None:
+    top = Top(**SCENES[name])
+    record = solve(top).record(digits=digits, radii=True)
+    judge = Judge(top.as_dict())
+    judge._first = 1200
+    with arb_bits(1200):
+        for key in ("T_nutation", "u2", "theta_max_deg"):
+            if record[key] is not None:
+                exact = judge._raised(lambda motion: motion.record(), lambda _: True, 1200)[key]
+                assert exact is not None
+                size = Fraction(10) ** (Decimal(record[key]).adjusted() + 1 - digits)
+                away = abs(exact - exact_arb(record[key]))
+                assert away <= exact_arb(size) / 2, key
+                assert not away > exact_arb(record[f"{key}_radius"]), key
+
+
+def test_radians_and_inputs_have_radii() -> None:
+    record = solve(Top(theta0_deg=30.0)).record(radians=True, radii=True)
+    assert record["theta0_rad"] == 0.5235987755982989
+    assert 0 < float(record["theta0_rad_radius"]) < 1.2e-16
+    assert record["m_radius"] == "0.0"
+    assert list(record)[-1] == "precession_rate_half_radius"
+    rounded = solve(Top(m=Fraction("1587.25"))).record(digits=4, radii=True)
+    assert (rounded["m"], rounded["m_radius"]) == ("1587.0", "0.26")
+    some = solve(Top()).record(keys=["T_nutation", "regime"], radii=True)
+    assert list(some) == ["regime", "T_nutation", "T_nutation_radius"]
+
+
+def test_radii_need_no_package_and_no_other_digits(lagtop: Lagtop) -> None:
+    plain = json.loads(lagtop("solve", "--format", "json").stdout)
+    radii = json.loads(lagtop("solve", "--format", "json", "--certify").stdout)
+    assert {key: radii[key] for key in plain} == plain
+    assert radii.keys() - plain.keys() == {
+        f"{key}_radius" for key in plain if key not in ("regime", "path", "remark")
+    }
+    drawn = lagtop("solve", "--certify").stdout
+    assert f"{radii['T_nutation_radius']}" in drawn
+
+
+def test_a_number_that_underflows_is_no_zero(lagtop: Lagtop) -> None:
+    """A printed 0 is exactly 0: what is smaller than all doubles is null, and digits print it."""
+    motion = solve(Top(r0=1e90))
+    with pytest.warns(OutOfRangeWarning, match="nome must be 0 or at least 5e-324"):
+        assert motion.record()["nome"] is None
+    assert motion.record(digits=5)["nome"].endswith("e-356")
+    shown = lagtop("solve", "--r0", "1e90", "--format", "json")
+    assert json.loads(shown.stdout)["nome"] is None
+    assert "use --digits" in shown.stderr
+
+
+@pytest.mark.parametrize(("near", "proved"), [(5, True), (5.0001, True), (2, False), (1, False)])
+def test_the_root_is_proved_to_be_the_largest(
+    near: float, proved: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Start from a point next to another root of (x - 1)(x - 2)(x - 5)."""
+    ar = balls(60)
+    cubic = [ar.convert(x) for x in (-8, 17, -10, 100)]
+    with arb_bits(300):
+        assert holds(gaps.largest_root(ar, *cubic), exact_arb(5))
+        monkeypatch.setattr(gaps, "near_largest_root", lambda *_: Decimal(near))
+        if proved:
+            assert holds(gaps.largest_root(ar, *cubic), exact_arb(5))
+        else:
+            with pytest.raises(TooFewDigitsError):
+                gaps.largest_root(ar, *cubic)
+
+
+@pytest.mark.parametrize("theta0", ["0.00001", "1.570796326794", "1.5707963267948966192", "3.1415"])
+def test_tilts_in_radians_keep_their_relative_accuracy(theta0: str) -> None:
+    """Next to 0, pi/2 and pi the sines and cosines of the tilt have nearly all digits."""
+    for digits in (32, 60):
+        ar = balls(digits)
+        for text in (theta0, theta0 + "9265358979323846264338327950288419"):
+            tilt = Top(theta0_rad=Fraction(text)).tilt(ar)
+            with arb_bits(600):
+                exact = exact_arb(text)
+                truths = exact.sin(), exact.cos(), (exact / 2).sin(), (exact / 2).cos()
+                for found, truth in zip(tilt, truths, strict=True):
+                    assert holds(found, truth)
+                    assert found.radius <= found.greatest * Decimal(10) ** (3 - digits)
+
+
+def test_a_tilt_beyond_pi_is_refused() -> None:
+    pi = "3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803"
+    assert Top(theta0_rad=Fraction(pi)).theta0_rad
+    with pytest.raises(ValueError, match=r"theta0_rad must be in \[0, pi\]"):
+        Top(theta0_rad=Fraction(pi) + Fraction(1, 10**80))
+
+
+def test_a_mean_rate_of_exactly_0_has_no_period_and_others_have() -> None:
+    """Half turns over both poles cancel; any other rate, however small, has a period."""
+    still = solve(Top(**UNIT | {"r0": 0, "theta0_deg": 31, "thetadot0": 2, "g": 0}))
+    assert still.mean_spin_rate == 0
+    assert still.T_spin is None
+    start = {"r0": 1e35, "theta0_deg": 89, "psidot0": 1}
+    moving = solve(Top(**UNIT | start))
+    assert moving.mean_precession_rate == pytest.approx(1e-35)
+    assert moving.T_precession == pytest.approx(6.283185307179586e35)
