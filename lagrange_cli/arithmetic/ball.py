@@ -10,7 +10,7 @@ from __future__ import annotations
 from decimal import Decimal, DecimalException
 from typing import TYPE_CHECKING, Any
 
-from .radii import CEILING, DOWN, FLOOR, UP, add_up, divide_up, fma_up, multiply_up
+from .radii import CEILING, DOWN, FLOOR, add_up, divide_up, fma_up, multiply_up
 
 if TYPE_CHECKING:
     from .balls import Balls
@@ -217,11 +217,6 @@ class Ball:
     def is_known_to(self, digits: int) -> bool:
         """Return whether the radius is at most 10^-digits of every number in the ball."""
         return self.radius <= DOWN.scaleb(self.least, -digits)
-
-    def holds(self, other: Ball) -> bool:
-        """Return whether all of another ball is proved to be within this one."""
-        apart = UP.subtract(self.middle, other.middle).copy_abs()
-        return add_up(apart, other.radius) <= self.radius
 
     def ends(self) -> tuple[Decimal, Decimal]:
         """Return decimals below and above all of the ball.

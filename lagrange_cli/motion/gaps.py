@@ -243,9 +243,10 @@ def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
 def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
     """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
-    A point p next to it proves nothing.  If p - f(p)/f'(X) is within a ball X around p, then X
-    holds a root, and just one (Moore 1966); if f' and f'' are positive in X, they are so beyond,
-    and no root is larger.  Raises TooFewDigitsError if these digits do not prove it.
+    Some root is within 3 |f/f'| of any point p, because f'/f is the sum of 1/(p - root).  If f' and
+    f'' are positive in this ball X around p, they are so beyond it: X holds the largest root, and no
+    other.  Newton's step p - f(p)/f'(X) then holds it too, by the mean value theorem.  Raises
+    TooFewDigitsError if these digits do not prove it.
     """
 
     def cubic(x: Ball) -> Ball:
@@ -256,12 +257,10 @@ def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
 
     middles = (x.middle for x in (c2, c1, c0, above))
     point = ar.exact(near_largest_root(decimals(ar.digits), *middles))
-    step = cubic(point) / slope(point)
-    around = point.enlarged((4 * step).greatest).enlarged((16 * ar.eps * point).greatest)
-    root = point - cubic(point) / slope(around)
-    if not (around.holds(root) and slope(around) > 0 and 3 * around + c2 > 0):
+    around = point.enlarged((3 * cubic(point) / slope(point)).greatest)
+    if not (slope(around) > 0 and 3 * around + c2 > 0):
         raise TooFewDigitsError
-    return root
+    return point - cubic(point) / slope(around)
 
 
 def near_largest_root(
