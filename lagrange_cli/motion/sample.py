@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.blocks import blocks
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.blocks import BLOCK, blocks
 from ..arithmetic.types import Array
-from ..arithmetic.workspace import Workspace
+from ..arithmetic.workspace import workspace
 from .attitude import Attitude, needed
-from .columns import NOTHING, Part, needs_of
+from .columns import Part, needs_of
 from .kinds import rate_parts
 from .solve import SAMPLER_DIGITS, Motion
 
@@ -73,9 +74,8 @@ class Sample:
         self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
 
     def write(self, part: Part, target: Array) -> None:
-        """Write a column into an array, in the order of the times."""
-        order = slice(None) if part.needs == NOTHING else self.attitude.order
-        target[order] = getattr(self, part.method)()
+        """Write a column into an array."""
+        target[:] = getattr(self, part.method)()
 
     def times(self) -> Array:
         """Return the times."""
@@ -122,23 +122,22 @@ class Sample:
     @cached_property
     def x(self) -> Array:
         """|X|."""
-        return np.sqrt(self.x2, out=self._new())
+        return np.sqrt(self.x2)
 
     @cached_property
     def y(self) -> Array:
         """|Y|."""
-        return np.sqrt(self.y2, out=self._new())
+        return np.sqrt(self.y2)
 
     @cached_property
     def norm(self) -> Array:
         """N."""
-        return np.add(self.x2, self.y2, out=self._new())
+        return self.x2 + self.y2
 
     @cached_property
     def u(self) -> Array:
         """cos(theta) (4,6)."""
-        difference = np.subtract(self.x2, self.y2, out=self._new())
-        return np.divide(difference, self.norm, out=difference)
+        return (self.x2 - self.y2) / self.norm
 
     @cached_property
     def sine(self) -> Array:
@@ -222,9 +221,10 @@ class Sample:
 
     @cached_property
     def unit_spinor(self) -> tuple[Array, Array, Array, Array]:
-        """|X|, |Y|, each over sqrt(N), and the arguments, continuous in time."""
+        """|X| and |Y|, each over sqrt(N) and with a sign, and the arguments that go with these."""
         size = np.sqrt(self.norm)
-        return self.x / size, self.y / size, *self.attitude.args()
+        (arg_x, x_sign), (arg_y, y_sign) = self.attitude.quarters()
+        return x_sign * self.x / size, y_sign * self.y / size, arg_x, arg_y
 
     def quaternion_w(self) -> Array:
         """Return the real part of X = w + i z, of the rotation from body to space."""
@@ -257,9 +257,6 @@ class Sample:
         c = self.constants
         return c.A * self.across * self.sine + c.C * c.r0 * self.u
 
-    def _new(self) -> Array:
-        return self.attitude.space.new()
-
 
 def _over(value: Array, divisor: Array) -> Array:
     """Return the quotient, and 0 where both vanish: over a pole there is no momentum about it."""
@@ -271,11 +268,12 @@ def samples(
 ) -> Iterator[tuple[slice, Sample]]:
     """Yield the motion at the times t, a block at a time, with what some columns need.
 
-    A sample lends its arrays: it is used up when the next one is asked for.
+    A sample is used up when the next one is asked for.
     """
     sampler, constants, needs = motion.sampler(), column_constants(motion), needs_of(chosen)
-    sampler.check(t)
-    for part in blocks(t.size):
-        some = t[part]
-        with Workspace(some.size) as space:
-            yield part, Sample(some, sampler.attitude(some, needs, space), constants, wrap)
+    farthest = sampler.check(t)
+    with workspace(min(t.size, BLOCK)) as space:
+        for part in blocks(t.size):
+            with ARRAYS.working():
+                attitude = sampler.attitude(t[part], needs, farthest, space)
+            yield part, Sample(t[part], attitude, constants, wrap)
