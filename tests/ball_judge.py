@@ -117,6 +117,22 @@ class Judge:
         state = self.at(t)
         return _errors(computed, _with_units(state))
 
+    def wrapped_errors(self, t: float, computed: tuple[float, float]) -> list[float]:
+        """Return the errors of phi and psi (radians) without whole turns, in units."""
+        state, errors = self.at(t), []
+        with _precision(8 * FIRST_BITS):
+            for value, exact, rate in zip(
+                computed,
+                (state.phi, state.psi),
+                (state.phi_rate, state.psi_rate),
+                strict=True,
+            ):
+                turns = (arb(value) - exact) / (2 * arb.pi())
+                away = 2 * arb.pi() * (turns - (turns + 0.5).floor())
+                unit = EPS * (arb.max(arb(1), abs(arb(value))) + abs(state.tau * rate))
+                errors.append(float((abs(away) / unit).abs_upper()))
+        return errors
+
     def remainder_errors(self, t: float, computed: tuple[float, float]) -> list[float]:
         """Return the errors of dphi and dpsi (radians) in units."""
 

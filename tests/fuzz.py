@@ -46,7 +46,7 @@ from lagrange_cli.sweeps.angles import sweep_angles
 
 UNITS, HALF_ULP, SWEEP_EPS = 4.0, 0.5 + 1e-9, 10.0
 """The bounds: of an angle or a part of the quaternion, of a key of `solve`, of one of `sweep`."""
-NAMES = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi")
+NAMES = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi", "wrapped")
 NEAR = 5
 """Decades of periods up to which the angles of many tops at once are judged."""
 COSINES = ("u1", "u2", "u_quarter")
@@ -110,18 +110,21 @@ def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[flo
     columns = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi")
     _, blocks = rows(motion, points, columns, radians=True)
     computed = np.concatenate(list(blocks)).tolist()
-    for t, values in zip(times, computed, strict=True):
+    wrapped = zip(*(angle.tolist() for angle in motion.angles(times, wrap=True)[1:]), strict=True)
+    for t, values, short in zip(times, computed, wrapped, strict=True):
         tally.times += 1
         try:
             errors = judge.errors(t, tuple(values[:7]))
             remainders = judge.remainder_errors(t, tuple(values[7:]))
+            turned = max(judge.wrapped_errors(t, short))
         except Undecided:
             tally.counts["undecided times"] += 1
             continue
         show = f"lagtop table {motion.top.options()} --columns {{}} --t-min {t!r} --n 1"
-        shown = (*errors[:3], max(errors[3:]), *remainders)
+        shown = (*errors[:3], max(errors[3:]), *remainders, turned)
         for name, error in zip(NAMES, shown, strict=True):
-            tally.note(name, error, UNITS, show.format(f"t,{name}"))
+            asked = "t,phi,psi --wrap" if name == "wrapped" else f"t,{name}"
+            tally.note(name, error, UNITS, show.format(asked))
 
 
 def number_of(motion: Motion, key: str) -> float | None:
@@ -325,7 +328,7 @@ def run(kinds: Sequence[str], scenes: int, seed: int, *, jobs: int, what: str) -
 
 def lines_of(tallies: dict[str, Tally]) -> Iterator[str]:
     """Yield the report, a line per kind and then what exceeds its bound."""
-    names = "theta    phi    psi   quat   dphi   dpsi    key digits  sweep   many"
+    names = "theta    phi    psi   quat   dphi   dpsi   wrap    key digits  sweep   many"
     yield f"{'kind':24} scenes  times  {names}  beyond"
     for kind, tally in tallies.items():
         worst = [tally.worst.get(name, 0.0) for name in (*NAMES, "key", "digits", "sweep", "many")]

@@ -6,68 +6,136 @@ time exactly, however far away it is.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from math import frexp
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .sums_of_doubles import Pair, Triple
 from .types import Array, Mask
-from .workspace import HEAP, Space
 
 _SPLITTER = 2.0**27 + 1
+_ZERO = np.zeros(())
+MANY = 2.0**26
+_LESS_THAN_1 = 1 - 2.0**-20
 
 
-def two_product(x: Array, factor: float | Array, space: Space = HEAP) -> tuple[Array, Array]:
-    """Return x * factor and its rounding error, exactly (Dekker), in arrays of a workspace."""
+def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
+    """Return x * factor and its rounding error, exactly (Dekker)."""
     factor_high = factor * _SPLITTER
     factor_high -= factor_high - factor
     factor_low = factor - factor_high
-    one, other = space.new(), space.new()
-    high: Array = np.multiply(x, _SPLITTER, out=one)
-    high -= np.subtract(high, x, out=other)
-    low: Array = np.subtract(x, high, out=other)
-    product: Array = np.multiply(x, factor, out=space.new())
-    error: Array = np.multiply(high, factor_high, out=space.new())
-    error -= product
-    high *= factor_low
-    error += high
-    error += np.multiply(low, factor_high, out=one)
-    low *= factor_low
-    error += low
-    space.free(one, other)
+    high = x * _SPLITTER
+    high -= high - x
+    low = x - high
+    product: Array = x * factor
+    error = high * factor_high - product
+    error += high * factor_low
+    error += low * factor_high
+    error += low * factor_low
     return product, error
 
 
-def reduce_phase(
-    t: Array, rate: Pair, offset: float | Array = 0.0, space: Space = HEAP
-) -> tuple[Array, Array]:
+def _product(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return x * y and its rounding error, to 2^-105 of the product."""
+    product: Array = x * y
+    (x_high, x_low), (y_high, y_low) = _halves(x), _halves(y)
+    error = x_high * y_high
+    error = error - product
+    error += x_high * y_low
+    error += x_low * y_high
+    error += x_low * y_low
+    return product, error
+
+
+def _halves(x: Array) -> tuple[Array, Array]:
+    """Return numbers as sums of new ones with 26 and 27 bits."""
+    high = (x.view(np.int64) & -(1 << 27)).view(np.float64)
+    return high, x - high
+
+
+def reduce_phase(t: Array, rate: Pair, offset: float | Array = 0.0) -> tuple[Array, Array]:
     """Return the integer nearest to t * rate + offset, and t * rate less it, with all digits."""
-    since, rest = two_product(t, rate.high, space)
-    target = space.new()
-    rest += np.multiply(t, rate.low, out=target)
-    shifted = np.add(since, offset, out=target) if np.any(offset) else since
-    step: Array = np.rint(shifted, out=target)
-    since -= step
-    since += rest
-    space.free(rest)
-    return step, since
+    since, rest = two_product(t, rate.high)
+    rest += t * rate.low
+    step: Array = np.rint(since + offset)
+    return step, (since - step) + rest
 
 
-def fraction_of_product(t: Array, rate: Triple, space: Space = HEAP) -> Array:
-    """Return t * rate less whole numbers, free of cancellation, within a few halves of 0."""
-    total: Array = np.multiply(t, rate.low, out=space.new())
-    target = space.new()
+def fraction_of_product(t: Array, rate: Triple) -> Array:
+    """Return t * rate less the nearest whole number, free of cancellation."""
+    total, lost = t * rate.low, np.zeros_like(t)
     for part in (rate.middle, rate.high):
-        product, error = two_product(t, part, space)
-        error -= np.rint(error, out=target)
-        product -= np.rint(product, out=target)
-        total += error
-        total += product
-        space.free(product, error)
-    space.free(target)
-    return total
+        for term in two_product(t, part):
+            total, more = two_sum(total, term - np.rint(term))
+            lost += more
+    return (total - np.rint(total)) + lost
+
+
+class Period(NamedTuple):
+    """A length of time to count with: the sum of three doubles, or of three arrays.
+
+    Whole numbers below 2^26 times the first two are exact, because these have 26 and 27 bits.
+    """
+
+    rate: float | Array
+    """Periods per unit of time."""
+    high: float | Array
+    middle: float | Array
+    low: float | Array
+    reach: float
+    """Time up to which the number of periods is below 2^26."""
+
+
+def period_of(length: Pair, rate: float | Array) -> Period:
+    """Return a period by its length and by rate = 1/length; it never ends if the rate is 0."""
+    long, low = (np.where(np.isfinite(length.high), part, 0.0)[()] for part in length)
+    mantissa, exponent = np.frexp(long)
+    high = np.ldexp(np.trunc(mantissa * MANY), exponent - 26)
+    fastest = float(np.max(np.abs(rate)))
+    return Period(rate, high, long - high, low, MANY / fastest if fastest else math.inf)
+
+
+def whole_periods(
+    t: Array,
+    period: Period,
+    farthest: float,
+    space: Array,
+    offset: float | Array | None = None,
+) -> tuple[Array, Array, Array]:
+    """Return the integer n nearest to t/period + offset, and t - n period as a difference.
+
+    The first part of the difference is exact, the second tiny.  All go to the three arrays of
+    `space`.  No |t| is greater than `farthest`, and no n than 2^51.
+    """
+    whole, rest, lost = space
+    np.multiply(t, period.rate, out=whole)
+    if offset is not None:
+        whole += offset
+    np.rint(whole, out=whole)
+    if farthest > period.reach:
+        return _many_periods(t, period, whole, 0.0 if offset is None else offset)
+    np.subtract(t, np.multiply(whole, period.high, out=lost), out=rest)
+    rest -= np.multiply(whole, period.middle, out=lost)
+    return whole, rest, np.multiply(whole, period.low, out=lost)
+
+
+def _many_periods(
+    t: Array, period: Period, whole: Array, offset: float | Array
+) -> tuple[Array, Array, Array]:
+    """Return the same for numbers with more bits; for those with fewer, the same bit by bit."""
+    many = np.rint(whole / MANY) * MANY
+    few, rest = whole - many, t
+    for length in (period.high, period.middle):
+        rest = rest - many * length
+        rest = rest - few * length
+    lost = whole * period.low
+    # the rounding of t/period may have taken one more or less than the nearest
+    more = np.rint(((rest - lost) * period.rate + offset) * _LESS_THAN_1)
+    rest = rest - more * period.high
+    rest = rest - more * period.middle
+    return whole + more, rest, lost + more * period.low
 
 
 def two_sum(x: float | Array, y: float | Array) -> tuple[Array, Array]:
@@ -93,7 +161,7 @@ class DoubleDouble:
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
         self.high = high
-        self.low = np.zeros_like(high) if low is None else low
+        self.low = np.broadcast_to(_ZERO, high.shape) if low is None else low
 
     def scaled(self, power: float) -> DoubleDouble:
         """Return the numbers times a power of two, exactly."""
@@ -138,25 +206,29 @@ class DoubleDouble:
         return self._like(other) - self
 
     def __mul__(self, other: DoubleDouble | float) -> DoubleDouble:
-        if not isinstance(other, DoubleDouble) and frexp(other)[0] == 0.5:
+        if not isinstance(other, DoubleDouble) and math.frexp(other)[0] == 0.5:
             return self.scaled(other)
         other = self._like(other)
         if self.high.size < other.high.size:  # a constant
             return other * self
-        high, low = two_product(self.high, other.high)
-        low += self.high * other.low + self.low * other.high
+        high, low = _product(self.high, other.high)
+        low += self.high * other.low
+        low += self.low * other.high
         return _renormalised(high, low)
 
     __radd__, __rmul__ = __add__, __mul__
 
     def __truediv__(self, other: DoubleDouble | float) -> DoubleDouble:
-        if not isinstance(other, DoubleDouble) and frexp(other)[0] == 0.5:
+        if not isinstance(other, DoubleDouble) and math.frexp(other)[0] == 0.5:
             return self.scaled(1 / other)
         other = self._like(other)
         high = self.high / other.high
-        product, error = two_product(high, other.high)
-        rest = (self.high - product) - error + self.low - high * other.low
-        return _renormalised(high, rest / other.high)
+        product, rest = _product(high, other.high)
+        np.subtract(self.high - product, rest, out=rest)
+        rest += self.low
+        rest -= high * other.low
+        rest /= other.high
+        return _renormalised(high, rest)
 
     def __gt__(self, other: DoubleDouble | float) -> Mask:
         other = self._like(other)

@@ -6,73 +6,31 @@ each of them cleared when it is first touched, and takes it back when an array i
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import prod
-from typing import Protocol, Self
 
 import numpy as np
 
 from .blocks import BLOCK
 from .types import Array
 
+ROWS = 16
 _IDLE: list[Array] = []
-"""Arrays of a block that nobody uses; taking one out and putting one in are safe in threads."""
+"""Workspaces that nobody uses; taking one out and putting one in are safe in threads."""
 
 
-class Space(Protocol):
-    """Where the results of the steps of a computation go."""
+@contextmanager
+def workspace(*shape: int) -> Iterator[Array]:
+    """Yield `ROWS` arrays of one shape, of at most a block of elements; their content is arbitrary.
 
-    def new(self) -> Array | None:
-        """Return an array to be written, for the `out` of a step; None for one of NumPy's own."""
-
-    def free(self, *arrays: Array | None) -> None:
-        """Take back arrays that are not needed any more."""
-
-
-class Heap:
-    """No workspace: every step makes a new array."""
-
-    def new(self) -> None:
-        """Return None, so that NumPy makes an array of the shape that comes out."""
-
-    def free(self, *arrays: Array | None) -> None:
-        """Leave the arrays to Python."""
-
-
-HEAP = Heap()
-
-
-class Workspace:
-    """Arrays of one shape, lent by a stock that all blocks share.
-
-    At the end of a `with` all of them go back, so none of them may be used after it.
+    None of them may be used after the `with`.
     """
-
-    def __init__(self, *shape: int) -> None:
-        self.shape, self.size = shape, prod(shape)
-        self._lent: list[Array] = []
-
-    def new(self) -> Array:
-        """Return an array whose content is arbitrary."""
-        if self.size > BLOCK:
-            return np.empty(self.shape)
-        try:
-            whole = _IDLE.pop()
-        except IndexError:
-            whole = np.empty(BLOCK)
-        self._lent.append(whole)
-        return whole[: self.size].reshape(self.shape)
-
-    def free(self, *arrays: Array | None) -> None:
-        """Take back arrays of `new` that are not needed any more."""
-        for array in arrays:
-            for i, whole in enumerate(self._lent):
-                if array is not None and whole is array.base:
-                    _IDLE.append(self._lent.pop(i))
-                    break
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        _IDLE.extend(self._lent)
-        self._lent.clear()
+    try:
+        whole = _IDLE.pop()
+    except IndexError:
+        whole = np.empty((ROWS, BLOCK))
+    try:
+        yield whole[:, : prod(shape)].reshape(ROWS, *shape)
+    finally:
+        _IDLE.append(whole)

@@ -1,6 +1,6 @@
-"""Units of inputs: their meaning by pint, exactly, and the system that all of them are put in.
+"""Units of inputs: their exact meaning, and the system that all of them are put in.
 
-pint is loaded where a unit stands, and nowhere else.
+pint is loaded only for a unit that is not common.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ..arithmetic.numbers import Number
 from ..arithmetic.points import Points
 from ..arithmetic.values import Values
 from ..errors import LagtopError, UnavailableError
+from .common_units import common_unit
 from .measured import EXACT_DIGITS
 from .quantity_text import TILT, Quantity
 from .top import BODY
@@ -216,12 +217,19 @@ class _UnknownUnitError(Exception):
     """A unit that pint does not know, or that is none of mechanics."""
 
 
-@lru_cache(maxsize=256)
 def meaning_of(text: str) -> Meaning:
-    """Return what a unit is by pint, whose constants are exact, but for pi.
+    """Return what a unit is.  Raises ImportError without pint for one that is not common."""
+    if common := common_unit(text):
+        unit, of_times = common
+        if unit.angles in {0, 1}:
+            angular = unit.angles == 1 or (of_times and unit.dimensions == _RATE)
+            return Meaning(unit.rational, unit.power_of_pi, unit.dimensions, angular)
+    return meaning_by_pint(text)
 
-    Raises ImportError without pint.
-    """
+
+@lru_cache(maxsize=256)
+def meaning_by_pint(text: str) -> Meaning:
+    """Return what a unit is by pint, whose constants are exact, but for pi."""
     registry = _registry()
     try:
         unit = registry.Quantity(Fraction(1), registry.parse_units(text))

@@ -12,6 +12,7 @@ from ..inputs.names import check_names
 class Needs(NamedTuple):
     """What is needed of X and Y (see `samplers`), which is computed only then."""
 
+    tilt: bool = False
     moduli: bool = False
     arguments: bool = False
     rate: bool = False
@@ -21,8 +22,9 @@ class Needs(NamedTuple):
         return Needs(*(one or another for one, another in zip(self, other, strict=True)))
 
 
-NOTHING, TILT, TURN = Needs(), Needs(moduli=True), Needs(arguments=True)
-ATTITUDE, SWING = TILT | TURN, TILT | Needs(rate=True)
+NOTHING, TILT, TURN = Needs(), Needs(tilt=True), Needs(arguments=True)
+MODULI = Needs(moduli=True)
+ATTITUDE, SWING = MODULI | TURN, MODULI | Needs(rate=True)
 
 
 class Part(NamedTuple):
@@ -55,22 +57,26 @@ COLUMNS: dict[str, Column] = {
     "psi": _one("precession", TURN, "psi", "psi_*"),
     "dphi": _one("spin less its mean growth (6,4), a wave", TURN, "phi_remainder", "dphi_*"),
     "dpsi": _one("precession less its mean growth (7,4), a wave", TURN, "psi_remainder", "dpsi_*"),
-    "u": _one("cos(theta)", TILT, "cosine", "u"),
+    "u": _one("cos(theta)", MODULI, "cosine", "u"),
     "thetadot": _one("nutation rate", SWING, "nutation_rate", "thetadot", "rad/time"),
-    "phidot": _one("spin rate", TILT, "phi_rate", "phidot", "rad/time"),
-    "psidot": _one("precession rate", TILT, "psi_rate", "psidot", "rad/time"),
+    "phidot": _one("spin rate", MODULI, "phi_rate", "phidot", "rad/time"),
+    "psidot": _one("precession rate", MODULI, "psi_rate", "psidot", "rad/time"),
     "p": _one("angular velocity about the body's x axis", SWING | TURN, "p", "p", "rad/time"),
     "q": _one("angular velocity about the body's y axis", SWING | TURN, "q", "q", "rad/time"),
     "r": _one("angular velocity about the figure axis", NOTHING, "r", "r", "rad/time"),
     "moment": _one(
-        "moment of the weight about the line of nodes", TILT, "moment", "moment", "mass len²/time²"
+        "moment of the weight about the line of nodes",
+        MODULI,
+        "moment",
+        "moment",
+        "mass len²/time²",
     ),
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
         [
             Part("axis_x", "axis_x", ATTITUDE),
             Part("axis_y", "axis_y", ATTITUDE),
-            Part("axis_z", "cosine", TILT),
+            Part("axis_z", "cosine", MODULI),
         ],
     ),
     "quaternion": Column(
@@ -82,7 +88,7 @@ COLUMNS: dict[str, Column] = {
     ),
     "Lz": _one(
         "vertical angular momentum; constant but for rounding",
-        TILT,
+        MODULI,
         "vertical_momentum",
         "Lz",
         "mass len²/time",

@@ -244,8 +244,8 @@ def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
     """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
     Some root is within 3 |f/f'| of any point p, because f'/f is the sum of 1/(p - root).  If f' and
-    f'' are positive in this ball X around p, they are so beyond it: X holds the largest root, and no
-    other.  Newton's step p - f(p)/f'(X) then holds it too, by the mean value theorem.  Raises
+    f'' are positive in this ball X around p, they are so beyond it: X holds the largest root alone.
+    Newton's step p - f(p)/f'(X) then holds it too, by the mean value theorem.  Raises
     TooFewDigitsError if these digits do not prove it.
     """
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import blocks
+from ..arithmetic.blocks import BLOCK, blocks
 from ..arithmetic.types import Array
-from ..arithmetic.workspace import Workspace
+from ..arithmetic.workspace import workspace
 from .attitude import Attitude, needed
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import NOTHING, Part, needs_of
+from .columns import Part, needs_of
 from .solve import Motion
 
 
@@ -35,9 +35,8 @@ class Sample(ColumnFormulas[Array]):
         self.rises = rises
 
     def write(self, part: Part, target: Array) -> None:
-        """Write a column into an array, in the order of the times."""
-        order = slice(None) if part.needs == NOTHING else self.attitude.order
-        target[order] = getattr(self, part.method)()
+        """Write a column into an array."""
+        target[:] = getattr(self, part.method)()
 
     def theta(self) -> Array:
         """Return the tilt."""
@@ -89,9 +88,22 @@ class Sample(ColumnFormulas[Array]):
         return self.attitude.psi(wrap=True)
 
     @cached_property
+    def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """(psi + phi)/2 and (psi - phi)/2, each less half turns, and the sign of X or Y for it."""
+        return self.attitude.quarters()
+
+    @cached_property
     def args(self) -> tuple[Array, Array]:
-        """(psi + phi)/2 and (psi - phi)/2, so that the quaternion is continuous in time."""
-        return self.attitude.args()
+        """(psi + phi)/2 and (psi - phi)/2, each less half turns."""
+        (arg_x, _), (arg_y, _) = self.quarters
+        return arg_x, arg_y
+
+    @cached_property
+    def unit(self) -> tuple[Array, Array]:
+        """|X| and |Y|, each over sqrt(N), with the signs that make the quaternion continuous."""
+        (_, sign_x), (_, sign_y) = self.quarters
+        x, y = super().unit
+        return sign_x * x, sign_y * y
 
     def over(self, value: Array, divisor: Array) -> Array:
         """Return the quotient, and 0 where both vanish."""
@@ -103,14 +115,14 @@ def samples(
 ) -> Iterator[tuple[slice, Sample]]:
     """Yield the motion at the times t, a block at a time, with what some columns need.
 
-    A sample lends its arrays: it is used up when the next one is asked for.
+    A sample is used up when the next one is asked for.
     """
     sampler, needs, kind = motion.sampler(), needs_of(chosen), motion.middle()
     constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
     rises = -1 if kind.state.theta_rate < 0 else 1
-    sampler.check(t)
-    for part in blocks(t.size):
-        some = t[part]
-        with Workspace(some.size) as space:
-            attitude = sampler.attitude(some, needs, space)
-            yield part, Sample(some, attitude, constants, rises, wrap)
+    farthest = sampler.check(t)
+    with workspace(min(t.size, BLOCK)) as space:
+        for part in blocks(t.size):
+            with ARRAYS.working():
+                attitude = sampler.attitude(t[part], needs, farthest, space)
+            yield part, Sample(t[part], attitude, constants, rises, wrap)

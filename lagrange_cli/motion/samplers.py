@@ -11,34 +11,33 @@ poles: there real and imaginary part vanish each by itself, and nothing cancels.
 
 A time is first reduced, exactly, to whole steps and a phase; then a few multiplications per sample
 evaluate the polynomials, however far the time.  All constants come from the many-digit arithmetic
-of the caller.  A block is computed in the order of its phases: those about one turning point come
-before those about the other.
+of the caller.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import blocks
-from ..arithmetic.double_double import reduce_phase
-from ..arithmetic.sums_of_doubles import Pair
+from ..arithmetic.blocks import BLOCK, blocks
+from ..arithmetic.double_double import Period, whole_periods
+from ..arithmetic.order import order_by_parity, placed, taken
 from ..arithmetic.types import Array
-from ..arithmetic.workspace import Workspace
-from .attitude import Attitude, Growths, Spinor
-from .columns import ATTITUDE, NOTHING, Needs
-from .multiple_angles import Coefficients
-from .theta_series import Component, Frame
+from ..arithmetic.workspace import workspace
+from .attitude import Attitude, Growths, Spinor, Times
+from .columns import NOTHING, TILT, TURN, Needs
+from .theta_series import Frame
 from .times import check_times, times_of
 
-_IN_ORDER = slice(None)
 _GREATEST = 340.0
 """The square of its hyperbolic sine leaves room for what is multiplied with it."""
+ARGUMENTS = ("arg_x", "arg_y")
 
 
 class Angles(NamedTuple):
@@ -52,131 +51,208 @@ class Angles(NamedTuple):
     """Precession."""
 
 
-class Functions(NamedTuple):
-    """The functions of the phase that the series are made of, see `theta_series`."""
-
-    S: Array
-    C: Array | None
-    """None where it is a factor of all of X and Y."""
-    s: Array
-
-    def part(self, rows: slice) -> Functions:
-        """Return them at some phases."""
-        return Functions(*(x if x is None else x[rows] for x in self))  # type: ignore[arg-type]
-
-
 class Sampler:
     """The constants of one motion that its angles need, ready to be evaluated."""
 
+    tilt: float
+    """The tilt at t = 0."""
     growths: Growths
     max_time: float
 
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Return tilt, spin and precession at the times t; see `Motion.angles`."""
         times = times_of(t)
-        self.check(times)
         flat = np.ascontiguousarray(times).reshape(-1)
-        angles = Angles(*(np.empty_like(flat) for _ in range(3)))
-        with ARRAYS.working():
+        angles = Angles(*np.empty((3, flat.size)))
+        with ARRAYS.working(), workspace(min(flat.size, BLOCK)) as space:
             for part in blocks(flat.size):
-                some = flat[part]
-                with Workspace(some.size) as space:
-                    at = self.attitude(some, ATTITUDE, space)
-                    angles.theta[part][at.order] = at.theta()
-                    angles.phi[part][at.order] = at.phi(wrap=wrap)
-                    angles.psi[part][at.order] = at.psi(wrap=wrap)
+                at = self.attitude(flat[part], TILT | TURN, self.check(flat[part]), space)
+                angles.theta[part] = at.theta()
+                at.phi(wrap=wrap, out=angles.phi[part])
+                at.psi(wrap=wrap, out=angles.psi[part])
+        angles.theta[flat == 0.0] = self.tilt
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
-    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
-        """Return what is needed of the attitude at a block of times, in arrays of a workspace."""
+    def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
+        """Return what is needed of the attitude at a block of times, none beyond `farthest`.
+
+        It may be kept in a `workspace`.
+        """
         raise NotImplementedError
 
-    def check(self, t: ArrayLike, name: str = "t") -> None:
-        """Raise LagtopError, by the `name` of the argument, where a time names no phase."""
-        check_times(times_of(t), self.max_time, name)
+    def check(self, t: ArrayLike, name: str = "t") -> float:
+        """Return the greatest |t|.
+
+        Raises LagtopError, by the `name` of the argument, where a time names no phase.
+        """
+        return check_times(times_of(t), self.max_time, name)
 
 
 @dataclass(frozen=True)
 class ThetaSampler(Sampler):
     """A nutating top, by its theta series."""
 
-    steps_per_time: Pair
+    tilt: float
+    step: Period
+    """Half a period of the nutation."""
     offset: float
-    """The phase at t = 0."""
+    """The phase at t = 0, in steps."""
     max_time: float
     scale: float
+    """Argument of the functions per step."""
+    speed: float
+    """Argument per unit of time."""
+    first: float
+    """Argument at t = 0."""
     hyperbolic: bool
     frames: Sequence[Frame]
     """About the turning points of the even and of the odd steps."""
+    slopes: Sequence[float]
+    """What the mean growth of arg X and arg Y has more than these, per unit of the argument."""
     growths: Growths
 
-    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
+    @cached_property
+    def over_a_pole(self) -> bool:
+        """Whether the axis passes over a pole: the real part of X or Y is 0 all about it."""
+        return not all(part.real[0] for frame in self.frames for part in frame[:2])
+
+    def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
         """Return the attitude at a block of times, by the series about the nearer turning point."""
+        space = space[:, : t.size]
+        times = Times(t, farthest, space[12:])
         if needs == NOTHING:
-            return Attitude(self.growths, space, _IN_ORDER, t, t, Spinor())
-        step, since = reduce_phase(t, self.steps_per_time, self.offset, space)
-        order, even = _by_parity(step, space)
-        space.free(step)
-        if order is not _IN_ORDER:
-            since = _taken(since, order, space)
-            t = _taken(t, order, space) if needs.arguments else t
-        argument = np.add(since, self.offset, out=space.new())
-        argument *= self.scale
-        spinor = self._spinor(argument, even, needs, space)
-        return Attitude(self.growths, space, order, t, since, spinor)
+            return Attitude(self.growths, times, Spinor())
+        step, argument, lost = whole_periods(t, self.step, farthest, space[:3], self.offset or None)
+        argument -= lost
+        argument *= self.speed
+        if self.first:
+            argument += self.first
+        even, order = order_by_parity(step)
+        if order is not None:
+            argument = taken(argument, order, step)
+        found = self._evaluated(argument, even, needs, space[2:13])
+        if order is not None:
+            free = (space[i] for i in (0, 1, 2, 3, 4, 8))
+            found = {name: placed(values, order, next(free)) for name, values in found.items()}
+        return Attitude(self.growths, times, Spinor(**found))
 
-    def _spinor(self, argument: Array, even: int, needs: Needs, space: Workspace) -> Spinor:
-        """Return X and Y; the first arguments, so many, are about the first turning point."""
-        if self.hyperbolic and self.scale > 2 * _GREATEST:  # beyond, the tilt is below 1e-140
-            np.clip(argument, -_GREATEST, _GREATEST, out=argument)
-        functions = (_hyperbolic if self.hyperbolic else _circular)(argument, space)
-        rows = slice(even), slice(even, None)
-        frames = [
-            (some, functions.part(some), x) for some, x in zip(rows, self.frames, strict=True)
-        ]
+    def _evaluated(
+        self, argument: Array, even: int, needs: Needs, space: Array
+    ) -> dict[str, Array]:
+        """Return the parts of a spinor that are needed.
 
-        def polar(name: str) -> tuple[Array | None, Array | None]:
-            """Return squared modulus and argument of X or Y."""
-            real, imag = space.new(), space.new()
-            for some, there, frame in frames:
-                _write_component(getattr(frame, name), there, real[some], imag[some])
-            leading = [getattr(frame, name).real[0] for frame in self.frames]
-            argument = _argument(real, imag, all(leading), space) if needs.arguments else None
-            real *= real
-            imag *= imag
-            real += imag
-            space.free(imag)
-            return real, argument
+        The first arguments, as many as are `even`, are about the first turning point.
+        """
+        functions, parts = space[:3], space[3:7]
+        found: dict[str, Array] = {}
+        self._write_functions(argument, functions)
+        pieces = list(zip((slice(even), slice(even, None)), self.frames, strict=True))
+        for rows, frame in pieces:
+            self._write_parts(frame, functions[:, rows], parts[:, rows])
+        if needs.arguments:
+            arguments = arguments_of(parts, space[7:9])
+            if self.over_a_pole:  # on the pole the imaginary part is 0, too
+                arguments[np.isnan(arguments)] = 0.0
+            found |= zip(
+                ARGUMENTS, unwound(arguments, self.slopes, argument, space[10]), strict=True
+            )
+        if needs.tilt or needs.moduli:
+            x2, y2 = moduli_of(parts)
+            if needs.tilt:
+                found["tilt"] = tilt_of(x2, y2, out=parts[1])
+            if needs.moduli:
+                found |= {"x2": x2, "y2": y2}
+        if needs.rate:
+            found["rate"] = rate = space[9]
+            for rows, frame in pieces:
+                _write_polynomial(frame.rate, functions[2][rows], rate[rows])
+            rate *= functions[0]
+            rate *= functions[1]
+        return found
 
-        (x2, arg_x), (y2, arg_y) = polar("x"), polar("y")
-        rate = space.new() if needs.rate else None
-        if rate is not None:
-            for some, there, frame in frames:
-                _write_rate(frame.rate, there, rate[some])
-        space.free(*functions)
-        return Spinor(x2, y2, arg_x, arg_y, rate)
+    def _write_functions(self, x: Array, functions: Array) -> None:
+        """Write S, C and s of the series; in circular ones tan, 1/cos^2 and sin^2.
+
+        All parts of circular series have the factor cos x, which is divided out.
+        """
+        S, C, s = functions
+        if not self.hyperbolic:
+            np.tan(x, out=S)
+        elif self.scale > 2 * _GREATEST:  # beyond, the tilt is below 1e-140
+            np.sinh(np.clip(x, -_GREATEST, _GREATEST, out=S), out=S)
+        else:
+            np.sinh(x, out=S)
+        np.multiply(S, S, out=s)
+        np.add(s, 1.0, out=C)
+        if self.hyperbolic:
+            np.sqrt(C, out=C)
+        else:
+            s /= C
+
+    def _write_parts(self, frame: Frame, functions: Array, parts: Array) -> None:
+        """Write Re X, Im X, Re Y and Im Y about a turning point."""
+        S, C, s = functions
+        (*x, even), (*y, _) = frame.x, frame.y
+        for coefficients, part in zip((*x, *y), parts, strict=True):
+            _write_polynomial(coefficients, s, part)
+        parts[1::2] *= S
+        if self.hyperbolic:
+            parts[slice(1, 3) if even else slice(0, 4, 3)] *= C
+
+
+def arguments_of(parts: Array, out: Array | None = None) -> Array:
+    """Return the arguments of X and Y, whose real parts are not negative, from their parts."""
+    arguments: Array = np.divide(parts[1::2], parts[::2], out=out)
+    np.arctan(arguments, out=arguments)
+    return arguments
+
+
+def unwound(arguments: Array, slopes: Sequence[Any], argument: Array, spare: Array) -> Array:
+    """Return the periodic parts of arg X and arg Y, in place: less their mean growth."""
+    for i, slope in enumerate(slopes):
+        arguments[i] += np.multiply(argument, slope, out=spare)
+    return arguments
+
+
+def moduli_of(parts: Array) -> Array:
+    """Return |X|^2 and |Y|^2 from the parts of X and Y, which are overwritten."""
+    parts *= parts
+    parts[::2] += parts[1::2]
+    return parts[::2]
+
+
+def tilt_of(x2: Array, y2: Array, out: Array | None = None) -> Array:
+    """Return 2 arctan(|Y|/|X|)."""
+    tilt: Array = np.divide(y2, x2, out=out)
+    np.sqrt(tilt, out=tilt)
+    np.arctan(tilt, out=tilt)
+    tilt *= 2.0
+    return tilt
 
 
 @dataclass(frozen=True)
 class ConstantSampler(Sampler):
     """A constant tilt and constant rates of spin and precession."""
 
+    tilt: float
     x: float
     y: float
     growths: Growths
     max_time: float
 
-    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
+    def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
         """Return the attitude at a block of times: there is no phase."""
-        zero, x, y = np.zeros_like(t), np.full_like(t, self.x), np.full_like(t, self.y)
-        spinor = Spinor(x * x, y * y, zero, zero, zero, tilt=2.0 * np.arctan2(y, x))
-        return Attitude(self.growths, space, _IN_ORDER, t, zero, spinor)
+        tilt, x2, y2 = (np.full_like(t, x) for x in (self.tilt, self.x**2, self.y**2))
+        zero = np.zeros_like(t)
+        spinor = Spinor(tilt, x2, y2, zero, zero, zero)
+        return Attitude(self.growths, Times(t, farthest, space[12:, : t.size]), spinor)
 
 
 @dataclass(frozen=True)
 class SeparatrixSampler(Sampler):
     """The one swing from the upright position down and up again, k = 1 and T infinite."""
 
+    tilt: float
     speed: float
     offset: float
     x: float
@@ -187,92 +263,23 @@ class SeparatrixSampler(Sampler):
     growths: Growths
     max_time: float
 
-    def attitude(self, t: Array, needs: Needs, space: Workspace) -> Attitude:
+    def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
         """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
         h = t * self.speed + self.offset
         shrink = np.exp(-np.abs(h))
         sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
         real, imag = np.full_like(h, self.x), self.y * self.sign * tanh
         x2, y = real * real + imag * imag, self.y * sech
-        arg_x = np.arctan2(imag, real)
-        falling = -4.0 * self.speed * y * y * tanh if needs.rate else None
-        zero = np.zeros_like(h)
-        spinor = Spinor(x2, y * y, arg_x, zero, falling)
-        return Attitude(self.growths, space, _IN_ORDER, t, zero, spinor)
+        arg_x, zero = np.arctan2(imag, real), np.zeros_like(h)
+        falling = -4.0 * self.speed * y * y * tanh
+        spinor = Spinor(tilt_of(x2, y * y), x2, y * y, arg_x, zero, falling)
+        return Attitude(self.growths, Times(t, farthest, space[12:, : t.size]), spinor)
 
 
-def _by_parity(step: Array, space: Workspace) -> tuple[Any, int]:
-    """Return where the even steps stand and after them the odd ones, and how many are even."""
-    half = np.multiply(step, 0.5, out=space.new())
-    whole = np.rint(half, out=step)
-    even = half == whole
-    count = int(np.count_nonzero(even))
-    space.free(half)
-    if count in {0, step.size}:
-        return _IN_ORDER, count
-    order = space.new().view(np.intp)
-    order[:count] = np.flatnonzero(even)
-    order[count:] = np.flatnonzero(np.logical_not(even, out=even))
-    return order, count
-
-
-def _taken(values: Array, order: Any, space: Workspace) -> Array:
-    """Return values in another order."""
-    taken: Array = np.take(values, order, out=space.new(), mode="clip")  # all are in range
-    space.free(values)
-    return taken
-
-
-def _circular(x: Array, space: Workspace) -> Functions:
-    """Return the functions of angles; X and Y share the factor cos x, which is divided out."""
-    tangent = np.tan(x, out=x)
-    square = np.multiply(tangent, tangent, out=space.new())
-    more = np.add(square, 1.0, out=space.new())
-    square /= more
-    space.free(more)
-    return Functions(tangent, None, square)
-
-
-def _hyperbolic(x: Array, space: Workspace) -> Functions:
-    """Return the hyperbolic functions of arguments, which are overwritten."""
-    sinh = np.sinh(x, out=x)
-    square = np.multiply(sinh, sinh, out=space.new())
-    cosh = np.add(square, 1.0, out=space.new())
-    return Functions(sinh, np.sqrt(cosh, out=cosh), square)
-
-
-def _write_component(component: Component, at: Functions, real: Array, imag: Array) -> None:
-    """Write real and imaginary part of X or Y."""
-    _write_polynomial(component.real, at.s, real)
-    _write_polynomial(component.imag, at.s, imag)
-    imag *= at.S
-    if at.C is not None:
-        scaled = imag if component.even else real
-        scaled *= at.C
-
-
-def _write_rate(coefficients: Coefficients, at: Functions, rate: Array) -> None:
-    """Write what goes with the nutation rate."""
-    _write_polynomial(coefficients, at.s, rate)
-    rate *= at.S
-    rate *= at.C if at.C is not None else 1.0 + at.S * at.S
-
-
-def _write_polynomial(coefficients: Coefficients, x: Array, value: Array) -> None:
+def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> None:
     """Write the value of two coefficients at least, the lowest power first."""
     np.multiply(x, coefficients[-1], out=value)
     for coefficient in coefficients[-2:0:-1]:
         value += coefficient
         value *= x
     value += coefficients[0]
-
-
-def _argument(real: Array, imag: Array, off_the_pole: bool, space: Workspace) -> Array:
-    """Return the argument, within a quarter turn of 0.
-
-    The real part is positive; where the axis meets a pole it is 0.
-    """
-    if not off_the_pole:
-        return np.arctan2(imag, real, out=space.new())
-    tangent = np.divide(imag, real, out=space.new())
-    return np.arctan(tangent, out=tangent)

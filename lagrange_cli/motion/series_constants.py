@@ -145,6 +145,7 @@ def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
 
 def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     """Return the sampler of a nutating top."""
+    from ..arithmetic.double_double import period_of
     from ..arithmetic.sums_of_doubles import pair
     from .attitude import growths
     from .samplers import ThetaSampler
@@ -154,19 +155,23 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
         c = theta_constants(motion, periods_since_top(motion), direction(motion), rates=True)
         found = series_from_start(ar, c)
         series = found.series
+        steps, spin, precession = 2 / c.period, series.spin_slope, series.precession_slope
+        slopes = (precession + spin) / 2, (precession - spin) / 2
+        x, y = (
+            start + slope * found.offset for start, slope in zip(found.starts, slopes, strict=True)
+        )
         return ThetaSampler(
-            steps_per_time=pair(2 / c.period),
+            tilt=tilt_of(motion),
+            step=period_of(pair(c.period / 2), float(steps)),
             offset=float(found.offset),
             max_time=float(int(MAX_PERIODS) * c.period),
             scale=float(series.scale),
+            speed=float(series.scale * steps),
+            first=float(series.scale * found.offset),
             hyperbolic=series.hyperbolic,
             frames=[_rounded(ar, frame, series) for frame in found.frames],
-            growths=growths(
-                ar,
-                rates=(motion.mean_spin_rate, motion.mean_precession_rate),
-                slopes=(series.spin_slope, series.precession_slope),
-                starts=found.starts,
-            ),
+            slopes=[float(slope / series.scale) for slope in slopes],
+            growths=growths(ar, (motion.mean_spin_rate, motion.mean_precession_rate), (x, y)),
         )
 
 
@@ -179,6 +184,7 @@ def constant_sampler(motion: Constant[Decimal]) -> ConstantSampler:
     with ar.working():
         rates = motion.mean_spin_rate, motion.state.psi_rate
         return ConstantSampler(
+            tilt=tilt_of(motion),
             x=float(motion.state.cos_half),
             y=float(motion.state.sin_half),
             growths=growths(ar, rates),
@@ -196,14 +202,21 @@ def separatrix_sampler(motion: Separatrix[Decimal]) -> SeparatrixSampler:
         swing, speed = swing_of(motion), motion.argument_rate
         rates = motion.r0 - motion.b / 2, motion.b / 2
         return SeparatrixSampler(
+            tilt=tilt_of(motion),
             speed=float(speed),
             offset=float(swing.offset),
             x=float(swing.x),
             y=float(swing.y),
             sign=swing.sign,
-            growths=growths(ar, rates, starts=(swing.start, 0 * swing.start)),
+            growths=growths(ar, rates, (swing.start, 0 * swing.start)),
             max_time=_reach(max(map(abs, (*rates, speed)))),
         )
+
+
+def tilt_of(motion: Nutating[Decimal] | Constant[Decimal] | Separatrix[Decimal]) -> float:
+    """Return the tilt at the start."""
+    state = motion.state
+    return float(2 * motion.ar.atan2(state.sin_half, state.cos_half))
 
 
 def _reach(rate: Decimal) -> float:
@@ -219,7 +232,7 @@ def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
 
     def scaled(polynomial: Coefficients, size: Any) -> Coefficients:
         count = needed([abs(x) for x in polynomial], greatest, _NEGLIGIBLE)
-        return [float(x / size) for x in polynomial[:count]]
+        return [float(x / size) + 0.0 for x in polynomial[:count]]  # no -0
 
     def component(c: Component) -> Component:
         return Component(scaled(c.real, size), scaled(c.imag, size), c.even)

@@ -13,13 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.double_double import reduce_phase
+from ..arithmetic.double_double import period_of, whole_periods
 from ..arithmetic.duals import Dual
 from ..arithmetic.points import MAX_PERIODS
-from ..arithmetic.sums_of_doubles import Pair, pair
+from ..arithmetic.sums_of_doubles import pair
 from ..arithmetic.types import Array
-from ..arithmetic.workspace import Workspace
-from .attitude import Growths, growths
+from .attitude import Growths, Times, growths
 from .kinds import Nutating
 from .multiple_angles import Coefficients
 from .neighbourhood import PARAMETERS
@@ -77,10 +76,11 @@ class SeriesDerivatives:
             self.about_means = RatesAboutMeans.of(
                 motion, means, first_is_upper=found.first_is_upper
             )
-            speed = 2 / constants.period
+            speed, step = 2 / constants.period, constants.period.value / 2
             rates = means.mean_spin_rate, means.mean_precession_rate
             slopes = series.spin_slope, series.precession_slope
-            self.speed: Pair = pair(speed.value)
+            self.speed = float(speed.value)
+            self.step = period_of(pair(step), self.speed)
             self.speeds, self.offsets, self.scales = map(_row, (speed, found.offset, series.scale))
             self.rates, self.slopes = (np.array([_row(x) for x in y]) for y in (rates, slopes))
             starts = x_start - y_start, x_start + y_start
@@ -90,12 +90,7 @@ class SeriesDerivatives:
                     for start, slope in zip(starts, slopes, strict=True)
                 ]
             )
-            self.growths: Growths = growths(
-                ar.plain,
-                rates=(rates[0].value, rates[1].value),
-                slopes=(_decimal(slopes[0]), _decimal(slopes[1])),
-                starts=(x_start.value, y_start.value),
-            )
+            self.growths: Growths = growths(ar.plain, (rates[0].value, rates[1].value))
             self.max_time = float(int(MAX_PERIODS) * constants.period.value)
 
     def at(self, t: Array) -> tuple[Array, Array, Array]:
@@ -104,8 +99,10 @@ class SeriesDerivatives:
         Last come the sums of the sizes of the parts of each derivative: it is wrong by some eps of
         these.  The shapes are (3, times) and, of the others, (3, parameters, times).
         """
-        step, since = reduce_phase(t, self.speed, float(self.offsets[0]))
-        phase = since + self.offsets[0]
+        farthest, space = float(np.max(np.abs(t), initial=0.0)), np.empty((3, t.size))
+        step, since, lost = whole_periods(t, self.step, farthest, space, self.offsets[0])
+        since = (since - lost) * self.speed
+        phase, times = since + self.offsets[0], Times(t, farthest, space[2:])
         moved = np.multiply.outer(self.speeds[1:], t)
         x, y = (self._polar(i, step, phase) for i in range(2))
         dphase = moved + self.offsets[1:, None]
@@ -121,8 +118,8 @@ class SeriesDerivatives:
         series = x.argument - y.argument, x.argument + y.argument
         slopes = x.arguments - y.arguments, x.arguments + y.arguments
         for i, growth in enumerate((self.growths.phi, self.growths.psi)):
-            with Workspace(t.size) as space:
-                angles[i + 1] = growth.unwrapped(t, since, series[i], space)
+            periodic = series[i] + self.slopes[i, 0] * phase - self.starts[i, 0]
+            angles[i + 1] = growth.unwrapped(periodic, times)
             grown = np.multiply.outer(self.rates[i, 1:], t)
             wound = np.multiply.outer(self.slopes[i, 1:], since) - self.starts[i, 1:, None]
             derivatives[i + 1] = slopes[i] + wound + grown + rates[i + 1] * dphase
@@ -143,7 +140,7 @@ class SeriesDerivatives:
         norm = x2 + y2
         theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
         spinning = self.about_means.at(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
-        return [gain / self.speed.high for gain in (theta, *spinning)]
+        return [gain / self.speed for gain in (theta, *spinning)]
 
     def _polar(self, which: int, step: Array, phase: Array) -> Polar:
         """Return X (0) or Y (1) with its derivatives at a fixed phase."""

@@ -24,14 +24,17 @@ def times_of(t: ArrayLike) -> Array:
         raise LagtopError(f"t must be real numbers, got {quoted(t)}", "t") from None
 
 
-def check_times(times: Array, most: float, name: str = "t") -> None:
-    """Raise LagtopError where a time is not finite or beyond the last that names a phase.
+def check_times(times: Array, most: float, name: str = "t") -> float:
+    """Return the greatest |t|.
 
-    `name` is that of the argument.
+    Raises LagtopError, by the `name` of the argument, if a time is not finite or beyond the last
+    that names a phase.
     """
-    limit = min(most, MAX_TIME)
-    if not times.size or (times.min() >= -limit and times.max() <= limit):
-        return
+    if not times.size:
+        return 0.0
+    limit, low, high = min(most, MAX_TIME), float(times.min()), float(times.max())
+    if low >= -limit and high <= limit:
+        return max(-low, high)
     bad = times[~(np.abs(times) <= limit)]
     raise LagtopError(
         f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name

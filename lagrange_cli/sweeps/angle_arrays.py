@@ -5,7 +5,6 @@ The constants are computed in pairs of doubles by the formulas of `motion`, and 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -14,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import PAIRS
-from ..arithmetic.double_double import DoubleDouble, reduce_phase
+from ..arithmetic.double_double import DoubleDouble, Period, period_of, whole_periods
 from ..arithmetic.sums_of_doubles import Pair, Triple
 from ..arithmetic.types import Array, Mask
-from ..arithmetic.workspace import Workspace
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
-from ..motion.attitude import Attitude, Growth, Growths, Spinor
+from ..motion.attitude import Attitude, Growth, Growths, Spinor, Times
 from ..motion.kinds import Nutating
+from ..motion.samplers import arguments_of, moduli_of, tilt_of, unwound
 from ..motion.series_constants import theta_constants
 from ..motion.theta_series import Component, Frame, Series, circular_series, hyperbolic_series
 from .pair_motions import PairMotions, Start
@@ -31,34 +30,41 @@ from .pair_motions import PairMotions, Start
 class ArraySampler:
     """The theta series of many tops that all run in the same nome; each constant is a column."""
 
-    steps_per_time: Pair
+    step: Period
     offset: Array
-    first: Mask
+    lower: Mask
     """Whether the phase of t = 0 is counted from a passage of u2."""
-    scale: Array
+    speed: Array
+    """Argument of the functions per unit of time."""
+    first: Array
+    """Argument at t = 0."""
     hyperbolic: bool
     frames: list[Frame]
     """The coefficients of all tops, about u1 and about u2."""
+    slopes: list[Array]
+    """What the mean growth of arg X and arg Y has more than these, per unit of the argument."""
     growths: Growths
 
     def part(self, rows: slice) -> ArraySampler:
         """Return the constants of some tops."""
-        constants = {name: _mapped(x, lambda array: array[rows]) for name, x in vars(self).items()}
+        constants = {name: _mapped(x, rows) for name, x in vars(self).items()}
         return ArraySampler(**constants)
 
-    def attitude(self, t: Array, space: Workspace) -> Attitude:
-        """Return the attitude at times, a row per top, in arrays of a workspace of that shape."""
-        step, since = reduce_phase(t, self.steps_per_time, self.offset, space)
-        half = np.multiply(step, 0.5, out=space.new())
-        odd = np.rint(half, out=step) != half
-        argument = np.add(since, self.offset, out=half)
-        argument *= self.scale
-        upper = odd == self.first
-        spinor = self._spinor(argument, upper, space)
-        return Attitude(self.growths, space, slice(None), t, since, spinor)
+    def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
+        """Return the attitude at times, a row per top, in a workspace of that shape."""
+        step, since, lost = whole_periods(t, self.step, farthest, space[:3], self.offset)
+        since -= lost
+        since *= self.speed
+        argument = np.add(since, self.first, out=since)
+        half = np.multiply(step, 0.5, out=lost)
+        upper = (np.rint(half, out=step) != half) == self.lower
+        parts = self._parts(argument, upper, space[4:8])
+        arguments = unwound(arguments_of(parts, space[8:10]), self.slopes, argument, lost)
+        spinor = Spinor(tilt_of(*moduli_of(parts)), None, None, *arguments)
+        return Attitude(self.growths, Times(t, farthest, space[12:]), spinor)
 
-    def _spinor(self, argument: Array, upper: Mask, space: Workspace) -> Spinor:
-        """Return X and Y; `upper` says which phases are counted from u1."""
+    def _parts(self, argument: Array, upper: Mask, parts: Array) -> Array:
+        """Return real and imaginary parts of X and Y; `upper` tells phases counted from u1."""
         S = np.sinh(argument) if self.hyperbolic else np.tan(argument)
         square = S * S
         C = np.sqrt(square + 1.0) if self.hyperbolic else None
@@ -66,35 +72,26 @@ class ArraySampler:
             square /= square + 1.0
         rows = np.arange(argument.shape[0])[:, None]
         place = rows + np.where(upper, 0, argument.shape[0])
-
-        def polar(one: Component, other: Component) -> tuple[Array, Array]:
-            real = _polynomials(one.real, other.real, place, square)
-            imag = _polynomials(one.imag, other.imag, place, square)
-            imag *= S
+        (x, y, _), (other_x, other_y, _) = self.frames
+        for i, (one, other) in enumerate(((x, other_x), (y, other_y))):
+            _polynomials(one.real, other.real, place, square, parts[2 * i])
+            _polynomials(one.imag, other.imag, place, square, parts[2 * i + 1])
             if C is not None:
                 even = upper if one.even else ~upper
-                real *= np.where(even, 1.0, C)
-                imag *= np.where(even, C, 1.0)
-            return real * real + imag * imag, np.arctan(imag / real)
-
-        upper_frame, lower_frame = self.frames
-        x2, arg_x = polar(upper_frame.x, lower_frame.x)
-        y2, arg_y = polar(upper_frame.y, lower_frame.y)
-        return Spinor(x2, y2, arg_x, arg_y)
+                parts[2 * i] *= np.where(even, 1.0, C)
+                parts[2 * i + 1] *= np.where(even, C, 1.0)
+        parts[1::2] *= S
+        return parts
 
 
-def _polynomials(one: list[Array], other: list[Array], place: NDArray[np.intp], x: Array) -> Array:
-    """Return the value of a polynomial of each top, or of another one, by its place in both."""
-    value: Array | None = None
+def _polynomials(
+    one: list[Array], other: list[Array], place: NDArray[np.intp], x: Array, value: Array
+) -> None:
+    """Write the value of a polynomial of each top, or of another one, by its place in both."""
+    value[:] = 0.0
     for pair in zip(reversed(one), reversed(other), strict=True):
-        coefficients = np.take(np.concatenate(pair), place)
-        if value is None:
-            value = coefficients
-        else:
-            value *= x
-            value += coefficients
-    assert value is not None
-    return value
+        value *= x
+        value += np.take(np.concatenate(pair), place)
 
 
 def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
@@ -104,15 +101,25 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
         c = theta_constants(motion, 0 * motion.K)
         series = (hyperbolic_series if hyperbolic else circular_series)(PAIRS, c)
         phase, lower, *args = _at_start(motions, series)
-        count = phase.size
+        count, steps = phase.size, 2 / c.period
+        spin, precession = series.spin_slope, series.precession_slope
+        slopes = (precession + spin).scaled(0.5), (precession - spin).scaled(0.5)
+        x, y = (
+            DoubleDouble(arg) + slope * DoubleDouble(phase)
+            for arg, slope in zip(args, slopes, strict=True)
+        )
+        phi = _growth(motion.mean_spin_rate, x - y)
+        psi = _growth(motion.mean_precession_rate, x + y)
         return ArraySampler(
-            steps_per_time=Pair(*_columns(2 / c.period, count)),
+            step=period_of(Pair(*_columns(c.period / 2, count)), _columns(steps, count)[0]),
             offset=phase[:, None],
-            first=lower[:, None],
-            scale=_columns(series.scale, count)[0],
+            lower=lower[:, None],
+            speed=_columns(series.scale * steps, count)[0],
+            first=_columns(series.scale * DoubleDouble(phase), count)[0],
             hyperbolic=hyperbolic,
             frames=[_rounded(frame) for frame in series.frames],
-            growths=_growths(motion, series, *args),
+            slopes=[_columns(slope / series.scale, count)[0] for slope in slopes],
+            growths=Growths(phi, psi, phi, psi),
         )
 
 
@@ -166,19 +173,12 @@ def _start_argument(
     return argument
 
 
-def _growths(
-    motion: Nutating[DoubleDouble], series: Series, start_x: Array, start_y: Array
-) -> Growths:
-    """Return the growth of spin and precession; arg X and arg Y at t = 0 are given."""
-
-    def growth(rate: DoubleDouble, slope: DoubleDouble, start: Array) -> Growth:
-        turns = _columns(rate / (2 * PAIRS.pi), start.size)
-        pairs = (Pair(*_columns(x, start.size)) for x in (slope, DoubleDouble(start)))
-        return Growth(Pair(*_columns(rate, start.size)), Triple(*turns, 0.0), *pairs)
-
-    phi = growth(motion.mean_spin_rate, series.spin_slope, start_x - start_y)
-    psi = growth(motion.mean_precession_rate, series.precession_slope, start_x + start_y)
-    return Growths(phi, psi, phi, psi)
+def _growth(rate: DoubleDouble, start: DoubleDouble) -> Growth:
+    """Return the growth of an angle of each top."""
+    count, turns = start.high.size, rate / (2 * PAIRS.pi)
+    turn = period_of(Pair(*_columns(1 / turns, count)), _columns(turns, count)[0])
+    first, mean = (Pair(*_columns(x, count)) for x in (start, rate))
+    return Growth(first, mean, turn, Triple(*_columns(turns, count), 0.0))
 
 
 def _columns(x: DoubleDouble, count: int) -> tuple[Array, Array]:
@@ -193,12 +193,12 @@ def _rounded(frame: Frame) -> Frame:
     return Frame(component(frame.x), component(frame.y), [])
 
 
-def _mapped(value: Any, change: Callable[[Any], Any]) -> Any:
-    """Return nested constants with every array changed."""
+def _mapped(value: Any, rows: slice) -> Any:
+    """Return nested constants of some tops."""
     if isinstance(value, np.ndarray):
-        return change(value)
+        return value[rows]
     if isinstance(value, list):
-        return [_mapped(x, change) for x in value]
+        return [_mapped(x, rows) for x in value]
     if isinstance(value, tuple):
-        return type(value)(*(_mapped(x, change) for x in value))
+        return type(value)(*(_mapped(x, rows) for x in value))
     return value

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import BLOCK, blocks
 from ..arithmetic.types import Array, Mask
-from ..arithmetic.workspace import Workspace
+from ..arithmetic.workspace import workspace
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
@@ -98,14 +98,14 @@ def _fill_arrays(motions: PairMotions, index: NDArray[np.intp], wish: _Wish) -> 
 
 def _sample(sampler: ArraySampler, index: NDArray[np.intp], wish: _Wish) -> None:
     """Write the angles of the tops of a sampler, as many samples at once as make a block."""
-    count = wish.t.shape[1]
+    count, farthest = wish.t.shape[1], float(np.abs(wish.t[index]).max(initial=0.0))
     step = max(1, BLOCK // max(count, 1))
     for first in range(0, index.size, step):
         rows, part = index[first : first + step], sampler.part(slice(first, first + step))
         for columns in blocks(count):
             times = wish.t[rows, columns]
-            with Workspace(*times.shape) as space:
-                at = part.attitude(times, space)
+            with workspace(*times.shape) as space:
+                at = part.attitude(times, farthest, space)
                 wish.angles[0, rows, columns] = at.theta()
                 wish.angles[1, rows, columns] = at.phi(wrap=wish.wrap)
                 wish.angles[2, rows, columns] = at.psi(wrap=wish.wrap)

@@ -24,11 +24,14 @@ class MeanRates:
     """
 
     def __init__(self, r0: Array, k_prime: Array, gaps: Gaps[DoubleDouble]) -> None:
-        distances, momenta = _by_pole(gaps)
+        places, momenta = ([x.high for x in rows] for rows in _by_pole(gaps))
+        means = mean_over(ARRAYS, k_prime, places, momenta)
         # A mean is linear in the momenta, with positive factors: that of their absolute values is
-        # the size of what is added up.
-        signed_and_not = [np.stack([x.high, abs(x.high)]) for x in momenta]
-        means, sizes = mean_over(ARRAYS, k_prime, [x.high for x in distances], signed_and_not)
+        # the size of what is added up.  It differs where they have both signs.
+        sizes, mixed = abs(means), np.flatnonzero(momenta[0][0] * momenta[1][0] < 0)
+        if mixed.size:
+            some, absolute = ([x[:, mixed] for x in rows] for rows in (places, map(abs, momenta)))
+            sizes[:, mixed] = mean_over(ARRAYS, k_prime[mixed], some, absolute)
         size = sizes[0] + sizes[1]
         self.precession: Array = means[0] + means[1]
         self.spin: Array = r0 + means[0] - means[1]

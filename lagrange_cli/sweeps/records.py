@@ -35,6 +35,9 @@ Column = Array | NDArray[np.object_]
 
 BLOCK_ROWS = 1 << 12
 """Tops that are computed together: their arrays stay in the cache."""
+_SHARE, _LEAST_ROWS = 80, 512
+"""A top takes 800 bytes while it is computed: such a share of the tops times keys of a sweep takes
+1.25 times its result."""
 
 
 def record_keys(*, radians: bool = False) -> list[str]:
@@ -57,8 +60,9 @@ def sweep(
     shape, size = arrays[0].shape, arrays[0].size
     flat = [x if x.ndim == 1 else x.flat for x in arrays]  # of which a block is copied at most
     found = empty_columns(chosen, size)
-    for first in range(0, max(size, 1), BLOCK_ROWS):
-        rows = slice(first, first + BLOCK_ROWS)
+    step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
+    for first in range(0, max(size, 1), step):
+        rows = slice(first, first + step)
         tops = TopArrays(*(x[rows] for x in flat))
         records(tops, chosen, radians=radians, columns={key: x[rows] for key, x in found.items()})
     return {key: column.reshape(shape) for key, column in found.items()}
@@ -213,9 +217,8 @@ class _Block:
             chosen = moving
         fine = slice(None) if trusted.all() else trusted
         if "regime" in self.texts:
-            plane = tops.r0 == 0
-            regimes = np.where(plane, Regime.NO_SPIN.value, Regime.REGULAR.value)
-            self.columns["regime"][chosen] = regimes[fine]
+            regimes = np.array([Regime.REGULAR.value, Regime.NO_SPIN.value], dtype=object)
+            self.columns["regime"][chosen] = regimes[(tops.r0[fine] == 0).astype(np.intp)]
         if "path" in self.texts:
             self.columns["path"][chosen] = motions.paths()[fine]
         for key in self.numbers:

@@ -7,9 +7,9 @@ trusted, and solved by itself.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, reduce
 from math import factorial
 from typing import Any
 
@@ -90,7 +90,9 @@ class StartArrays:
         """Return the paths of the axis."""
         b, gaps = np.sign(self.rough.b), self.rough.gaps
         looping = (b * gaps.momentum_u1 < 0) & (b * gaps.momentum_u2 > 0)
-        return np.where(looping, "looping", "wavy").astype(object)
+        names = np.array(["wavy", "looping"], dtype=object)
+        paths: NDArray[np.object_] = names[looping.astype(np.intp)]
+        return paths
 
     @property
     def noise(self) -> Array:
@@ -203,18 +205,18 @@ class _ErrorBounds:
         of_x2 = np.where(x1 >= x2, of_smaller, of_larger)
         of_D = error * D
         self.momenta = abs(momentum) + abs(b) * x1, abs(momentum) + abs(b) * x2
-        self.worst: Array = np.maximum.reduce(
-            [
-                (of_x1 + of_x2) / doubles.u1_u2,
-                (_EPS * above + of_x1) / doubles.above_u1,
-                (_EPS * above + of_x2) / doubles.above_u2,
-                (_EPS * below + of_x1) / doubles.below_u1,
-                (_EPS * below + of_x2) / doubles.below_u2,
-                (of_D + _EPS * D + a * of_x1) / doubles.a_u3_u1,
-                (of_D + _EPS * D) / doubles.a_u3_above,
-            ]
-        )
-        positive = np.minimum.reduce([getattr(doubles, name) for name in _POSITIVE]) > 0
+
+        def bounds() -> Iterator[Array]:
+            yield (of_x1 + of_x2) / doubles.u1_u2
+            yield (_EPS * above + of_x1) / doubles.above_u1
+            yield (_EPS * above + of_x2) / doubles.above_u2
+            yield (_EPS * below + of_x1) / doubles.below_u1
+            yield (_EPS * below + of_x2) / doubles.below_u2
+            yield (of_D + _EPS * D + a * of_x1) / doubles.a_u3_u1
+            yield (of_D + _EPS * D) / doubles.a_u3_above
+
+        self.worst: Array = reduce(np.maximum, bounds())
+        positive = reduce(np.minimum, (getattr(doubles, name) for name in _POSITIVE)) > 0
         signs = [
             (_EPS * self.momenta[0] + abs(b) * of_x1) < _SURE * abs(doubles.momentum_u1),
             (_EPS * self.momenta[1] + abs(b) * of_x2) < _SURE * abs(doubles.momentum_u2),
@@ -240,7 +242,7 @@ def pair_state(tops: TopArrays) -> State[DoubleDouble]:
     )
     a, b = (m * g * s / A).scaled(2), C * r0 / A
     sine, cosine = _half_tilt(tops)
-    unused = DoubleDouble(np.full_like(r0.high, np.nan))  # by these formulas
+    unused = DoubleDouble(np.broadcast_to(np.nan, r0.high.shape))  # by these formulas
     return State(
         a=a,
         b=b,

@@ -7,6 +7,7 @@ import io
 import json
 import math
 import random
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from lagrange_cli.fits.body import INPUTS, completed, told_of
 from lagrange_cli.fits.conditions import read_conditions
 from lagrange_cli.fits.find import find
 from lagrange_cli.fits.invert import invert
-from lagrange_cli.fits.roots import roots
+from lagrange_cli.fits.roots import crossing, middle, roots
 from lagrange_cli.fits.search import Search
 from lagrange_cli.fits.slopes import number_slopes
 from lagrange_cli.inputs.ranges import parse_span
@@ -356,7 +357,7 @@ def test_what_cannot_be_told_apart_is_named() -> None:
 def test_the_last_bits_are_walked(monkeypatch: pytest.MonkeyPatch, off: int) -> None:
     exact = math.sqrt(2)
     wrong = exact + off * math.ulp(exact)
-    monkeypatch.setattr("scipy.optimize.brentq", lambda *_, **__: wrong)
+    monkeypatch.setattr("lagrange_cli.fits.roots.crossing", lambda *_: wrong)
     x = np.array([1.0, 2.0])
     assert roots(lambda at: at - exact, x, x - exact) == [exact]
     assert roots(lambda at: exact - at, x, exact - x) == [exact]
@@ -376,6 +377,51 @@ def test_slopes_are_those_of_the_numbers(key: str, radians: bool) -> None:
         shift = np.eye(2)[i] * step
         change = search.swept(np.stack([point + shift, point - shift]))
         assert slopes[:, i] == pytest.approx((change[0] - change[1]) / (2 * step), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("function", "low", "high", "root"),
+    [
+        (lambda x: x**3 - 2, 0.0, 5.0, 2 ** (1 / 3)),
+        (lambda x: math.exp(x) - 1e5, -10.0, 40.0, math.log(1e5)),
+        (lambda x: 1 / x - 1e-3, 1e-5, 1e9, 1000.0),
+        (lambda x: (x - 1.25) ** 5, 0.0, 100.0, 1.25),
+        (lambda x: math.copysign(1.0, x - 7) * abs(x - 7) ** 0.1, 0.0, 100.0, 7.0),
+        (lambda x: math.copysign(1.0, x - 1e-300), -50.0, 60.0, 1e-300),
+    ],
+)
+def test_a_sign_change_is_found_to_the_last_bits(
+    function: Callable[[float], float], low: float, high: float, root: float
+) -> None:
+    calls = []
+
+    def counted(x: float) -> float:
+        calls.append(x)
+        return function(x)
+
+    found = crossing(counted, (low, function(low)), (high, function(high)))
+    assert found == pytest.approx(root, rel=1e-15, abs=0)
+    assert len(calls) <= 64
+
+
+def test_the_middle_is_counted_in_doubles() -> None:
+    assert middle(-50.0, 50.0) == 0
+    assert middle(1.0, 4.0) == 2
+    assert middle(0.0, 1e-323) == 5e-324
+    assert middle(1.0, math.nextafter(1.0, 2)) == 1
+    assert middle(-3.0, -2.0) == -2.5
+
+
+def test_a_leap_at_zero_is_no_root(lagtop: Lagtop) -> None:
+    """Halving the distance to 0 does not end: there are 1074 powers of two."""
+    result = lagtop("find", *"--r0=-50:60 --theta0 60 mean_spin_rate=0".split())
+    assert_one_line(result, 1, "no top found: nearest to mean_spin_rate=0 is mean_spin_rate = -")
+
+
+def test_a_leap_at_zero_hides_no_root() -> None:
+    (motion,) = find(["mean_precession_rate=-11.5"], r0="-60:60", theta0_deg=120)
+    scene = oracle.Scene(r0=float(motion.top.r0), theta0_deg=120)
+    assert float(oracle.constants(scene, 30)["mean_precession_rate"]) == pytest.approx(-11.5)
 
 
 @pytest.mark.parametrize(("relation", "holds"), [("<", 1), ("<=", 3), (">", 4), (">=", 6)])

@@ -15,9 +15,10 @@ from conftest import Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, read_scene
 from lagrange_cli.arithmetic.text import parse_number
+from lagrange_cli.inputs.common_units import UNITS
 from lagrange_cli.inputs.given import gather
 from lagrange_cli.inputs.quantity_text import parse_quantity
-from lagrange_cli.inputs.units import CGS, SYSTEMS, factor_of, meaning_of
+from lagrange_cli.inputs.units import CGS, SYSTEMS, factor_of, meaning_by_pint, meaning_of
 
 PAPER = "--m 1587g --A 39032g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
 BODY = {"m": "350g", "A": "8.5e-4 kg m²", "C": "4000 g*cm^2", "s": "3cm", "g": "9.81 m/s^2"}
@@ -68,6 +69,22 @@ def test_turns_have_pi_in_all_digits(unit: str, turns: str) -> None:
         size = mpmath.mpf(meaning.size.numerator) / meaning.size.denominator
         exact = 2 * mpmath.pi * mpmath.mpf(Fraction(turns).numerator) / Fraction(turns).denominator
         assert abs(size - exact) < mpmath.mpf(10) ** -1098
+
+
+PRODUCTS = """
+kg*m^2, kg·m**2, g*cm^2, lb*in^2, oz*in**2, N*m*s^2, N·m·s^2, m/s^2, m/s/s, ft*s^-2, cm/s**2,
+in/min/s, rad/s, deg/s, °/s, turn/min, rev/h, mrad/ms, arcmin/s, 1/s, 1/min, rad/rad*s^-1,
+deg*rad/turn, 1/ms^1, rpm*min/s, mg/kg, g*s/h, kg*km/lb, rpm*deg^-1*turn, kg m^2, kg m ^ 2,
+N m s ** 2, ft s^-2, 1 / s, m / s s, rad / min, s/s/s, s*s^-2, rpm*s/min
+"""
+
+
+@pytest.mark.parametrize("text", [*UNITS, *map(str.strip, PRODUCTS.split(","))])
+def test_common_units_are_those_of_pint(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = meaning_by_pint(text)
+    monkeypatch.setitem(sys.modules, "pint", None)
+    monkeypatch.setattr("lagrange_cli.inputs.units.meaning_by_pint", None)
+    assert meaning_of(text) == exact
 
 
 @pytest.mark.parametrize(
@@ -313,17 +330,18 @@ def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> N
     from lagrange_cli.inputs import units
 
     monkeypatch.setitem(sys.modules, "pint", None)
-    units.meaning_of.cache_clear()
+    units.meaning_by_pint.cache_clear()
     monkeypatch.setattr(units, "_registry", units._registry.__wrapped__)
-    result = lagtop("solve", "--m", "350g")
+    assert lagtop("solve", *WORDS, "--r0", "480rpm", "--get", "m").stdout == "0.35\n"
+    result = lagtop("solve", "--m", "1slug")
     assert_one_line(
         result,
         69,
         "--m must be a finite decimal number (units need pint: pip install 'lagtop[units]')",
     )
     with pytest.raises(LagtopError, match="need pint"):
-        gather(read({"theta0": "3deg"}))
-    units.meaning_of.cache_clear()
+        gather(read({"theta0": "3gon"}))
+    units.meaning_by_pint.cache_clear()
 
 
 def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, solved: Any) -> None:

@@ -58,7 +58,8 @@ def turning_times(period: float, rng: random.Random) -> Iterator[float]:
 
 
 def errors_at_turns(scene: dict[str, float], seed: int) -> float:
-    """Return the largest error, in units, of angles, remainders and quaternion at turning times."""
+    """Return the largest error, in units, at turning times: of angles, wrapped too, remainders and
+    quaternion."""
     motion, judge = solve(Top(**scene)), Judge(Top(**scene).as_dict())
     reach = motion.sampler().max_time
     turns = turning_times(float(motion.T_nutation), random.Random(seed))
@@ -67,9 +68,11 @@ def errors_at_turns(scene: dict[str, float], seed: int) -> float:
     rows = zip(*(column.tolist() for column in table.values()), strict=True)
     waves = motion.table(times, ("dphi", "dpsi"))
     remainders = zip(waves["dphi"].tolist(), waves["dpsi"].tolist(), strict=True)
+    _, phi, psi = motion.angles(times, wrap=True)
+    wrapped = zip(phi.tolist(), psi.tolist(), strict=True)
     return max(
-        max(*judge.errors(t, row), *judge.remainder_errors(t, remainder))
-        for t, row, remainder in zip(times, rows, remainders, strict=True)
+        max(*judge.errors(t, row), *judge.remainder_errors(t, wave), *judge.wrapped_errors(t, turn))
+        for t, row, wave, turn in zip(times, rows, remainders, wrapped, strict=True)
     )
 
 
@@ -89,7 +92,7 @@ def test_nothing_leaps_next_to_quarters_of_periods(scene: dict[str, float]) -> N
 
 
 def test_a_start_on_a_pole_has_room_for_its_terms() -> None:
-    """Worst seen: 1.55 units; psi of the first was off by 4.02."""
+    """Worst seen: 2.02 units, psi of the first: the sum of four terms, two of them beyond 2."""
     scene = {"m": 1.0, "A": 1.7603883050112619, "C": 4.552377252163958e-06, "s": 1.0, "g": 1.0}
     scene |= {"r0": -5.090700293587707, "theta0_deg": 180.0, "thetadot0": 0.026177118759960684}
     rng = random.Random(180)
@@ -99,7 +102,37 @@ def test_a_start_on_a_pole_has_room_for_its_terms() -> None:
         judge, motion = Judge(Top(**scene).as_dict()), solve(Top(**scene))
         columns = motion.table(times, ("theta", "phi", "psi", "quaternion")).values()
         rows = zip(times, *(x.tolist() for x in columns), strict=True)
-        assert max(max(judge.errors(row[0], row[1:])) for row in rows) <= 1.6
+        assert max(max(judge.errors(row[0], row[1:])) for row in rows) <= 2.1
+
+
+@pytest.mark.parametrize(
+    ("scene", "t"),
+    [
+        (
+            {
+                **{"m": 1, "s": 1, "g": 1, "A": 1.6139871423392762, "C": 1.1020614314651334},
+                **{"r0": 1.0071601560733234e-161, "theta0_deg": 179.9999982350077},
+                **{"thetadot0": -2.4896274011607793, "psidot0": -3.945225420389403},
+            },
+            2.855707002683582,
+        ),
+        (
+            {
+                **{"m": 1, "s": 0, "g": 1, "A": 1.8186743437876096, "C": 1.8186743437876096},
+                **{"r0": 0, "theta0_deg": 60, "thetadot0": -1.728785074701102},
+                "psidot0": 3.4138511764757373,
+            },
+            -9.172979917259354,
+        ),
+    ],
+)
+def test_arguments_next_to_half_a_turn_keep_the_digits_of_the_quaternion(
+    scene: dict[str, float], t: float
+) -> None:
+    """A part that is next to 0 was off by 4.3 units, and had the wrong sign."""
+    table = solve(Top(**scene)).table([t], ("theta", "phi", "psi", "quaternion"))
+    errors = Judge(Top(**scene).as_dict()).errors(t, tuple(float(x[0]) for x in table.values()))
+    assert max(errors) <= 1
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ import pytest
 from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.arithmetic.workspace import Workspace
+from lagrange_cli.arithmetic.workspace import ROWS, workspace
 from lagrange_cli.motion import samplers
 from lagrange_cli.motion.columns import COLUMNS, chosen_columns, name_of
 from lagrange_cli.motion.sample import samples
@@ -45,10 +45,11 @@ def _forbidden(*_: Any) -> Any:
 @pytest.mark.parametrize(
     ("columns", "forbidden"),
     [
-        ("t r", "reduce_phase _hyperbolic _circular _write_component _argument _write_rate"),
-        ("u theta psidot phidot axis_z moment Lz", "_argument _write_rate"),
-        ("thetadot energy", "_argument"),
-        ("phi psi dphi dpsi quaternion axis", "_write_rate"),
+        ("t r", "whole_periods _write_polynomial arguments_of moduli_of tilt_of"),
+        ("u theta psidot phidot axis_z moment Lz", "arguments_of"),
+        ("thetadot energy", "arguments_of tilt_of"),
+        ("u psidot", "tilt_of"),
+        ("phi psi dphi dpsi", "tilt_of moduli_of"),
     ],
 )
 @pytest.mark.parametrize("start", ["hyperbolic", "circular"])
@@ -63,7 +64,28 @@ def test_what_is_not_asked_for_is_not_computed(
         np.testing.assert_array_equal(values, expected[name])
 
 
-@pytest.mark.parametrize("name", ["_argument", "_write_rate", "reduce_phase"])
+@pytest.mark.parametrize("start", ["hyperbolic", "circular"])
+def test_the_rate_is_computed_only_if_asked_for(start: str) -> None:
+    motion = solve(Top(**STARTS[start]))
+    expected = motion.table(T, list(COLUMNS))
+    sampler = motion.sampler()
+    frames = [frame._replace(rate=_Forbidden()) for frame in vars(sampler)["frames"]]
+    vars(sampler)["frames"] = frames
+    names = "theta phi psi dphi dpsi u phidot psidot axis_z axis_x quaternion_w moment Lz".split()
+    for name, values in motion.table(T, names).items():
+        np.testing.assert_array_equal(values, expected[name])
+    with pytest.raises(pytest.fail.Exception):
+        motion.table(T, ["thetadot"])
+
+
+class _Forbidden:
+    """Coefficients that must not be looked at."""
+
+    def __getitem__(self, _: Any) -> Any:
+        return _forbidden()
+
+
+@pytest.mark.parametrize("name", ["arguments_of", "moduli_of", "whole_periods"])
 def test_what_is_asked_for_is_computed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Else the test before would show nothing."""
     monkeypatch.setattr(samplers, name, _forbidden)
@@ -100,14 +122,12 @@ def test_motions_may_be_sampled_in_turns() -> None:
         np.testing.assert_array_equal(theirs, other.angles(T).phi[rows])
 
 
-def test_a_workspace_lends_each_array_once() -> None:
-    with Workspace(10) as space:
-        arrays = [space.new() for _ in range(5)]
-        assert len({array.ctypes.data for array in arrays}) == 5
-        space.free(arrays[2])
-        assert space.new().ctypes.data == arrays[2].ctypes.data
-    with Workspace(3) as space:
-        assert space.new().size == 3
+def test_a_workspace_is_lent_once() -> None:
+    with workspace(10) as one, workspace(2, 3) as other:
+        assert (one.shape, other.shape) == ((ROWS, 10), (ROWS, 2, 3))
+        assert not np.shares_memory(one, other)
+    with workspace(10) as again:
+        assert np.shares_memory(again, one) or np.shares_memory(again, other)
 
 
 @pytest.mark.parametrize("count", [0, 1, 16383, 16384, 16385, 40_000])
