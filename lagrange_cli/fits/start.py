@@ -14,10 +14,8 @@ from .model import angles_of, kept_off_the_vertical
 from .nutation import Shown
 from .recording import Recording
 from .residuals import residuals
-from .turning_points import SIGNS, Candidates, Nutation, candidates, shares, with_mean_rate
+from .turning_points import SIGNS, Candidates, Nutation, candidates, heights, with_mean_rate
 
-_GRID = shares(25, 1e-3, 1e-8, 1)
-"""Moduli that are tried, with all signs, as shares of the greatest where no mean rate tells."""
 _NEAREST = 3
 """Tops that are tried for a mean precession that no top has."""
 _MOST_ROWS = 4000
@@ -66,8 +64,8 @@ def _near(shown: Shown) -> list[Shown]:
 
 def _grid(shown: Shown) -> Candidates:
     """Return tops of many moduli, with all signs."""
-    moduli = shown.nutation.most_m * _GRID
-    parts = [candidates(shown.nutation, moduli, signs) for signs in SIGNS]
+    tried = heights(shown.nutation, 25, 1e-8, 1e3, 1)
+    parts = [candidates(shown.nutation, tried, signs) for signs in SIGNS]
     return Candidates(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
@@ -87,12 +85,11 @@ def _with_mean_rates(shown: Shown) -> Candidates:
 def _states(shown: Shown, tops: Candidates) -> Array:
     """Return the states at the first row, of tops whose tilt there is known."""
     nutation, a = shown.nutation, tops.a
-    u = np.full_like(a, min(max(shown.u_start, nutation.u2), nutation.u1))
-    u3 = nutation.u2 + nutation.swing / tops.m
-    speed = np.sqrt(a * np.maximum((nutation.u1 - u) * (u - nutation.u2), 0) * (u3 - u))
-    sine = np.sqrt(1 - u * u)
-    rates = shown.falls * speed / sine, (tops.beta - tops.b * u) / (1 - u * u)
-    return np.stack([a, tops.b, np.arccos(u), *rates], axis=-1)
+    u = min(max(shown.u_start, nutation.u2), nutation.u1)
+    theta = np.full_like(a, math.acos(u))
+    between = max((nutation.u1 - u) * (u - nutation.u2), 0.0)
+    nutation_rate = shown.falls * np.sqrt(a * between * (1 - u + tops.u3_above)) / np.sin(theta)
+    return np.stack([a, tops.b, theta, nutation_rate, tops.precession_rate(theta)], axis=-1)
 
 
 def _start(recording: Recording, state: Array, angles: Array) -> Start:

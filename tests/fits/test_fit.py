@@ -258,7 +258,7 @@ def trials(tmp_path: Path) -> Path:
 def test_a_start_next_to_an_upright_root_is_found() -> None:
     """Without psi nothing tells the modulus, and u3 = 1 is at an end of what it may be."""
     nutation, t = Nutation(1.5, 1.52, 1.0), np.linspace(0, 60, 300)
-    exact = candidates(nutation, np.array(nutation.most_m * (1 - 1e-6)), (1, 1))
+    exact = candidates(nutation, np.array(1e-6 * nutation.from_top[1]), (1, 1))
     top = top_of(nutation, exact).replace(C=0.7, r0=float(exact.b) / 0.7)
     angles, rng = solve(top).angles(t), np.random.default_rng(1)
     theta, phi = (x + 1e-4 * rng.standard_normal(t.size) for x in (angles.theta, angles.phi))
