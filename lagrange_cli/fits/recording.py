@@ -26,6 +26,8 @@ CHANNELS = {
 the meridian and across it; or the attitude, with the turn about the axis too.
 """
 LEAST_ROWS = 12
+_BEYOND = 0.2
+"""Radians that noise may take a tilt beyond a pole."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
         spread = _add_spreads(trajectory)
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
         if reading.by is None:
-            parts = {"": _joined(block for block, _ in trajectory.blocks())}
+            parts = {"": _joined(block for block, _ in trajectory.blocks(repeats=True))}
         else:
             parts = _by_column(trajectory, reading.by)
         if not parts:
@@ -126,7 +128,7 @@ def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array
         for label in dict.fromkeys(labels.tolist()):
             rows = np.flatnonzero(labels == label)
             some = {key: x[rows] for key, x in block.items()}
-            clock = clocks.setdefault(label, Clock(trajectory))
+            clock = clocks.setdefault(label, Clock(trajectory, repeats=True))
             clock.advance(some["t"][:, 0], [places[row] for row in rows.tolist()])
             parts.setdefault(label, []).append(some)
     return {words.word(label): _joined(blocks) for label, blocks in parts.items()}
@@ -156,19 +158,30 @@ def _recording(name: str, source: _Source, given: Quantities) -> Recording:
 
 
 def settled(raw: Recording, where: str) -> Recording:
-    """Return a recording from its first row on, in the order of time, without empty rows.
+    """Return a recording from its first row on, in the order of time.
 
-    Raises DataError for one that has too few rows, or no tilt.
+    Rows and angles without a number are left out.  Raises DataError for a recording that has too
+    few rows, or too few angles, or tilts that no axis has.
     """
     if raw.t.size < LEAST_ROWS:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {raw.t.size}")
-    if "theta" not in raw.angles:
-        raise DataError(f"{where} must have the tilt: theta, axis, quaternion or the like")
+    raw = replace(raw, angles={key: x for key, x in raw.angles.items() if np.isfinite(x).any()})
+    if not raw.angles:
+        raise DataError(f"{where} must have {LEAST_ROWS} rows or more with a number, got 0")
+    if "theta" not in raw.angles and len(raw.angles) < 2:
+        raise DataError(
+            f"{where} must have the tilt (theta, axis, quaternion or the like), or both phi and psi"
+        )
     known = np.logical_or.reduce([np.isfinite(x) for x in raw.angles.values()])
     order = np.flatnonzero(known)[np.argsort(raw.t[known], kind="stable")]
     if order.size < LEAST_ROWS:
         raise DataError(
             f"{where} must have {LEAST_ROWS} rows or more with a number, got {order.size}"
+        )
+    tilts = raw.angles.get("theta", np.zeros(1))
+    if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
+        raise DataError(
+            f"{where}: theta must be between 0 and pi rad (180 deg), got {wrong[0]:.6g} rad"
         )
     t = raw.t[order]
     if not t[-1] > t[0]:
