@@ -16,26 +16,32 @@ Chrapan's.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.angles import per_radian
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.protocol import Value
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k, period_mean
 from ..errors import LagtopError
 from ..inputs.top import Top
 
+_MIDDLE = np.tan(np.linspace(0, math.pi / 2, 401)[1:-1]) ** 2
+_HEIGHTS = np.concatenate([np.geomspace(1e-40, 1e-5, 71), _MIDDLE, np.geomspace(1e5, 1e20, 31)])
+"""Values of (u3 - 1)/(1 - u2) between which a mean precession is looked for: fast tops have great
+ones, and slow ones have small ones.
+"""
 SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Signs of beta + b and of beta - b."""
 
 
 class Nutation(NamedTuple):
-    """Observed turning points, tilts in radians, and the observed period."""
+    """Observed turning points, tilts in radians or arrays of them, and the observed period."""
 
-    theta_min: float
-    theta_max: float
+    theta_min: Value
+    theta_max: Value
     period: float
 
     def checked(self, *, radians: bool = False) -> Nutation:
@@ -54,24 +60,24 @@ class Nutation(NamedTuple):
         return self
 
     @property
-    def u1(self) -> float:
+    def u1(self) -> Value:
         """Cosine of the least tilt."""
-        return math.cos(self.theta_min)
+        return np.cos(self.theta_min)
 
     @property
-    def u2(self) -> float:
+    def u2(self) -> Value:
         """Cosine of the greatest tilt."""
-        return math.cos(self.theta_max)
+        return np.cos(self.theta_max)
 
     @property
-    def from_top(self) -> tuple[float, float]:
+    def from_top(self) -> tuple[Value, Value]:
         """Distances 1 - u1 and 1 - u2 from the upper pole."""
-        return 2 * math.sin(self.theta_min / 2) ** 2, 2 * math.sin(self.theta_max / 2) ** 2
+        return 2 * np.sin(self.theta_min / 2) ** 2, 2 * np.sin(self.theta_max / 2) ** 2
 
     @property
-    def from_bottom(self) -> tuple[float, float]:
+    def from_bottom(self) -> tuple[Value, Value]:
         """Distances 1 + u1 and 1 + u2 from the lower pole."""
-        return 2 * math.cos(self.theta_min / 2) ** 2, 2 * math.cos(self.theta_max / 2) ** 2
+        return 2 * np.cos(self.theta_min / 2) ** 2, 2 * np.cos(self.theta_max / 2) ** 2
 
 
 class Candidates(NamedTuple):
@@ -93,28 +99,20 @@ class Candidates(NamedTuple):
         return (self.plus - self.minus) / 2
 
     def precession_rate(self, theta: Array | float) -> Array:
-        """Return the precession rate (4,7) at a tilt in radians."""
+        """Return the precession rate, by (4,5), at a tilt in radians."""
         rate: Array = self.plus / np.cos(theta / 2) ** 2 + self.minus / np.sin(theta / 2) ** 2
         return rate / 4
 
-    def at(self, index: int) -> Candidates:
-        """Return one of the tops."""
+    def tilt_rate(self, nutation: Nutation, theta: Array | float) -> Array:
+        """Return the size of the nutation rate, by (4,9), at a tilt between the turning points."""
+        u = np.cos(theta)
+        between = np.maximum((nutation.u1 - u) * (u - nutation.u2), 0.0)
+        rate: Array = np.sqrt(self.a * between * (1 - u + self.u3_above)) / np.sin(theta)
+        return rate
+
+    def at(self, index: Any) -> Candidates:
+        """Return some of the tops."""
         return Candidates(*(x[index] for x in self))
-
-
-def heights(nutation: Nutation, inner: int, least: float, greatest: float, steps: int) -> Array:
-    """Return values of u3 - 1 to try, from `least` to `greatest` in units of 1 - u2.
-
-    Fast tops have great values and slow ones have small ones: outside the `inner` values there are
-    so many `steps` per power of ten.
-    """
-    middle = np.tan(np.linspace(0, math.pi / 2, inner + 2)[1:-1]) ** 2
-    ends = [
-        10.0 ** np.arange(math.log10(end), math.log10(middle[0]), 1 / steps)
-        for end in (least, 1 / greatest)
-    ]
-    found: Array = np.concatenate([ends[0], middle, 1 / ends[1][::-1]])
-    return nutation.from_top[1] * found
 
 
 def candidates(nutation: Nutation, u3_above: Array, signs: tuple[int, int]) -> Candidates:
@@ -129,7 +127,7 @@ def candidates(nutation: Nutation, u3_above: Array, signs: tuple[int, int]) -> C
     return Candidates(u3_above, a, plus, minus, mean_rate)
 
 
-def mean_inverse(k_prime: Array, at_u1: float, at_u2: float) -> Array:
+def mean_inverse(k_prime: Array, at_u1: Value, at_u2: Value) -> Array:
     """Return the mean of 1/p over a period, for p > 0 linear in u, from its values at u1 and u2.
 
     With u = u2 + (u1 - u2) sn^2 w it is the mean of 1/(p(u2) cn^2 + p(u1) sn^2).
@@ -143,7 +141,7 @@ def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
     from scipy.optimize import brentq
 
     found: list[Candidates] = []
-    grid = heights(nutation, 399, 1e-40, 1e20, 2)
+    grid = nutation.from_top[1] * _HEIGHTS
     for signs in SIGNS:
 
         def off(u3_above: float, signs: tuple[int, int] = signs) -> float:
