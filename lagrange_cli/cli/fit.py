@@ -177,12 +177,15 @@ def _known(
     """
     from ..fits.known import known_inputs
     from ..inputs.given import gather
+    from ..inputs.measured import moment
     from ..inputs.names import check_names
     from ..inputs.top import Top
 
     found = gather(given, scene)
-    present = found.inputs
+    present = dict(found.inputs)
     names = [x for x in present if x in given]
+    if {"A_cm", "m", "s"} <= present.keys() and "A_cm" not in given:
+        present["A"] = moment(present)  # of the scene: m and s need not be known for that
     for name in fix:
         matching = [x for x in (name, f"{name}_deg", f"{name}_rad") if x in present]
         if not matching:

@@ -309,6 +309,22 @@ def test_known_inputs_of_a_scene(lagtop: Lagtop, tmp_path: Path) -> None:
     assert record["r0"] == pytest.approx(50, abs=0.1)  # that of the scene is not known
 
 
+def test_the_moment_about_the_pivot_is_fixed_by_that_about_the_mass_centre(
+    tmp_path: Path, lagtop: Lagtop
+) -> None:
+    """A scene that has A_cm, m and s has A too; nothing else of it is taken for known."""
+    scene = tmp_path / "scene.toml"
+    scene.write_text("A_cm = 1.364e-3\nm = 1.587\ns = 0.04\nC = 1.7458e-3\n")
+    options = ["--scene", scene, "--fix", "A,C", "--format", "json"]
+    record = json.loads(lagtop("fit", SAMPLE, *options).stdout)
+    assert record["A"] == pytest.approx(1.364e-3 + 1.587 * 0.04**2, rel=1e-15)
+    assert {"m", "s"}.isdisjoint(record)
+    scene.write_text("A_cm = 1.364e-3\nm = 1.587\n")
+    assert_one_line(
+        lagtop("fit", SAMPLE, *options), 2, "--fix A must be given by an option or by --scene"
+    )
+
+
 @pytest.mark.slow
 def test_what_is_no_noise_is_said(lagtop: Lagtop, tmp_path: Path) -> None:
     t = np.linspace(0, 3, 200)
