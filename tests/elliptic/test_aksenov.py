@@ -57,7 +57,7 @@ def _() -> Sides:
 
 @as_printed("section 3.1: a linear-fractional substitution")
 def _() -> Sides:
-    """Two real roots and two complex ones: no real modulus."""
+    """Show that two real roots and two complex ones have no real modulus."""
     roots = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
     yield from ((ar.im(x), 0) for x in _cross_ratios(roots))
 

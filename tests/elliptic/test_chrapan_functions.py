@@ -293,7 +293,7 @@ def _() -> Sides:
 
 @as_printed("(2,5)")
 def _() -> Sides:
-    """With h in sinh h and cosh h, as the text has it eight times."""
+    """Read h in sinh h and cosh h, as the text has it eight times."""
     X, Y = ar.pi * W / K, ar.pi * ALPHA / K
     terms = 0
     for h in range(1, 60):

@@ -169,7 +169,7 @@ def test_harmonics_have_a_growth_and_a_noise() -> None:
 
 @pytest.mark.slow
 def test_uncertainties_reach_three_standard_deviations(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of this top chi^2 is flat along one direction; first order misses the truth by 15 sigma."""
+    """First order misses the truth by 15 sigma here: chi^2 is flat along one direction."""
     monkeypatch.setattr(fuzz_fits, "CHANNELS", [("phi", "psi")])
     case = fuzz_fits.drawn(88)
     found = fit(case.t, **case.angles, sigma=case.sigma)

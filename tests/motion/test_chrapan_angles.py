@@ -96,7 +96,7 @@ def _() -> Sides:
 
 @as_printed("section 5: quarters of the nutation as printed, the labels of u")
 def _() -> Sides:
-    """With u(T)/4 and u(3T)/4, as the text has them."""
+    """Read u(T)/4 and u(3T)/4, as the text has them."""
     for part in (1, 3):
         quarter = RIGHT.u(part * RIGHT.T) / 4
         yield ar.sign((quarter - RIGHT.u2) - (RIGHT.u1 - quarter)), 1
