@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from .attempts import Attempt, best_attempt, sigma_of
 from .least_squares import Problem, Solution, sigma_left
@@ -43,6 +44,11 @@ def fit_recordings(
     `known` are inputs by key, theta0 in radians; nothing else is taken for known.  Raises
     LagtopError, DataError for recordings that cannot be fitted.
     """
+    with ARRAYS.working():
+        return _fitted(recordings, known, where)
+
+
+def _fitted(recordings: Sequence[Recording], known: Mapping[str, float], where: str) -> Fit:
     alone = [best_attempt(recording, known, _named(where, recording)) for recording in recordings]
     understood = [one.recording for one in alone]
     noise, mirrored = [one.noise for one in alone], [one.mirrored for one in alone]

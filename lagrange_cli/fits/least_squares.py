@@ -94,6 +94,8 @@ class Problem:
         )
         found = self.by.parameters(ended.x)
         values, slopes, left = self._at(found)
+        if (values == _FAR).all():
+            raise LagtopError("the fit ends where no top moves as the recording shows")
         spread = _Inverse(self._slopes(ended.x)).spread
         return Solution(
             self.parameters,

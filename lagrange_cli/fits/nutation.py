@@ -28,6 +28,10 @@ _LEAST_F = 8.0
 """How many times the noise, per harmonic, a nutation must explain: what noise does by chance in the
 best of all frequencies is less.
 """
+_LEAST_NOISE = 1e-9
+"""Noise in radians of a recording that has none: roundings in it, and then some."""
+_MOST_NOISE = math.radians(30)
+"""Noise beyond which turns of an angle cannot be counted from row to row."""
 _EDGE = 1e-4
 """Least distance of a turning point from a pole."""
 _PHASES = np.linspace(0, 1, 721)[:-1]
@@ -64,13 +68,14 @@ def shown_by(recording: Recording, where: str) -> Shown:
     frequency = frequency_of(t, u)
     series = series_of(t, u, frequency, fine=True)  # the turning points want more harmonics
     _check(series, u, t, f"{where}: theta")
-    noise = {"theta": series.noise / max(float(np.sin(theta).mean()), 0.1)}
+    noise = {"theta": max(series.noise / max(float(np.sin(theta).mean()), 0.1), _LEAST_NOISE)}
     channels = {"psi": "psi", "phi": "phi"} if recording.kind == "angles" else {"across": "psi"}
     for channel, name in channels.items():
         if name in recording.angles:
             turn = _turn_of(recording, name)
             weights = np.sin(recording.angles["theta"][turn.rows]) if channel == "across" else None
-            noise[channel] = turn.series(frequency, fine=True, weights=weights).noise
+            series_of_turn = turn.series(frequency, fine=True, weights=weights)
+            noise[channel] = max(series_of_turn.noise, _LEAST_NOISE)
     rates = _mean_rates(recording, frequency) if "psi" in recording.angles else []
     seen = float(theta.min()), float(theta.max())
     return _shown(series.at(_PHASES / frequency), seen, frequency, noise, rates)
@@ -83,7 +88,12 @@ def turns_in(recording: Recording, where: str) -> Turns:
     frequency = clear.frequency
     _check(clear.series(frequency), clear.around, clear.t, f"{where}: spin and precession")
     fine = {name: turn.series(frequency, fine=True) for name, turn in turns.items()}
-    return Turns(**fine, noise={name: series.noise for name, series in fine.items()})
+    noise = {name: max(series.noise, _LEAST_NOISE) for name, series in fine.items()}
+    for name, size in noise.items():
+        if size > _MOST_NOISE:
+            shown = f"{math.degrees(size):.3g}"
+            raise DataError(f"{where}: {name} must have less noise than 30 degrees, got {shown}")
+    return Turns(**fine, noise=noise)
 
 
 def _shown(

@@ -26,6 +26,9 @@ CHANNELS = {
 the meridian and across it; or the attitude, with the turn about the axis too.
 """
 LEAST_ROWS = 12
+_LEAST_NUMBERS = 4
+"""Rows of a recording, and numbers of each of its angles, at least."""
+_SHORTEST, _LONGEST = 1e-60, 1e60
 _BEYOND = 0.2
 """Radians that noise may take a tilt beyond a pole."""
 
@@ -165,7 +168,7 @@ def settled(raw: Recording, where: str) -> Recording:
     """
     if raw.t.size < LEAST_ROWS:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {raw.t.size}")
-    raw = replace(raw, angles={key: x for key, x in raw.angles.items() if np.isfinite(x).any()})
+    raw = replace(raw, angles=_cleaned(raw.angles, where))
     if not raw.angles:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more with a number, got 0")
     if "theta" not in raw.angles and len(raw.angles) < 2:
@@ -186,6 +189,8 @@ def settled(raw: Recording, where: str) -> Recording:
     t = raw.t[order]
     if not t[-1] > t[0]:
         raise DataError(f"{where}: t must go on, got {t[0]:g} in all rows")
+    if not _SHORTEST < (span := float(t[-1]) - float(t[0])) < _LONGEST:
+        raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {span:g}")
     for channel, values in raw.sigma.items():
         if not np.all((values > 0) | np.isnan(values)):
             raise DataError(f"{where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
@@ -196,6 +201,24 @@ def settled(raw: Recording, where: str) -> Recording:
         angles={key: x[order] for key, x in raw.angles.items()},
         sigma={key: x[order] for key, x in raw.sigma.items()},
     )
+
+
+def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
+    """Return the angles that have numbers; what is not finite is NaN, and turns are left out.
+
+    Raises DataError for an angle with too few numbers.
+    """
+    found = {}
+    for name, values in angles.items():
+        known = np.isfinite(values)
+        if 0 < known.sum() < _LEAST_NUMBERS:
+            raise DataError(
+                f"{where}: {name} must have {_LEAST_NUMBERS} numbers or more, got {known.sum()}"
+            )
+        if known.any():
+            kept = np.where(known, values, np.nan)
+            found[name] = kept if name == "theta" else rotations.within_half_turn(kept)
+    return found
 
 
 def _angles(

@@ -33,6 +33,8 @@ _HEIGHTS = np.concatenate([np.geomspace(1e-40, 1e-5, 71), _MIDDLE, np.geomspace(
 """Values of (u3 - 1)/(1 - u2) between which a mean precession is looked for: fast tops have great
 ones, and slow ones have small ones.
 """
+_BISECTIONS = 56
+"""Halvings that bring neighbouring heights to neighbouring doubles."""
 SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Signs of beta + b and of beta - b."""
 
@@ -137,20 +139,18 @@ def mean_inverse(k_prime: Array, at_u1: Value, at_u2: Value) -> Array:
 
 
 def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
-    """Return the tops that have a nutation and a mean precession rate."""
-    from scipy.optimize import brentq
-
-    found: list[Candidates] = []
-    grid = nutation.from_top[1] * _HEIGHTS
+    """Return the tops that have a nutation and a mean precession rate, the fastest first."""
+    grid, found = nutation.from_top[1] * _HEIGHTS, []
     for signs in SIGNS:
-
-        def off(u3_above: float, signs: tuple[int, int] = signs) -> float:
-            return float(candidates(nutation, np.array(u3_above), signs).mean_rate) - mean_rate
-
-        rates = candidates(nutation, grid, signs).mean_rate - mean_rate
-        for i in np.flatnonzero(rates[:-1] * rates[1:] <= 0).tolist():
-            root = brentq(off, grid[i], grid[i + 1], xtol=1e-300, rtol=1e-15)
-            found.append(candidates(nutation, np.array(root), signs))
+        high_at = candidates(nutation, grid, signs).mean_rate > mean_rate
+        i = np.flatnonzero(high_at[:-1] != high_at[1:])
+        low, high = grid[i], grid[i + 1]
+        for _ in range(_BISECTIONS):
+            middle = np.sqrt(low * high)
+            below = (candidates(nutation, middle, signs).mean_rate > mean_rate) == high_at[i]
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        tops = candidates(nutation, high, signs)
+        found += [tops.at(row) for row in range(len(i))]
     return sorted(found, key=lambda x: float(x.u3_above), reverse=True)
 
 

@@ -167,6 +167,59 @@ def test_harmonics_have_a_growth_and_a_noise() -> None:
     assert series.growth == pytest.approx(3, abs=0.002)
 
 
+SWING = np.linspace(0, 2, 100)
+TILT = 0.7 + 0.1 * np.sin(20 * SWING)
+TURNS = {"psi": 3 * SWING + 0.05 * np.sin(20 * SWING), "phi": 40 * SWING}
+
+
+@pytest.mark.parametrize(
+    ("t", "angles", "message"),
+    [
+        (SWING * 1e200, {"theta": TILT, **TURNS}, "t must span 1e-60 to 1e"),
+        (np.where(SWING < 2, SWING, 1.7e308), {"theta": TILT, **TURNS}, "t must span"),
+        (SWING, {"phi": 0 * SWING, "psi": 0 * SWING}, "must last for a period of the nutation"),
+        (
+            SWING,
+            {"theta": TILT, "phi": np.where(SWING > 0.03, np.nan, 1.0)},
+            "phi must have 4 numbers or more, got 2",
+        ),
+        (
+            SWING,
+            {
+                name: 40 * SWING + np.random.default_rng(i).normal(size=100)
+                for i, name in enumerate(TURNS)
+            },
+            "must have less noise than 30 degrees",
+        ),
+    ],
+)
+def test_recordings_that_cannot_be_fitted(t: Array, angles: Any, message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        fit(t, **angles)
+
+
+def fate(angles: Any) -> str:
+    """Return the verdict on a recording, or why there is none."""
+    try:
+        return fit(SWING, **angles).verdict
+    except LagtopError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize(
+    "angles",
+    [
+        {"theta": TILT, **TURNS, "psi": np.where(SWING > 1, np.inf, TURNS["psi"])},
+        {"theta": TILT, **TURNS, "psi": 1e300 * SWING},
+        {"theta": np.pi * (SWING % 1 > 0.5), **TURNS},
+        {"theta": TILT, **TURNS, "psi": 0 * SWING},
+    ],
+)
+def test_recordings_of_no_top_have_no_good_fit(angles: Any) -> None:
+    """Warnings are errors in tests: none may come from the depth of the search."""
+    assert fate(angles) in {FAILED, "data: no top moves as the recording shows"}
+
+
 @pytest.mark.slow
 def test_uncertainties_reach_three_standard_deviations(monkeypatch: pytest.MonkeyPatch) -> None:
     """First order misses the truth by 15 sigma here: chi^2 is flat along one direction."""

@@ -104,8 +104,7 @@ def test_no_title_is_cut_off(kinds: Sequence[str], uncertain: bool) -> None:
         figure.draw_without_rendering()
     panels = figure.subfigs if len(kinds) == 1 else figure.subfigs[1].subfigs
     for panel in panels:
-        title = panel._suptitle
-        assert title is not None
+        (title,) = (text for text in panel.texts if text.get_text() == panel.get_suptitle())
         assert title.get_window_extent().x1 <= panel.bbox.x1, title.get_text()
 
 
