@@ -3,7 +3,7 @@
 | code | meaning |
 |---|---|
 | 0 | fine |
-| 1 | some tops have an error, a number does not exist, nothing was found, or a promise was broken |
+| 1 | a top or a check failed, a number does not exist, nothing was found, or a promise was broken |
 | 2 | bad usage or a bad value |
 | 65 | a file cannot be read or has bad data |
 | 69 | a cluster, a method or a package is not available |
@@ -41,7 +41,7 @@ class SceneError(DataError):
 
 
 class SomeFailedError(LagtopError):
-    """Some tops of a sweep could not be solved; their rows say why."""
+    """Some tops, trajectories or recordings have failed; the output shows which, and why."""
 
     exit_code = 1
 

@@ -23,6 +23,7 @@ class Verdict(StrEnum):
     RESTRICTION = "restriction"
     UNDECIDED = "misprint or OCR"
     OCR = "most likely OCR"
+    GAP = "not legible"
 
 
 class Erratum(NamedTuple):
@@ -40,24 +41,51 @@ class Erratum(NamedTuple):
     tested: bool = True
 
 
-MATHEMATICS, RESTRICTION, UNDECIDED, OCR = Verdict
+MATHEMATICS, RESTRICTION, UNDECIDED, OCR, GAP = Verdict
 ONLY = "holds for r0 > 0; for r0 < 0 "
 
 ERRATA = [
     Erratum("Chrapan", 1, "(1,1)", "√(1+k̄²) stands before Z00(v\\*, k)", MATHEMATICS),
     Erratum("Chrapan", 1, "(1,2)", "√(1+k̄²) stands before Z11(v\\*, k)", MATHEMATICS),
     Erratum("Chrapan", 1, "(1,4)", "k², as the line above and (3,7) have, for k′²", UNDECIDED),
-    Erratum("Chrapan", 1, "(1,6)", "1 − ζ² for −ζ² under the root", OCR, tested=False),
+    Erratum(
+        *("Chrapan", 1, "(1,6)"),
+        *("1 − ζ² for −ζ² under the root, and the upper limit ζ for ξ", OCR, False),
+    ),
     Erratum("Chrapan", 1, "(1,8)", "minus for the equals sign, iα in both arguments", OCR),
     Erratum("Chrapan", 2, "(2,4)", "q = exp(−πK′/K); the page is blurred", OCR, tested=False),
+    Erratum(
+        *("Chrapan", 2, "(2,5)"),
+        "sinh πα/K and cosh πα/K for sinh h πα/K and cosh h πα/K, as (7,1) and (7,4) have; in φ(h) "
+        "and Ω11 before it too, eight times in all",
+        OCR,
+    ),
     Erratum("Chrapan", 3, "(3,7)", "the point is w = K, as in (2,11), not w = k", OCR),
+    Erratum(
+        *("Chrapan", 4, "section 4 a: the line of nodes"),
+        *("ī1 = ī cos ψ + j̄ sin ψ for ī cos φ + j̄ sin φ", OCR),
+    ),
+    Erratum(
+        *("Chrapan", 4, "section 4 b: the angular velocity"),
+        *("ψ for φ in ī1, and ψ̇k̄ for φ̇k̄, in all three lines", OCR),
+    ),
+    Erratum("Chrapan", 4, "(4,1) solved for the rates", "the first left side is ψ̇", OCR),
+    Erratum(
+        *("Chrapan", 4, "section 4 d: p and q by the rates"),
+        *("ψ̇ for φ̇ in p² + q², and in p sin φ + q cos φ in two lines", OCR),
+    ),
     Erratum("Chrapan", 4, "(4,1)", "ψ̇, not φ̇, in p and q and in the first term of r", OCR),
     Erratum("Chrapan", 4, "(4,2)", "ψ̇² for φ̇²", OCR),
     Erratum("Chrapan", 4, "(4,3)", "ψ̇ for φ̇", OCR),
     Erratum("Chrapan", 4, "(4,7)", "the left side is ψ̇", OCR),
     Erratum("Chrapan", 4, "(4,8)", "the left side is φ̇", OCR),
     Erratum(
-        *("Chrapan", 4, "section 4 ch: rate of precession"),
+        *("Chrapan", 4, "section 4 ch: rate of precession as printed, the left side"),
+        "ψ̇ for φ̇, here and in the lines before it; dψ for dφ after it, and ψ for φ in section 4 i",
+        OCR,
+    ),
+    Erratum(
+        *("Chrapan", 4, "section 4 ch: rate of precession as printed, the power"),
         *("κ² for κ³; the second term and the next line have κ²", OCR),
     ),
     Erratum(
@@ -77,7 +105,11 @@ ERRATA = [
     Erratum("Chrapan", 4, "(4,34)", ONLY + "φ changes sign", RESTRICTION),
     Erratum("Chrapan", 4, "section 4 l: w", "½, as (4,30) has, for ⅓", OCR),
     Erratum(
-        *("Chrapan", 5, "section 5: quarters of the nutation"),
+        *("Chrapan", 5, "section 5: quarters of the nutation as printed, the labels of u"),
+        *("u(T/4) and u(3T/4) for u(T)/4 and u(3T)/4, in both inequalities", OCR),
+    ),
+    Erratum(
+        *("Chrapan", 5, "section 5: quarters of the nutation as printed, the tilt"),
         "slower in the first and last quarter: true for u = cos ϑ, not always for ϑ",
         MATHEMATICS,
     ),
@@ -88,6 +120,10 @@ ERRATA = [
     ),
     Erratum(
         "Chrapan", 6, "(6,1) as printed, for r0 < 0", ONLY + "the arccot changes sign", RESTRICTION
+    ),
+    Erratum(
+        *("Chrapan", 6, "(6,1) as printed, after the first period"),
+        *("holds for 0 ≤ t ≤ T; later the arccot grows by π per whole period", RESTRICTION),
     ),
     Erratum(
         *("Chrapan", 6, "section 6: spin after half a period and a whole one"),
@@ -104,14 +140,49 @@ ERRATA = [
         *("Chrapan", 7, "(7,1) as printed, for r0 < 0"),
         *(ONLY + "all but the first term change sign", RESTRICTION),
     ),
-    Erratum("Chrapan", 7, "(7,3)", ONLY + "the last term changes sign", RESTRICTION),
+    Erratum(
+        *("Chrapan", 7, "(7,1) as printed, after the first period"),
+        *("holds for 0 ≤ t ≤ T; later the arccot grows by π per whole period", RESTRICTION),
+    ),
+    Erratum(
+        *("Chrapan", 7, "section 7: rates of the precession at T/2 and T"),
+        *("ψ̇ for φ̇, and ψ for φ where its halves are compared", OCR),
+    ),
+    Erratum(
+        *("Chrapan", 7, "(7,3) as printed, for r0 < 0"),
+        *(ONLY + "the last term changes sign", RESTRICTION),
+    ),
+    Erratum("Chrapan", 7, "(7,3) as printed, the left side", "ψ̇′ for φ̇′", OCR),
     Erratum("Chrapan", 7, "(7,4)", "false after odd half periods, however read", MATHEMATICS),
+    Erratum(
+        *("Chrapan", 8, "section 8: rates of the precession"),
+        *("ψ̇′ = 7,98957 and ψ̇(T/2) = 14,2682 for φ̇′ and φ̇(T)", OCR),
+    ),
     Erratum("Chrapan", 8, "labels of u", "u(T/4) = u(3T/4) for u(T) = u(3T)/4", OCR, tested=False),
+    Erratum(
+        *("Aksenov", 3, "section 3.1: a linear-fractional substitution"),
+        "0 < k < 1 if the roots are all real or two conjugate pairs, not always: k is not real of "
+        "two real roots and two complex ones",
+        MATHEMATICS,
+    ),
     Erratum(
         *("Aksenov", 3, "section 3.1: property 4"),
         *("dn² + k² sn² = 1: the sign reads as a minus", OCR),
     ),
     Erratum("Aksenov", 3, "(3.1.6)", "the exponent of q is negative: the minus is lost", OCR),
+    Erratum("Aksenov", 3, "(3.1.8)", "the known series of K in k² is supplied", GAP, tested=False),
+    Erratum(
+        *("Aksenov", 3, "(3.2.2)"),
+        *("the denominator is supplied, from ξ = ±1 at η = δ and δ*", GAP, False),
+    ),
+    Erratum(
+        *("Aksenov", 3, "(3.2.7)"),
+        *("the integral is supplied, from (3.2.4) and (3.2.6)", GAP, False),
+    ),
+    Erratum(
+        *("Aksenov", 3, "(3.2.11)"),
+        *("η = (γ + s sn)/(1 + d sn) is supplied: it stands on the next page", GAP, False),
+    ),
 ]
 """All slips, in the order of the sources."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..arithmetic.text import parse_number
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, write_report
 from .given import solved
@@ -30,6 +30,7 @@ from .reading_options import reading_options
 if TYPE_CHECKING:
     from ..inputs.seen import Quantities
     from ..judge.files import Comparison
+    from ..judge.judgement import Judgement
     from ..output.findings import Findings
 
 LONG = 1_000_000
@@ -90,7 +91,14 @@ def _parse_steps(text: str) -> list[float]:
     type=Parsed("numbers", _parse_steps),
     help="Steps of the trajectories, with commas between, for the order of convergence.",
 )
-@click.option("--max-error", type=NUMBER, help="Exit with 1 beyond this error, in radians.")
+@click.option(
+    "--max-error",
+    type=NUMBER,
+    help="Greatest error in radians up to which a trajectory is fine.  [default: 0.001]",
+)
+@click.option(
+    "--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine: look only."
+)
 @click.option(
     "--plot",
     type=FILE,
@@ -98,10 +106,7 @@ def _parse_steps(text: str) -> list[float]:
     help="Draw the error too, over time and over the step: FILE.svg or .png.",
 )
 @output_options("table", "csv", "json")
-@click.pass_context
 def command(
-    ctx: click.Context,
-    /,
     trajectories: tuple[str, ...],
     scene: str | None,
     rad: bool,
@@ -112,6 +117,7 @@ def command(
     align: list[str] | None,
     steps: list[float] | None,
     max_error: Fraction | None,
+    exit_zero: bool,
     plot: str | None,
     fmt: str,
     output: str,
@@ -124,12 +130,12 @@ def command(
     Angles are in degrees where neither names nor --rad say otherwise; all errors are in radians.
 
     The verdict is one of fine, drifts, another top, off from the start and lost.  The exit code is
-    1 where a trajectory is lost or beyond --max-error.
+    1 if a trajectory is not fine, unless --exit-zero is given.
     """
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.files import Request, compare_files
-    from ..judge.report import comparison_report, failed
+    from ..judge.report import comparison_report
     from ..plot.files import check_plot
 
     if max_error is not None and not max_error > 0:
@@ -147,8 +153,27 @@ def command(
             _draw(comparison, limit, plot)
         return comparison_report(motion, comparison, request)
 
-    if failed(write_report(find, fmt, output), limit):
-        ctx.exit(1)
+    findings = write_report(find, fmt, output)
+    if not exit_zero:
+        _refuse_faults(findings.rows)
+
+
+def _refuse_faults(judgements: Sequence[Judgement]) -> None:
+    """Raise SomeFailedError if a trajectory is not fine."""
+    from ..judge.verdict import FINE
+
+    wrong = [x for x in judgements if x.verdict != FINE]
+    if not wrong:
+        return
+    count, first = len(wrong), f"{wrong[0].file}"
+    said = f"{first} is not fine: {wrong[0].verdict}"
+    if len(judgements) > 1:
+        verb = "is" if count == 1 else "are"
+        said = (
+            f"{count} of {len(judgements)} trajectories {verb} not fine, such as {first}: "
+            f"{wrong[0].verdict}"
+        )
+    raise SomeFailedError(f"{said}; use --exit-zero to look only")
 
 
 def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:

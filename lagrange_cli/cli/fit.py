@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..arithmetic.angles import unit_in_radians
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain, write_report
 from .given import say_unused
@@ -97,10 +97,7 @@ def _positive(value: float) -> float:
     help="Draw data, motion and what is left: FILE.svg or .png.",
 )
 @output_options("table", "csv", "json")
-@click.pass_context
 def command(
-    ctx: click.Context,
-    /,
     recording: str,
     scene: str | None,
     rad: bool,
@@ -126,7 +123,7 @@ def command(
     those of the scene that --fix names.  What cannot be told apart is named.
 
     -o FILE.toml writes a scene that every other command reads, beside the report.  The exit code
-    is 1 where a fit has failed, and no scene is written then.
+    is 1 if a fit has failed, and no scene is written then.
     """
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings
@@ -146,16 +143,16 @@ def command(
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]
     found = _fitted(groups, known, recording, rad)
-    failed = any(outcome.verdict == FAILED for outcome in found)
+    failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
         _write_scene(found[0], recording, scene_path)
     if plot:
         _draw(found, plot, rad)
     _write(found, recording, system, fmt, "-" if scene_path else output)
     if failed:
-        if scene_path:
-            complain(f"Warning: {scene_path} is not written: the fit has failed")
-        ctx.exit(1)
+        of = f" of {failed[0].recording.name}" if failed[0].recording.name else ""
+        lost = f", and {scene_path} is not written" if scene_path else ""
+        raise SomeFailedError(f"the fit{of} has failed{lost}: {failed[0].failures()[0]}")
 
 
 def _fitted(
@@ -180,12 +177,15 @@ def _known(
     """
     from ..fits.known import known_inputs
     from ..inputs.given import gather
+    from ..inputs.measured import moment
     from ..inputs.names import check_names
     from ..inputs.top import Top
 
     found = gather(given, scene)
-    present = found.inputs
+    present = dict(found.inputs)
     names = [x for x in present if x in given]
+    if {"A_cm", "m", "s"} <= present.keys() and "A_cm" not in given:
+        present["A"] = moment(present)  # of the scene: m and s need not be known for that
     for name in fix:
         matching = [x for x in (name, f"{name}_deg", f"{name}_rad") if x in present]
         if not matching:

@@ -110,7 +110,7 @@ def main(ctx: click.Context) -> None:
     \b
     Exit codes:
       0   fine
-      1   some tops have an error, a number does not exist, nothing was found, or a promise
+      1   a top or a check failed, a number does not exist, nothing was found, or a promise
           was broken
       2   bad usage or a bad value
       65  a file cannot be read or has bad data

@@ -124,10 +124,13 @@ def command(
     --am, --theta, --zeta, --omega and --pi, what is asked for.  With --phi it is Legendre's
     F(phi, k) and E(phi, k) of every phi, which is in degrees and may be any number.
 
-    Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param,
-    u and a real v less whole periods; in small tables it is the nearest double.  u
-    and a real v go up to 2^50 periods, an imaginary v up to K'; what is beyond is refused.  An
-    empty cell is a pole.
+    Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param.
+    Here u and a real v are reduced by whole periods; for k > 1 only in am, sn, cn and dn.  In
+    small tables every value is the nearest double.  u and a real v go up to 2^50 periods, an
+    imaginary v up to K'; what is beyond is refused.  An empty cell is a pole.
+
+    The modulus counts as the decimal that you type, u and --param as the nearest doubles; with
+    --digits all of them count as decimals.
 
     Where a modulus is imaginary or above 1, an argument complex, or a parameter neither real nor
     imaginary, columns end in _re and _im, and imaginary parts go up to 2^50 periods too.  Omega and

@@ -63,7 +63,7 @@ def known_parts(u: ExactComplex, request: ComplexRequest, kind: Kind) -> Known:
     poles = {"zeta11"} if along and upright else set()
     if not any(v):
         poles.add("pi11")
-    elif v in (u, ExactComplex(-u.real, -u.imag)):
+    if v in (u, ExactComplex(-u.real, -u.imag)):
         poles |= {"omega11", "pi11"}
     if _beyond(u, request):
         poles.add(am)

@@ -48,6 +48,9 @@ def fit(
             raise LagtopError(f"{name} must have {times.size} rows as t has, got {len(x)}", name)
     if not np.isfinite(times).all():
         raise LagtopError("t must be finite numbers", "t")
+    if (back := np.flatnonzero(np.diff(times) < 0)).size:
+        before, after = times[back[0] : back[0] + 2].tolist()
+        raise LagtopError(f"t must not turn back, got {after} after {before}", "t")
     kind, angles = _angles(arrays)
     raw = Recording("", times, 0.0, kind, angles, {})
     full = Recording("", times, 0.0, kind, angles, spread_evenly(sigma, raw))

@@ -19,6 +19,7 @@ from ..motion.solve import Motion, solve
 from .roots import roots
 from .search import Scan, Search, Watch, scan_of, search_of
 from .several import solutions
+from .touching import touching
 
 _SWEPT = 2.0**-48
 """What a number of a sweep may be off, over its size, and a little more."""
@@ -93,8 +94,14 @@ def _roots(search: Search, grid: Scan) -> list[float]:
     def off(at: float) -> float:
         return float(search.numbers([at])[0]) - wanted
 
-    _refuse_plateaus(search, x, grid.numbers[:, 0] - wanted, off)
-    return roots(off, x, grid.numbers[:, 0] - wanted)
+    y = grid.numbers[:, 0] - wanted
+    _refuse_plateaus(search, x, y, off)
+    passed = roots(off, x, y)
+    near = float(np.max(np.diff(x)))  # two roots next to an extremum are no place that it touches
+    touched = [
+        at for at in touching(off, x, y, wanted) if all(abs(at - root) > near for root in passed)
+    ]
+    return sorted(passed + touched)
 
 
 def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], float]) -> None:

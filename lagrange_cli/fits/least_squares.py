@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from .coordinates import Coordinates
 from .model import STATE, angles_and_slopes
 from .parameters import QUANTITIES, Parameters
 from .recording import Recording
@@ -16,9 +17,15 @@ from .residuals import Residuals, residuals
 
 _FAR = 1e3
 """Residuals, in standard deviations, of a state that is no top."""
-_MOST_STEPS = 40
+MOST_STEPS = 100
+LEAST_SIGMA = 1e-15
+"""Standard deviation of residuals that are all 0."""
 _DEPENDENT = 1e-7
 """Singular values below this one, over the largest, belong to what the data do not tell."""
+_REACH, _BENT = 3.0, 0.2
+"""Standard deviations at which chi^2 is checked, and how far from a parabola it may be there."""
+_MOST_STRETCHES, _MOST_HELD, _HOLD = 10, 20, 100.0
+"""Stretches to find three standard deviations, steps of each, and how tightly each end is held."""
 _N = len(STATE)
 
 
@@ -34,7 +41,15 @@ class Solution(NamedTuple):
     """What is left of each recording in radians, shape (channels, times)."""
     converged: bool
     unknown: Sequence[str]
-    """Parameters that the data do not tell."""
+    """Parameters that the data do not determine."""
+
+    def quantities(self, i: int) -> tuple[Array, Array]:
+        """Return what recording i depends on, in the order of `parameters.QUANTITIES`.
+
+        Their covariance follows.
+        """
+        found, slopes = self.parameters.quantities(self.values, i)
+        return found, slopes @ self.covariance @ slopes.T
 
 
 class Problem:
@@ -51,34 +66,101 @@ class Problem:
             np.stack([spread[channel] for channel in recording.channels])
             for recording, spread in zip(recordings, sigma, strict=True)
         ]
+        self.by = Coordinates([name for name, _ in parameters.names])
         self._last: tuple[Array, Array, Array, list[Array]] | None = None
 
-    def solve(self, start: Array) -> Solution:
-        """Return the parameters that leave least, from a start.  Raises LagtopError."""
+    def solve(self, start: Array, steps: int = MOST_STEPS) -> Solution:
+        """Return the parameters that leave least, from a start, after so many steps at most.
+
+        Raises LagtopError.
+        """
         from scipy.optimize import least_squares
 
         low, high = self._bounds()
         inside = np.clip(start, low, high)
         if (self._at(inside)[0] == _FAR).all():
             raise LagtopError("the fit cannot start: no top moves as the recording shows")
+        free = self.by.apply
         ended = least_squares(
-            lambda x: self._at(x)[0],
-            inside,
-            lambda x: self._at(x)[1],
-            bounds=(low, high),
+            lambda x: self._at(self.by.parameters(x))[0],
+            self.by.of(inside),
+            self._slopes,
+            bounds=(-np.inf, np.inf) if free else (low, high),
             x_scale="jac",
             xtol=1e-9,
             ftol=1e-8,
             gtol=1e-9,
-            max_nfev=_MOST_STEPS,
+            max_nfev=steps,
         )
-        values, slopes, left = self._at(ended.x)
-        covariance, unknown = _covariance(slopes, self.parameters)
-        chi2 = float(np.sum(values**2))
-        dof = values.size - len(ended.x)
+        found = self.by.parameters(ended.x)
+        values, slopes, left = self._at(found)
+        if (values == _FAR).all():
+            raise LagtopError("the fit ends where no top moves as the recording shows")
+        spread = _Inverse(self._slopes(ended.x)).spread
         return Solution(
-            self.parameters, ended.x, covariance, chi2, dof, left, ended.status > 0, unknown
+            self.parameters,
+            found,
+            self.by.covariance(ended.x, spread),
+            float(np.sum(values**2)),
+            values.size - len(found),
+            left,
+            ended.status > 0,
+            _Inverse(slopes).undetermined(self.by.names),
         )
+
+    def with_reach(self, solution: Solution) -> Solution:
+        """Return a solution whose covariance holds for three standard deviations.
+
+        Along the direction in which the data determine least, chi^2 need not be a parabola.  There
+        it is followed to both sides, with the best values of everything else, until it has risen
+        by about nine.  The longer side counts.
+        """
+        centre = self.by.of(solution.values)
+        inverse = _Inverse(self._slopes(centre))
+        spread, weakest = inverse.spread, inverse.weakest
+        column, across = spread[:, weakest], inverse.measure
+        rises = [self._chi2(centre + way * column) - solution.chi2 for way in (_REACH, -_REACH)]
+        if all(abs(rise / _REACH**2 - 1) < _BENT for rise in rises):
+            return solution
+        ends = [self._followed(centre, way * column, across, solution.chi2) for way in (1, -1)]
+        deviations = np.sqrt(np.diag(solution.covariance))
+        off = max((x - solution.values for x in ends), key=lambda x: np.linalg.norm(x / deviations))
+        covariance = self.by.covariance(centre, np.delete(spread, weakest, axis=1))
+        return solution._replace(covariance=covariance + np.outer(off, off))
+
+    def _followed(self, centre: Array, column: Array, across: Array, chi2: float) -> Array:
+        """Return parameters along a direction, brought back to one standard deviation off."""
+        from scipy.optimize import least_squares
+
+        values, at, step = self.by.parameters(centre), centre, column
+        off = self.by.parameters(centre + column) - values
+        for _ in range(_MOST_STRETCHES):
+            goal = float(across @ (at + step - centre))
+
+            def residuals(x: Array, goal: float = goal) -> Array:
+                held = _HOLD * (across @ (x - centre) - goal)
+                return np.append(self._at(self.by.parameters(x))[0], held)
+
+            def slopes(x: Array) -> Array:
+                return np.vstack([self._slopes(x), _HOLD * across])
+
+            held = least_squares(residuals, at + step, slopes, x_scale="jac", max_nfev=_MOST_HELD)
+            rise = max(2 * held.cost - chi2, 1e-3)
+            if not held.status or rise > 2 * _REACH**2:
+                break
+            off = (self.by.parameters(held.x) - values) / np.sqrt(rise)
+            if rise > _REACH**2:
+                break
+            at, step = held.x, (held.x - at) * (1 if rise > 1 else 2)
+        return values + off
+
+    def _chi2(self, coordinates: Array) -> float:
+        return float(np.sum(self._at(self.by.parameters(coordinates))[0] ** 2))
+
+    def _slopes(self, coordinates: Array) -> Array:
+        """Return the derivatives of the residuals by the coordinates."""
+        slopes: Array = self._at(self.by.parameters(coordinates))[1] @ self.by.slopes(coordinates)
+        return slopes
 
     def _bounds(self) -> tuple[Array, Array]:
         names = [name for name, _ in self.parameters.names]
@@ -141,18 +223,37 @@ def _seen_angles(
     return moved, by_values
 
 
-def _covariance(slopes: Array, parameters: Parameters) -> tuple[Array, list[str]]:
-    """Return the covariance of the parameters, and the names of those that are not told."""
-    size = np.linalg.norm(slopes, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    _, values, rows = np.linalg.svd(slopes / size, full_matrices=False)
-    told = values > _DEPENDENT * values[0]
-    inverse = np.where(told, 1 / np.where(told, values, 1.0), 0.0)
-    half = rows.T * inverse
-    covariance: Array = half @ half.T / np.outer(size, size)
-    untold = np.abs(rows[~told]).max(axis=0, initial=0.0) > 0.05
-    names = [name for (name, _), is_one in zip(parameters.names, untold, strict=True) if is_one]
-    return covariance, list(dict.fromkeys(names))
+class _Inverse:
+    """The inverse of derivatives, a column for each of some numbers, by singular values."""
+
+    def __init__(self, slopes: Array) -> None:
+        size = np.linalg.norm(slopes, axis=0)
+        self.size = np.where(size > 0, size, 1.0)
+        _, self.values, self.rows = np.linalg.svd(slopes / self.size, full_matrices=False)
+        self.told = self.values > _DEPENDENT * self.values[0]
+
+    @property
+    def spread(self) -> Array:
+        """A matrix S with the covariance S S^T; what is not determined has no part in it."""
+        inverse = np.where(self.told, 1 / np.where(self.told, self.values, 1.0), 0.0)
+        spread: Array = self.rows.T * inverse / self.size[:, np.newaxis]
+        return spread
+
+    @property
+    def weakest(self) -> int:
+        """The column of the spread that belongs to what is determined least."""
+        return int(np.flatnonzero(self.told)[-1])
+
+    @property
+    def measure(self) -> Array:
+        """The row that counts standard deviations along that column, and none along the others."""
+        row: Array = self.rows[self.weakest] * self.values[self.weakest] * self.size
+        return row
+
+    def undetermined(self, names: Sequence[str]) -> list[str]:
+        """Return the names of the numbers that are not determined."""
+        shares = np.abs(self.rows[~self.told]).max(axis=0, initial=0.0)
+        return [*dict.fromkeys(name for name, x in zip(names, shares, strict=True) if x > 0.05)]
 
 
 def sigma_left(solution: Solution, recordings: Sequence[Recording]) -> list[dict[str, Any]]:

@@ -1,12 +1,14 @@
-"""What a recording shows of the nutation: its period, its turning points and the mean precession.
+"""Turning points, period and mean precession of the nutation in a recording.
 
-The cosine of the tilt is periodic, and so is the precession but for its growth: both are fitted by
-a few harmonics, whose frequency is searched for around the peak of the spectrum.
+The cosine of the tilt is periodic, and so are spin and precession but for their growth: each is
+fitted by a few harmonics.  If the tilt is not recorded it follows from the rates of the others, as
+cos(theta) = (r0 - phi')/psi' (4,8), but for the spin rate r0, of which several values are tried.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -14,37 +16,42 @@ from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..errors import DataError
+from .harmonics import Series, frequency_of, series_of
+from .hidden_tilt import Turns
 from .recording import Recording
 from .turning_points import Nutation
+from .turning_rate import turning_rate
 
 _MOST_ROWS = 3000
 """Rows that are enough to start from; of more, so many are drawn."""
-_HARMONICS = 4
-_FREQUENCIES = 49
-_MANY = 60
-"""Rows from which on twice the harmonics are fitted."""
 _LEAST_F = 8.0
 """How many times the noise, per harmonic, a nutation must explain: what noise does by chance in the
 best of all frequencies is less.
 """
-_DIPS = 4
-"""Frequencies that are looked at closely, where what is left has a dip."""
-_AS_GOOD = 1.2
-"""How much more than the least a frequency may leave that is as good: noise makes that much."""
+_LEAST_NOISE = 1e-9
+"""Noise in radians of a recording that has none: roundings in it, and then some."""
+_MOST_NOISE = math.radians(30)
+"""Noise beyond which turns of an angle cannot be counted from row to row."""
 _EDGE = 1e-4
 """Least distance of a turning point from a pole."""
+_PHASES = np.linspace(0, 1, 721)[:-1]
+"""Places in a period, in periods."""
 
 
 class Shown(NamedTuple):
     """What a recording shows of a nutation."""
 
     nutation: Nutation
+    seen: tuple[float, float]
+    """The least and the greatest tilt of any row."""
     u_start: float
     """The cosine of the tilt in the first row."""
     falls: float
     """1 where the tilt grows there, else -1."""
-    noise: float
-    """What the harmonics leave of the cosine, as a standard deviation."""
+    noise: Mapping[str, float]
+    """Residuals of a fit by harmonics, by channel, as standard deviations in radians: about the
+    noise of the recording.  A channel without such a fit is missing.
+    """
     mean_rates: list[float]
     """Mean precession rates that go with the angles, which are known within whole turns; the first
     one is the likeliest.  Empty where psi is not given.
@@ -52,121 +59,128 @@ class Shown(NamedTuple):
 
 
 def shown_by(recording: Recording, where: str) -> Shown:
-    """Return what a recording shows.  Raises DataError where it shows no nutation."""
-    rows = _some_rows(recording)
+    """Return what a recording with the tilt shows.  Raises DataError if there is no nutation."""
+    rows = _some_rows(recording.angles["theta"])
     t, theta = recording.t[rows], recording.angles["theta"][rows]
-    u = np.cos(theta)
-    span = float(t[-1] - t[0])
     if not np.ptp(theta) > 1e-12:
         raise DataError(f"{where}: theta must vary, got {math.degrees(theta[0]):g} in all rows")
-    frequency = _frequency(t, u)
-    count = _harmonics(t)
-    count *= 2 if t.size > _MANY else 1  # the turning points want more than the frequency
-    series = _fit(t, u, frequency, count, grows=False)
-    noise = series.left / max(t.size - 2 * count - 1, 1)
-    explained = (np.sum((u - u.mean()) ** 2) - series.left) / (2 * count)
-    if frequency * span < 1:
+    u = np.cos(theta)
+    frequency = frequency_of(t, u)
+    series = series_of(t, u, frequency, fine=True)  # the turning points want more harmonics
+    _check(series, u, t, f"{where}: theta")
+    noise = {"theta": max(series.noise / max(float(np.sin(theta).mean()), 0.1), _LEAST_NOISE)}
+    channels = {"psi": "psi", "phi": "phi"} if recording.kind == "angles" else {"across": "psi"}
+    for channel, name in channels.items():
+        if name in recording.angles:
+            turn = _turn_of(recording, name)
+            weights = np.sin(recording.angles["theta"][turn.rows]) if channel == "across" else None
+            series_of_turn = turn.series(frequency, fine=True, weights=weights)
+            noise[channel] = max(series_of_turn.noise, _LEAST_NOISE)
+    rates = _mean_rates(recording, frequency) if "psi" in recording.angles else []
+    seen = float(theta.min()), float(theta.max())
+    return _shown(series.at(_PHASES / frequency), seen, frequency, noise, rates)
+
+
+def turns_in(recording: Recording, where: str) -> Turns:
+    """Return what a recording without the tilt shows.  Raises DataError if there is no nutation."""
+    turns = {name: _turn_of(recording, name) for name in ("psi", "phi")}
+    clear = max(turns.values(), key=_Turn.clearness)
+    frequency = clear.frequency
+    _check(clear.series(frequency), clear.around, clear.t, f"{where}: spin and precession")
+    fine = {name: turn.series(frequency, fine=True) for name, turn in turns.items()}
+    noise = {name: max(series.noise, _LEAST_NOISE) for name, series in fine.items()}
+    for name, size in noise.items():
+        if size > _MOST_NOISE:
+            shown = f"{math.degrees(size):.3g}"
+            raise DataError(f"{where}: {name} must have less noise than 30 degrees, got {shown}")
+    return Turns(**fine, noise=noise)
+
+
+def _shown(
+    wave: Array,
+    seen: tuple[float, float],
+    frequency: float,
+    noise: Mapping[str, float],
+    mean_rates: list[float],
+) -> Shown:
+    """Return what is shown by the cosine of the tilt over a period, from the first row on."""
+    least, greatest = np.arccos(np.clip([wave.max(), wave.min()], -1, 1)).tolist()
+    nutation = Nutation(_inside(least), _inside(greatest), 1 / frequency)
+    falls = 1.0 if wave[1] < wave[0] else -1.0
+    edges = _inside(seen[0]), _inside(seen[1])
+    return Shown(nutation, edges, float(wave[0]), falls, noise, mean_rates)
+
+
+def _inside(tilt: float) -> float:
+    """Return a tilt off the poles."""
+    return min(max(tilt, _EDGE), math.pi - _EDGE)
+
+
+def _check(series: Series, y: Array, t: Array, what: str) -> None:
+    """Raise DataError for a nutation that is too slow, or lost in the noise."""
+    span = float(t[-1] - t[0])
+    if series.frequency * span < 1:
+        where = what.rpartition(":")[0]
         raise DataError(
             f"{where}: a recording must last for a period of the nutation, got {span:g}"
         )
-    if not explained > _LEAST_F * noise:
-        raise DataError(f"{where}: theta must nod beyond its noise; no period explains it")
-    phases = np.linspace(0, 1, 721)[:-1]
-    wave = series.at(phases / frequency)
-    least, greatest = np.arccos(np.clip(wave.max(), -1, 1)), np.arccos(np.clip(wave.min(), -1, 1))
-    nutation = Nutation(max(least, _EDGE), min(greatest, math.pi - _EDGE), 1 / frequency)
-    first, then = series.at(np.array([0.0, 1e-4 / frequency])).tolist()
-    falls = 1.0 if then < first else -1.0
-    return Shown(nutation, first, falls, math.sqrt(noise), _mean_rates(recording, frequency))
+    if not _clearness(series, y, t) > _LEAST_F:
+        raise DataError(f"{what} must nod beyond its noise; no period explains it")
 
 
-def _some_rows(recording: Recording, name: str = "theta") -> NDArray[np.intp]:
+def _clearness(series: Series, y: Array, t: Array) -> float:
+    """Return how much of the data a harmonic explains on average, over the noise."""
+    steady = np.polyval(np.polyfit(t, y, int(series.grows)), t)
+    explained = (float(np.sum((y - steady) ** 2)) - series.left) / (2 * series.order)
+    return explained / max(series.noise**2, 1e-300)
+
+
+class _Turn(NamedTuple):
+    """The precession or the spin less its mean rate."""
+
+    rows: NDArray[np.intp]
+    t: Array
+    around: Array
+    rate: float
+
+    @property
+    def frequency(self) -> float:
+        """The frequency of the nutation that it shows."""
+        return frequency_of(self.t, self.around, grows=True)
+
+    def series(
+        self, frequency: float, *, fine: bool = False, weights: Array | None = None
+    ) -> Series:
+        """Return the harmonics and the growth of the whole angle."""
+        found = series_of(self.t, self.around, frequency, grows=True, fine=fine, weights=weights)
+        return found._replace(factors=np.append(found.factors[:-1], found.growth + self.rate))
+
+    def clearness(self) -> float:
+        """Return how clearly it shows the nutation."""
+        return _clearness(self.series(self.frequency), self.around, self.t)
+
+
+def _turn_of(recording: Recording, name: str) -> _Turn:
+    rate = turning_rate(recording.t, recording.angles[name])
+    rows = _some_rows(recording.angles[name])
+    t = recording.t[rows]
+    return _Turn(rows, t, np.unwrap(recording.angles[name][rows] - rate * t), rate)
+
+
+def _some_rows(angle: Array) -> NDArray[np.intp]:
     """Return rows that have an angle, in their order, and not too many."""
-    rows = np.flatnonzero(np.isfinite(recording.angles[name]))
+    rows = np.flatnonzero(np.isfinite(angle))
     if rows.size > _MOST_ROWS:
         drawn = np.random.default_rng(0).choice(rows[1:-1], _MOST_ROWS - 2, replace=False)
         rows = np.concatenate([rows[:1], np.sort(drawn), rows[-1:]])
     return rows.astype(np.intp)
 
 
-def _harmonics(t: Array) -> int:
-    return int(min(_HARMONICS, max((t.size - 3) // 4, 1)))
-
-
-class _Series(NamedTuple):
-    """A sum of harmonics, and maybe a growth, that fits data."""
-
-    frequency: float
-    factors: Array
-    grows: bool
-    left: float
-    """Sum of the squares that are left."""
-
-    def at(self, t: Array) -> Array:
-        """Return its values."""
-        count = (self.factors.size - 1 - self.grows) // 2
-        values: Array = _basis(t, self.frequency, count, self.grows) @ self.factors
-        return values
-
-
-def _basis(t: Array, frequency: float, count: int, grows: bool) -> Array:
-    turns = 2 * np.pi * frequency * t[:, np.newaxis] * np.arange(1, count + 1)
-    columns = [np.ones((t.size, 1)), np.cos(turns), np.sin(turns)]
-    if grows:
-        columns.append(t[:, np.newaxis])
-    return np.concatenate(columns, axis=1)
-
-
-def _fit(
-    t: Array, y: Array, frequency: float, count: int, *, grows: bool, weights: Array | None = None
-) -> _Series:
-    basis = _basis(t, frequency, count, grows)
-    if weights is not None:
-        basis, y = basis * weights[:, np.newaxis], y * weights
-    factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
-    left = float(np.sum((y - basis @ factors) ** 2))
-    return _Series(frequency, factors, grows, left)
-
-
-def _frequency(t: Array, u: Array) -> float:
-    """Return the frequency whose harmonics leave least: near the peak of the spectrum."""
-    from scipy.optimize import minimize_scalar
-
-    span = float(t[-1] - t[0])
-    even = np.linspace(t[0], t[-1], min(4 * t.size, 4096))
-    values = np.interp(even, t, u)
-    sizes = np.abs(np.fft.rfft(values - values.mean(), 4 * even.size))
-    frequencies = np.fft.rfftfreq(4 * even.size, even[1] - even[0])
-    sizes[frequencies < 0.7 / span] = 0.0
-    peak = float(frequencies[int(np.argmax(sizes))])
-    count = _harmonics(t)
-
-    def left(frequency: float) -> float:
-        return _fit(t, u, frequency, count, grows=False).left
-
-    tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
-    sums = np.array([left(float(x)) for x in tried])
-    dips = np.flatnonzero((sums[1:-1] <= sums[:-2]) & (sums[1:-1] <= sums[2:])) + 1
-    deepest = dips[np.argsort(sums[dips])][:_DIPS]
-    if not deepest.size:
-        return float(tried[int(np.argmin(sums))])
-    refined = [
-        minimize_scalar(left, bounds=(tried[i - 1], tried[i + 1]), method="bounded")
-        for i in deepest.tolist()
-    ]
-    least = min(x.fun for x in refined)
-    # a half of the frequency, or a third, explains as much
-    return max(float(x.x) for x in refined if x.fun <= _AS_GOOD * least)
-
-
 def _mean_rates(recording: Recording, frequency: float) -> list[float]:
     """Return mean precession rates, whose turns per period are not known next to a pole."""
-    if "psi" not in recording.angles:
-        return []
-    rows = _some_rows(recording, "psi")
-    t, psi = recording.t[rows], np.unwrap(recording.angles["psi"][rows])
-    theta = recording.angles["theta"][rows]
+    turn = _turn_of(recording, "psi")
+    theta = recording.angles["theta"][turn.rows]
     weights = np.where(np.isfinite(theta), np.abs(np.sin(theta)), 0.0) + 0.05
-    rate = float(_fit(t, psi, frequency, 1, grows=True, weights=weights).factors[-1])
-    turn = 2 * math.pi * frequency
-    return [rate, rate - turn, rate + turn]
+    rate = turn.series(frequency, weights=weights).growth
+    whole = 2 * math.pi * frequency
+    return [rate, rate - whole, rate + whole]

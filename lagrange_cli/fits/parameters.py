@@ -1,8 +1,8 @@
-"""The parameters of a fit: what of the body and of the starts is not known, and what follows.
+"""The parameters of a fit: the unknowns of the body and of the starts, and what follows from them.
 
-The body is the same in all recordings of a fit: a, and C/A where the spin is in play, which it is
-where phi is seen or where r0, or both moments, are known.  Each recording has its own start, spin
-rate (or b), and zeros of psi and phi.
+The body is the same in all recordings of a fit: a, and C/A if it ties b to r0.  It does so if it is
+known, or if several recordings show their spin.  Each recording has its own start, b or r0 or both,
+and zeros of psi and phi.
 """
 
 from __future__ import annotations
@@ -49,16 +49,21 @@ class Parameters(NamedTuple):
         known_a = _torque(self.known)
         if known_a is not None:
             found[_A] = known_a
-        if self.spins:
+        if self.tied:
             ratio, of_ratio = self._ratio(values, found[_A], slopes[_A])
             found[_B] = ratio * found[_R0]
             slopes[_B] = ratio * slopes[_R0] + found[_R0] * of_ratio
         return found, slopes
 
     @property
+    def tied(self) -> bool:
+        """Whether b follows from r0 by C/A."""
+        return ("b", 0) not in self.names
+
+    @property
     def spins(self) -> bool:
         """Whether r0 is in play, beside b."""
-        return ("b", 0) not in self.names
+        return "r0" in self.known or ("r0", 0) in self.names
 
     def _ratio(self, values: Array, a: float, of_a: Array) -> tuple[float, Array]:
         """Return C/A and its derivatives: a parameter, known, or C a/(2mgs)."""
@@ -80,12 +85,13 @@ def parameters_of(known: Mapping[str, float], recordings: Sequence[Recording]) -
     ratio_known = "C" in known and ("A" in known or _weight(known) is not None)
     seen = any("phi" in recording.angles for recording in recordings)
     spins = seen or ratio_known or "r0" in known
-    if spins and not ratio_known:
+    tied = spins and (ratio_known or len(recordings) > 1)
+    if tied and not ratio_known:
         names.append(("ratio", -1))
     for i, recording in enumerate(recordings):
-        if not spins:
+        if not tied:
             names.append(("b", i))
-        elif "r0" not in known:
+        if spins and "r0" not in known:
             names.append(("r0", i))
         names += [(name, i) for name in _START if name not in known]
         names += [(f"{x}_zero", i) for x in ("psi", "phi") if x in recording.angles]

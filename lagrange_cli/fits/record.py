@@ -20,8 +20,8 @@ ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
 _BODY = ("a", "b", "r0")
 FAILED = "failed"
-_FAR, _MUCH = 0.2, 3.0
-"""A fit that leaves more of the tilt, over its variation and over its noise, has failed."""
+_MUCH = 2.0
+"""A fit has failed if its residuals of a channel exceed so many times the noise."""
 _SURE = 4.0
 """Standard deviations from which on b is not 0."""
 MEANINGS = {
@@ -43,7 +43,7 @@ class Outcome:
         self.fit, self.index, self.radians = found, index, radians
         self.recording = found.recordings[index]
         self.known = found.solution.parameters.known
-        values, covariance = found.values(index)
+        values, covariance = found.solution.quantities(index)
         self.values = dict(zip(QUANTITIES, values.tolist(), strict=True))
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
@@ -69,18 +69,31 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """`good`, `doubtful` where there are warnings, or `failed`."""
-        if self._failed:
+        """`failed`, `doubtful` if there are warnings only, or `good`."""
+        if self.failures():
             return FAILED
         return "doubtful" if self.warnings() else "good"
 
-    @property
-    def _failed(self) -> bool:
-        """Whether the fit found nothing that moves as the recording does."""
-        left = self.remainders["theta"].rms
-        varies = float(np.nanstd(self.recording.angles["theta"]))
-        unlike = left > _FAR * varies and left > _MUCH * self.fit.noise[self.index]
-        return unlike or not self.fit.solution.converged
+    def failures(self) -> list[str]:
+        """Return the reasons why the numbers are none, if there are any."""
+        solution, found = self.fit.solution, []
+        if self.fit.rival is not None:
+            rival = dict(zip(QUANTITIES, self.fit.rival.tolist(), strict=True))
+            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.seen)
+            found.append(f"another top explains the recording as well: {shown}")
+        if solution.unknown:
+            found.append(f"the recording does not determine {' and '.join(solution.unknown)}")
+        if not solution.converged:
+            found.append("the least squares do not converge")
+        unit, scale = "rad" if self.radians else "deg", per_radian(radians=self.radians)
+        for channel, noise in self.fit.noise[self.index].items():
+            rms = self.remainders[channel].rms
+            if rms > _MUCH * noise:
+                found.append(
+                    f"no motion that was found is like the recording: {channel} is "
+                    f"{rms * scale:.3g} {unit} off, plain harmonics {noise * scale:.3g}"
+                )
+        return found
 
     def unit(self, name: str) -> str:
         """Return the key of a quantity in the unit of angles in use."""
@@ -139,12 +152,8 @@ class Outcome:
         return sentences
 
     def warnings(self) -> list[str]:
-        """Return what makes the numbers doubtful."""
-        solution, found = self.fit.solution, []
-        if self._failed:
-            found.append("the fit has failed: no motion that was found is like the recording")
-        if solution.unknown:
-            found.append(f"the data do not tell {', '.join(solution.unknown)} from one another")
+        """Return the reasons for doubt in the numbers, those of a failure first."""
+        solution, found = self.fit.solution, self.failures()
         if self.fit.sigma_known and solution.dof > 0:
             low, high = chi2_bounds(solution.dof)
             if not low <= self.chi2_dof <= high:
@@ -166,9 +175,11 @@ class Outcome:
 
     def notes(self) -> list[str]:
         """Return how the recording was understood."""
-        if self.fit.mirrored[self.index]:
-            return ["psi is counted the other way round: its sign was changed"]
-        return []
+        if not self.fit.mirrored[self.index]:
+            return []
+        if self.verdict != "good":
+            return ["psi may be counted the other way round: this fit changed its sign"]
+        return ["psi is counted the other way round: its sign was changed"]
 
     def record(self) -> dict[str, Any]:
         """Return everything by key, flat."""

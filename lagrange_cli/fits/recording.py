@@ -26,6 +26,11 @@ CHANNELS = {
 the meridian and across it; or the attitude, with the turn about the axis too.
 """
 LEAST_ROWS = 12
+_LEAST_NUMBERS = 4
+"""Rows of a recording, and numbers of each of its angles, at least."""
+_SHORTEST, _LONGEST = 1e-60, 1e60
+_BEYOND = 0.2
+"""Radians that noise may take a tilt beyond a pole."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +92,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
         spread = _add_spreads(trajectory)
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
         if reading.by is None:
-            parts = {"": _joined(block for block, _ in trajectory.blocks())}
+            parts = {"": _joined(block for block, _ in trajectory.blocks(repeats=True))}
         else:
             parts = _by_column(trajectory, reading.by)
         if not parts:
@@ -126,7 +131,7 @@ def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array
         for label in dict.fromkeys(labels.tolist()):
             rows = np.flatnonzero(labels == label)
             some = {key: x[rows] for key, x in block.items()}
-            clock = clocks.setdefault(label, Clock(trajectory))
+            clock = clocks.setdefault(label, Clock(trajectory, repeats=True))
             clock.advance(some["t"][:, 0], [places[row] for row in rows.tolist()])
             parts.setdefault(label, []).append(some)
     return {words.word(label): _joined(blocks) for label, blocks in parts.items()}
@@ -156,23 +161,36 @@ def _recording(name: str, source: _Source, given: Quantities) -> Recording:
 
 
 def settled(raw: Recording, where: str) -> Recording:
-    """Return a recording from its first row on, in the order of time, without empty rows.
+    """Return a recording from its first row on, in the order of time.
 
-    Raises DataError for one that has too few rows, or no tilt.
+    Rows and angles without a number are left out.  Raises DataError for a recording that has too
+    few rows, or too few angles, or tilts that no axis has.
     """
     if raw.t.size < LEAST_ROWS:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {raw.t.size}")
-    if "theta" not in raw.angles:
-        raise DataError(f"{where} must have the tilt: theta, axis, quaternion or the like")
+    raw = replace(raw, angles=_cleaned(raw.angles, where))
+    if not raw.angles:
+        raise DataError(f"{where} must have {LEAST_ROWS} rows or more with a number, got 0")
+    if "theta" not in raw.angles and len(raw.angles) < 2:
+        raise DataError(
+            f"{where} must have the tilt (theta, axis, quaternion or the like), or both phi and psi"
+        )
     known = np.logical_or.reduce([np.isfinite(x) for x in raw.angles.values()])
     order = np.flatnonzero(known)[np.argsort(raw.t[known], kind="stable")]
     if order.size < LEAST_ROWS:
         raise DataError(
             f"{where} must have {LEAST_ROWS} rows or more with a number, got {order.size}"
         )
+    tilts = raw.angles.get("theta", np.zeros(1))
+    if (wrong := tilts[np.abs(tilts - np.pi / 2) > np.pi / 2 + _BEYOND]).size:
+        raise DataError(
+            f"{where}: theta must be between 0 and pi rad (180 deg), got {wrong[0]:.6g} rad"
+        )
     t = raw.t[order]
     if not t[-1] > t[0]:
         raise DataError(f"{where}: t must go on, got {t[0]:g} in all rows")
+    if not _SHORTEST < (span := float(t[-1]) - float(t[0])) < _LONGEST:
+        raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {span:g}")
     for channel, values in raw.sigma.items():
         if not np.all((values > 0) | np.isnan(values)):
             raise DataError(f"{where}: {channel}_std must be > 0, got {np.nanmin(values):g}")
@@ -183,6 +201,24 @@ def settled(raw: Recording, where: str) -> Recording:
         angles={key: x[order] for key, x in raw.angles.items()},
         sigma={key: x[order] for key, x in raw.sigma.items()},
     )
+
+
+def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
+    """Return the angles that have numbers; what is not finite is NaN, and turns are left out.
+
+    Raises DataError for an angle with too few numbers.
+    """
+    found = {}
+    for name, values in angles.items():
+        known = np.isfinite(values)
+        if 0 < known.sum() < _LEAST_NUMBERS:
+            raise DataError(
+                f"{where}: {name} must have {_LEAST_NUMBERS} numbers or more, got {known.sum()}"
+            )
+        if known.any():
+            kept = np.where(known, values, np.nan)
+            found[name] = kept if name == "theta" else rotations.within_half_turn(kept)
+    return found
 
 
 def _angles(

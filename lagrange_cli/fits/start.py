@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.rotations import within_half_turn
+from .hidden_tilt import Turns, states_behind
 from .model import angles_of, kept_off_the_vertical
 from .nutation import Shown
 from .recording import Recording
 from .residuals import residuals
-from .turning_points import SIGNS, Candidates, Nutation, candidates, shares, with_mean_rate
+from .turning_points import SIGNS, Candidates, Nutation, candidates, with_mean_rate
+from .turning_rate import frame_of, slowest_spin, turning_rate
 
-_GRID = shares(25, 1e-3, 1e-8, 1)
-"""Moduli that are tried, with all signs, as shares of the greatest where no mean rate tells."""
+_MOST_STATES = {False: 12, True: 60}
+"""Tops that are tried if the tilt is not recorded, in a narrow and in a wide search."""
 _NEAREST = 3
 """Tops that are tried for a mean precession that no top has."""
-_MOST_ROWS = 4000
-_CELLS, _MOST_CELLS = 4, 1 << 18
-"""Cells per frame of a spectrum, and in all: times need not be even."""
+_HEIGHTS = (1e-4, 0.1, 1.0, 10.0)
+"""Values of (u3 - 1)/(1 - u2) that are tried where no mean precession is known."""
 
 
 class Start(NamedTuple):
@@ -35,39 +36,48 @@ class Start(NamedTuple):
     psi_zero: float
     phi_zero: float
     left: float
-    """Sum of the squares of what is left, in radians."""
+    """Sum of the squares of the residuals, over the noise of each channel."""
 
 
-def starts(recording: Recording, shown: Shown, *, wide: bool = False) -> list[Start]:
+def starts(recording: Recording, shown: Shown | Turns, *, wide: bool = False) -> list[Start]:
     """Return tops that move about as a recording shows, the nearest first.
 
-    They have its nutation and mean precession, or, where the search is to be `wide`, nearly its
-    nutation and any precession.
+    They have its nutation and mean precession.  If the search is `wide`, or if psi is not given,
+    they have nearly its nutation and any precession.
     """
-    if wide or not shown.mean_rates:
-        states = np.concatenate([_states(one, _grid(one)) for one in _near(shown)])
+    if isinstance(shown, Turns):
+        states = states_behind(shown)[: _MOST_STATES[wide]]
     else:
-        states = _states(shown, _with_mean_rates(shown))
+        states = _states_shown(shown, wide=wide)
     states = states[np.isfinite(states).all(axis=1)]
     angles = angles_of(states, recording.t)
-    made = [_start(recording, state, angles[:, i]) for i, state in enumerate(states)]
+    made = [_start(recording, shown.noise, state, angles[:, i]) for i, state in enumerate(states)]
     return sorted(made, key=lambda x: x.left)
+
+
+def _states_shown(shown: Shown, *, wide: bool) -> Array:
+    tops = []
+    for one in _near(shown) if wide else [shown]:
+        if one.mean_rates:
+            tops.append(_states(one, _with_mean_rates(one)))
+        if wide or not one.mean_rates:
+            tops.append(_states(one, _grid(one)))
+    return np.concatenate(tops)
 
 
 def _near(shown: Shown) -> list[Shown]:
     """Return what is shown, and the same with other turning points near the poles."""
     least, greatest, period = shown.nutation
-    pairs = [
-        (least * scale, math.pi - (math.pi - greatest) * other)
-        for scale, other in ((1, 1), (0.5, 1), (0.1, 1), (1, 0.5), (1, 0.1))
-    ]
-    return [shown._replace(nutation=Nutation(x, y, period)) for x, y in pairs]
+    low, high = shown.seen
+    pairs = [(least, greatest), (low, greatest), (low / 3, greatest)]
+    pairs += [(least, high), (least, math.pi - (math.pi - high) / 3)]
+    return [shown._replace(nutation=Nutation(x, y, period)) for x, y in pairs if x < y]
 
 
 def _grid(shown: Shown) -> Candidates:
-    """Return tops of many moduli, with all signs."""
-    moduli = shown.nutation.most_m * _GRID
-    parts = [candidates(shown.nutation, moduli, signs) for signs in SIGNS]
+    """Return tops of some moduli, with all signs."""
+    tried = shown.nutation.from_top[1] * np.array(_HEIGHTS)
+    parts = [candidates(shown.nutation, tried, signs) for signs in SIGNS]
     return Candidates(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
@@ -86,16 +96,13 @@ def _with_mean_rates(shown: Shown) -> Candidates:
 
 def _states(shown: Shown, tops: Candidates) -> Array:
     """Return the states at the first row, of tops whose tilt there is known."""
-    nutation, a = shown.nutation, tops.a
-    u = np.full_like(a, min(max(shown.u_start, nutation.u2), nutation.u1))
-    u3 = nutation.u2 + nutation.swing / tops.m
-    speed = np.sqrt(a * np.maximum((nutation.u1 - u) * (u - nutation.u2), 0) * (u3 - u))
-    sine = np.sqrt(1 - u * u)
-    rates = shown.falls * speed / sine, (tops.beta - tops.b * u) / (1 - u * u)
-    return np.stack([a, tops.b, np.arccos(u), *rates], axis=-1)
+    u = min(max(shown.u_start, shown.nutation.u2), shown.nutation.u1)
+    theta = np.full_like(tops.a, math.acos(u))
+    falls = shown.falls * tops.tilt_rate(shown.nutation, theta)
+    return np.stack([tops.a, tops.b, theta, falls, tops.precession_rate(theta)], axis=-1)
 
 
-def _start(recording: Recording, state: Array, angles: Array) -> Start:
+def _start(recording: Recording, noise: Mapping[str, float], state: Array, angles: Array) -> Start:
     """Return a start with the zeros of psi and phi, and the spin rate, that fit it best."""
     theta, phi, psi = angles
     psi_zero, excess, phi_zero = 0.0, 0.0, 0.0
@@ -105,7 +112,8 @@ def _start(recording: Recording, state: Array, angles: Array) -> Start:
         excess = _spin_excess(recording.t, recording.angles["phi"] - phi, float(state[1]))
         phi_zero = _mean_angle(recording.angles["phi"] - phi - excess * recording.t, 1.0)
     moved = np.stack([theta, phi + excess * recording.t + phi_zero, psi + psi_zero])
-    left = float(np.nansum(residuals(recording, moved).values ** 2))
+    sizes = [[noise.get(channel, 1.0)] for channel in recording.channels]
+    left = float(np.nansum((residuals(recording, moved).values / sizes) ** 2))
     return Start(state, excess, psi_zero, phi_zero, left)
 
 
@@ -114,33 +122,9 @@ def _mean_angle(angles: Array, weights: Array | float) -> float:
 
 
 def _spin_excess(t: Array, left: Array, b: float) -> float:
-    """Return the rate r0 - b at which what is left of phi grows.
-
-    It is known within a turn per frame; of the rates that a rigid body can have, where b/r0 = C/A
-    is in (0, 2], the slowest one is taken.
-    """
-    rows = np.flatnonzero(np.isfinite(left))[:_MOST_ROWS]
-    t, turned = t[rows] - t[rows[0]], np.exp(1j * left[rows])
-    frame = float(np.median(np.diff(t)[np.diff(t) > 0]))
-    cell = frame / _CELLS
-    cells = np.zeros(min(int(t[-1] / cell) + 1, _MOST_CELLS), dtype=np.complex128)
-    places = np.rint(t / cell).astype(np.intp)
-    np.add.at(cells, places[places < cells.size], turned[places < cells.size])
-    sums = np.abs(np.fft.fft(cells, 4 * cells.size))
-    rates = 2 * math.pi * np.fft.fftfreq(4 * cells.size, cell)
-    highest = math.pi / frame
-    sums[np.abs(rates) > highest] = 0.0
-    rate = _refined(t, turned, float(rates[int(np.argmax(sums))]))
-    aliases = [rate + 2 * highest * i for i in range(-3, 4)]
-    bodies = [x for x in aliases if b + x and 0 < b / (b + x) <= 2]
-    return min(bodies, key=lambda x: abs(b + x), default=rate)
-
-
-def _refined(t: Array, turned: Array, rate: float) -> float:
-    """Return a rate made better by a line through the angles that it leaves."""
-    left = np.angle(turned * np.exp(-1j * rate * t))
-    left = within_half_turn(left - np.angle(np.sum(np.exp(1j * left))))
-    return rate + float(np.polyfit(t, left, 1)[0])
+    """Return the rate r0 - b at which the residual of phi grows."""
+    rate = turning_rate(t, left)
+    return slowest_spin(b + rate, b, 0.0, frame_of(t[np.isfinite(left)])) - b
 
 
 def placed(start: Start) -> Start:

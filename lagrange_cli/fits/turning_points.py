@@ -1,38 +1,49 @@
 """The top behind its turning points, its period and its mean precession: a and b.
 
-With the roots u2 < u1 < u3 of (4,9) and k^2 = (u1 - u2)/(u3 - u2), (4,19) and (5,1) give
+The roots u2 < u1 < u3 of (4,9) are known but for h = u3 - 1 > 0.  (4,19) and (5,1) give
 
-    a = (4 K/T)^2 k^2/(u1 - u2),    u3 = u2 + (u1 - u2)/k^2,
+    k^2 = (u1 - u2)/(1 - u2 + h),   k'^2 = (1 - u1 + h)/(1 - u2 + h),   a = (4 K/T)^2/(1 - u2 + h),
 
 and the cubic at u = 1 and -1 gives the momenta at the poles but for their signs:
 
-    (beta - b)^2 = a (1 - u1)(1 - u2)(u3 - 1),    (beta + b)^2 = a (1 + u1)(1 + u2)(u3 + 1).
+    (beta - b)^2 = a (1 - u1)(1 - u2) h,    (beta + b)^2 = a (1 + u1)(1 + u2)(2 + h).
 
-The mean precession, by complete integrals of the third kind, then decides about k.  Equation
-numbers are Chrapan's.
+The mean precession, by complete integrals of the third kind, then decides about h.  No difference
+of nearly equal numbers is formed, however near to a pole the axis turns.  Equation numbers are
+Chrapan's.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.angles import per_radian
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.protocol import Value
 from ..arithmetic.types import Array
+from ..elliptic.complete import complete_k, period_mean
 from ..errors import LagtopError
 from ..inputs.top import Top
 
+_MIDDLE = np.tan(np.linspace(0, math.pi / 2, 401)[1:-1]) ** 2
+_HEIGHTS = np.concatenate([np.geomspace(1e-40, 1e-5, 71), _MIDDLE, np.geomspace(1e5, 1e20, 31)])
+"""Values of (u3 - 1)/(1 - u2) between which a mean precession is looked for: fast tops have great
+ones, and slow ones have small ones.
+"""
+_BISECTIONS = 56
+"""Halvings that bring neighbouring heights to neighbouring doubles."""
 SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Signs of beta + b and of beta - b."""
 
 
 class Nutation(NamedTuple):
-    """What is seen of a nutation: tilts in radians, and the period."""
+    """Observed turning points, tilts in radians or arrays of them, and the observed period."""
 
-    theta_min: float
-    theta_max: float
+    theta_min: Value
+    theta_max: Value
     period: float
 
     def checked(self, *, radians: bool = False) -> Nutation:
@@ -51,103 +62,96 @@ class Nutation(NamedTuple):
         return self
 
     @property
-    def u1(self) -> float:
-        """cos(theta_min)."""
-        return math.cos(self.theta_min)
+    def u1(self) -> Value:
+        """Cosine of the least tilt."""
+        return np.cos(self.theta_min)
 
     @property
-    def u2(self) -> float:
-        """cos(theta_max)."""
-        return math.cos(self.theta_max)
+    def u2(self) -> Value:
+        """Cosine of the greatest tilt."""
+        return np.cos(self.theta_max)
 
     @property
-    def swing(self) -> float:
-        """u1 - u2, without a difference of cosines."""
-        half_sum = (self.theta_max + self.theta_min) / 2
-        return 2 * math.sin(half_sum) * math.sin((self.theta_max - self.theta_min) / 2)
+    def from_top(self) -> tuple[Value, Value]:
+        """Distances 1 - u1 and 1 - u2 from the upper pole."""
+        return 2 * np.sin(self.theta_min / 2) ** 2, 2 * np.sin(self.theta_max / 2) ** 2
 
     @property
-    def most_m(self) -> float:
-        """The k^2 of u3 = 1."""
-        return self.swing / (1 - self.u2)
+    def from_bottom(self) -> tuple[Value, Value]:
+        """Distances 1 + u1 and 1 + u2 from the lower pole."""
+        return 2 * np.cos(self.theta_min / 2) ** 2, 2 * np.cos(self.theta_max / 2) ** 2
 
 
 class Candidates(NamedTuple):
-    """Tops that have one nutation, an array each, or a number each of one top."""
+    """Tops that have one nutation: an array for each quantity, or a number for a single top."""
 
-    m: Array
-    """k^2."""
+    u3_above: Array
+    """The difference u3 - 1 > 0."""
     a: Array
-    b: Array
-    beta: Array
-    """The constant of (4,5)."""
+    plus: Array
+    """The momentum at the lower pole, beta + b, with beta of (4,5)."""
+    minus: Array
+    """The momentum at the upper pole, beta - b."""
     mean_rate: Array
     """The mean precession rate."""
 
-    def at(self, index: int) -> Candidates:
-        """Return one of them."""
+    @property
+    def b(self) -> Array:
+        """The constant C r0/A of (4,5)."""
+        return (self.plus - self.minus) / 2
+
+    def precession_rate(self, theta: Array | float) -> Array:
+        """Return the precession rate, by (4,5), at a tilt in radians."""
+        rate: Array = self.plus / np.cos(theta / 2) ** 2 + self.minus / np.sin(theta / 2) ** 2
+        return rate / 4
+
+    def tilt_rate(self, nutation: Nutation, theta: Array | float) -> Array:
+        """Return the size of the nutation rate, by (4,9), at a tilt between the turning points."""
+        u = np.cos(theta)
+        between = np.maximum((nutation.u1 - u) * (u - nutation.u2), 0.0)
+        rate: Array = np.sqrt(self.a * between * (1 - u + self.u3_above)) / np.sin(theta)
+        return rate
+
+    def at(self, index: Any) -> Candidates:
+        """Return some of the tops."""
         return Candidates(*(x[index] for x in self))
 
 
-def shares(inner: int, low: float, high: float, per_decade: int) -> Array:
-    """Return where k^2 is looked for, as shares of its greatest value, from `low` to 1 - `high`.
+def candidates(nutation: Nutation, u3_above: Array, signs: tuple[int, int]) -> Candidates:
+    """Return the tops with these u3 - 1; `signs` are those of beta + b and of beta - b."""
+    north, south = nutation.from_top, nutation.from_bottom
+    u3_above_u2 = north[1] + u3_above
+    k_prime = np.sqrt((north[0] + u3_above) / u3_above_u2)
+    a = (4 * complete_k(ARRAYS, k_prime) / nutation.period) ** 2 / u3_above_u2
+    plus = signs[0] * np.sqrt(a * south[0] * south[1] * (2 + u3_above))
+    minus = signs[1] * np.sqrt(a * north[0] * north[1] * u3_above)
+    mean_rate = (plus * mean_inverse(k_prime, *south) + minus * mean_inverse(k_prime, *north)) / 2
+    return Candidates(u3_above, a, plus, minus, mean_rate)
 
-    Fast tops are next to 0 and slow ones next to 1: outside the `inner` shares there are so many
-    per power of ten.
+
+def mean_inverse(k_prime: Array, at_u1: Value, at_u2: Value) -> Array:
+    """Return the mean of 1/p over a period, for p > 0 linear in u, from its values at u1 and u2.
+
+    With u = u2 + (u1 - u2) sn^2 w it is the mean of 1/(p(u2) cn^2 + p(u1) sn^2).
     """
-    middle = (1 - np.cos(np.linspace(0, math.pi, inner + 2)[1:-1])) / 2
-    ends = [
-        10.0 ** np.arange(math.log10(end), math.log10(middle[0]), 1 / per_decade)
-        for end in (low, high)
-    ]
-    return np.concatenate([ends[0], middle, 1 - ends[1][::-1]])
-
-
-def candidates(nutation: Nutation, m: Array, signs: tuple[int, int]) -> Candidates:
-    """Return the tops with these moduli; `signs` are those of beta + b and of beta - b."""
-    from scipy.special import ellipk
-
-    u1, u2, swing = nutation.u1, nutation.u2, nutation.swing
-    K = ellipk(m)
-    a = (4 * K / nutation.period) ** 2 * m / swing
-    below, above = (1 + u1) * (1 + u2), (1 - u1) * (1 - u2)
-    u3_above = np.maximum(swing / m - (1 - u2), 0.0)
-    plus = signs[0] * np.sqrt(a * below * (u3_above + 2))
-    minus = signs[1] * np.sqrt(a * above * u3_above)
-    south = plus / 2 * _mean_inverse(m, K, 1 + u2, 1 + u1)
-    north = minus / 2 * _mean_inverse(m, K, 1 - u2, 1 - u1)
-    return Candidates(m, a, (plus - minus) / 2, (plus + minus) / 2, south + north)
-
-
-def _mean_inverse(m: Array, K: Array, at_u2: float, at_u1: float) -> Array:
-    """Return the mean of 1/p over a period, for p linear in u, by its values at u2 and u1.
-
-    From u2 on, u = u2 + (u1 - u2) sn^2 w; the mean is Pi(n, m)/(K p2) with 1 - n = p1/p2.
-    """
-    from scipy.special import elliprf, elliprj
-
-    n = 1 - at_u1 / at_u2
-    third = elliprf(0, 1 - m, 1) + n / 3 * elliprj(0, 1 - m, 1, 1 - n)
-    mean: Array = third / K / at_u2
+    mean: Array = period_mean(ARRAYS, k_prime, at_u1 / at_u2, 1, 1) / at_u2
     return mean
 
 
 def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
-    """Return the tops that have a nutation and a mean precession rate."""
-    from scipy.optimize import brentq
-
-    found: list[Candidates] = []
-    moduli = nutation.most_m * shares(399, 1e-20, 1e-14, 2)
+    """Return the tops that have a nutation and a mean precession rate, the fastest first."""
+    grid, found = nutation.from_top[1] * _HEIGHTS, []
     for signs in SIGNS:
-
-        def off(m: float, signs: tuple[int, int] = signs) -> float:
-            return float(candidates(nutation, np.array(m), signs).mean_rate) - mean_rate
-
-        rates = candidates(nutation, moduli, signs).mean_rate - mean_rate
-        for i in np.flatnonzero(rates[:-1] * rates[1:] <= 0).tolist():
-            m = brentq(off, moduli[i], moduli[i + 1], xtol=1e-300, rtol=1e-15)
-            found.append(candidates(nutation, np.array(m), signs))
-    return sorted(found, key=lambda x: float(x.m))
+        high_at = candidates(nutation, grid, signs).mean_rate > mean_rate
+        i = np.flatnonzero(high_at[:-1] != high_at[1:])
+        low, high = grid[i], grid[i + 1]
+        for _ in range(_BISECTIONS):
+            middle = np.sqrt(low * high)
+            below = (candidates(nutation, middle, signs).mean_rate > mean_rate) == high_at[i]
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        tops = candidates(nutation, high, signs)
+        found += [tops.at(row) for row in range(len(i))]
+    return sorted(found, key=lambda x: float(x.u3_above), reverse=True)
 
 
 def top_of(nutation: Nutation, found: Candidates, mean_spin: float | None = None) -> Top:
@@ -156,10 +160,10 @@ def top_of(nutation: Nutation, found: Candidates, mean_spin: float | None = None
     C is A as long as nobody knows the spin rate; a mean spin rate tells it.  Raises LagtopError
     where no body has it.
     """
-    a, b, beta = float(found.a), float(found.b), float(found.beta)
+    a, b = float(found.a), float(found.b)
     start = {
         "theta0_rad": nutation.theta_min,
-        "psidot0": (beta - b * nutation.u1) / math.sin(nutation.theta_min) ** 2,
+        "psidot0": float(found.precession_rate(nutation.theta_min)),
     }
     body = {"m": 1.0, "s": 1.0, "g": a / 2, "A": 1.0}
     top = Top(**body, **start, C=1.0, r0=b)

@@ -59,9 +59,11 @@ def rotated(rotation: Array, vectors: Array) -> Array:
     return turned
 
 
-def about_z(angle: float) -> Array:
-    """Return the rotation by an angle about z."""
-    return np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
+def about_z(angle: float | Array) -> Array:
+    """Return the rotation by an angle about z, or one for each of an array of angles."""
+    half = np.asarray(angle) / 2
+    none = np.zeros_like(half)
+    return np.stack([np.cos(half), none, none, np.sin(half)], axis=-1)
 
 
 def to_z(axis: str) -> Array:

@@ -38,7 +38,8 @@ class SceneFile:
             _check_dots(self.text)
             table = tomllib.loads(self.text, parse_float=_parsed)
         except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
-            raise SceneError(f"{self.name}: not a TOML file: {error}") from None
+            why = f"{error}{_remedy(str(error), self.text)}"
+            raise SceneError(f"{self.name}: not a TOML file: {why}") from None
         self.inputs = {key: self._number(key, value) for key, value in table.items()}
 
     def _number(self, key: str, value: object) -> Any:
@@ -93,6 +94,13 @@ def _check_dots(text: str) -> None:
     for number, line in enumerate(text.splitlines(), 1):
         if line.count(".") > _MOST_DOTS and not line.lstrip().startswith("#"):
             raise ValueError(f"line {number} has more than {_MOST_DOTS} dots")
+
+
+def _remedy(wrong: str, text: str) -> str:
+    """Return a hint in brackets where a decimal comma is what is wrong with a line of TOML."""
+    place = re.search(r"at line (\d+)", wrong)
+    line = text.splitlines()[int(place[1]) - 1] if place else ""
+    return " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
 
 
 class _NoNumber(str):

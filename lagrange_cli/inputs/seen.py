@@ -13,6 +13,7 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
+from .kinematics import body_rates
 from .names import ANGLES
 
 ORDERS = ("wxyz", "xyzw")
@@ -180,11 +181,12 @@ class _Reader:
             raise LagtopError(f"angle_rates must come with {wanted}, got none", "angle_rates")
         if seen.quaternion is None:
             return {}
-        psi = rotations.angles_of(seen.quaternion)["psi"]
-        nutation, spin, precession = (self.given["angle_rates"][:, i] for i in range(3))
-        rates = rotations.axis_of(seen.quaternion) * spin[:, np.newaxis]
-        rates += np.stack([nutation * np.cos(psi), nutation * np.sin(psi), precession], axis=1)
-        return {"space_rates": rates}
+        at = rotations.angles_of(seen.quaternion)
+        nutation, spin, precession = self.given["angle_rates"].T
+        found = body_rates(
+            at["theta"], at["phi"], thetadot=nutation, phidot=spin, psidot=precession
+        )
+        return {"body_rates": np.stack(found, axis=1)}
 
     def convention(self, key: str, other: str) -> str:
         """Return what the names of a quantity say, or else the other."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import opened, shown_path
-from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
+from .trajectory_columns import QUANTITIES, Found, expanded, named_twice, quantities_in
 from .trajectory_rows import Table
 from .words import Words
 
@@ -37,6 +37,11 @@ class Trajectory:
             shown = shortened(", ".join(map(repr, self.names)), 120)
             raise DataError(
                 f"{self.name} must have columns among {wanted}, got {shown}: name them by --columns"
+            )
+        if twice := named_twice(self.names, self.quantities):
+            raise DataError(
+                f"{self.name} must name each quantity once, got {twice[0]!r} and {twice[1]!r}: "
+                "name the columns by --columns, with _ for one of them"
             )
 
     def _column_names(self, columns: Sequence[str] | None) -> list[str]:
@@ -65,12 +70,13 @@ class Trajectory:
         self.add(key, column)
         return self._table.words_of(self.names.index(column))
 
-    def blocks(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
+    def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
         """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
 
-        Raises DataError for what is no number, and for a time that is missing or turns back.
+        Raises DataError for what is no number, for a time that is missing or turns back, and unless
+        it may, for one that repeats.
         """
-        clock = Clock(self)
+        clock = Clock(self, repeats=repeats)
         for found, places in self.rows():
             clock.advance(found["t"][:, 0], places)
             yield found, places
@@ -92,28 +98,30 @@ class Trajectory:
 
 
 class Clock:
-    """The times of a trajectory, which go on in one direction."""
+    """The times of a trajectory, which go on in one direction and may or may not repeat."""
 
-    def __init__(self, trajectory: Trajectory) -> None:
-        self.trajectory, self.direction = trajectory, 0.0
+    def __init__(self, trajectory: Trajectory, *, repeats: bool) -> None:
+        self.trajectory, self.repeats, self.direction = trajectory, repeats, 0.0
         self.last: float | None = None
 
     def advance(self, t: Array, places: Sequence[int]) -> None:
-        """Raise DataError for a time that is not finite or turns back."""
+        """Raise DataError for a time that is not finite, turns back, or repeats."""
         import numpy as np
 
         if bad := np.flatnonzero(~np.isfinite(t)).tolist():
             raise self._error(places[bad[0]], f"t must be a finite number, got {t[bad[0]]}")
-        before = t[0] if self.last is None else self.last
-        steps = np.diff(t, prepend=before)
+        steps = np.diff(t, prepend=t[:1] if self.last is None else self.last)
         moving = steps[steps != 0]
         if not self.direction and moving.size:
             self.direction = float(np.sign(moving[0]))
         if bad := np.flatnonzero(steps * self.direction < 0).tolist():
-            i = bad[0]
-            previous = float(t[i] - steps[i]) if i == 0 else float(t[i - 1])
-            wrong = f"t must not turn back, got {float(t[i])} after {previous}"
-            raise self._error(places[i], wrong)
+            previous = float(t[bad[0] - 1]) if bad[0] else self.last
+            wrong = f"t must not turn back, got {float(t[bad[0]])} after {previous}"
+            raise self._error(places[bad[0]], wrong)
+        still = np.flatnonzero(steps == 0)[self.last is None :]  # the first row has no step
+        if still.size and not self.repeats:
+            wrong = f"t must not repeat, got {float(t[still[0]])} twice"
+            raise self._error(places[int(still[0])], wrong)
         self.last = float(t[-1])
 
     def _error(self, place: int, wrong: str) -> DataError:

@@ -171,6 +171,15 @@ def quantities_in(names: Sequence[str]) -> dict[str, Found]:
     return found
 
 
+def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, str] | None:
+    """Return two names of the same part of a quantity that was found, if there are any."""
+    for i in (i for quantity in found.values() for i in quantity.columns):
+        for other in range(i + 1, len(names)):
+            if plain_name(names[other])[0] == plain_name(names[i])[0]:
+                return names[i], names[other]
+    return None
+
+
 def plain_name(name: str) -> tuple[str, str | None]:
     """Return a name in small letters and digits only, without a unit, and the unit of angles."""
     text = name.strip().lower()

@@ -86,9 +86,17 @@ class _Lines:
 
 def _decoded(line: bytes, name: str, number: int) -> str:
     try:
-        return line.decode()
+        text = line.decode()
     except UnicodeDecodeError:
         raise DataError(f"{name}, line {number}: a row must be UTF-8 text") from None
+    if "\0" in text:
+        raise DataError(f"{name}, line {number}: a row must be text, got the character NUL")
+    return text
+
+
+def _is_plain(text: bytes) -> bool:
+    """Return whether a line is ASCII text, whose quoted cells are left to `_row`."""
+    return text.isascii() and b'"' not in text and b"\0" not in text
 
 
 class TextTable:
@@ -98,9 +106,8 @@ class TextTable:
 
     def __init__(self, name: str, first: Numbered, lines: _Lines, comments: Sequence[str]) -> None:
         self.name = name
-        text = _decoded(first[1], name, first[0])
-        self.delimiter = next((x for x in ",;\t" if x in text), None)
-        cells = self._cells(text)
+        self.delimiter = next((x for x in ",;\t" if x in first[1].decode(errors="replace")), None)
+        cells = self._cells(*first)
         self.width = len(cells)
         has_header = not any(_is_number(cell) for cell in cells)
         self.names: Sequence[str] | None = (
@@ -113,8 +120,15 @@ class TextTable:
         """Return the words of a column."""
         return self._words.setdefault(column, Words())
 
-    def _cells(self, line: str) -> list[str]:
-        return [cell.strip().strip('"') for cell in line.split(self.delimiter)]
+    def _cells(self, number: int, line: bytes) -> list[str]:
+        cells = [x.strip() for x in _decoded(line, self.name, number).split(self.delimiter)]
+        for i, cell in enumerate(cells, 1):
+            if cell.startswith('"') and (len(cell) == 1 or not cell.endswith('"')):
+                raise DataError(
+                    f"{self.name}, line {number}, column {i}: a quoted cell must end with its "
+                    f"quote, got {quoted(cell)}"
+                )
+        return [cell.strip('"') for cell in cells]
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
         """Yield some columns of the rows.  Raises DataError for what is no number."""
@@ -133,22 +147,23 @@ class TextTable:
     ) -> Array:
         import numpy as np
 
-        with suppress(ValueError):
-            values = np.loadtxt(
-                texts,
-                delimiter=self.delimiter,
-                ndmin=2,
-                comments=None,
-                converters={i: words.number for i, words in self._words.items()} or None,
-            )
-            if values.shape == (len(texts), self.width):
-                return values[:, columns]
+        if all(map(_is_plain, texts)):
+            with suppress(ValueError):
+                values = np.loadtxt(
+                    texts,
+                    delimiter=self.delimiter,
+                    ndmin=2,
+                    comments=None,
+                    converters={i: words.number for i, words in self._words.items()} or None,
+                )
+                if values.shape == (len(texts), self.width):
+                    return values[:, columns]
         return np.array([self._row(*x, columns, names) for x in block])
 
     def _row(
         self, number: int, line: bytes, columns: Sequence[int], names: Sequence[str]
     ) -> list[float]:
-        cells = self._cells(_decoded(line, self.name, number))
+        cells = self._cells(number, line)
         if len(cells) != self.width:
             raise DataError(
                 f"{self.name}, line {number}: a row must have {self.width} cells, got {len(cells)}"
@@ -184,14 +199,14 @@ class JsonTable:
         self.name = name
         self._lines = chain([[first]], lines.blocks())
         bare = first[1].strip(_AROUND)
+        entries = self._object(first[0], bare)
+        _check_once(bare, name)
         self.sizes = {
             key: len(value) if isinstance(value, list) else 0
-            for key, value in self._object(first[0], bare).items()
+            for key, value in entries.items()
             if isinstance(value, int | float | list | str | None)
         }
-        self._texts = {
-            key for key, value in self._object(first[0], bare).items() if isinstance(value, str)
-        }
+        self._texts = {key for key, value in entries.items() if isinstance(value, str)}
         self._words: dict[str, Words] = {}
         self.names: Sequence[str] = [
             name for key, n in self.sizes.items() for name in parts(key, n)
@@ -246,6 +261,15 @@ class JsonTable:
                 )
             row += [math.nan if x is None else float(x) for x in numbers]
         return row
+
+
+def _check_once(line: bytes, name: str) -> None:
+    """Raise DataError for an object that has a key twice, of which a reader sees the last alone."""
+    import json
+
+    keys = [key for key, _ in json.loads(line, object_pairs_hook=list)]
+    if twice := [key for i, key in enumerate(keys) if key in keys[:i]]:
+        raise DataError(f"{name} must name each quantity once, got {twice[0]!r} and {twice[0]!r}")
 
 
 def _are_real(values: Sequence[Any]) -> bool:

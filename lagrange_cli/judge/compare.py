@@ -58,7 +58,7 @@ def compare(
     trajectory first, as in `lagtop compare`.  Up to `max_error` radians it is fine.  `step` is kept
     in the judgement, for `convergence` of several.
 
-    Raises LagtopError for a bad argument, and for times that are not finite or turn back.
+    Raises LagtopError for a bad argument, and for times that are not finite, turn back or repeat.
     """
     arrays = {
         **{"quaternion": quaternion, "matrix": matrix, "theta": theta, "phi": phi, "psi": psi},
@@ -79,8 +79,8 @@ def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
     if not arrays:
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
     steps = np.diff(times[:, 0])
-    if not np.isfinite(times).all() or (np.any(steps > 0) and np.any(steps < 0)):
-        raise LagtopError("t must be finite and go on in one direction", "t")
+    if not np.isfinite(times).all() or not (np.all(steps > 0) or np.all(steps < 0)):
+        raise LagtopError("t must be finite and go on in one direction, each time once", "t")
     block = {"t": times}
     for key, array in arrays.items():
         size = QUANTITIES[key].size

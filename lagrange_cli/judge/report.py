@@ -58,14 +58,6 @@ def comparison_report(motion: Motion, comparison: Comparison, request: Request) 
     )
 
 
-def failed(findings: Findings, limit: float | None) -> bool:
-    """Return whether a trajectory is lost, or beyond a limit that was given."""
-    return any(
-        x.lost_at is not None or (limit is not None and not (x.error_max or 0.0) <= limit)
-        for x in findings.rows
-    )
-
-
 def _conditions(motion: Motion, comparison: Comparison, request: Request) -> dict[str, str]:
     period = comparison.judgements[0].period
     conditions = {

@@ -36,14 +36,17 @@ class Slip(NamedTuple):
     wish: Callable[[Alignment], Alignment] | None = None
     other_unit: bool = False
     """Whether angles whose names have no unit are in the other one."""
+    excess: Callable[[Top], Fraction] | None = None
+    """Spin rate of the top that moved, less that of `top`, if another body stands for it."""
 
-    def reading(self, given: Given) -> Given:
-        """Return the trajectory as it is read without the slip."""
+    def reading(self, given: Given, meant: Top) -> Given:
+        """Return the trajectory of the top that was meant as it is read without the slip."""
         conventions = given.conventions
         if self.other_unit:
             conventions = conventions._replace(radians=not conventions.radians)
         wish = given.wish if self.wish is None else self.wish(given.wish)
-        return given._replace(conventions=conventions, wish=wish, change=self.seen)
+        change = self.seen if self.excess is None else _spun_less(float(self.excess(meant)))
+        return given._replace(conventions=conventions, wish=wish, change=change)
 
 
 class Explanation(NamedTuple):
@@ -74,7 +77,7 @@ def _error_without(slip: Slip, motion: Motion, given: Given) -> float | None:
     """Return the greatest error without a slip, or None for one that cannot be."""
     try:
         moved = motion if slip.top is None else solve(slip.top(motion.top))
-        errors = errors_of(moved, slip.reading(given))
+        errors = errors_of(moved, slip.reading(given, motion.top))
     except LagtopError:
         return None
     return None if np.isnan(errors).all() else float(np.nanmax(errors))
@@ -106,6 +109,35 @@ def _upside_down(top: Top) -> Top:
     """Return the top as it is seen upside down, where gravity points upwards."""
     tilt = math.pi - _tilt(top)
     return top.replace(theta0_rad=tilt, psidot0=-top.psidot0, thetadot0=-top.thetadot0)
+
+
+def _exchanged_moments(top: Top) -> Top:
+    """Return a top that moves like one with A and C exchanged, but for its spin.
+
+    That one need not be a rigid body, as C may exceed 2A; this one has C = A and the same a and b.
+    """
+    return top.replace(A=top.C, C=top.C, r0=Fraction(top.r0) * Fraction(top.A) / Fraction(top.C))
+
+
+def _spin_of_exchanged_moments(top: Top) -> Fraction:
+    return Fraction(top.r0) * (1 - Fraction(top.A) / Fraction(top.C))
+
+
+def _spun_less(rate: float) -> Callable[[Seen], Seen]:
+    """Return the change to a body that spins by a constant rate less."""
+
+    def changed(seen: Seen) -> Seen:
+        angle = rate * seen.t
+        angles = {key: x - angle if key == "phi" else x for key, x in seen.angles.items()}
+        own, fixed = seen.body_rates, seen.space_rates
+        if own is not None:
+            own = own - [0.0, 0.0, rate]
+        if fixed is not None and seen.quaternion is not None:
+            fixed = fixed - rate * rotations.axis_of(seen.quaternion)
+        slower = replace(seen, angles=angles, body_rates=own, space_rates=fixed)
+        return slower.turned(rotations.IDENTITY, rotations.about_z(angle))
+
+    return changed
 
 
 def _turned(space: Array, body: Array) -> Callable[[Seen], Seen]:
@@ -153,7 +185,7 @@ SLIPS = [
         "A: the moment about the mass centre taken as about the pivot (A - m s^2)",
         _moment_moved(-1),
     ),
-    Slip("A and C exchanged", lambda top: top.replace(A=top.C, C=top.A)),
+    Slip("A and C exchanged", _exchanged_moments, excess=_spin_of_exchanged_moments),
     Slip("r0 with the wrong sign", _spin_times(-1)),
     Slip("r0 in radians taken as degrees", _spin_times(math.pi / 180)),
     Slip("r0 in degrees taken as radians", _spin_times(180 / math.pi)),
@@ -204,6 +236,13 @@ SLIPS = [
     *(
         Slip(f"up is the {up} axis of space (--align up={up},start)", wish=_framed(up=up))
         for up in ("x", "y", "-z")
+    ),
+    *(
+        Slip(
+            f"the figure axis and up are the {axis} axes (--align axis={axis},up={axis},start)",
+            wish=_framed(axis=axis, up=axis),
+        )
+        for axis in ("x", "y", "-z")
     ),
 ]
 """Every slip that any top may suffer."""

@@ -12,6 +12,8 @@ from ..arithmetic.types import Array
 from ..inputs.seen import rows_of
 
 MOST_KEPT = 4096
+_SURE = 2.0
+"""Radians that a deviation may change by from row to row; beyond, it may as well be a turn less."""
 
 
 class Extremes:
@@ -41,15 +43,18 @@ class Fit:
     """A straight line through an angle's deviations, unwrapped, by least squares."""
 
     def __init__(self) -> None:
-        self.count, self.turns, self.last = 0, 0.0, 0.0
+        self.count, self.last, self.turns_are_sure = 0, 0.0, True
         self.t = self.x = self.tt = self.tx = self.xx = 0.0
 
     def add(self, t: Array, wrapped: Array) -> None:
-        """Take deviations in (-pi, pi], at rates of less than half a turn per row."""
+        """Take deviations in (-pi, pi]: each is the one nearest to that of the row before."""
         known = np.isfinite(wrapped)
         if not known.any():
             return
-        t, x = t[known], np.unwrap(np.concatenate([[self.last], wrapped[known]]))[1:]
+        t, x = t[known], np.unwrap(np.concatenate([[self.last], wrapped[known]]))
+        steps = np.diff(x)[self.count == 0 :]  # the first row has none before it
+        self.turns_are_sure &= not np.any(np.abs(steps) > _SURE)
+        x = x[1:]
         self.last = float(x[-1])
         self._merge(len(t), float(t.mean()), float(x.mean()), t - t.mean(), x - x.mean())
 
@@ -65,8 +70,8 @@ class Fit:
         self.count = whole
 
     def line(self) -> Line | None:
-        """Return the line, or None for less than three rows or for times that are all the same."""
-        if self.count < 3 or self.tt == 0:
+        """Return the line, or None for less than three rows or if whole turns are not sure."""
+        if self.count < 3 or not self.turns_are_sure:
             return None
         slope = self.tx / self.tt
         return Line(slope, math.sqrt(max(self.xx - slope * self.tx, 0.0) / self.count))

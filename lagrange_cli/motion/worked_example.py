@@ -51,7 +51,7 @@ class WorkedExample(Quarters[R]):
         """The square of the sum of the roots."""
         return None if self.roots_sum is None else self.roots_sum * self.roots_sum
 
-    @step_key("-4 u3 u2", "four times the product", equation="§8")
+    @step_key("-4 u3 u2", "product times -4", equation="§8")
     def roots_product_fourfold(self) -> R | None:
         """The product of the roots times -4."""
         return None if self.roots_product is None else -4 * self.roots_product
@@ -82,14 +82,14 @@ class WorkedExample(Quarters[R]):
         """The square of the modulus (4,19)."""
         return self.kind.m if self.follows else None
 
-    @step_key("arcsin k'", "complement of arcsin k", "angle", "(4,21)")
+    @step_key("arcsin k'", "complementary angle", "angle", "(4,21)")
     def comodular_angle_deg(self) -> R | None:
         """The angle arcsin k' (4,21), in degrees."""
         if not self.follows:
             return None
         return self.ar.atan2(self.kind.k_prime, self.kind.k) / self.kind.degree
 
-    @step_key("E(am α, k')", "second kind, to am α", equation="(7,1)")
+    @step_key("E(am, k')", "second kind, to am α", equation="(7,1)")
     def E_amplitude(self) -> R | None:
         """The integral E(phi, k') of (7,1), as a sum of positive terms (DLMF 19.25.10)."""
         if not self.follows:
@@ -111,6 +111,7 @@ class WorkedExample(Quarters[R]):
 
 
 CHAIN = {
+    "Inputs": ["m", "A", "C", "s", "g", "r0", "theta0_deg"],
     "The body": ["a", "spin_share"],
     "The start": ["u1", "b", "roots_sum", "roots_product"],
     "The roots": [

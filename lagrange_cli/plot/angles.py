@@ -58,7 +58,7 @@ def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: 
 
 
 def _title(request: PlotRequest) -> str:
-    return TITLE if request.stds is None else f"{TITLE}; bands: standard uncertainty"
+    return TITLE if request.stds is None else f"{TITLE}; bands: ±1σ"
 
 
 def _all_is_spin(motion: Motion) -> bool:

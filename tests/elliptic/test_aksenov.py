@@ -31,6 +31,37 @@ MODULI = [modulus(ar, k=x) for x in ("0.03", "0.5", "0.9", "0.9999")]
 ARGUMENTS = [ar.mpf(x) for x in ("-2.3", "0.4", "1.7", "11")]
 
 
+def _cross_ratios(roots: list[Any]) -> list[Any]:
+    """Return the six values that k^2 may have after a linear-fractional substitution."""
+    a, b, c, d = roots
+    x = (a - b) * (c - d) / ((a - c) * (b - d))
+    return [x, 1 / x, 1 - x, 1 / (1 - x), 1 - 1 / x, x / (x - 1)]
+
+
+@equation("section 3.1: a linear-fractional substitution")
+def _() -> Sides:
+    a, b, c, d = roots = [ar.mpf(x) for x in ("2.1", "0.4", "-0.9", "-3")]
+    m, y = _cross_ratios(roots)[0], ar.mpf("1.3")
+    phi = ar.asin(ar.sqrt((a - c) * (y - b) / ((a - b) * (y - c))))
+
+    def integrand(z: Any) -> Any:  # with x = b + z^2 under the root of (a - x)(x - b)(x - c)(x - d)
+        x = b + z * z
+        return 2 / ar.sqrt((a - x) * (x - c) * (x - d))
+
+    there = ar.quad(integrand, [0, ar.sqrt(y - b)])
+    factor = 2 / ar.sqrt((a - c) * (b - d))
+    yield factor * incomplete_f(ar, phi, modulus(ar, k=ar.sqrt(m))), there
+    pairs = [ar.mpc("0.3", x) for x in (1, -1)] + [ar.mpc("-0.8", x) for x in ("1.7", "-1.7")]
+    yield from ((ar.im(x), 0) for x in _cross_ratios(pairs))
+
+
+@as_printed("section 3.1: a linear-fractional substitution")
+def _() -> Sides:
+    """Show that two real roots and two complex ones have no real modulus."""
+    roots = [ar.mpf(2), ar.mpf(-1), ar.mpc("0.5", "1.7"), ar.mpc("0.5", "-1.7")]
+    yield from ((ar.im(x), 0) for x in _cross_ratios(roots))
+
+
 @equation("(3.1.1)")
 def _() -> Sides:
     for pair in MODULI:

@@ -291,6 +291,20 @@ def _() -> Sides:
         yield both, even + odd
 
 
+@as_printed("(2,5)")
+def _() -> Sides:
+    """Read h in sinh h and cosh h, as the text has it eight times."""
+    X, Y = ar.pi * W / K, ar.pi * ALPHA / K
+    terms = 0
+    for h in range(1, 60):
+        wave = (-1) ** (h - 1) * 2 * Q**h
+        below = wave * ar.cos(X) * ar.cosh(h * Y) + 1 + Q ** (2 * h)
+        terms += ar.atan(wave * ar.sin(X) * ar.sinh(h * Y) / below)
+    first = -ar.atan(ar.cot(X / 2) * ar.tanh(Y / 2))
+    both = omega(ar, "00", W, J * ALPHA, M) + omega(ar, "11", W, J * ALPHA, M)
+    yield both, J * (first + terms)
+
+
 @equation("(2,5), continued over all w")
 def _() -> Sides:
     z = ar.exp(-ar.pi * ALPHA / K)

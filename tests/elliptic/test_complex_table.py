@@ -112,6 +112,20 @@ def _decimal(exact: Fraction) -> Any:
     return mpmath.mpf(exact.numerator) / exact.denominator
 
 
+DIGITS = ["--digits", "30"]
+
+
+@pytest.mark.parametrize("k", ["5.874862083807e18i", "2i", "2", "0.5"])
+def test_the_quotient_of_two_zeros_is_no_number(k: str, lagtop: Lagtop) -> None:
+    """Omega11 of u = v = 0 was looked for in thousands of digits, as a number that is not 0."""
+    args = f"jacobi --k {k} --u 0+0i --omega --pi --param 0 --format json"
+    plain, many = (json.loads(lagtop(*args.split(), *more).stdout) for more in ([], DIGITS))
+    assert [*plain[0].values()] == [*many[0].values()]
+    assert {key for key, x in many[0].items() if x is None} == {
+        *("omega11_re", "omega11_im", "pi11_re", "pi11_im")
+    }
+
+
 @pytest.mark.parametrize("digits", ["", " --digits 12"])
 def test_poles_and_zeros(digits: str, lagtop: Lagtop) -> None:
     args = f"jacobi --k 0.5 --u 0 --u 1+i --u=-1-i --u 9i --am --zeta --pi --param 1+i{digits}"

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 import oracle
 import pytest
@@ -25,6 +26,7 @@ from lagrange_cli.fits.invert import invert
 from lagrange_cli.fits.roots import crossing, middle, roots
 from lagrange_cli.fits.search import Search
 from lagrange_cli.fits.slopes import number_slopes
+from lagrange_cli.fits.touching import touching
 from lagrange_cli.inputs.ranges import parse_span
 
 
@@ -86,6 +88,35 @@ def test_a_pair_of_roots_between_two_points_is_found() -> None:
     least = min(find(["T_nutation=0.4525"], r0="10:200"), key=lambda x: float(x.top.r0))
     assert len(find(["T_nutation=0.4525"], r0="10:200", scan=7)) == 2
     assert 30 < float(least.top.r0) < 40
+
+
+@pytest.mark.parametrize("key", ["nutation_rate_lower", "nutation_rate_upper"])
+def test_steady_precession_is_found_where_the_nutation_only_touches_0(key: str) -> None:
+    """The slow and the fast root of A cos(theta) x^2 - C r0 x + mgs = 0, by mpmath."""
+    found = find([f"{key}=0"], r0=50, theta0_deg=60, psidot0="1:60")
+    a, b, c = 39032 * mpmath.cos(mpmath.pi / 3), 17458 * 50, 1587 * 4 * 981
+    exact = [(b + sign * mpmath.sqrt(b * b - 4 * a * c)) / (2 * a) for sign in (-1, 1)]
+    assert [x.top.psidot0 for x in found] == pytest.approx([float(x) for x in exact], rel=1e-14)
+
+
+def test_a_number_that_comes_near_without_touching_is_not_found() -> None:
+    """The greatest period is 0.452509: a millionth more is nowhere, a millionth less twice."""
+    most = max(solve(Top(r0=r0)).T_nutation or 0 for r0 in np.linspace(37, 37.6, 401))
+    assert find([f"T_nutation={most * (1 + 1e-6)}"], r0="10:200") == []
+    assert len(find([f"T_nutation={most * (1 - 1e-6)}"], r0="10:200")) == 2
+
+
+def test_touching_is_told_from_passing_by() -> None:
+    x = np.linspace(1.0, 60.0, 1000)
+    functions: list[tuple[list[float], Callable[[Any], Any]]] = [
+        ([8.908452], lambda at: 0.3 * abs(at - 8.908452)),
+        ([100 / 3], lambda at: -((at - 100 / 3) ** 2)),
+        ([], lambda at: (at - 33.3) ** 2 + 1e-12),
+    ]
+    for places, function in functions:
+        assert touching(function, x, function(x), 1.0) == pytest.approx(places, abs=1e-7)
+    passed_by = touching(lambda at: 1e-12 + abs(at - 40.1), x, 1e-12 + np.abs(x - 40.1), 0.0)
+    assert passed_by == []
 
 
 def test_a_leap_is_no_root() -> None:

@@ -258,7 +258,7 @@ def trials(tmp_path: Path) -> Path:
 def test_a_start_next_to_an_upright_root_is_found() -> None:
     """Without psi nothing tells the modulus, and u3 = 1 is at an end of what it may be."""
     nutation, t = Nutation(1.5, 1.52, 1.0), np.linspace(0, 60, 300)
-    exact = candidates(nutation, np.array(nutation.most_m * (1 - 1e-6)), (1, 1))
+    exact = candidates(nutation, np.array(1e-6 * nutation.from_top[1]), (1, 1))
     top = top_of(nutation, exact).replace(C=0.7, r0=float(exact.b) / 0.7)
     angles, rng = solve(top).angles(t), np.random.default_rng(1)
     theta, phi = (x + 1e-4 * rng.standard_normal(t.size) for x in (angles.theta, angles.phi))
@@ -309,6 +309,22 @@ def test_known_inputs_of_a_scene(lagtop: Lagtop, tmp_path: Path) -> None:
     assert record["r0"] == pytest.approx(50, abs=0.1)  # that of the scene is not known
 
 
+def test_the_moment_about_the_pivot_is_fixed_by_that_about_the_mass_centre(
+    tmp_path: Path, lagtop: Lagtop
+) -> None:
+    """A scene that has A_cm, m and s has A too; nothing else of it is taken for known."""
+    scene = tmp_path / "scene.toml"
+    scene.write_text("A_cm = 1.364e-3\nm = 1.587\ns = 0.04\nC = 1.7458e-3\n")
+    options = ["--scene", scene, "--fix", "A,C", "--format", "json"]
+    record = json.loads(lagtop("fit", SAMPLE, *options).stdout)
+    assert record["A"] == pytest.approx(1.364e-3 + 1.587 * 0.04**2, rel=1e-15)
+    assert {"m", "s"}.isdisjoint(record)
+    scene.write_text("A_cm = 1.364e-3\nm = 1.587\n")
+    assert_one_line(
+        lagtop("fit", SAMPLE, *options), 2, "--fix A must be given by an option or by --scene"
+    )
+
+
 @pytest.mark.slow
 def test_what_is_no_noise_is_said(lagtop: Lagtop, tmp_path: Path) -> None:
     t = np.linspace(0, 3, 200)
@@ -349,6 +365,7 @@ T = np.linspace(0, 2, 100)
 @pytest.mark.parametrize(
     ("columns", "code", "message"),
     [
+        ([T, 90 + 130 * np.sin(T), T], 65, "theta must be between 0 and pi rad (180 deg), got 3."),
         ([T[:5], T[:5], T[:5]], 65, "must have 12 rows or more, got 5"),
         ([T, 0 * T + 30, T], 65, "theta must vary, got 30 in all rows"),
         ([T, T * np.nan, T * np.nan], 65, "must have 12 rows or more with a number, got 0"),
@@ -395,20 +412,18 @@ def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> No
     assert_one_line(lagtop("fit", SAMPLE, *words.split()), code, message)
 
 
+@pytest.mark.parametrize("fmt", ["csv", "json", "table"])
 def test_a_failed_fit_leaves_no_scene(
-    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fmt: str
 ) -> None:
-    monkeypatch.setattr(Outcome, "verdict", property(lambda _: FAILED))
-    monkeypatch.setattr(Outcome, "warnings", lambda _: ["it has failed"])
+    monkeypatch.setattr(Outcome, "failures", lambda _: ["it is too bad"])
     path = tmp_path / "fitted.toml"
-    result = lagtop("fit", SAMPLE, "--format", "csv", "-o", path)
+    result = lagtop("fit", SAMPLE, "--format", fmt, "-o", path)
     assert (result.exit_code, path.exists()) == (1, False)
-    notes, *warnings = result.stderr.splitlines()
-    assert notes.startswith("Note: C and A only as C/A; ")
-    assert warnings == [
-        "Warning: it has failed",
-        f"Warning: {path} is not written: the fit has failed",
-    ]
+    *_, last = result.stderr.splitlines()
+    assert last == f"Error: the fit has failed, and {path} is not written: it is too bad"
+    assert "it is too bad" in (result.stdout if fmt == "table" else result.stderr)
+    assert lagtop("fit", SAMPLE).stderr.endswith("Error: the fit has failed: it is too bad\n")
 
 
 def test_theta_alone_needs_a_start(lagtop: Lagtop, tmp_path: Path) -> None:
@@ -439,13 +454,23 @@ def test_arrays_in_python() -> None:
         ({"axis": t}, r"axis must have the shape \(n, 3\)"),
         ({"theta": t, "axis": turns.apply([0, 0, 1])}, "fit takes angles, or an axis"),
         ({}, "fit takes angles, or an axis, or a quaternion, got nothing"),
-        ({"theta": t, "psi": t, "known": {"mass": 1}}, "known must be among"),
-        ({"theta": t, "psi": t, "sigma": {"chi": 1}}, "sigma must be of theta, psi, got 'chi'"),
-        ({"theta": t, "psi": t, "sigma": -1}, "theta_std must be > 0, got -1"),
+        ({"theta": t / 9, "psi": t, "known": {"mass": 1}}, "known must be among"),
+        ({"theta": t / 9, "psi": t, "sigma": {"chi": 1}}, "sigma must be of theta, psi, got 'chi'"),
+        ({"theta": t / 9, "psi": t, "sigma": -1}, "theta_std must be > 0, got -1"),
+        (
+            {"theta": np.degrees(angles_of(turns)["theta"]), "psi": t},
+            r"theta must be between 0 and pi rad \(180 deg\), got 41 rad",
+        ),
+        ({"theta": -t / 9, "psi": t}, "theta must be between 0 and pi rad .*, got -0.5"),
     ]
     for arguments, message in bad:
         with pytest.raises(LagtopError, match=message):
             fit(t, **arguments)
+    shuffled = np.concatenate([t[60:], t[:60]])
+    with pytest.raises(LagtopError, match=r"t must not turn back, got 5\.0 after 7\.0"):
+        fit(shuffled, theta=t / 9, psi=t)
+    with pytest.raises(LagtopError, match="has neither psi nor phi"):
+        fit(t, theta=t / 9, psi=np.full(t.size, np.nan))
 
 
 @pytest.mark.parametrize("names", ["", "r0", "A C", "m g s C", "m g s A", "m g s A C r0", "theta0"])

@@ -68,6 +68,8 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
         (f"m = 1.{'0' * 50_000}", "m must be a finite number, got '1.000"),
         (f"m = 0x{'F' * 3000}", "m must be"),
         (f"m = {'9' * 5000}", "not a TOML file"),
+        ("g = 9.81\nm = 1,5\n", "(at line 2, column 6) (write a decimal point, not a comma)\n"),
+        ("g = 9.81\nm = \n", "(at line 2, column 5)\n"),
         (f"a{'.a' * 20_000} = 1", "line 1 has more than 20 dots"),
         (f'"#"{".a" * 20_000} = 1', "line 1 has more than 20 dots"),
         (f"x = {{a{'.a' * 20_000} = 1}}", "line 1 has more than 20 dots"),

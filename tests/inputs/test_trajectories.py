@@ -226,6 +226,17 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column theta: must be a number"),
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
         (b'{"t":0,"theta":1}\n{"t":1,', "line 2: a row must be a JSON object"),
+        (b't,theta\n0,1\n1,"2\n', "line 3, column 2: a quoted cell must end with its quote"),
+        (b't,theta\n"0,1\n1,2\n', "line 2, column 1: a quoted cell must end with its quote"),
+        (b't,"theta\n0,1\n', "line 1, column 2: a quoted cell must end with its quote"),
+        (b"t,theta\n0,1\n1,\xa02\n", "line 3: a row must be UTF-8 text"),
+        (b"t,theta,note\n0,1,a\n1,2,caf\xe9\n", "line 3: a row must be UTF-8 text"),
+        (b"t,theta\x00\n0,1\n", "line 1: a row must be text, got the character NUL"),
+        (b"t,theta,note\n0,1,a\n1,2,b\x00\n", "line 3: a row must be text, got the character"),
+        (b"t,theta,theta\n0,1,2\n", "must name each quantity once, got 'theta' and 'theta'"),
+        (b"t,theta_deg,Theta [rad]\n0,1,2\n", "once, got 'theta_deg' and 'Theta [rad]'"),
+        (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
+        (b'{"t":0,"theta":1,"theta":2}\n', "must name each quantity once, got 'theta' and"),
         (b"\x93NUMPY\x01\x00\xff\xff", "not an npy file"),
         (b"PK\x03\x04", "not an npz file"),
         (b"PAR1", "not a Parquet file"),
@@ -260,11 +271,27 @@ def test_a_place_is_right_after_the_first_block(
 
 def test_times_may_run_backwards(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
-    path.write_text("t,theta\n0,1\n-1,2\n-1,3\n-2,4\n")
-    assert read(path)["t"][:, 0].tolist() == [0, -1, -1, -2]
+    path.write_text("t,theta\n0,1\n-1,2\n-2,4\n")
+    assert read(path)["t"][:, 0].tolist() == [0, -1, -2]
     path.write_text("t,theta\n0,1\n-1,2\n-0.5,3\n")
     with pytest.raises(DataError, match=r"line 4: t must not turn back, got -0\.5 after -1\.0"):
         read(path)
+
+
+@pytest.mark.parametrize("rows", ["0,1\n1,2\n1,3\n", "0,1\n-1,2\n-1,3\n"])
+def test_times_may_not_repeat_in_a_trajectory(rows: str, tmp_path: Path) -> None:
+    """Two rows at one time cannot both be right; `fit` takes them for two measurements."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"t,theta\n{rows}")
+    with pytest.raises(DataError, match=r"line 4: t must not repeat, got -?1\.0 twice"):
+        read(path)
+
+
+def test_columns_that_nobody_reads_may_share_a_name(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text('t,note,theta,note\n0,"a",1,b\n1,"c, ""d""",2,d\n'.replace(", ", " "))
+    with open_trajectory(str(path)) as file:
+        assert sorted(file.quantities) == ["t", "theta"]
 
 
 @pytest.mark.parametrize(

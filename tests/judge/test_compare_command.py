@@ -51,7 +51,7 @@ def test_formats_say_the_same(lagtop: Lagtop, right: Path, coarse: Path) -> None
         fmt: lagtop("compare", right, coarse, *OPTIONS, "--format", fmt)
         for fmt in ("json", "csv", "table")
     }
-    assert {result.exit_code for result in shown.values()} == {0}
+    assert {result.exit_code for result in shown.values()} == {1}
     rows = rows_of(shown["json"].stdout)
     assert [row["verdict"] for row in rows] == ["fine", "drifts"]
     assert [list(row) for row in rows] == [[*KEYS]] * 2
@@ -78,6 +78,28 @@ def test_a_limit_for_tests_of_others(
     assert result.exit_code == code
     (row,) = rows_of(result.stdout)
     assert row["verdict"] == ("drifts" if code else "fine")
+    why = f"Error: {right} is not fine: drifts; use --exit-zero to look only\n"
+    assert result.stderr == (why if code else "")
+
+
+@pytest.mark.parametrize("fmt", ["json", "csv", "table"])
+def test_a_trajectory_that_is_not_fine_is_a_failure(
+    lagtop: Lagtop, right: Path, tmp_path: Path, fmt: str
+) -> None:
+    """A check in somebody's pipeline must not stay green because no limit was typed."""
+    other = write(tmp_path / "other.csv", rk4(Body.of(TOP.replace(r0=-50)), 1e-3, 0.5))
+    options = [right, other, *OPTIONS, "--format", fmt]
+    result = lagtop("compare", *options)
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == (
+        f"Error: 1 of 2 trajectories is not fine, such as {other}: another top; use --exit-zero "
+        "to look only"
+    )
+    looked = lagtop("compare", *options, "--exit-zero")
+    assert (looked.exit_code, looked.stdout) == (0, result.stdout)
+    assert "Error" not in looked.stderr
+    both = lagtop("compare", other, other, *OPTIONS)
+    assert "Error: 2 of 2 trajectories are not fine, such as" in both.stderr
 
 
 def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> None:
@@ -116,6 +138,7 @@ def test_rows_that_are_not_finite(lagtop: Lagtop, right: Path) -> None:
     result = lagtop("compare", right, *OPTIONS)
     assert result.exit_code == 1
     assert "right.csv: lost at t = 0.5, at most" in result.stdout
+    assert result.stderr.endswith("right.csv is not fine: lost; use --exit-zero to look only\n")
 
 
 def test_order_frames_and_units_by_options(lagtop: Lagtop, tmp_path: Path) -> None:

@@ -49,6 +49,70 @@ def rotation(motion: Motion, t: Any) -> Any:
     return about_z(psi) * ar.matrix([[1, 0, 0], [0, c, -s], [0, s, c]]) * about_z(phi)
 
 
+def _nodes(angle: Any) -> list[Any]:
+    """Return i cos + j sin, the coordinates of a direction in the plane (x, y)."""
+    return [ar.cos(angle), ar.sin(angle), ar.mpf(0)]
+
+
+def _moment(motion: Motion, t: Any) -> list[Any]:
+    """Return the derivative of the angular momentum in space, over that of the weight's size."""
+
+    def momentum(i: int, at: Any) -> Any:
+        p, q = motion.body_rates(at)
+        own = ar.matrix([motion.A * p, motion.A * q, motion.C * motion.r0])
+        return (rotation(motion, at) * own)[i]
+
+    size = motion.mgs * ar.sin(motion.angles(t)[0])
+    return [slope(partial(momentum, i), t) / size for i in range(3)]
+
+
+@equation("section 4 a: the line of nodes")
+def _() -> Sides:
+    for motion, t in moments(*PARTS[:2]):
+        _, phi, psi = motion.angles(t)
+        nodes = rotation(motion, t) * ar.matrix([ar.cos(phi), -ar.sin(phi), 0])
+        yield from zip(nodes, _nodes(psi), strict=True)
+        yield from zip(_moment(motion, t), _nodes(psi), strict=True)
+
+
+@as_printed("section 4 a: the line of nodes")
+def _() -> Sides:
+    t = RIGHT.T * PARTS[0]
+    yield from zip(_moment(RIGHT, t)[:2], _nodes(RIGHT.angles(t)[1])[:2], strict=True)
+
+
+def _velocity(motion: Motion, t: Any, precession: int) -> list[Any]:
+    """Return omega of section 4 b in space, with the angle that stands for the precession."""
+    angles, rates = motion.angles(t), motion.rates(t)
+    axis = rotation(motion, t)[:, 2]
+    nodes, around = _nodes(angles[precession]), [0, 0, rates[precession]]
+    return [rates[0] * nodes[i] + around[i] + rates[1] * axis[i] for i in range(3)]
+
+
+def _turning(motion: Motion, t: Any) -> list[Any]:
+    """Return omega in space, from the derivative of the rotation."""
+    change = (rotation(motion, t + STEP) - rotation(motion, t - STEP)) / (2 * STEP)
+    spin = change * rotation(motion, t).T
+    return [spin[2, 1], spin[0, 2], spin[1, 0]]
+
+
+@equation("section 4 b: the angular velocity")
+def _() -> Sides:
+    for motion, t in moments():
+        velocity = _velocity(motion, t, 2)
+        yield from zip(_turning(motion, t), velocity, strict=True)
+        yield (
+            sum(x * y for x, y in zip(velocity, rotation(motion, t)[:, 2], strict=True)),
+            motion.r0,
+        )
+
+
+@as_printed("section 4 b: the angular velocity")
+def _() -> Sides:
+    t = RIGHT.T / 3
+    yield from zip(_turning(RIGHT, t), _velocity(RIGHT, t, 1), strict=True)
+
+
 @equation("(4,1)")
 def _() -> Sides:
     for motion, t in moments():
@@ -81,6 +145,13 @@ def _() -> Sides:
         yield precession, around / ar.sin(theta)
         yield own, motion.r0 - around * ar.cot(theta)
         yield nutation, p * ar.cos(phi) - q * ar.sin(phi)
+
+
+@as_printed("(4,1) solved for the rates")
+def _() -> Sides:
+    theta, phi, _ = RIGHT.angles(RIGHT.T / 3)
+    p, q = RIGHT.body_rates(RIGHT.T / 3)
+    yield RIGHT.rates(RIGHT.T / 3)[1], (p * ar.sin(phi) + q * ar.cos(phi)) / ar.sin(theta)
 
 
 @equation("section 4 c: Euler's equations")
@@ -154,6 +225,34 @@ def _() -> Sides:
         around = motion.A * ar.sin(theta) * (p * ar.sin(phi) + q * ar.cos(phi))
         yield motion.A / 2 * (p**2 + q**2) + motion.mgs * u, motion.mgs * motion.u1
         yield around + motion.C * motion.r0 * u, motion.C * motion.r0 * motion.u1
+
+
+def _squares(motion: Motion, t: Any, precession: int) -> tuple[Any, Any]:
+    """Return p^2 + q^2 and section 4 d's sum, with the angle that stands for the precession."""
+    (p, q), rates = motion.body_rates(t), motion.rates(t)
+    return p**2 + q**2, rates[0] ** 2 + (1 - motion.u(t) ** 2) * rates[precession] ** 2
+
+
+def _around(motion: Motion, t: Any, precession: int) -> tuple[Any, Any]:
+    """Return p sin + q cos and the sine times the rate that stands for the precession."""
+    (p, q), (theta, phi, _) = motion.body_rates(t), motion.angles(t)
+    around = p * ar.sin(phi) + q * ar.cos(phi)
+    return around, ar.sin(theta) * motion.rates(t)[precession]
+
+
+@equation("section 4 d: p and q by the rates")
+def _() -> Sides:
+    for motion, t in moments():
+        yield _squares(motion, t, 2)
+        yield _around(motion, t, 2)
+        fallen = 2 * motion.mgs * (motion.u1 - motion.u(t)) / motion.A
+        yield fallen, _squares(motion, t, 2)[1]
+
+
+@as_printed("section 4 d: p and q by the rates")
+def _() -> Sides:
+    yield _squares(RIGHT, RIGHT.T / 3, 1)
+    yield _around(RIGHT, RIGHT.T / 3, 1)
 
 
 @equation("(4,6)")
@@ -353,10 +452,15 @@ def _() -> Sides:
         yield motion.rates(t)[2], _precession_rate(motion, t, 2)
 
 
-@as_printed("section 4 ch: rate of precession")
+@as_printed("section 4 ch: rate of precession as printed, the power")
 def _() -> Sides:
     t = RIGHT.T / 3
     yield RIGHT.rates(t)[2], _precession_rate(RIGHT, t, 3)
+
+
+@as_printed("section 4 ch: rate of precession as printed, the left side")
+def _() -> Sides:
+    yield RIGHT.rates(RIGHT.T / 3)[1], _precession_rate(RIGHT, RIGHT.T / 3, 2)
 
 
 @equation("section 4 k: rate of spin")

@@ -20,6 +20,7 @@ from scenes import SAMPLES
 from lagrange_cli import LagtopError, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
+from lagrange_cli.motion.angle_uncertainty import AngleStds
 from lagrange_cli.plot.key_map import parse_input_range
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET
 from lagrange_cli.plot.motion_facts import nutation_period
@@ -88,6 +89,23 @@ def test_a_picture_that_is_missing_says_why(name: str) -> None:
     if missing:
         with pytest.raises(NothingToDrawError, match=re.escape(texts[0])):
             drawn(scene, ["remainders"])
+
+
+@pytest.mark.parametrize("kinds", [ON_THE_SHEET, ("angles",), ("angles", "cubic")], ids=",".join)
+@pytest.mark.parametrize("uncertain", [False, True])
+def test_no_title_is_cut_off(kinds: Sequence[str], uncertain: bool) -> None:
+    motion = solve(Top())
+    stds = AngleStds(motion.exact, {"theta0_deg": 1.0}, ["theta0_deg"]) if uncertain else None
+    figure = Figure()
+    page = Page(motion, kinds, PlotRequest(x=X, y=Y, stds=stds), LIGHT)
+    with styled(LIGHT, page.lettering()):
+        figure.set_size_inches(*page.inches())
+        draw_page(figure, page)
+        figure.draw_without_rendering()
+    panels = figure.subfigs if len(kinds) == 1 else figure.subfigs[1].subfigs
+    for panel in panels:
+        (title,) = (text for text in panel.texts if text.get_text() == panel.get_suptitle())
+        assert title.get_window_extent().x1 <= panel.bbox.x1, title.get_text()
 
 
 # Sizes.

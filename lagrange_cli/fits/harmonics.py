@@ -1,0 +1,128 @@
+"""Sums of harmonics that fit an angle, or the cosine of one, and the frequency that fits best."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+
+_HARMONICS = 4
+_FREQUENCIES = 49
+_MANY = 60
+"""Rows from which on a fine series has twice the harmonics."""
+_BETTER = 0.9
+"""Twice the harmonics are worth it if they leave less than this part of the noise."""
+_DIPS = 4
+"""Frequencies that are looked at closely, where the residual has a dip."""
+_AS_GOOD = 1.2
+"""How much more than the least a frequency may leave that is as good: noise makes that much."""
+
+
+class Series(NamedTuple):
+    """A sum of harmonics, and maybe a growth, that fits data."""
+
+    frequency: float
+    factors: Array
+    grows: bool
+    left: float
+    """Sum of the squares of the residuals."""
+    rows: int
+
+    @property
+    def order(self) -> int:
+        """Number of the highest harmonic."""
+        return (self.factors.size - 1 - self.grows) // 2
+
+    @property
+    def growth(self) -> float:
+        """The mean rate of a series that grows."""
+        return float(self.factors[-1])
+
+    @property
+    def noise(self) -> float:
+        """The standard deviation of the residuals."""
+        return float(np.sqrt(self.left / max(self.rows - self.factors.size, 1)))
+
+    def at(self, t: Array) -> Array:
+        """Return its values."""
+        values: Array = _basis(t, self.frequency, self.order, grows=self.grows) @ self.factors
+        return values
+
+
+def series_of(
+    t: Array,
+    y: Array,
+    frequency: float,
+    *,
+    grows: bool = False,
+    fine: bool = False,
+    weights: Array | None = None,
+) -> Series:
+    """Return the series of a frequency that fits data best.
+
+    A `fine` one has as many harmonics as leave the least noise.
+    """
+    series = _fitted(t, y, frequency, _harmonics(t, fine=fine), grows=grows, weights=weights)
+    while fine and 6 * series.order < t.size:
+        finer = _fitted(t, y, frequency, 2 * series.order, grows=grows, weights=weights)
+        if not finer.noise < _BETTER * series.noise:
+            break
+        series = finer
+    return series
+
+
+def frequency_of(t: Array, y: Array, *, grows: bool = False) -> float:
+    """Return the frequency whose harmonics leave least: near the peak of the spectrum."""
+    from scipy.optimize import minimize_scalar
+
+    span = float(t[-1] - t[0])
+    even = np.linspace(t[0], t[-1], min(4 * t.size, 4096))
+    values = np.interp(even, t, y - np.polyval(np.polyfit(t, y, int(grows)), t))
+    sizes = np.abs(np.fft.rfft(values - values.mean(), 4 * even.size))
+    frequencies = np.fft.rfftfreq(4 * even.size, even[1] - even[0])
+    sizes[frequencies < 0.7 / span] = 0.0
+    peak = float(frequencies[int(np.argmax(sizes))])
+    count = _harmonics(t, fine=False)
+
+    def left(frequency: float) -> float:
+        return _fitted(t, y, frequency, count, grows=grows).left
+
+    tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
+    sums = np.array([left(float(x)) for x in tried])
+    dips = np.flatnonzero((sums[1:-1] <= sums[:-2]) & (sums[1:-1] <= sums[2:])) + 1
+    deepest = dips[np.argsort(sums[dips])][:_DIPS]
+    if not deepest.size:
+        return float(tried[int(np.argmin(sums))])
+    refined = [
+        minimize_scalar(left, bounds=(tried[i - 1], tried[i + 1]), method="bounded")
+        for i in deepest.tolist()
+    ]
+    least = min(x.fun for x in refined)
+    # a half of the frequency, or a third, explains as much
+    return max(float(x.x) for x in refined if x.fun <= _AS_GOOD * least)
+
+
+def _harmonics(t: Array, *, fine: bool) -> int:
+    count = int(min(_HARMONICS, max((t.size - 3) // 4, 1)))
+    return 2 * count if fine and t.size > _MANY else count
+
+
+def _basis(t: Array, frequency: float, count: int, *, grows: bool) -> Array:
+    turns = 2 * np.pi * frequency * t[:, np.newaxis] * np.arange(1, count + 1)
+    columns = [np.ones((t.size, 1)), np.cos(turns), np.sin(turns)]
+    if grows:
+        columns.append(t[:, np.newaxis])
+    return np.concatenate(columns, axis=1)
+
+
+def _fitted(
+    t: Array, y: Array, frequency: float, count: int, *, grows: bool, weights: Array | None = None
+) -> Series:
+    basis = _basis(t, frequency, count, grows=grows)
+    if weights is not None:
+        basis, y = basis * weights[:, np.newaxis], y * weights
+    factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
+    left = float(np.sum((y - basis @ factors) ** 2))
+    return Series(frequency, factors, grows, left, t.size)
