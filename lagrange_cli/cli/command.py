@@ -23,13 +23,13 @@ _COLOURS = {"Error": "red", "Warning": "yellow"}
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, if there is one that takes it, safe for any terminal.
+    """Write one line to standard error, if that takes it, safe for any terminal.
 
     A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
     """
     line = one_line(line)
     word, colon, rest = line.partition(":")
-    if word in _COLOURS and sys.stderr is not None and has_colours(sys.stderr):
+    if word in _COLOURS and has_colours(sys.stderr):
         line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
         click.echo(line, err=True)

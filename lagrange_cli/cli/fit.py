@@ -20,6 +20,7 @@ from .options import (
     Parsed,
     by_key,
     exclude,
+    extension,
     input_options,
     output_options,
 )
@@ -96,7 +97,7 @@ def _positive(value: float) -> float:
     metavar="FILE",
     help="Draw data, motion and what is left: FILE.svg or .png.",
 )
-@output_options("table", "csv", "json")
+@output_options("table", "csv", "json", extensions=["toml"])
 @click.pass_context
 def command(
     ctx: click.Context,
@@ -141,7 +142,7 @@ def command(
     conventions = Conventions(quaternion, euler, "body", rad).checked()
     spread = _in_radians(sigma, rad)
     recordings = read_recordings(recording, Reading(columns, conventions, by, spread))
-    scene_path = output if output.endswith(".toml") else None
+    scene_path = output if extension(output) == "toml" else None
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]

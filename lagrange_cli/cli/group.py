@@ -52,6 +52,7 @@ class LagtopGroup(ExamplesFirst, click.Group):
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run like click's method, but end with one line on standard error and an exit code."""
+        _open_standard_error()
         run: Any = super().main
         if not extra.pop("standalone_mode", True):
             return run(*args, standalone_mode=False, **extra)
@@ -82,6 +83,15 @@ class LagtopGroup(ExamplesFirst, click.Group):
         except Terminated as error:
             number = error.number
         return die_by(number)  # here, where the frames of the command are gone and have cleaned up
+
+
+def _open_standard_error() -> None:
+    """Send errors to the null device if the caller closed standard error.
+
+    Otherwise the next file that is opened would take its number, and receive the errors.
+    """
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115  # until the end of the process
 
 
 def _suggestion(word: str) -> str:
