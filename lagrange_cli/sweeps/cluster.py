@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import pickle
 import pkgutil
-import signal
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
@@ -16,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import __version__
 from ..errors import LagtopError, UnavailableError
-from .jobs import in_order
+from .jobs import in_order, interrupts_blocked, safe_path
 from .parts import Make, NumberedBlock, Part
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ def computed(
 ) -> Iterator[Iterator[Part]]:
     """Yield the parts in their order, made by so many processes, or by a Dask cluster.
 
-    The address of a cluster may be `local`, for one of its own.
+    The address of a cluster may be `local`, for a cluster on this machine that ends with the block.
 
     Raises UnavailableError for a cluster that cannot be reached, has no worker, or whose workers
     have no lagtop or another version of it; LagtopError for an address that is none; and what
@@ -48,54 +47,40 @@ def computed(
         with closing(in_order(make, blocks, jobs)) as parts:
             yield parts
         return
-    client = _client(address)
-    try:
-        _check_workers(client)
-        yield _gathered(client, make, blocks)
-    finally:
-        with suppress(OSError, RuntimeError):  # what ended the sweep is what matters
-            client.close(timeout=20 if address == "local" else 2)
+    with safe_path():  # a local cluster replaces workers that are lost
+        client = _client(address)
+        try:
+            _check_workers(client)
+            yield _gathered(client, make, blocks)
+        finally:
+            with suppress(Exception):  # what ended the sweep is what matters
+                client.close(timeout=20 if address == "local" else 2)
 
 
 def _client(address: str) -> Client:
+    """Return a client.  Raises UnavailableError, and LagtopError for an address that is none."""
     try:
         from distributed import Client
     except ImportError:
         raise UnavailableError(
             "dask needs distributed: pip install 'lagtop[cluster]'", "dask"
         ) from None
-    for name in (
-        "distributed",
-        "distributed.client",
-        "asyncio",
-        "tornado",
-    ):  # we say ourselves, and once, what is wrong
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    silent = logging.CRITICAL  # one line of ours says what is wrong
+    for name in ("distributed", "distributed.client", "asyncio", "tornado"):
+        logging.getLogger(name).setLevel(silent)
     try:
-        if address == "local":
-            with _no_interrupts():
-                return Client(
-                    threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
-                )
-        return Client(address, timeout=PATIENCE)
-    except ValueError as error:
+        if address != "local":
+            return Client(address, timeout=PATIENCE)
+        with interrupts_blocked():
+            return Client(threads_per_worker=1, dashboard_address=":0", silence_logs=silent)
+    except (TypeError, ValueError) as error:
         raise LagtopError(
             f"dask must be local or a scheduler, got {address}: {error}", "dask"
         ) from None
-    except OSError as error:
-        raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
-    except RuntimeError as error:
-        raise UnavailableError(f"a cluster of this machine cannot be started: {error}") from None
-
-
-@contextmanager
-def _no_interrupts() -> Iterator[None]:
-    """Start worker processes that ignore Ctrl-C, so that only this process handles it."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    except Exception as error:  # of any kind: whatever answers may be no scheduler
+        started = "a cluster of this machine cannot be started"
+        what = started if address == "local" else f"no scheduler answers at {address}"
+        raise UnavailableError(f"{what}: {error}") from None
 
 
 def _check_workers(client: Client) -> None:

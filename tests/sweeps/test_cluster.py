@@ -12,6 +12,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from socketserver import BaseRequestHandler, ThreadingTCPServer
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -282,10 +284,50 @@ def test_what_is_lost_while_it_computes(number: int, who: str, tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_no_cluster() -> None:
-    result = process("sweep", "--dask", "nowhere", check=False)
+@pytest.mark.parametrize(
+    "address", ["nowhere", "tls://127.0.0.1:5", "ucx://1", "http://127.0.0.1:9", "tcp://", ""]
+)
+def test_no_cluster(address: str) -> None:
+    result = process("sweep", "--dask", address, check=False)
     assert (result.returncode, result.stdout) == (2, b"")
-    assert result.stderr.startswith(b"Error: --dask must be local or a scheduler, got nowhere")
+    assert result.stderr.startswith(
+        f"Error: --dask must be local or a scheduler, got {address}".encode()
+    )
+    assert result.stderr.count(b"\n") == 1
+
+
+class Answers(BaseRequestHandler):
+    """A server that is no scheduler."""
+
+    words = b""
+
+    def handle(self) -> None:
+        """Say something, and wait."""
+        self.request.sendall(self.words)
+        time.sleep(1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    argnames="words",
+    ids=["web", "ones", "zeros", "shell"],
+    argvalues=[
+        b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n",
+        b"\xff" * 64,
+        bytes(64),
+        b"SSH-2.0",
+    ],
+)
+def test_a_server_that_is_no_scheduler(words: bytes) -> None:
+    handler = type("Says", (Answers,), {"words": words})
+    with ThreadingTCPServer(("127.0.0.1", 0), handler) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.server_address[1]}"
+        result = process("sweep", "--dask", address, check=False, timeout=60)
+        server.shutdown()
+    assert (result.returncode in {2, 69}, result.stdout) == (True, b"")
+    assert result.stderr.startswith(b"Error: ")
+    assert address.encode() in result.stderr
     assert result.stderr.count(b"\n") == 1
 
 
