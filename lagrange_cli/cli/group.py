@@ -91,7 +91,7 @@ def _open_standard_error() -> None:
     Otherwise the next file that is opened would take its number, and receive the errors.
     """
     if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w")  # noqa: SIM115  # until the end of the process
+        sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
 
 
 def _suggestion(word: str) -> str:

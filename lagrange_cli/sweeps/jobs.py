@@ -76,7 +76,7 @@ def _folder() -> TemporaryDirectory[str]:
 
 
 class _Team:
-    """This process and others that work for it, and the results that wait for earlier ones."""
+    """Processes that share work with this one, and the results that wait for earlier ones."""
 
     def __init__(self, work: Callable[[Any], Any], jobs: int, folder: str) -> None:
         self._work, self._others, self._folder = work, jobs - 1, folder

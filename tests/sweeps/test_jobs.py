@@ -235,7 +235,7 @@ def sharing(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["HUP", "INT", "QUIT", "TERM", "USR1"])
 def test_a_signal_to_the_whole_group(name: str, tmp_path: Path) -> None:
-    """As from a terminal that is closed, or a batch system."""
+    """A terminal that is closed and a batch system do that."""
     number = getattr(signal, f"SIG{name}")
     with sharing(tmp_path) as running:
         os.killpg(running.pid, number)
