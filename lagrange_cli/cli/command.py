@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import __version__
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
 from ..output.terminal import has_colours, one_line, spelt, view_of
 
 if TYPE_CHECKING:
@@ -44,6 +44,12 @@ def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Finding
         for name, text in findings.conditions.items():
             complain(f"{name}: {text}")
     return findings
+
+
+def fail_for(failures: Sequence[str], count: int, what: str) -> None:
+    """Raise SomeFailedError if some of what a report is about has failed, with the first of it."""
+    if failures:
+        raise SomeFailedError(f"{len(failures)} of {count} {what} failed; the first: {failures[0]}")
 
 
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:

@@ -12,7 +12,7 @@ import click
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, write_report
+from .command import ExamplesFirst, fail_for, write_report
 from .given import solved
 from .options import (
     FILE,
@@ -98,10 +98,7 @@ def _parse_steps(text: str) -> list[float]:
     help="Draw the error too, over time and over the step: FILE.svg or .png.",
 )
 @output_options("table", "csv", "json")
-@click.pass_context
 def command(
-    ctx: click.Context,
-    /,
     trajectories: tuple[str, ...],
     scene: str | None,
     rad: bool,
@@ -129,7 +126,7 @@ def command(
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.files import Request, compare_files
-    from ..judge.report import comparison_report, failed
+    from ..judge.report import comparison_report, failures
     from ..plot.files import check_plot
 
     if max_error is not None and not max_error > 0:
@@ -147,8 +144,8 @@ def command(
             _draw(comparison, limit, plot)
         return comparison_report(motion, comparison, request)
 
-    if failed(write_report(find, fmt, output), limit):
-        ctx.exit(1)
+    findings = write_report(find, fmt, output)
+    fail_for(failures(findings, limit), len(findings.rows), "trajectories")
 
 
 def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:

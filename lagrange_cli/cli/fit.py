@@ -11,7 +11,7 @@ import click
 from ..arithmetic.angles import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, complain, write_report
+from .command import ExamplesFirst, complain, fail_for, write_report
 from .given import say_unused
 from .options import (
     FILE,
@@ -98,10 +98,7 @@ def _positive(value: float) -> float:
     help="Draw data, motion and what is left: FILE.svg or .png.",
 )
 @output_options("table", "csv", "json", extensions=["toml"])
-@click.pass_context
 def command(
-    ctx: click.Context,
-    /,
     recording: str,
     scene: str | None,
     rad: bool,
@@ -147,16 +144,15 @@ def command(
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]
     found = _fitted(groups, known, recording, rad)
-    failed = any(outcome.verdict == FAILED for outcome in found)
+    failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
         _write_scene(found[0], recording, scene_path)
     if plot:
         _draw(found, plot, rad)
     _write(found, recording, system, fmt, "-" if scene_path else output)
-    if failed:
-        if scene_path:
-            complain(f"Warning: {scene_path} is not written: the fit has failed")
-        ctx.exit(1)
+    if failed and scene_path:
+        complain(f"Warning: {scene_path} is not written: the fit has failed")
+    fail_for([outcome.failure() for outcome in failed], len(found), "fits")
 
 
 def _fitted(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst, write_report
+from .command import ExamplesFirst, fail_for, write_report
 from .options import COUNT, FILE, STRATUM_NAMES, certify_option, exclude, output_options
 from .progress import with_steps
 from .row_options import jobs_option
@@ -50,9 +50,7 @@ class _ListingStrata(ExamplesFirst):
 @certify_option("Errors are then upper bounds; no other methods run beside.")
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
-@click.pass_context
 def command(
-    ctx: click.Context,
     samples: int | None,
     thorough: bool,
     seed: int,
@@ -88,5 +86,5 @@ def command(
             draw_stability(findings, plot)
         return findings
 
-    if stability.exceeded(write_report(find, fmt, output)):
-        ctx.exit(1)
+    findings = write_report(find, fmt, output)
+    fail_for(stability.exceeded(findings), len(findings.rows), "strata")

@@ -20,6 +20,7 @@ ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
 _BODY = ("a", "b", "r0")
 FAILED = "failed"
+_UNLIKE = "no motion that was found is like the recording"
 _FAR, _MUCH = 0.2, 3.0
 """A fit that leaves more of the tilt, over its variation and over its noise, has failed."""
 _SURE = 4.0
@@ -138,11 +139,15 @@ class Outcome:
                 sentences.append(f"{listed} only as {told.name}")
         return sentences
 
+    def failure(self) -> str:
+        """Return why a fit has failed, with the name of the recording if it has one."""
+        return f"{self.recording.name}: {_UNLIKE}" if self.recording.name else _UNLIKE
+
     def warnings(self) -> list[str]:
         """Return what makes the numbers doubtful."""
         solution, found = self.fit.solution, []
         if self._failed:
-            found.append("the fit has failed: no motion that was found is like the recording")
+            found.append(f"the fit has failed: {_UNLIKE}")
         if solution.unknown:
             found.append(f"the data do not tell {', '.join(solution.unknown)} from one another")
         if self.fit.sigma_known and solution.dof > 0:

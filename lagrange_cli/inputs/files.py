@@ -13,6 +13,9 @@ from typing import cast
 
 from ..errors import DataError
 
+LONGEST_LINE = 1 << 20
+"""Bytes of a line: memory does not grow with a file that has no line ends."""
+
 
 @contextmanager
 def opened(path: str) -> Iterator[BufferedIOBase]:
@@ -30,6 +33,27 @@ def opened(path: str) -> Iterator[BufferedIOBase]:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
 
 
+def numbered_lines(stream: BufferedIOBase, name: str) -> Iterator[tuple[int, bytes]]:
+    """Yield the lines of a file and their numbers, from 1.  Raises DataError for a long line."""
+    number = 0
+    while line := stream.readline(LONGEST_LINE):
+        number += 1
+        check_length(line, name, number)
+        yield number, line
+
+
+def check_length(line: bytes, name: str, number: int) -> None:
+    """Raise DataError for a line that is too long to be a row."""
+    if len(line) >= LONGEST_LINE:
+        wrong = f"a line must have less than {LONGEST_LINE} bytes"
+        raise DataError(f"{name}, line {number}: {wrong}")
+
+
+def utf8_path(path: str) -> str:
+    """Return the name of a file with escapes in place of bytes that are not UTF-8."""
+    return path.encode("utf-8", "backslashreplace").decode()
+
+
 def shown_path(path: str) -> str:
-    """Return what a file is called in messages."""
-    return "standard input" if path == "-" else path or "''"
+    """Return the name of a file for messages."""
+    return "standard input" if path == "-" else utf8_path(path) or "''"

@@ -104,15 +104,14 @@ class Clock:
 
         if bad := np.flatnonzero(~np.isfinite(t)).tolist():
             raise self._error(places[bad[0]], f"t must be a finite number, got {t[bad[0]]}")
-        before = t[0] if self.last is None else self.last
-        steps = np.diff(t, prepend=before)
-        moving = steps[steps != 0]
+        before = np.concatenate([t[:1] if self.last is None else [self.last], t[:-1]])
+        ways = (t > before) * 1.0 - (t < before)  # a difference may be beyond all doubles
+        moving = ways[ways != 0]
         if not self.direction and moving.size:
-            self.direction = float(np.sign(moving[0]))
-        if bad := np.flatnonzero(steps * self.direction < 0).tolist():
+            self.direction = float(moving[0])
+        if bad := np.flatnonzero(ways * self.direction < 0).tolist():
             i = bad[0]
-            previous = float(t[i] - steps[i]) if i == 0 else float(t[i - 1])
-            wrong = f"t must not turn back, got {float(t[i])} after {previous}"
+            wrong = f"t must not turn back, got {float(t[i])} after {float(before[i])}"
             raise self._error(places[i], wrong)
         self.last = float(t[-1])
 
@@ -131,9 +130,25 @@ def open_trajectory(path: str, columns: Sequence[str] | None = None) -> Iterator
         peeked = BufferedReader(cast(Any, stream))
         try:
             kind = _MAGIC.get(peeked.peek(4)[:4])
-            yield Trajectory(path, _reader(kind)(peeked, shown_path(path)), columns)
+            with _seekable(peeked, kind) as content:
+                yield Trajectory(path, _reader(kind)(content, shown_path(path)), columns)
         finally:
             peeked.detach()
+
+
+@contextmanager
+def _seekable(stream: BufferedReader, kind: str | None) -> Iterator[BinaryIO]:
+    """Yield a stream, or a file with its content if it only goes forward and is no text."""
+    if kind is None or stream.seekable():
+        yield stream
+        return
+    from shutil import copyfileobj
+    from tempfile import TemporaryFile
+
+    with TemporaryFile() as copy:
+        copyfileobj(stream, copy)
+        copy.seek(0)
+        yield copy
 
 
 def _reader(kind: str | None) -> Callable[[BinaryIO, str], Table]:

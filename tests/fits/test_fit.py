@@ -408,6 +408,7 @@ def test_a_failed_fit_leaves_no_scene(
     assert warnings == [
         "Warning: it has failed",
         f"Warning: {path} is not written: the fit has failed",
+        "Error: 1 of 1 fits failed; the first: no motion that was found is like the recording",
     ]
 
 

@@ -78,6 +78,9 @@ def test_a_limit_for_tests_of_others(
     assert result.exit_code == code
     (row,) = rows_of(result.stdout)
     assert row["verdict"] == ("drifts" if code else "fine")
+    said = f"Error: 1 of 1 trajectories failed; the first: {right}: drifts, at most 6.7e-07 rad off"
+    assert result.stderr.startswith(said if code else "")
+    assert result.stderr.count("\n") == code
 
 
 def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> None:
@@ -116,6 +119,8 @@ def test_rows_that_are_not_finite(lagtop: Lagtop, right: Path) -> None:
     result = lagtop("compare", right, *OPTIONS)
     assert result.exit_code == 1
     assert "right.csv: lost at t = 0.5, at most" in result.stdout
+    said = f"Error: 1 of 2 trajectories failed; the first: {right}: lost at t = 0.5, at most "
+    assert lagtop("compare", right, right, *OPTIONS).stderr.replace("2 of", "1 of").startswith(said)
 
 
 def test_order_frames_and_units_by_options(lagtop: Lagtop, tmp_path: Path) -> None:
