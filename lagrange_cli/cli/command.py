@@ -12,6 +12,8 @@ import click
 
 from .. import __version__
 from ..errors import LagtopError, SomeFailedError
+from ..output.destination import opened
+from ..output.signals import CLOSED_PIPE, die_by
 from ..output.terminal import has_colours, one_line, spelt, view_of
 
 if TYPE_CHECKING:
@@ -33,6 +35,15 @@ def complain(line: str) -> None:
         line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
         click.echo(line, err=True)
+
+
+def say(text: str) -> None:
+    """Write a text of our own to standard output.  Raises CannotWriteError."""
+    try:
+        with opened("-") as stream:
+            stream.write(f"{spelt(text, view_of('-'))}\n".encode())
+    except BrokenPipeError:  # which click would turn into exit code 1
+        die_by(CLOSED_PIPE)
 
 
 def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
@@ -57,7 +68,7 @@ def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Contex
 
     def show(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
         if wanted and not ctx.resilient_parsing:
-            click.echo(spelt(text(ctx), view_of("-")))
+            say(text(ctx))
             ctx.exit()
 
     return click.Option(

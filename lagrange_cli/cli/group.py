@@ -12,7 +12,7 @@ import click
 
 from ..errors import CannotWriteError, LagtopError
 from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interrupts
-from .command import ExamplesFirst, complain
+from .command import ExamplesFirst, complain, say
 
 COMMANDS = [
     *("solve", "table", "sweep", "find", "fit", "compare", "plot", "view"),
@@ -64,9 +64,10 @@ class LagtopGroup(ExamplesFirst, click.Group):
         except LagtopError as error:
             complain(f"Error: {error}")
             sys.exit(error.exit_code)
-        except OSError as error:  # of the help itself; the writers raise CannotWriteError
-            complain(f"Error: cannot write standard output: {error.strerror}")
-            os._exit(CannotWriteError.exit_code)  # the interpreter would try to flush it once more
+        except OSError as error:  # of what no reader or writer has named
+            place = f": {error.filename}" if error.filename else ""
+            complain(f"Error: {error.strerror or error}{place}")
+            sys.exit(CannotWriteError.exit_code)
         except click.Abort:
             die_by(INTERRUPT)
 
@@ -138,4 +139,4 @@ def main(ctx: click.Context) -> None:
     scene is a TOML file that holds some of them, or - for standard input.
     """
     if ctx.invoked_subcommand is None:
-        click.echo(ctx.get_help())
+        say(ctx.get_help())

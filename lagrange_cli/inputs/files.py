@@ -9,9 +9,9 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BufferedIOBase, BytesIO
-from typing import cast
+from typing import BinaryIO, cast
 
-from ..errors import DataError
+from ..errors import CannotWriteError, DataError
 
 LONGEST_LINE = 1 << 20
 """Bytes of a line: memory does not grow with a file that has no line ends."""
@@ -31,6 +31,36 @@ def opened(path: str) -> Iterator[BufferedIOBase]:
             yield file
     except OSError as error:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
+
+
+@contextmanager
+def temporary_files() -> Iterator[None]:
+    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
+    try:
+        yield
+    except OSError as error:
+        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
+
+
+def temporary_copy(stream: BufferedIOBase) -> BinaryIO:
+    """Return an open file, gone when it is closed, with what is left of a stream.
+
+    Raises CannotWriteError if there is no space for it.
+    """
+    from tempfile import TemporaryFile
+
+    with temporary_files():
+        copy = TemporaryFile()  # noqa: SIM115 - the caller closes it
+    try:
+        while chunk := stream.read(1 << 20):
+            with temporary_files():
+                copy.write(chunk)
+        with temporary_files():
+            copy.seek(0)
+    except BaseException:
+        copy.close()
+        raise
+    return cast(BinaryIO, copy)
 
 
 def numbered_lines(stream: BufferedIOBase, name: str) -> Iterator[tuple[int, bytes]]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
+from .files import opened, shown_path, temporary_copy
 from .trajectory_columns import QUANTITIES, Found, expanded, quantities_in
 from .trajectory_rows import Table
 from .words import Words
@@ -142,12 +142,7 @@ def _seekable(stream: BufferedReader, kind: str | None) -> Iterator[BinaryIO]:
     if kind is None or stream.seekable():
         yield stream
         return
-    from shutil import copyfileobj
-    from tempfile import TemporaryFile
-
-    with TemporaryFile() as copy:
-        copyfileobj(stream, copy)
-        copy.seek(0)
+    with temporary_copy(stream) as copy:
         yield copy
 
 

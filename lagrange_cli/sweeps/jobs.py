@@ -21,6 +21,7 @@ from time import sleep
 from typing import Any, TypeVar
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
+from ..inputs.files import temporary_files
 from ..output.signals import ENDING, terminated_by
 
 MOST_JOBS = 1024
@@ -69,10 +70,8 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
 
 def _folder() -> TemporaryDirectory[str]:
     """Return a folder for results that goes when it is left.  Raises CannotWriteError."""
-    try:
+    with temporary_files():
         return TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
-    except OSError as error:
-        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
 
 
 class _Team:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 from pathlib import Path
 
@@ -51,6 +52,28 @@ def test_closed_standard_error(name: str, tmp_path: Path, lagtop: Lagtop) -> Non
     else:
         assert closed.stdout == usual.stdout
         assert len(closed.stdout) > 100
+
+
+HELP = ["--help", "--version", "", "solve --help", "sweep --version"]
+
+
+@pytest.mark.parametrize("line", HELP)
+def test_help_that_cannot_be_written(line: str, tmp_path: Path) -> None:
+    for where, why in ((">&-", "it is closed"), ("> /dev/full", "No space left on device")):
+        done = run(line, f"{where} 2>said", tmp_path)
+        said = (tmp_path / "said").read_text()
+        assert (done.returncode, said) == (74, f"Error: cannot write standard output: {why}\n")
+
+
+@pytest.mark.parametrize("line", HELP)
+def test_help_that_nobody_reads(line: str) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [*LAGTOP, *line.split()], stdout=writing, stderr=subprocess.PIPE, check=False
+    )
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (-signal.SIGPIPE, b"")
 
 
 def test_closed_standard_error_and_a_file(tmp_path: Path) -> None:
