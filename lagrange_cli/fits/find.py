@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from operator import index
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,7 +50,7 @@ def find(
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:
-        return look(search, scan).motions
+        return look(search, None if scan is None else index(scan)).motions
     except AbsentError:
         return []
 

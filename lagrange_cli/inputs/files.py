@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from io import BufferedIOBase, BytesIO
 from typing import BinaryIO, cast
 
@@ -42,25 +42,23 @@ def temporary_files() -> Iterator[None]:
         raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
 
 
-def temporary_copy(stream: BufferedIOBase) -> BinaryIO:
-    """Return an open file, gone when it is closed, with what is left of a stream.
+@contextmanager
+def temporary_copy(stream: BufferedIOBase) -> Iterator[BinaryIO]:
+    """Yield a file with what is left of a stream, which is gone when the block ends.
 
     Raises CannotWriteError if there is no space for it.
     """
     from tempfile import TemporaryFile
 
-    with temporary_files():
-        copy = TemporaryFile()  # noqa: SIM115 - the caller closes it
-    try:
+    with ExitStack() as stack:
+        with temporary_files():
+            copy = stack.enter_context(TemporaryFile())
         while chunk := stream.read(1 << 20):
             with temporary_files():
                 copy.write(chunk)
         with temporary_files():
             copy.seek(0)
-    except BaseException:
-        copy.close()
-        raise
-    return cast(BinaryIO, copy)
+        yield cast(BinaryIO, copy)
 
 
 def numbered_lines(stream: BufferedIOBase, name: str) -> Iterator[tuple[int, bytes]]:

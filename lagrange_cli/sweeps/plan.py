@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from hashlib import file_digest
 from io import BufferedIOBase
@@ -155,8 +156,8 @@ def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
     with opened(path) as file:
         if file.seekable():
             return None, _digest(file)
-        copy = cast(BufferedIOBase, temporary_copy(file))
-        return copy, _digest(copy)
+        with temporary_copy(file) as copy:
+            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(cast(BufferedIOBase, copy))
 
 
 def _digest(stream: BufferedIOBase) -> str:

@@ -319,7 +319,7 @@ def test_what_is_no_regular_file_is_refused(
 
 
 def test_a_pipe_of_tops_is_read_once(tmp_path: Path) -> None:
-    """Its digest needs its content before the sweep does."""
+    """The digest needs the content before the sweep does."""
     for _ in range(2):
         line = f"{' '.join(LAGTOP)} sweep --keys r0 --parts out <(printf 'r0\\n1\\n2\\n')"
         done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, check=False)
