@@ -121,7 +121,7 @@ def test_all_functions_are_called_so() -> None:
         ("read_scene", True, "expected str, bytes or os.PathLike object, not bool"),
         ("Top(m=)", np.array(1.0), "m must be a real number, got array(1.)"),
         ("Top(m=)", np.longdouble("1e400"), "m must be within 1e100 in size, got np.longdouble("),
-        ("fit(sigma)", 0.0, "sigma must be > 0, got 0.0"),
+        ("fit(sigma)", "1", "sigma must be a real number, got '1'"),
     ],
 )
 @pytest.mark.filterwarnings("error")

@@ -242,7 +242,6 @@ def spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> 
 
 def _deviation(value: Any) -> float:
     """Return a standard deviation.  Raises LagtopError for what is none."""
-    number = checked_double("sigma", value) if is_real(value) else np.nan
-    if not number > 0:
-        raise LagtopError(f"sigma must be > 0, got {quoted(value)}", "sigma")
-    return number
+    if not is_real(value):
+        raise LagtopError(f"sigma must be a real number, got {quoted(value)}", "sigma")
+    return checked_double("sigma", value)
