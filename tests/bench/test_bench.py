@@ -132,6 +132,17 @@ def test_front_and_what_it_says() -> None:
     assert better[0].startswith("better at  beats lagtop: 1.0e-16 rad in 2 ns against 1.0e-15 rad")
 
 
+def test_ties_on_the_front() -> None:
+    """Equal rows do not beat each other; a tie in one number is decided by the other one."""
+    twins = with_front([row("lagtop", 1e-12, 5.0), row("twin", 1e-12, 5.0)])
+    assert [x.front for x in twins] == [True, True]
+    for other in (row("as exact", 1e-12, 4.0), row("as fast", 1e-13, 5.0)):
+        pair = with_front([row("lagtop", 1e-12, 5.0), other])
+        assert [x.method for x in pair if x.front] == [other.method]
+        table = {"lagtop": methods.Method([], ours), other.method: methods.Method([], ours)}
+        assert next(iter(conclusions(pair, table))).startswith(f"{other.method} at  beats lagtop")
+
+
 def ours(*_: Any) -> Any:
     """Raise AssertionError in place of a method that is not run."""
     raise AssertionError

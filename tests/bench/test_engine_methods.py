@@ -162,6 +162,16 @@ def test_bodies_that_cannot_be_built() -> None:
     assert body.period == clock
 
 
+def test_steps_of_a_gap_that_rounding_makes_longer() -> None:
+    """A gap of so many whole steps takes so many, and any more takes another one."""
+    body, _ = scaled_body(Top(), 1.0)
+    for count in range(1, 2000):
+        exact = body.period * count / 800
+        for gap in (exact, np.nextafter(exact, np.inf), exact * (1 + 1e-13)):
+            assert body.steps(float(gap), 800) == count
+        assert body.steps(exact * (1 + 1e-6), 800) == count + 1
+
+
 def test_groups_stand_for_their_methods(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(methods, "find_spec", lambda _: True)  # as if all engines were installed
     names = list(engines(1))

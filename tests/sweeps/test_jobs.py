@@ -244,6 +244,40 @@ def test_a_signal_to_the_whole_group(name: str, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+LONG_WORK = """if True:
+    import sys, time
+    from pathlib import Path
+    sys.path.insert(0, {folder!r})
+    from test_jobs import sleep_long
+    from lagrange_cli.sweeps.jobs import in_order
+    if __name__ == "__main__":
+        list(in_order(sleep_long, range(9), 2))
+"""
+
+
+def sleep_long(_: int) -> None:
+    """Take a moment in the process that shares the work out, and a minute in the other one."""
+    time.sleep(60 if multiprocessing.parent_process() else 0.2)
+
+
+def test_a_worker_ends_with_its_parent_in_the_middle_of_its_work() -> None:
+    code = LONG_WORK.format(folder=str(Path(__file__).parent))
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    running = subprocess.Popen(
+        [sys.executable, "-c", code], start_new_session=True, env=environment
+    )
+    while not any("spawn_main" in line for line in children(running.pid).values()):
+        assert running.poll() is None
+        time.sleep(0.01)
+    time.sleep(1.0)  # it has an item by now
+    running.kill()
+    running.wait()
+    deadline = time.monotonic() + 20
+    while is_alive(running.pid) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not is_alive(running.pid)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("who", ["resource_tracker", "spawn_main"])
 def test_a_helper_that_is_killed(who: str, tmp_path: Path) -> None:

@@ -189,6 +189,18 @@ def test_files_of_running_processes_are_left_alone(tmp_path: Path, lagtop: Lagto
     assert len(list(tmp_path.glob(".lagtop-*"))) == 3
 
 
+def test_leftovers_of_this_machine_alone_are_removed(tmp_path: Path, lagtop: Lagtop) -> None:
+    """Whether a process of another one has ended cannot be told here."""
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    host = os.uname().nodename
+    ours, others = (tmp_path / f".lagtop-{ended.pid}@{x}@x" for x in (host, "elsewhere"))
+    for path in (ours, others):
+        path.write_bytes(b"")
+    assert lagtop("sweep", "--parts", tmp_path).exit_code == 0
+    assert (ours.exists(), others.exists()) == (False, True)
+
+
 @pytest.mark.slow
 def test_two_runs_at_once(tmp_path: Path, lagtop: Lagtop) -> None:
     """Two shards and two runs of the whole, all at once, and then nothing is left to do."""
