@@ -61,12 +61,18 @@ section 4 g: the modulus, and its complement greater than 1
 section 4 g: u by sn of the imaginary modulus
 section 4 g: u by the imaginary modulus
 section 4 h: quarter periods of the imaginary modulus
+section 4 i: Pi01 of both parameters
+section 4 i: precession by Pi01
+section 4 i: precession by Pi01 and the values at its parameters
 section 4 i: sn, cn, dn at both parameters, with their signs
 section 4 i: sn, cn, dn of the parameters
 section 4 i: squares of sn, cn, dn at both parameters
 section 4 j: product of the two sn
+section 4 j: sn, cn, dn of i alpha for the real modulus
 section 4 j: the second parameter is iK' further, the product is 1
 section 4 k: rate of spin
+section 4 l: spin by Pi01
+section 4 l: spin by Pi01 and the values at its parameters
 section 4 l: w
 section 5: quarters of the nutation
 section 6: spin after half a period and a whole one
@@ -104,7 +110,7 @@ def test_every_equation_of_the_sources_is_in_a_register(registered: set[str]) ->
 
 
 def test_every_equation_of_a_register_is_asked_for(registered: set[str]) -> None:
-    """An equation that is registered later is added to a list, or its deletion would fail nothing."""
+    """A new equation goes into a list, or its deletion would fail nothing."""
     assert registered - {*NUMBERED, *UNNUMBERED} == set()
 
 
