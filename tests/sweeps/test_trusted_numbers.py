@@ -157,9 +157,11 @@ def roots_of(top: dict[str, Any]) -> tuple[Any, Any, Any, Any]:
     sine, cosine = mpmath.sin(tilt * mpmath.pi / 180), mpmath.cos(tilt * mpmath.pi / 180)
     a, b, e = 2 * m * g * s / A, C * r0 / A, theta_rate**2 + (psi_rate * sine) ** 2
     beta, whole = psi_rate * sine**2 + b * cosine, e + a * cosine
-    cubic = [a, -whole - b * b, 2 * beta * b - a, whole - beta**2]
-    roots = mpmath.polyroots(cubic, maxsteps=500, extraprec=500)
-    return a, *sorted(mpmath.re(x) for x in roots)
+    c2, c1, c0 = (x / a for x in (-whole - b * b, 2 * beta * b - a, whole - beta**2))
+    p, q = (c2**2 - 3 * c1) / 9, (9 * c1 * c2 - 27 * c0 - 2 * c2**3) / 54
+    angle = mpmath.acos(q / p ** (mpmath.mpf(3) / 2))
+    turns = (angle + 2 * mpmath.pi * n for n in range(3))
+    return a, *sorted(2 * mpmath.sqrt(p) * mpmath.cos(x / 3) - c2 / 3 for x in turns)
 
 
 def test_bounds_of_gaps_hold_and_are_close() -> None:
