@@ -6,9 +6,9 @@ import logging
 import pickle
 import pkgutil
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import closing, contextmanager, suppress
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from itertools import islice
 from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -32,29 +32,36 @@ MOST_PARTS_PER_TASK = 16
 
 
 @contextmanager
-def computed(
-    make: Make, blocks: Iterable[NumberedBlock], address: str | None, jobs: int = 1
-) -> Iterator[Iterator[Part]]:
-    """Yield the parts in their order, made by so many processes, or by a Dask cluster.
+def connected(address: str | None) -> Iterator[Client | None]:
+    """Yield the client of a Dask cluster, or None if there is no address.
 
-    The address of a cluster may be `local`, for a cluster on this machine that ends with the block.
-
-    Raises UnavailableError for a cluster that cannot be reached, has no worker, or whose workers
-    have no lagtop or another version of it; LagtopError for an address that is none; and what
-    `make` raises.
+    The address may be `local`, for a cluster on this machine that ends with the block.  Raises
+    UnavailableError for a cluster that cannot be reached, has no worker, or whose workers have no
+    lagtop or another version of it, and LagtopError for an address that is none.
     """
     if address is None:
-        with closing(in_order(make, blocks, jobs)) as parts:
-            yield parts
+        yield None
         return
     with safe_path():  # a local cluster replaces workers that are lost
         client = _client(address)
         try:
             _check_workers(client)
-            yield _gathered(client, make, blocks)
+            yield client
         finally:
             with suppress(Exception):  # what ended the sweep is what matters
                 client.close(timeout=20 if address == "local" else 2)
+
+
+def computed(
+    make: Make, blocks: Iterable[NumberedBlock], client: Client | None, jobs: int = 1
+) -> AbstractContextManager[Iterator[Part]]:
+    """Return the parts in their order, to be closed: made by a cluster, or by so many processes.
+
+    Raises UnavailableError for a cluster that is lost, and what `make` raises.
+    """
+    return closing(
+        in_order(make, blocks, jobs) if client is None else _gathered(client, make, blocks)
+    )
 
 
 def _client(address: str) -> Client:
@@ -161,7 +168,9 @@ def compute(version: str, content: bytes) -> Computed:
     return Computed(parts, monotonic() - begun)
 
 
-def _gathered(client: Client, make: Make, blocks: Iterable[NumberedBlock]) -> Iterator[Part]:
+def _gathered(
+    client: Client, make: Make, blocks: Iterable[NumberedBlock]
+) -> Generator[Part, None, None]:
     """Yield the parts in their order; those of a lost worker are computed by another one.
 
     A few tasks per worker are under way at a time, so that memory does not grow with their number.

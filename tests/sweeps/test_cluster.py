@@ -22,7 +22,7 @@ from distributed import Client, LocalCluster
 
 from lagrange_cli.errors import UnavailableError
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.sweeps.cluster import Computed, compute, computed
+from lagrange_cli.sweeps.cluster import Computed, compute, computed, connected
 from lagrange_cli.sweeps.folder import Folder
 from lagrange_cli.sweeps.parts import Part
 from lagrange_cli.sweeps.plan import plan
@@ -66,7 +66,10 @@ def test_workers_write_the_parts_of_a_folder_that_they_see(
     with folder.made_by_workers() as make:
         if not seen:
             next(tmp_path.glob(".lagtop-*")).unlink()
-        with computed(make, blocks, cluster.scheduler_address) as parts:
+        with (
+            connected(cluster.scheduler_address) as client,
+            computed(make, blocks, client) as parts,
+        ):
             found = list(parts)
     assert [part.is_written for part in found] == [seen] * len(blocks)
     assert [not part.text for part in found] == [seen] * len(blocks)
@@ -287,12 +290,12 @@ def test_what_is_lost_while_it_computes(number: int, who: str, tmp_path: Path) -
 @pytest.mark.parametrize(
     "address", ["nowhere", "tls://127.0.0.1:5", "ucx://1", "http://127.0.0.1:9", "tcp://", ""]
 )
-def test_no_cluster(address: str) -> None:
-    result = process("sweep", "--dask", address, check=False)
-    assert (result.returncode, result.stdout) == (2, b"")
-    assert result.stderr.startswith(
-        f"Error: --dask must be local or a scheduler, got {address}".encode()
-    )
+def test_no_cluster(address: str, tmp_path: Path) -> None:
+    options = ["--dask", address, "--parts", "out"]
+    result = process("sweep", *options, check=False, cwd=tmp_path)
+    assert (result.returncode, result.stdout, list(tmp_path.iterdir())) == (2, b"", [])
+    said = f"Error: --dask must be local or a scheduler, got {address}"
+    assert result.stderr.startswith(said.encode())
     assert result.stderr.count(b"\n") == 1
 
 
