@@ -30,6 +30,13 @@ class LagtopError(ValueError):
         self.key = key
 
 
+def check_type(name: str, value: object, *kinds: type) -> None:
+    """Raise TypeError for an argument that is of none of these types."""
+    if not isinstance(value, kinds):
+        wanted = " or ".join(kind.__name__ for kind in kinds)
+        raise TypeError(f"{name} must be a {wanted}, got {type(value).__name__}")
+
+
 class DataError(LagtopError):
     """A file of inputs that cannot be read or has bad data: times, tops, trajectories, scenes."""
 

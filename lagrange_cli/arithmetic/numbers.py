@@ -28,7 +28,7 @@ def is_real(value: object) -> bool:
     dtype = getattr(value, "dtype", None)
     if dtype is None:
         return not isinstance(value, _NOT_REAL)
-    is_scalar = not getattr(value, "ndim", 0) and not hasattr(value, "mask")
+    is_scalar = not hasattr(value, "__len__") and not hasattr(value, "mask")
     return is_scalar and getattr(dtype, "kind", None) in {"i", "u", "f"}
 
 

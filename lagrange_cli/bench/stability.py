@@ -164,9 +164,9 @@ def worst_and_failed(errors: Sequence[float | None]) -> tuple[float | None, int 
     return max(done, default=None), len(known) - len(done)
 
 
-def exceeded(findings: Findings) -> bool:
-    """Return whether a stratum exceeds the contract."""
-    return any(row.verdict != FINE for row in findings.rows)
+def exceeded(findings: Findings) -> list[str]:
+    """Return the strata that exceed the contract, each with its worst case."""
+    return [f"{row.stratum}: {row.worst_case}" for row in findings.rows if row.verdict != FINE]
 
 
 def _conditions(samples: int, seed: int, agreement: float | None) -> dict[str, str]:

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import __version__
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
+from ..output.destination import opened
+from ..output.signals import CLOSED_PIPE, die_by
 from ..output.terminal import has_colours, one_line, spelt, view_of
 
 if TYPE_CHECKING:
@@ -23,16 +25,25 @@ _COLOURS = {"Error": "red", "Warning": "yellow"}
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, if there is one that takes it, safe for any terminal.
+    """Write one line to standard error, if that takes it, safe for any terminal.
 
     A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
     """
     line = one_line(line)
     word, colon, rest = line.partition(":")
-    if word in _COLOURS and sys.stderr is not None and has_colours(sys.stderr):
+    if word in _COLOURS and has_colours(sys.stderr):
         line = click.style(word + colon, fg=_COLOURS[word]) + rest
     with suppress(OSError):
         click.echo(line, err=True)
+
+
+def say(text: str) -> None:
+    """Write a text of our own to standard output.  Raises CannotWriteError."""
+    try:
+        with opened("-") as stream:
+            stream.write(f"{spelt(text, view_of('-'))}\n".encode())
+    except BrokenPipeError:  # which click would turn into exit code 1
+        die_by(CLOSED_PIPE)
 
 
 def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
@@ -46,12 +57,19 @@ def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Finding
     return findings
 
 
+def fail_for(failures: Sequence[str], count: int, what: str, *, remedy: str = "") -> None:
+    """Raise SomeFailedError if some of what a report is about has failed, with the first of it."""
+    if failures:
+        said = f"{len(failures)} of {count} {what} failed; the first: {failures[0]}"
+        raise SomeFailedError(f"{said}; {remedy}" if remedy else said)
+
+
 def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:
     """Return an option that shows a text and ends the command."""
 
     def show(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
         if wanted and not ctx.resilient_parsing:
-            click.echo(spelt(text(ctx), view_of("-")))
+            say(text(ctx))
             ctx.exit()
 
     return click.Option(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..arithmetic.text import parse_number
-from ..errors import LagtopError, SomeFailedError
+from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, write_report
+from .command import ExamplesFirst, fail_for, write_report
 from .given import solved
 from .options import (
     FILE,
@@ -30,7 +30,6 @@ from .reading_options import reading_options
 if TYPE_CHECKING:
     from ..inputs.seen import Quantities
     from ..judge.files import Comparison
-    from ..judge.judgement import Judgement
     from ..output.findings import Findings
 
 LONG = 1_000_000
@@ -135,7 +134,7 @@ def command(
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.files import Request, compare_files
-    from ..judge.report import comparison_report
+    from ..judge.report import comparison_report, failures
     from ..plot.files import check_plot
 
     if max_error is not None and not max_error > 0:
@@ -155,25 +154,12 @@ def command(
 
     findings = write_report(find, fmt, output)
     if not exit_zero:
-        _refuse_faults(findings.rows)
-
-
-def _refuse_faults(judgements: Sequence[Judgement]) -> None:
-    """Raise SomeFailedError if a trajectory is not fine."""
-    from ..judge.verdict import FINE
-
-    wrong = [x for x in judgements if x.verdict != FINE]
-    if not wrong:
-        return
-    count, first = len(wrong), f"{wrong[0].file}"
-    said = f"{first} is not fine: {wrong[0].verdict}"
-    if len(judgements) > 1:
-        verb = "is" if count == 1 else "are"
-        said = (
-            f"{count} of {len(judgements)} trajectories {verb} not fine, such as {first}: "
-            f"{wrong[0].verdict}"
+        fail_for(
+            failures(findings),
+            len(findings.rows),
+            "trajectories",
+            remedy="use --exit-zero to look only",
         )
-    raise SomeFailedError(f"{said}; use --exit-zero to look only")
 
 
 def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:

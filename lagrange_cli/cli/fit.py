@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..arithmetic.angles import unit_in_radians
-from ..errors import LagtopError, SomeFailedError
+from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, complain, write_report
+from .command import ExamplesFirst, complain, fail_for, write_report
 from .given import say_unused
 from .options import (
     FILE,
@@ -20,6 +20,7 @@ from .options import (
     Parsed,
     by_key,
     exclude,
+    extension,
     input_options,
     output_options,
 )
@@ -96,7 +97,7 @@ def _positive(value: float) -> float:
     metavar="FILE",
     help="Draw data, motion and what is left: FILE.svg or .png.",
 )
-@output_options("table", "csv", "json")
+@output_options("table", "csv", "json", extensions=["toml"])
 def command(
     recording: str,
     scene: str | None,
@@ -138,7 +139,7 @@ def command(
     conventions = Conventions(quaternion, euler, "body", rad).checked()
     spread = _in_radians(sigma, rad)
     recordings = read_recordings(recording, Reading(columns, conventions, by, spread))
-    scene_path = output if output.endswith(".toml") else None
+    scene_path = output if extension(output) == "toml" else None
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]
@@ -149,10 +150,9 @@ def command(
     if plot:
         _draw(found, plot, rad)
     _write(found, recording, system, fmt, "-" if scene_path else output)
-    if failed:
-        of = f" of {failed[0].recording.name}" if failed[0].recording.name else ""
-        lost = f", and {scene_path} is not written" if scene_path else ""
-        raise SomeFailedError(f"the fit{of} has failed{lost}: {failed[0].failures()[0]}")
+    if failed and scene_path:
+        complain(f"Warning: {scene_path} is not written: the fit has failed")
+    fail_for([outcome.failure() for outcome in failed], len(found), "fits")
 
 
 def _fitted(

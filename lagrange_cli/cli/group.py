@@ -12,7 +12,7 @@ import click
 
 from ..errors import CannotWriteError, LagtopError
 from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interrupts
-from .command import ExamplesFirst, complain
+from .command import ExamplesFirst, complain, say
 
 COMMANDS = [
     *("solve", "table", "sweep", "find", "fit", "compare", "plot", "view"),
@@ -52,6 +52,7 @@ class LagtopGroup(ExamplesFirst, click.Group):
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run like click's method, but end with one line on standard error and an exit code."""
+        _open_standard_error()
         run: Any = super().main
         if not extra.pop("standalone_mode", True):
             return run(*args, standalone_mode=False, **extra)
@@ -63,9 +64,10 @@ class LagtopGroup(ExamplesFirst, click.Group):
         except LagtopError as error:
             complain(f"Error: {error}")
             sys.exit(error.exit_code)
-        except OSError as error:  # of the help itself; the writers raise CannotWriteError
-            complain(f"Error: cannot write standard output: {error.strerror}")
-            os._exit(CannotWriteError.exit_code)  # the interpreter would try to flush it once more
+        except OSError as error:  # of what no reader or writer has named
+            place = f": {error.filename}" if error.filename else ""
+            complain(f"Error: {error.strerror or error}{place}")
+            sys.exit(CannotWriteError.exit_code)
         except click.Abort:
             die_by(INTERRUPT)
 
@@ -82,6 +84,15 @@ class LagtopGroup(ExamplesFirst, click.Group):
         except Terminated as error:
             number = error.number
         return die_by(number)  # here, where the frames of the command are gone and have cleaned up
+
+
+def _open_standard_error() -> None:
+    """Send errors to the null device if the caller closed standard error.
+
+    Otherwise the next file that is opened would take its number, and receive the errors.
+    """
+    if sys.stderr is None:
+        sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
 
 
 def _suggestion(word: str) -> str:
@@ -128,4 +139,4 @@ def main(ctx: click.Context) -> None:
     scene is a TOML file that holds some of them, or - for standard input.
     """
     if ctx.invoked_subcommand is None:
-        click.echo(ctx.get_help())
+        say(ctx.get_help())

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
+from os.path import splitext
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -232,21 +233,30 @@ certify_option = click.option(
 )
 
 
-ENDINGS = ("csv", "json", "ndjson", "npy", "parquet")
-"""The ends of names of files that tell a format."""
+def extension(path: str) -> str:
+    """Return the extension of a file, in small letters and without its dot."""
+    return splitext(path)[1][1:].lower()
 
 
-def output_options(*formats: str) -> Callable[[F], F]:
-    """Add the options --output and --format, whose default is as the file ends, or the first."""
+def output_options(*formats: str, extensions: Collection[str] = ()) -> Callable[[F], F]:
+    """Add the options --output and --format.
+
+    The default format is that of the extension of the file, or the first one if there is no
+    extension, if it is txt, or if it is one of `extensions`.
+    """
 
     def chosen(ctx: click.Context, _: click.Parameter, fmt: str | None) -> str:
         path = ctx.params["output"]
-        dot, ending = path.rpartition(".")[1:]
-        wanted = fmt or (ending if dot and ending in ENDINGS else formats[0])
-        if wanted not in formats:
+        ending = extension(path)
+        if fmt or ending in {"", "txt", *extensions}:
+            return fmt or formats[0]
+        if ending == "table" or ending not in formats:
             known = f"{ctx.command.name} writes {', '.join(formats)}"
-            raise LagtopError(f"{known} and no {ending}, got --output {quoted(path)}")
-        return wanted
+            raise LagtopError(
+                f"{known} and no {ending}, got --output {quoted(path)}: "
+                "change the extension, or add --format"
+            )
+        return ending
 
     def decorate(command: F) -> F:
         command = click.option(
@@ -256,14 +266,14 @@ def output_options(*formats: str) -> Callable[[F], F]:
             default="-",
             metavar="FILE|-",
             is_eager=True,  # the format looks at it
-            help="Where to write; FILE is replaced when all is written.",
+            help="Output file (replaced only on success).",
         )(command)
         return click.option(
             "--format",
             "fmt",
             type=click.Choice(formats),
             callback=chosen,
-            help=f"Output.  [default: as FILE ends, or {formats[0]}]",
+            help=f"Output format.  [default: by the extension of FILE, else {formats[0]}]",
         )(command)
 
     return decorate

@@ -16,6 +16,7 @@ from ..arithmetic.angles import unit_in_radians
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import check_names
+from ..output.terminal import is_terminal
 from ..output.write import write_bytes
 from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
@@ -193,7 +194,7 @@ def _scene_and_kinds(words: Sequence[str]) -> tuple[str | None, tuple[str, ...]]
 
 def _format_of(fmt: str | None, output: str | None) -> str:
     """Return `png`, `svg` or `pdf`, as it was asked for or as the file's name ends."""
-    if output == "-" and sys.stdout.isatty():
+    if output == "-" and is_terminal(sys.stdout):
         raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
     if fmt or output in (None, "-"):
         return fmt or "png"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst, write_report
+from .command import ExamplesFirst, fail_for, write_report
 from .options import COUNT, FILE, STRATUM_NAMES, exclude, output_options
 from .progress import with_steps
 from .row_options import jobs_option
@@ -52,9 +52,7 @@ class _ListingStrata(ExamplesFirst):
 )
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
 @output_options("table", "csv", "json")
-@click.pass_context
 def command(
-    ctx: click.Context,
     samples: int | None,
     thorough: bool,
     seed: int,
@@ -90,5 +88,5 @@ def command(
             draw_stability(findings, plot)
         return findings
 
-    if stability.exceeded(write_report(find, fmt, output)):
-        ctx.exit(1)
+    findings = write_report(find, fmt, output)
+    fail_for(stability.exceeded(findings), len(findings.rows), "strata")

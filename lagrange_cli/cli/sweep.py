@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -117,7 +117,7 @@ def command(
     and a run that was killed is resumed by the same command.
     """
     from ..output.parquet import check_parquet
-    from ..sweeps.cluster import computed
+    from ..sweeps.cluster import computed, connected
     from ..sweeps.folder import Folder
     from ..sweeps.parts import Tally, shard_of
     from ..sweeps.plan import plan
@@ -144,13 +144,15 @@ def command(
     tally = Tally(fail_fast=fail_fast)
     blocks = shard_of(todo.blocks, shard)
     parts_folder: Folder | None = None
-    make: AbstractContextManager[Make] = nullcontext(todo.sweep.part)
-    if folder is not None:
-        parts_folder = Folder(folder, todo.sweep, todo.description)
-        blocks = parts_folder.missing(blocks, tally)
-        if cluster is not None and not fail_fast:
-            make = parts_folder.made_by_workers()
-    with make as part, computed(part, blocks, cluster, jobs or 1) as parts:
+    with ExitStack() as stack:
+        client = stack.enter_context(connected(cluster))  # before anything is written
+        make: Make = todo.sweep.part
+        if folder is not None:
+            parts_folder = Folder(folder, todo.sweep, todo.description)
+            blocks = parts_folder.missing(blocks, tally)
+            if client is not None and not fail_fast:
+                make = stack.enter_context(parts_folder.made_by_workers())
+        parts = stack.enter_context(computed(make, blocks, client, jobs or 1))
         passing = tally.until_error(parts, ended=to_stdout) if fail_fast else tally.passing(parts)
         if todo.size:
             share = todo.size // (shard or (1, 1))[1]

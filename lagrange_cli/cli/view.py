@@ -9,6 +9,7 @@ from pathlib import PurePath
 import click
 
 from ..errors import LagtopError
+from ..output.terminal import is_terminal
 from .command import ExamplesFirst
 from .given import say_unused
 from .options import FILE, inputs_of, motion_of, scene_options
@@ -38,7 +39,7 @@ def command(
     """
     if not (output or opens):
         raise LagtopError("nothing to do: give -o FILE.html or --open")
-    if output == "-" and (opens or sys.stdout.isatty()):
+    if output == "-" and (opens or is_terminal(sys.stdout)):
         why = "to open" if opens else "for a terminal"
         raise LagtopError(f"a page on standard output is not {why}: give -o FILE.html")
     suffix = PurePath(output or "").suffix

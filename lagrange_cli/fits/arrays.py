@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import NoneType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arithmetic.real_arrays import doubles_of
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, check_type
 from ..inputs import rotations
 from ..inputs.names import ANGLES
 from .fit import fit_recordings
@@ -36,6 +38,7 @@ def fit(
     those of what is left.  `known` are inputs by key: nothing else is taken for known.  Raises
     LagtopError, DataError for a recording that cannot be fitted.
     """
+    check_type("known", known, Mapping, NoneType)
     times = _numbers("t", t, ())
     given = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
     arrays = {
@@ -59,10 +62,7 @@ def fit(
 
 def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return real numbers as an array of rows of this shape.  Raises LagtopError."""
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise LagtopError(f"{name} must be real numbers, got {values!r:.60}", name) from None
+    array = doubles_of(name, values)
     if array.shape[1:] != shape or array.ndim != 1 + len(shape):
         wanted = ", ".join(["n", *map(str, shape)])
         raise LagtopError(f"{name} must have the shape ({wanted}), got {array.shape}", name)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from numbers import Integral
+from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.text import double_text
 from ..arithmetic.types import Array
-from ..errors import AbsentError, LagtopError
+from ..errors import AbsentError, LagtopError, check_type
 from ..inputs.mixed_body import warn_of
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_span
@@ -45,6 +47,7 @@ def find(
     changes, other doubles do as well.  The list may be empty.  Raises LagtopError, also where the
     number is the wanted one in a whole range.
     """
+    check_type("scan", scan, Integral, NoneType)
     check_names("inputs", list(inputs) or ["m"], INPUTS)
     given = {name: _read(name, x) for name, x in inputs.items() if x is not None}
     search, found = search_of(given, conditions, radians=radians)

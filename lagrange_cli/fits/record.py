@@ -151,6 +151,11 @@ class Outcome:
                 sentences.append(f"{listed} only as {told.name}")
         return sentences
 
+    def failure(self) -> str:
+        """Return why a fit has failed, with the name of the recording if it has one."""
+        first, name = self.failures()[0], self.recording.name
+        return f"{name}: {first}" if name else first
+
     def warnings(self) -> list[str]:
         """Return the reasons for doubt in the numbers, those of a failure first."""
         solution, found = self.fit.solution, self.failures()

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.numbers import is_real
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
+from ..inputs.given import checked_double
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
@@ -266,9 +268,16 @@ def spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> 
     """
     if sigma is None:
         return {}
-    each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, float(sigma))
+    each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
     if unknown := [name for name in each if name not in raw.channels]:
         raise LagtopError(
             f"sigma must be of {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
         )
-    return {name: np.full(raw.t.size, float(value)) for name, value in each.items()}
+    return {name: np.full(raw.t.size, _deviation(value)) for name, value in each.items()}
+
+
+def _deviation(value: Any) -> float:
+    """Return a standard deviation.  Raises LagtopError for what is none."""
+    if not is_real(value):
+        raise LagtopError(f"sigma must be a real number, got {quoted(value)}", "sigma")
+    return checked_double("sigma", value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..arithmetic.angles import per_radian
+from ..output.terminal import one_line
 from ..output.uncertain_text import uncertain_text
 from .record import Outcome
 
@@ -10,7 +11,7 @@ from .record import Outcome
 def scene_text(outcome: Outcome, source: str) -> str:
     """Return a scene file of the motion, which every command reads."""
     lines = [
-        f"# Found by `lagtop fit` from {' '.join(source.split())}: the start is its first row, at "
+        f"# Found by `lagtop fit` from {one_line(source)}: the start is its first row, at "
         f"t = {outcome.recording.t_start!r}.",
         *(f"# {text}: one of them is put in." for text in outcome.untold()),
         *(f"# Warning: {text}." for text in outcome.warnings()),

@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from io import BufferedIOBase, BytesIO
-from typing import cast
+from typing import BinaryIO, cast
 
-from ..errors import DataError
+from ..errors import CannotWriteError, DataError
+
+LONGEST_LINE = 1 << 20
+"""Bytes of a line: memory does not grow with a file that has no line ends."""
 
 
 @contextmanager
@@ -30,6 +33,55 @@ def opened(path: str) -> Iterator[BufferedIOBase]:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
 
 
+@contextmanager
+def temporary_files() -> Iterator[None]:
+    """Raise CannotWriteError if a temporary file or folder cannot be made or written."""
+    try:
+        yield
+    except OSError as error:
+        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
+
+
+@contextmanager
+def temporary_copy(stream: BufferedIOBase) -> Iterator[BinaryIO]:
+    """Yield a file with what is left of a stream, which is gone when the block ends.
+
+    Raises CannotWriteError if there is no space for it.
+    """
+    from tempfile import TemporaryFile
+
+    with ExitStack() as stack:
+        with temporary_files():
+            copy = stack.enter_context(TemporaryFile())
+        while chunk := stream.read(1 << 20):
+            with temporary_files():
+                copy.write(chunk)
+        with temporary_files():
+            copy.seek(0)
+        yield cast(BinaryIO, copy)
+
+
+def numbered_lines(stream: BufferedIOBase, name: str) -> Iterator[tuple[int, bytes]]:
+    """Yield the lines of a file and their numbers, from 1.  Raises DataError for a long line."""
+    number = 0
+    while line := stream.readline(LONGEST_LINE):
+        number += 1
+        check_length(line, name, number)
+        yield number, line
+
+
+def check_length(line: bytes, name: str, number: int) -> None:
+    """Raise DataError for a line that is too long to be a row."""
+    if len(line) >= LONGEST_LINE:
+        wrong = f"a line must have less than {LONGEST_LINE} bytes"
+        raise DataError(f"{name}, line {number}: {wrong}")
+
+
+def utf8_path(path: str) -> str:
+    """Return the name of a file with escapes in place of bytes that are not UTF-8."""
+    return path.encode("utf-8", "backslashreplace").decode()
+
+
 def shown_path(path: str) -> str:
-    """Return what a file is called in messages."""
-    return "standard input" if path == "-" else path or "''"
+    """Return the name of a file for messages."""
+    return "standard input" if path == "-" else utf8_path(path) or "''"

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Mapping
-from types import MappingProxyType
+from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import Number
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
-from ..errors import LagtopError
+from ..errors import LagtopError, check_type
 from .top import BODY, Top, from_example, one_of_each, overridden
 
 if TYPE_CHECKING:
@@ -102,14 +103,17 @@ def _if_one(value: Any) -> Any:
     return value.bounds()[0] if getattr(value, "count", 0) == 1 else value
 
 
-def read_scene(path: str, given: Mapping[str, Number] | None = None, *, exact: bool = False) -> Top:
+def read_scene(
+    path: str | os.PathLike[str], given: Mapping[str, Number] | None = None, *, exact: bool = False
+) -> Top:
     """Return the top of a scene file; `given` inputs take the place of those of the file.
 
     Numbers are rounded to doubles, or kept as `exact` decimals; those with units are converted to
     SI.  A MixedBodyWarning names inputs of the body that are those of the worked example, where
     others are given.  Raises SceneError, or LagtopError for an input that was given.
     """
-    found = gather(given or {}, path)
+    check_type("given", given, Mapping, NoneType)
+    found = gather(given or {}, os.fsdecode(path))
     top = found.top(exact=exact)
     if found.missing:
         from .mixed_body import warn_of

@@ -9,16 +9,17 @@ from typing import Any
 
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError, UnavailableError
+from .names import repeated
 from .quantity_text import TILT, Quantity
 from .top import INPUTS
 
 
 def check_spelling(carried: Sequence[str], name: str) -> None:
     """Raise DataError for a column that is not read but looks like an input."""
+    inputs = {_plain(known): known for known in reversed(INPUTS)}  # the first of those alike
     for column in carried:
-        for known in INPUTS:
-            if _plain(column) == _plain(known):
-                raise DataError(f"{name}: the column {column} must be spelt {known}")
+        if known := inputs.get(_plain(column)):
+            raise DataError(f"{name}: the column {column} must be spelt {known}")
 
 
 def _plain(column: str) -> str:
@@ -38,8 +39,8 @@ def heading(cell: str) -> tuple[str, str]:
 
 def check_header(columns: Sequence[str], known: Collection[str], name: str) -> None:
     """Raise DataError for a header that names a column twice, or none of the `known` inputs."""
-    if twice := [x for i, x in enumerate(columns) if x in columns[:i]]:
-        raise DataError(f"{name} must name each column once, got {twice[0]!r} twice")
+    if (twice := repeated(columns)) is not None:
+        raise DataError(f"{name} must name each column once, got {twice!r} twice")
     if not set(columns) & set(known):
         raise DataError(
             f"{name} must begin with a header that names inputs ({' '.join(INPUTS)}), "

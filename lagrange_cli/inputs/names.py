@@ -34,9 +34,19 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
                 raise LagtopError(f"{key} must be among {listed}, {wrong}", key)
             some = f"{', '.join(known[:_FIRST])} and {len(known) - _FIRST} more"
             raise LagtopError(f"{key} must be among {len(known)} names, {wrong}: {some}", key)
-    if twice := [name for i, name in enumerate(names) if name in names[:i]]:
-        raise LagtopError(f"{key} must name each one once, got {twice[0]!r} twice", key)
+    if (twice := repeated(names)) is not None:
+        raise LagtopError(f"{key} must name each one once, got {twice!r} twice", key)
     return names
+
+
+def repeated(names: Iterable[str]) -> str | None:
+    """Return the first name that comes a second time, or None."""
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return None
 
 
 def suggestion(name: object, known: Iterable[str]) -> str:

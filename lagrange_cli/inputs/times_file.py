@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
 from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
+from .files import numbered_lines, opened, shown_path
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -58,8 +58,8 @@ class TimesFile(Points):
 
 
 def _read(path: str) -> Iterator[Fraction]:
-    with opened(path) as lines:
-        for number, line in enumerate(lines, 1):
+    with opened(path) as file:
+        for number, line in numbered_lines(file, shown_path(path)):
             place = f"{shown_path(path)}, line {number}"
             try:
                 text = line.decode("utf-8-sig" if number == 1 else "utf-8").strip()

@@ -204,6 +204,9 @@ def _finite(name: str, value: Any) -> Number:
         return value
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) > _LARGEST:
         raise LagtopError(f"{name} must be within 1e100 in size, got {_shown(value)}", name)
+    is_long = is_real(value) and getattr(getattr(value, "dtype", None), "itemsize", 0) > 8
+    if is_long and abs(value) > _LARGEST:  # NumPy would warn of what no double can hold
+        raise LagtopError(f"{name} must be within 1e100 in size, got {value!r}", name)
     try:
         if not is_real(value):
             raise TypeError

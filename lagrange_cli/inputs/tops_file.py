@@ -19,10 +19,13 @@ from typing import Any, NamedTuple
 from ..arithmetic.text import json_text, parse_number, shortened
 from ..errors import DataError, LagtopError
 from .block import InputArrays
-from .files import opened, shown_path
+from .files import numbered_lines, opened, shown_path
 from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, heading, units_of
 from .top import INPUTS, from_example, one_of_each, overridden
+
+LARGEST_BLOCK = 1 << 27
+"""Bytes of lines that are kept at a time."""
 
 
 class TopRow(NamedTuple):
@@ -230,7 +233,7 @@ def open_tops(
     start, first = next(((i, raw) for i, raw in lines if raw.strip()), (1, b""))
     first = first.removeprefix(b"\xef\xbb\xbf")
     if first.lstrip().startswith(b"{"):
-        head = [(start, first), *islice(lines, size - 1)]
+        head = [(start, first), *_some(name, lines, size - 1)]
         carried = [x for x in _names(raw for _, raw in head) if x not in computed]
         check_spelling(carried, name)
         file = TopsFile(name, None, carried, frozenset(computed), _named(raw for _, raw in head))
@@ -251,12 +254,23 @@ def open_tops(
 
 def _lines(path: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
     with stream or opened(path) as file:
-        yield from enumerate(file, 1)
+        yield from numbered_lines(file, shown_path(path))
 
 
 def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:
-    while block := list(islice(lines, size)):
+    while block := list(_some(file.name, lines, size)):
         yield Lines(file, block[0][0], [raw for _, raw in block])
+
+
+def _some(name: str, lines: Iterable[tuple[int, bytes]], size: int) -> Iterator[tuple[int, bytes]]:
+    """Yield the next lines.  Raises DataError if all of them are too long to be kept."""
+    left = LARGEST_BLOCK
+    for number, raw in islice(lines, size):
+        left -= len(raw)
+        if left < 0:
+            wrong = f"{size} lines must have at most {LARGEST_BLOCK} bytes together"
+            raise DataError(f"{name}, line {number}: {wrong}")
+        yield number, raw
 
 
 def _names(lines: Iterable[bytes]) -> list[str]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
+from .files import opened, shown_path, temporary_copy
 from .trajectory_columns import QUANTITIES, Found, expanded, named_twice, quantities_in
 from .trajectory_rows import Table
 from .words import Words
@@ -110,15 +110,16 @@ class Clock:
 
         if bad := np.flatnonzero(~np.isfinite(t)).tolist():
             raise self._error(places[bad[0]], f"t must be a finite number, got {t[bad[0]]}")
-        steps = np.diff(t, prepend=t[:1] if self.last is None else self.last)
-        moving = steps[steps != 0]
+        before = np.concatenate([t[:1] if self.last is None else [self.last], t[:-1]])
+        ways = (t > before) * 1.0 - (t < before)  # a difference may be beyond all doubles
+        moving = ways[ways != 0]
         if not self.direction and moving.size:
-            self.direction = float(np.sign(moving[0]))
-        if bad := np.flatnonzero(steps * self.direction < 0).tolist():
-            previous = float(t[bad[0] - 1]) if bad[0] else self.last
-            wrong = f"t must not turn back, got {float(t[bad[0]])} after {previous}"
-            raise self._error(places[bad[0]], wrong)
-        still = np.flatnonzero(steps == 0)[self.last is None :]  # the first row has no step
+            self.direction = float(moving[0])
+        if bad := np.flatnonzero(ways * self.direction < 0).tolist():
+            i = bad[0]
+            wrong = f"t must not turn back, got {float(t[i])} after {float(before[i])}"
+            raise self._error(places[i], wrong)
+        still = np.flatnonzero(ways == 0)[self.last is None :]  # the first row has no step
         if still.size and not self.repeats:
             wrong = f"t must not repeat, got {float(t[still[0]])} twice"
             raise self._error(places[int(still[0])], wrong)
@@ -139,9 +140,20 @@ def open_trajectory(path: str, columns: Sequence[str] | None = None) -> Iterator
         peeked = BufferedReader(cast(Any, stream))
         try:
             kind = _MAGIC.get(peeked.peek(4)[:4])
-            yield Trajectory(path, _reader(kind)(peeked, shown_path(path)), columns)
+            with _seekable(peeked, kind) as content:
+                yield Trajectory(path, _reader(kind)(content, shown_path(path)), columns)
         finally:
             peeked.detach()
+
+
+@contextmanager
+def _seekable(stream: BufferedReader, kind: str | None) -> Iterator[BinaryIO]:
+    """Yield a stream, or a file with its content if it only goes forward and is no text."""
+    if kind is None or stream.seekable():
+        yield stream
+        return
+    with temporary_copy(stream) as copy:
+        yield copy
 
 
 def _reader(kind: str | None) -> Callable[[BinaryIO, str], Table]:

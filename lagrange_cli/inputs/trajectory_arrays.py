@@ -1,20 +1,24 @@
 """Trajectories as arrays: npy, npz and Parquet.
 
-Rows are read as they are needed, so that memory does not grow with their number; but
-for arrays in Fortran order, which are read whole.  npz and Parquet begin at their end: those that
-come from a pipe are read whole too.
+Rows are read as they are needed, so that memory does not grow with their number.  Sizes that a file
+declares are limited before anything of that size is made, and whatever a library raises for a
+broken file is a DataError.  Streams must be seekable.
 """
 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Sequence
-from io import BytesIO
+from contextlib import contextmanager
+from io import UnsupportedOperation
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
-from ..errors import DataError, UnavailableError
+from ..arithmetic.text import quoted, shortened
+from ..errors import DataError, LagtopError, UnavailableError
+from .names import repeated
 from .trajectory_columns import quantities_in
 from .trajectory_rows import Block
 from .trajectory_text import parts
@@ -25,6 +29,53 @@ if TYPE_CHECKING:
 
 
 ROWS_AT_ONCE = 1 << 15
+NUMBERS_AT_ONCE = 1 << 21
+LARGEST_ROW = 1 << 20
+"""Bytes of a row, as of a line of text."""
+LARGEST_WHOLE = 1 << 28
+"""Bytes of an array in Fortran order that is no file of its own: it is read whole."""
+MOST_ARRAYS = 1000
+"""Arrays in an npz file."""
+
+
+class _Numbers:
+    """A table that holds nothing but numbers."""
+
+    place = "row"
+
+    def __init__(self, name: str, form: str, names: Sequence[str] | None, width: int) -> None:
+        self.name, self.form, self.names, self.width = name, form, names, width
+
+    def words_of(self, column: int) -> Words:
+        """Return the texts of its numbers."""
+        return PlainNumbers()
+
+    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
+        """Yield some columns of the rows; null is NaN."""
+        tables, first = self._tables(min(ROWS_AT_ONCE, 1 + NUMBERS_AT_ONCE // (1 + self.width))), 1
+        while True:
+            with _sound(self.name, self.form):
+                table = next(tables, None)
+            if table is None:
+                return
+            yield Block(table[:, columns], range(first, first + len(table)))
+            first += len(table)
+
+    def _tables(self, most: int) -> Iterator[Array]:
+        """Yield the next rows, at most so many, with all columns."""
+        raise NotImplementedError
+
+
+@contextmanager
+def _sound(name: str, form: str) -> Iterator[None]:
+    """Raise DataError for whatever a library raises when it reads a broken file."""
+    try:
+        yield
+    except LagtopError:
+        raise
+    except Exception as error:  # of any kind: none of the libraries has a list
+        why = " ".join(str(error).split())[:100] or type(error).__name__
+        raise DataError(f"{name}: not {form} file: {why}") from None
 
 
 class NpyStream:
@@ -33,105 +84,99 @@ class NpyStream:
     def __init__(self, stream: BinaryIO, name: str) -> None:
         """Read the header.  Raises DataError for what is no table of real numbers."""
         self.stream, self.name = stream, name
-        try:
-            version = np.lib.format.read_magic(stream)
-            header = {
-                (1, 0): np.lib.format.read_array_header_1_0,
-                (2, 0): np.lib.format.read_array_header_2_0,
-            }[version]
-            self.shape, fortran, self.dtype = header(stream)
-        except (ValueError, KeyError) as error:
-            raise DataError(f"{name}: not an npy file: {str(error)[:100]}") from None
-        fields = self.dtype.fields
-        bases = [self.dtype] if fields is None else [x[0].base for x in fields.values()]
-        if len(self.shape) not in {1, 2} or any(base.kind not in "iuf" for base in bases):
+        header = {
+            (1, 0): np.lib.format.read_array_header_1_0,
+            (2, 0): np.lib.format.read_array_header_2_0,
+        }[np.lib.format.read_magic(stream)]
+        self.shape, fortran, self.dtype = header(stream)
+        self._fields = [(x, self.dtype[x]) for x in self.dtype.names or ()]
+        kinds = {x.base.kind if 0 not in x.shape else "" for _, x in self._fields}
+        kinds = kinds or {self.dtype.kind}
+        if len(self.shape) not in {1, 2} or min(self.shape) < 0 or not kinds <= set("iuf"):
             raise DataError(
                 f"{name} must be an array of real numbers with 1 or 2 dimensions, "
-                f"got {self.dtype} of shape {self.shape}"
+                f"got {shortened(str(self.dtype))} of shape {self.shape}"
             )
+        self._row_bytes = math.prod(self.shape[1:]) * self.dtype.itemsize
+        if self._row_bytes > LARGEST_ROW:
+            raise DataError(f"{name}: a row must have at most {LARGEST_ROW} bytes")
         self.left = self.shape[0]
-        self._whole = self._read(math.prod(self.shape)) if fortran and self.shape[1:] else None
+        self._whole = self._in_columns() if fortran and self.shape[1:] else None
 
-    def rows(self, count: int) -> Array:
+    def rows(self, most: int) -> Array:
         """Return the next rows, at most so many, as columns of float64."""
-        count, start = min(count, self.left), self.shape[0] - self.left
+        count, start = min(most, self.left), self.shape[0] - self.left
         self.left -= count
-        if self._whole is not None:
-            table = self._whole.reshape(self.shape, order="F")[start : start + count]
+        if self._whole is None:
+            table = self._read(count).reshape(count, *self.shape[1:])
         else:
-            flat = self._read(count * math.prod(self.shape[1:]))
-            table = flat.reshape(count, *self.shape[1:])
-        if self.dtype.fields is None:
-            plain: Array = table.reshape(count, -1).astype(np.float64)
-            return plain
-        columns = [table[field].reshape(count, -1) for field in cast(Any, self.dtype.names)]
-        whole: Array = np.concatenate([x.astype(np.float64) for x in columns], axis=1)
-        return whole
+            table = self._whole[start : start + count]
+        if self._fields:
+            from numpy.lib.recfunctions import structured_to_unstructured
 
-    def _read(self, count: int) -> Any:
-        raw = self.stream.read(count * self.dtype.itemsize)
-        if len(raw) < count * self.dtype.itemsize:
-            raise DataError(f"{self.name} must hold {self.shape[0]} rows, but ends before")
+            table = structured_to_unstructured(table, np.dtype(np.float64))
+        plain: Array = table.reshape(count, -1).astype(np.float64)
+        return plain
+
+    def _read(self, rows: int) -> Any:
+        raw = self.stream.read(rows * self._row_bytes)
+        self._check_size(len(raw), rows)
         return np.frombuffer(raw, self.dtype)
+
+    def _in_columns(self) -> Any:
+        """Return an array in Fortran order: mapped if it is a file, else read whole."""
+        try:
+            size = os.fstat(self.stream.fileno()).st_size - self.stream.tell()
+        except UnsupportedOperation:  # a member of an npz file
+            if self.left * self._row_bytes > LARGEST_WHOLE:
+                raise DataError(
+                    f"{self.name}: in Fortran order an array of an npz file must have at most "
+                    f"{LARGEST_WHOLE} bytes (numpy.ascontiguousarray brings it into the other)"
+                ) from None
+            return self._read(self.left).reshape(self.shape, order="F")
+        self._check_size(size, self.left)
+        place: Any = {"offset": self.stream.tell(), "shape": self.shape}
+        return np.memmap(cast(Any, self.stream), self.dtype, "r", order="F", **place)
+
+    def _check_size(self, size: int, rows: int) -> None:
+        if size < rows * self._row_bytes:
+            raise DataError(f"{self.name} must hold {self.shape[0]} rows, but ends before")
 
     def names(self) -> list[str] | None:
         """Return the names of the columns of a structured array; others have none."""
-        if self.dtype.fields is None:
+        if not self._fields:
             return None
-        sizes = ((name, x[0].shape) for name, x in self.dtype.fields.items())
-        return [
-            part for name, shape in sizes for part in parts(name, math.prod(shape) if shape else 0)
-        ]
-
-
-class _Numbers:
-    """A table that holds nothing but numbers."""
-
-    def words_of(self, column: int) -> Words:
-        """Return the texts of its numbers."""
-        return PlainNumbers()
+        sizes = ((name, math.prod(x.shape) if x.shape else 0) for name, x in self._fields)
+        return [part for name, size in sizes for part in parts(name, size)]
 
 
 class ArrayTable(_Numbers):
     """Arrays side by side, each with some of the columns."""
 
-    place = "row"
+    arrays: Sequence[NpyStream]
 
-    def __init__(
-        self, arrays: Sequence[NpyStream], names: Sequence[str] | None, width: int
-    ) -> None:
-        self.arrays, self.names, self.width = arrays, names, width
-
-    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns of the rows."""
-        first = 1
+    def _tables(self, most: int) -> Iterator[Array]:
         while self.arrays[0].left:
-            block = np.concatenate([array.rows(ROWS_AT_ONCE) for array in self.arrays], axis=1)
-            yield Block(block[:, columns], range(first, first + len(block)))
-            first += len(block)
+            yield np.concatenate([array.rows(most) for array in self.arrays], axis=1)
 
 
 def read_npy(stream: BinaryIO, name: str) -> ArrayTable:
     """Return the rows of an npy file: a structured array, or one of two dimensions."""
-    array = NpyStream(stream, name)
+    form = "an npy"
+    with _sound(name, form):
+        array = NpyStream(stream, name)
     names = array.names()
     width = len(names) if names else math.prod(array.shape[1:])
-    return ArrayTable([array], names, width)
+    table = ArrayTable(name, form, names, width)
+    table.arrays = [array]
+    return table
 
 
 def read_npz(stream: BinaryIO, name: str) -> ArrayTable:
     """Return the rows of an npz file, of all its arrays that are as long as that of the time."""
-    from zipfile import BadZipFile, ZipFile
-
-    try:
-        archive = ZipFile(_seekable(stream))
-        members = {x.removesuffix(".npy"): x for x in archive.namelist()}
-        arrays = {
-            key: NpyStream(cast(Any, archive.open(member)), f"{name}, array {key}")
-            for key, member in members.items()
-        }
-    except BadZipFile as error:
-        raise DataError(f"{name}: not an npz file: {error}") from None
+    form = "an npz"
+    with _sound(name, form):
+        arrays = _arrays(stream, name)
     keys = list(arrays)
     if "t" not in (found := quantities_in(keys)):
         raise DataError(f"{name} must have an array for the time, t, got {', '.join(keys)[:100]}")
@@ -142,60 +187,63 @@ def read_npz(stream: BinaryIO, name: str) -> ArrayTable:
         for key, array in fitting.items()
         for part in (array.names() or parts(key, array.shape[1] if array.shape[1:] else 0))
     ]
-    return ArrayTable(list(fitting.values()), names, len(names))
+    table = ArrayTable(name, form, names, len(names))
+    table.arrays = list(fitting.values())
+    return table
+
+
+def _arrays(stream: BinaryIO, name: str) -> dict[str, NpyStream]:
+    """Return the arrays of an npz file, by their keys."""
+    from zipfile import ZipFile
+
+    archive = ZipFile(stream)
+    members = {x.removesuffix(".npy"): x for x in archive.namelist()}
+    if len(members) > MOST_ARRAYS:
+        raise DataError(f"{name} must have at most {MOST_ARRAYS} arrays, got {len(members)}")
+    return {
+        key: NpyStream(cast(Any, archive.open(member)), f"{name}, array {key}")
+        for key, member in members.items()
+    }
 
 
 class ParquetTable(_Numbers):
     """Rows of a Parquet file: columns of numbers, or of lists of a fixed size."""
 
-    place = "row"
-
     def __init__(self, stream: BinaryIO, name: str) -> None:
         try:
-            import pyarrow as pa
             from pyarrow import parquet
         except ImportError:
             raise UnavailableError(
                 f"{name}: Parquet needs pyarrow: pip install 'lagtop[parquet]'"
             ) from None
-        try:
-            self.file = parquet.ParquetFile(_seekable(stream))
-        except (pa.ArrowException, OSError) as error:
-            raise DataError(f"{name}: not a Parquet file: {str(error)[:100]}") from None
-        schema = self.file.schema_arrow
-        self.fields = [x.name for x in schema if _is_numeric(x.type)]
-        sizes = [getattr(schema.field(x).type, "list_size", 0) for x in self.fields]
-        self.names: Sequence[str] | None = [
-            part for x, size in zip(self.fields, sizes, strict=True) for part in parts(x, size)
-        ]
-        self.width = len(self.names)
+        form = "a Parquet"
+        with _sound(name, form):
+            self.file = parquet.ParquetFile(stream)
+            fields = [x for x in self.file.schema_arrow if _is_numeric(x.type)]
+        self.fields = [x.name for x in fields]
+        if (twice := repeated(self.fields)) is not None:
+            raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
+        names = [part for x in fields for part in parts(x.name, getattr(x.type, "list_size", 0))]
+        super().__init__(name, form, names, len(names))
 
-    def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns of the rows; null is NaN."""
-        first = 1
-        for batch in self.file.iter_batches(ROWS_AT_ONCE, columns=self.fields):
-            if rows := batch.num_rows:
-                block = np.concatenate([_column(x, rows) for x in batch.columns], axis=1)
-                yield Block(block[:, columns], range(first, first + rows))
-                first += rows
+    def _tables(self, most: int) -> Iterator[Array]:
+        for batch in self.file.iter_batches(most, columns=self.fields):
+            if batch.num_rows:
+                yield np.concatenate([_column(x) for x in batch.columns], axis=1)
 
 
 def _is_numeric(kind: Any) -> bool:
     from pyarrow import types
 
-    if types.is_fixed_size_list(kind):
-        return _is_numeric(kind.value_type)
+    kind = kind.value_type if types.is_fixed_size_list(kind) else kind
     return bool(types.is_floating(kind) or types.is_integer(kind))
 
 
-def _column(array: Any, rows: int) -> Array:
-    flat = (
-        array.flatten() if hasattr(array, "flatten") and hasattr(array.type, "list_size") else array
-    )
-    numbers: Array = flat.to_numpy(zero_copy_only=False).astype(np.float64)
-    return numbers.reshape(rows, -1)
-
-
-def _seekable(stream: BinaryIO) -> BinaryIO:
-    """Return the stream, or its content where it only goes forward."""
-    return stream if stream.seekable() else BytesIO(stream.read())
+def _column(array: Any) -> Array:
+    """Return the numbers of a column, of lists too; what is null is NaN."""
+    size = getattr(array.type, "list_size", 1)
+    flat = array.values.slice(array.offset * size, len(array) * size) if size > 1 else array
+    numbers = flat.to_numpy(zero_copy_only=False).astype(np.float64).reshape(len(array), -1)
+    if array.null_count:
+        numbers[array.is_null().to_numpy(zero_copy_only=False)] = np.nan
+    return numbers  # type: ignore[no-any-return]

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
+from .files import LONGEST_LINE, check_length
 from .trajectory_columns import names_in_comments
 from .trajectory_rows import Block, Table
 from .words import PlainNumbers, Words
@@ -25,8 +26,6 @@ BYTES_AT_ONCE = 1 << 21
 _COMMENT = b"#"
 _AROUND = b"[], \t"
 """What may stand around the objects of an array, one per line."""
-_LONGEST = 1 << 20
-"""Bytes of a line; a file without line ends is no table."""
 
 Numbered = tuple[int, bytes]
 
@@ -56,9 +55,9 @@ class _Lines:
 
     def one(self) -> Numbered | None:
         """Return the next line, or None at the end."""
-        while line := self.stream.readline(_LONGEST):
+        while line := self.stream.readline(LONGEST_LINE):
             self.number += 1
-            self._check(line, self.number)
+            check_length(line, self.name, self.number)
             if self.number == 1:
                 line = line.removeprefix(b"\xef\xbb\xbf")
             if stripped := line.strip(b" \r\n"):
@@ -69,19 +68,13 @@ class _Lines:
         """Yield the lines that are left, many at once."""
         while chunk := self.stream.read(BYTES_AT_ONCE):
             if not chunk.endswith(b"\n"):
-                chunk += self.stream.readline(_LONGEST)
+                chunk += self.stream.readline(LONGEST_LINE)
             first, self.number = self.number + 1, self.number + chunk.count(b"\n")
             lines = chunk.split(b"\n")
             longest = max(lines, key=len)
-            self._check(longest, first + lines.index(longest))
+            check_length(longest, self.name, first + lines.index(longest))
             stripped = (line.strip(b" \r") for line in lines)
             yield [x for x in enumerate(stripped, first) if x[1]]
-
-    def _check(self, line: bytes, number: int) -> None:
-        """Raise DataError for a line that is too long to be a row."""
-        if len(line) >= _LONGEST:
-            wrong = f"a line must have less than {_LONGEST} bytes"
-            raise DataError(f"{self.name}, line {number}: {wrong}")
 
 
 def _decoded(line: bytes, name: str, number: int) -> str:

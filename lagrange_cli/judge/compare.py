@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
-from ..errors import LagtopError
+from ..errors import LagtopError, check_type
 from ..inputs.seen import Conventions, Quantities
 from ..inputs.top import Top
 from ..inputs.trajectory_columns import QUANTITIES
@@ -68,6 +68,7 @@ def compare(
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
     block = _quantities(t, {key: x for key, x in arrays.items() if x is not None})
     given = Given([block], {}, conventions, alignment(align))
+    check_type("top", top, Top, Motion)
     motion = top if isinstance(top, Motion) else solve(top)
     (judgement,), _ = settled(motion, [(judge(motion, given), given)], max_error)
     return replace(judgement, step=step)
@@ -78,15 +79,15 @@ def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
     times = times_of(t).reshape(-1, 1)
     if not arrays:
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
-    steps = np.diff(times[:, 0])
-    if not np.isfinite(times).all() or not (np.all(steps > 0) or np.all(steps < 0)):
+    steps = times[1:, 0], times[:-1, 0]  # a difference may be beyond all doubles
+    if not np.isfinite(times).all() or not (np.all(np.greater(*steps)) or np.all(np.less(*steps))):
         raise LagtopError("t must be finite and go on in one direction, each time once", "t")
     block = {"t": times}
     for key, array in arrays.items():
         size = QUANTITIES[key].size
         try:
             block[key] = _real(array).reshape(len(times), size)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             wanted = f"real numbers of shape ({len(times)}, {size})"
             raise LagtopError(f"{key} must be {wanted}, got {_shown(array)}", key) from None
     return block
@@ -95,12 +96,13 @@ def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
 def _real(array: ArrayLike) -> Array:
     """Return an array of real numbers, NaN where it is masked.
 
-    Raises TypeError or ValueError for anything else.
+    Raises TypeError, ValueError or OverflowError for anything else.
     """
     values: Any = np.ma.asarray(array)
     if values.dtype.kind not in "iufO":
         raise TypeError(values.dtype)
-    numbers: Array = values.astype(np.float64).filled(np.nan)
+    with np.errstate(over="ignore"):  # of long doubles
+        numbers: Array = values.astype(np.float64).filled(np.nan)
     return numbers
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..errors import DataError, LagtopError
-from ..inputs.files import shown_path
+from ..inputs.files import shown_path, utf8_path
 from ..inputs.seen import Conventions, Quantities
 from ..inputs.trajectory import Trajectory, open_trajectory
 from ..motion.solve import Motion
@@ -69,7 +69,7 @@ def _judged(motion: Motion, path: str, request: Request, watch: Watch) -> tuple[
                 raise
             kind = DataError if error.key in _OF_THE_FILE else LagtopError
             raise kind(f"{shown_path(path)}: {error}") from None
-    named = replace(run.judgement, file=path)
+    named = replace(run.judgement, file=utf8_path(path))
     return run._replace(judgement=named), given
 
 

@@ -52,10 +52,17 @@ def comparison_report(motion: Motion, comparison: Comparison, request: Request) 
         key for key in _SHOWN if any(getattr(x, key) is not None for x in comparison.judgements)
     }
     fields = [field if field.key in shown else field._replace(heading="") for field in FIELDS]
-    conclusions = list(_conclusions(comparison, LIMIT if request.limit is None else request.limit))
+    conclusions = list(_conclusions(comparison))
     return Findings(
         _conditions(motion, comparison, request), fields, comparison.judgements, conclusions
     )
+
+
+def failures(findings: Findings) -> list[str]:
+    """Return the trajectories that are not fine, and why."""
+    return [
+        f"{_name(x)}: {_sentence(x).removesuffix('.')}" for x in findings.rows if x.verdict != FINE
+    ]
 
 
 def _conditions(motion: Motion, comparison: Comparison, request: Request) -> dict[str, str]:
@@ -71,9 +78,9 @@ def _conditions(motion: Motion, comparison: Comparison, request: Request) -> dic
     return conditions
 
 
-def _conclusions(comparison: Comparison, limit: float) -> Iterator[str]:
+def _conclusions(comparison: Comparison) -> Iterator[str]:
     for judgement in comparison.judgements:
-        yield f"{_name(judgement)}: {_sentence(judgement, limit)}"
+        yield f"{_name(judgement)}: {_sentence(judgement)}"
     found = comparison.convergence
     if found is not None:
         if not found.falls and all(x.verdict == FINE for x in comparison.judgements):
@@ -94,7 +101,7 @@ def _name(judgement: Judgement) -> str:
     return one_line(judgement.file or "")
 
 
-def _sentence(judgement: Judgement, limit: float) -> str:
+def _sentence(judgement: Judgement) -> str:
     error = judgement.error_max
     unit = "of the rates" if judgement.judged == "rates" else "rad"
     most = "" if error is None else f"at most {error:.1e} {unit} off"

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from ..arithmetic.exact_cosine import Cosine, Polynomial
 from ..arithmetic.values import Values
-from ..errors import LagtopError
+from ..errors import LagtopError, check_type
 from ..inputs.top import Top
 
 B = TypeVar("B", bound=Any)
@@ -103,6 +103,7 @@ def exact(top: Top) -> Exact:
 
     Raises LagtopError for a start that describes no motion: precession on the vertical.
     """
+    check_type("top", top, Top)
     m, A, C, s, g, r0, theta_rate, psi_rate = (
         Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.thetadot0, top.psidot0)
     )

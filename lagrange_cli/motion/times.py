@@ -6,22 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arithmetic.points import MAX_TIME
-from ..arithmetic.text import quoted
+from ..arithmetic.real_arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 
 
 def times_of(t: ArrayLike) -> Array:
     """Return times as float64.  Raises LagtopError for what is not an array of real numbers."""
-    if np.ma.isMaskedArray(t) and np.ma.getmaskarray(t).any():
-        raise LagtopError("t must not be masked: fill it or leave the elements out", "t")
-    try:
-        times = np.asarray(t)
-        if times.size and times.dtype.kind not in "iufO":
-            raise TypeError(times.dtype)
-        return times.astype(np.float64, copy=False)
-    except (TypeError, ValueError, OverflowError):
-        raise LagtopError(f"t must be real numbers, got {quoted(t)}", "t") from None
+    return doubles_of("t", t)
 
 
 def check_times(times: Array, most: float, name: str = "t") -> float:

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, BinaryIO
 
 from ..errors import CannotWriteError
-from .signals import terminated_by
+from .signals import ENDING, terminated_by
 from .terminal import Screen
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def _file(path: str, mark: str) -> Iterator[BinaryIO]:
 
     target = os.path.realpath(path)
     folder = os.path.dirname(target)
-    with terminated_by(["SIGTERM", "SIGHUP"]):
+    with terminated_by(ENDING):
         descriptor, temporary = mkstemp(prefix=f".lagtop-{mark}", dir=folder)
         try:
             with open(descriptor, "wb") as stream:

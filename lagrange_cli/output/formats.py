@@ -55,11 +55,11 @@ class Format:
 
     def write_blocks(self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
         """Write blocks made by `block`, with what stands before, between and after them."""
-        stream.write(self.opening(names))
-        between = b""
-        for text in filter(None, blocks):
-            stream.write(between + text)
-            between = self.between
+        texts = filter(None, blocks)
+        first = next(texts, b"")  # before anything is written: what is wrong often shows here
+        stream.write(self.opening(names) + first)
+        for text in texts:
+            stream.write(self.between + text)
         stream.write(self.closing)
 
     def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:

@@ -20,6 +20,8 @@ else:
     import _signal as signal  # without the enumerations of `signal`, 2 % of `lagtop solve`
 
 INTERRUPT = signal.SIGINT
+ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
+"""Other signals that end a program: temporary files are removed first."""
 CLOSED_PIPE = getattr(signal, "SIGPIPE", None)
 NO_SIGPIPE = 128 + 13
 """The exit code for a reader that went away, where the system has no SIGPIPE."""

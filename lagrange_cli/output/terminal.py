@@ -57,6 +57,11 @@ def view_of(path: str) -> View:
     return View(get_terminal_size().columns, has_greek, has_colours(sys.stdout))
 
 
+def is_terminal(stream: TextIO | None) -> bool:
+    """Return whether a standard stream is a terminal; one that is closed is None."""
+    return stream is not None and stream.isatty()
+
+
 def has_colours(stream: TextIO) -> bool:
     """Return whether a stream is a terminal that shows colours, and the user wants them.
 

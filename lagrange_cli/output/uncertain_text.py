@@ -38,9 +38,7 @@ def last_place(std: float) -> int:
     exact = Decimal(repr(std))
     leading = exact.adjusted()
     first_three = int(exact.scaleb(2 - leading))
-    if 354 < first_three <= 949:
-        return leading
-    return leading - 1 if first_three <= 354 else leading
+    return leading - 1 if first_three <= 354 else leading  # beyond 949 rounding makes it 1000
 
 
 def _short(number: Decimal, spread: Decimal, last: int) -> str:

@@ -5,18 +5,17 @@ from __future__ import annotations
 import logging
 import pickle
 import pkgutil
-import signal
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import closing, contextmanager, suppress
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from itertools import islice
 from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import __version__
 from ..errors import LagtopError, UnavailableError
-from .jobs import in_order
+from .jobs import in_order, interrupts_blocked, safe_path
 from .parts import Make, NumberedBlock, Part
 
 if TYPE_CHECKING:
@@ -33,69 +32,62 @@ MOST_PARTS_PER_TASK = 16
 
 
 @contextmanager
-def computed(
-    make: Make, blocks: Iterable[NumberedBlock], address: str | None, jobs: int = 1
-) -> Iterator[Iterator[Part]]:
-    """Yield the parts in their order, made by so many processes, or by a Dask cluster.
+def connected(address: str | None) -> Iterator[Client | None]:
+    """Yield the client of a Dask cluster, or None if there is no address.
 
-    The address of a cluster may be `local`, for one of its own.
-
-    Raises UnavailableError for a cluster that cannot be reached, has no worker, or whose workers
-    have no lagtop or another version of it; LagtopError for an address that is none; and what
-    `make` raises.
+    The address may be `local`, for a cluster on this machine that ends with the block.  Raises
+    UnavailableError for a cluster that cannot be reached, has no worker, or whose workers have no
+    lagtop or another version of it, and LagtopError for an address that is none.
     """
     if address is None:
-        with closing(in_order(make, blocks, jobs)) as parts:
-            yield parts
+        yield None
         return
-    client = _client(address)
-    try:
-        _check_workers(client)
-        yield _gathered(client, make, blocks)
-    finally:
-        with suppress(OSError, RuntimeError):  # what ended the sweep is what matters
-            client.close(timeout=20 if address == "local" else 2)
+    with safe_path():  # a local cluster replaces workers that are lost
+        client = _client(address)
+        try:
+            _check_workers(client)
+            yield client
+        finally:
+            with suppress(Exception):  # what ended the sweep is what matters
+                client.close(timeout=20 if address == "local" else 2)
+
+
+def computed(
+    make: Make, blocks: Iterable[NumberedBlock], client: Client | None, jobs: int = 1
+) -> AbstractContextManager[Iterator[Part]]:
+    """Return the parts in their order, to be closed: made by a cluster, or by so many processes.
+
+    Raises UnavailableError for a cluster that is lost, and what `make` raises.
+    """
+    return closing(
+        in_order(make, blocks, jobs) if client is None else _gathered(client, make, blocks)
+    )
 
 
 def _client(address: str) -> Client:
+    """Return a client.  Raises UnavailableError, and LagtopError for an address that is none."""
     try:
         from distributed import Client
     except ImportError:
         raise UnavailableError(
             "dask needs distributed: pip install 'lagtop[cluster]'", "dask"
         ) from None
-    for name in (
-        "distributed",
-        "distributed.client",
-        "asyncio",
-        "tornado",
-    ):  # we say ourselves, and once, what is wrong
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    silent = logging.CRITICAL  # one line of ours says what is wrong
+    for name in ("distributed", "distributed.client", "asyncio", "tornado"):
+        logging.getLogger(name).setLevel(silent)
     try:
-        if address == "local":
-            with _no_interrupts():
-                return Client(
-                    threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
-                )
-        return Client(address, timeout=PATIENCE)
-    except ValueError as error:
+        if address != "local":
+            return Client(address, timeout=PATIENCE)
+        with interrupts_blocked():
+            return Client(threads_per_worker=1, dashboard_address=":0", silence_logs=silent)
+    except (TypeError, ValueError) as error:
         raise LagtopError(
             f"dask must be local or a scheduler, got {address}: {error}", "dask"
         ) from None
-    except OSError as error:
-        raise UnavailableError(f"no scheduler answers at {address}: {error}") from None
-    except RuntimeError as error:
-        raise UnavailableError(f"a cluster of this machine cannot be started: {error}") from None
-
-
-@contextmanager
-def _no_interrupts() -> Iterator[None]:
-    """Start worker processes that ignore Ctrl-C, so that only this process handles it."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    except Exception as error:  # of any kind: whatever answers may be no scheduler
+        started = "a cluster of this machine cannot be started"
+        what = started if address == "local" else f"no scheduler answers at {address}"
+        raise UnavailableError(f"{what}: {error}") from None
 
 
 def _check_workers(client: Client) -> None:
@@ -176,7 +168,9 @@ def compute(version: str, content: bytes) -> Computed:
     return Computed(parts, monotonic() - begun)
 
 
-def _gathered(client: Client, make: Make, blocks: Iterable[NumberedBlock]) -> Iterator[Part]:
+def _gathered(
+    client: Client, make: Make, blocks: Iterable[NumberedBlock]
+) -> Generator[Part, None, None]:
     """Yield the parts in their order; those of a lost worker are computed by another one.
 
     A few tasks per worker are under way at a time, so that memory does not grow with their number.

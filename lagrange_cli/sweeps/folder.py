@@ -23,6 +23,8 @@ from .parts import Make, NumberedBlock, Part, Sweep, Tally
 
 DESCRIPTION = "sweep.json"
 _TEMPORARY = ".lagtop-"
+_MOST_BYTES = 1 << 24
+"""Bytes of a description, which may hold long lists of inputs."""
 
 
 class PartFiles(NamedTuple):
@@ -80,8 +82,8 @@ class Folder:
     def missing(self, blocks: Iterable[NumberedBlock], tally: Tally) -> Iterator[NumberedBlock]:
         """Yield the blocks whose parts are not here yet, and count the others as done."""
         for number, block in blocks:
-            if self.files.part(number).exists():
-                tally.add(self._done(number, block.size))
+            if done := self._done(number, block.size):
+                tally.add(done)
             else:
                 yield number, block
 
@@ -110,18 +112,26 @@ class Folder:
                 (self.path / token).unlink()
                 self._remove_leftovers()
 
-    def _done(self, number: int, count: int) -> Part:
-        """Return a part that is whole already, without its text."""
-        try:
-            errors = json.loads(self.files.errors(number).read_text())
-        except FileNotFoundError:
+    def _done(self, number: int, count: int) -> Part | None:
+        """Return a part that is whole already, without its text, or None if it is to be made.
+
+        A count of errors that is damaged is one that is not there: the part is made again.
+        """
+        errors = self.files.errors(number)
+        if not _is_there(self.files.part(number)):
+            return None
+        if not _is_there(errors):
             return Part(number, b"", count, 0, "")
-        return Part(number, b"", count, errors["failed"], errors["first"])
+        found = _object_in(errors) or {}
+        failed, first = found.get("failed"), found.get("first")
+        if isinstance(failed, int) and isinstance(first, str):
+            return Part(number, b"", count, failed, first)
+        return None
 
     def _claim(self, description: Mapping[str, Any]) -> None:
         """Write the description, or compare it with the one that is there already."""
         file = self.path / DESCRIPTION
-        if not file.exists():
+        if not _is_there(file):
             if alien := next(self.path.glob("part-*"), None):
                 raise CannotWriteError(
                     f"cannot write {self.path}: {alien.name} is there without a {DESCRIPTION}; "
@@ -129,11 +139,8 @@ class Folder:
                 )
             text = json.dumps(description, indent=1) + "\n"
             _create(file, text.encode())
-        try:
-            other = json.loads(file.read_text())
-        except ValueError:
-            other = None
-        if not isinstance(other, dict):
+        other = _object_in(file)
+        if other is None:
             raise CannotWriteError(f"cannot write {self.path}: {DESCRIPTION} describes no sweep")
         if difference := _difference(other, description):
             raise CannotWriteError(
@@ -147,6 +154,23 @@ class Folder:
             pid = file.name.removeprefix(_TEMPORARY).partition("@")[0]
             if pid.isdecimal() and not _is_running(int(pid)):
                 file.unlink(missing_ok=True)
+
+
+def _is_there(path: Path) -> bool:
+    """Return whether a file is there.  Raises CannotWriteError for anything else of its name."""
+    if path.exists() and not path.is_file():
+        raise CannotWriteError(f"cannot write {path}: it is there, and is no regular file")
+    return path.exists()
+
+
+def _object_in(path: Path) -> dict[str, Any] | None:
+    """Return the JSON object in a file, or None if the file holds none."""
+    with path.open("rb") as file:
+        try:
+            found = json.loads(file.read(_MOST_BYTES))
+        except (ValueError, RecursionError):
+            return None
+    return found if isinstance(found, dict) else None
 
 
 def _create(file: Path, content: bytes) -> None:

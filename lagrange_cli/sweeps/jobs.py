@@ -1,6 +1,8 @@
 """Work shared by several processes of this machine, with results in the order of the work.
 
-The processes are started afresh and not forked, so that they behave alike on every system.
+The processes are started afresh and not forked, so that they behave alike on every system.  Items
+and results are handed over in files of a temporary folder: a pipe is read in small pieces, and
+whoever writes to it would wait for a reader that computes.
 """
 
 from __future__ import annotations
@@ -9,25 +11,27 @@ import multiprocessing
 import os
 import pickle
 import signal
-import sys
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
-from itertools import cycle
+from contextlib import closing, contextmanager, suppress
+from multiprocessing.connection import Connection, wait
 from tempfile import TemporaryDirectory
 from threading import Thread
-from typing import NamedTuple, TypeVar
+from time import sleep
+from typing import Any, TypeVar
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
-from ..output.signals import terminated_by
+from ..inputs.files import temporary_files
+from ..output.signals import ENDING, terminated_by
 
 MOST_JOBS = 1024
 _HANDED_OUT = 3
 """Items that each other process has: one that it works at, and the next ones."""
 _AHEAD = 8
 """Results per process that may wait for an earlier one: memory does not grow with the work."""
+_SIGNALS_TAKE = 0.2
+"""Seconds by which a signal may reach another process before it reaches this one."""
+_SAFE_PATH = "PYTHONSAFEPATH"
 
 T = TypeVar("T")
 P = TypeVar("P")
@@ -49,115 +53,164 @@ def parse_jobs(text: str) -> int:
 def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator[P, None, None]:
     """Yield what the work makes of each item, in their order; this process is one of the `jobs`.
 
-    With more than one, the work and its results must be picklable.  Raises UnavailableError where
-    a process is lost, CannotWriteError where results find no room, and what the work raises.
+    With more than one, the work, its items and its results must be picklable.  Raises
+    UnavailableError if a process cannot be started or is lost, CannotWriteError if there is no
+    space for items or results, and whatever the work raises.
     """
     if jobs == 1:
         yield from map(work, items)
         return
-    with (
-        terminated_by(["SIGTERM", "SIGHUP"]),
-        _folder() as folder,
-        _threads_that_wait_less(),
-    ):
-        pool = ProcessPoolExecutor(
-            jobs - 1, mp_context=multiprocessing.get_context("spawn"), initializer=_start_worker
-        )
-        try:
-            with closing(_shared(pool, work, iter(items), jobs, folder)) as results:
-                yield from results
-        except BrokenProcessPool:
-            raise UnavailableError(
-                "a process that shared the work was lost (killed, or out of memory)"
-            ) from None
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+    with terminated_by(ENDING), _folder() as folder, closing(_Team(work, jobs, folder)) as team:
+        count = 0
+        for count, item in enumerate(items, 1):
+            team.do(count - 1, item)
+            yield from team.results(count - team.most + 1)
+        yield from team.results(count)
 
 
 def _folder() -> TemporaryDirectory[str]:
     """Return a folder for results that goes when it is left.  Raises CannotWriteError."""
-    try:
-        return TemporaryDirectory(prefix="lagtop-")
-    except OSError as error:
-        raise CannotWriteError(f"cannot write temporary files: {error.strerror}") from None
+    with temporary_files():
+        return TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
+
+
+class _Team:
+    """Processes that share work with this one, and the results that wait for earlier ones."""
+
+    def __init__(self, work: Callable[[Any], Any], jobs: int, folder: str) -> None:
+        self._work, self._others, self._folder = work, jobs - 1, folder
+        self.most = _AHEAD * jobs
+        """Items that may be under way or done before the next result is taken."""
+        self._workers: dict[Any, _Worker] = {}
+        self._done: dict[int, tuple[str, Any]] = {}
+        """The file of each result, or the result itself."""
+        self._next = 0
+
+    def do(self, number: int, item: Any) -> None:
+        """Hand an item out, or do the work here if no other process has room for it."""
+        if len(self._workers) < self._others:  # one by one, as there may be few items
+            new = _Worker(self._work)
+            self._workers[new.pipe] = new  # from now on `close` ends it
+            new.start()
+        self._collect(0.0)
+        for worker in self._workers.values():
+            if len(worker.tasks) < _HANDED_OUT:
+                path = os.path.join(self._folder, str(number % self.most))
+                worker.give(number, item, path)
+                return
+        self._done[number] = "", self._work(item)
+
+    def results(self, least: int) -> Iterator[Any]:
+        """Yield the results that come next; wait for those before the number `least`."""
+        while self._next < least or self._next in self._done:
+            while self._next not in self._done:
+                self._collect(None)
+            path, result = self._done.pop(self._next)
+            self._next += 1
+            yield _load(path) if path else result
+
+    def _collect(self, timeout: float | None) -> None:
+        """Take what others have done, and wait for the first of them if need be."""
+        for pipe in wait(self._workers, timeout):
+            for number, path in self._workers[pipe].answer():
+                self._done[number] = path, None
+
+    def close(self) -> None:
+        """End the other processes at once: nobody waits for their results."""
+        for process in (worker.process for worker in self._workers.values()):
+            if process.pid is not None:
+                process.kill()
+                process.join()
+
+
+class _Worker:
+    """Another process, and the tasks that it has: numbers, and files for items and results."""
+
+    def __init__(self, work: Callable[[Any], Any]) -> None:
+        self.tasks = deque([(-1, "")] * _HANDED_OUT)  # as many as it can have until it has started
+        context = multiprocessing.get_context("spawn")
+        self.pipe, self._other = context.Pipe()
+        self.process = context.Process(target=_serve, args=(self._other, work), daemon=True)
+
+    def start(self) -> None:
+        """Start the process.  Raises UnavailableError."""
+        try:
+            with safe_path(), interrupts_blocked():
+                self.process.start()
+        except OSError as error:
+            raise UnavailableError(f"cannot start a process: {error.strerror or error}") from None
+        self._other.close()
+
+    def give(self, number: int, item: Any, path: str) -> None:
+        """Hand out a task.  Raises UnavailableError if the process is lost."""
+        _dump(item, path)
+        with _known_to_be_alive():
+            self.pipe.send(path)
+        self.tasks.append((number, f"{path}.result"))
+
+    def answer(self) -> Iterator[tuple[int, str]]:
+        """Yield the task that is done.  Raises UnavailableError, and what the work raised."""
+        with _known_to_be_alive():
+            error = self.pipe.recv()
+        if error is not None:
+            raise error
+        if self.tasks[0][0] < 0:
+            self.tasks.clear()  # it has started
+        else:
+            yield self.tasks.popleft()
 
 
 @contextmanager
-def _threads_that_wait_less() -> Iterator[None]:
-    """Let threads that hand out work wait less for the lock of the interpreter, held by our own.
+def _known_to_be_alive() -> Iterator[None]:
+    try:
+        yield
+    except (EOFError, OSError):
+        sleep(_SIGNALS_TAKE)
+        raise UnavailableError(
+            "a process that shared the work was lost (killed, or out of memory)"
+        ) from None
 
-    By default they wait up to 5 ms each time, and other processes have nothing to do meanwhile.
-    """
-    usual = sys.getswitchinterval()
-    sys.setswitchinterval(5e-4)
+
+@contextmanager
+def safe_path() -> Iterator[None]:
+    """Start Python processes that import nothing from the current folder: they inherit this."""
+    before = os.environ.get(_SAFE_PATH, "")
+    os.environ[_SAFE_PATH] = "1"
     try:
         yield
     finally:
-        sys.setswitchinterval(usual)
+        os.environ[_SAFE_PATH] = before
 
 
-def _shared(
-    pool: ProcessPoolExecutor, work: Callable[[T], P], items: Iterator[T], jobs: int, folder: str
-) -> Generator[P, None, None]:
-    """Yield the results in order; what no other process has room for is done in this one."""
-    started = pool.submit(_start_work, work)
-    for item in items:  # a process takes longer to start than most items to be done
-        yield work(item)
-        if started.done():
-            break
-    most = _AHEAD * jobs
-    paths = [os.path.join(folder, str(number)) for number in range(most)]
-    results: deque[Future[P | _Left]] = deque()
-    for item, path in zip(items, cycle(paths), strict=False):
-        if sum(not result.done() for result in results) < _HANDED_OUT * (jobs - 1):
-            results.append(pool.submit(_left, work, item, path))
-        else:
-            results.append(Future())
-            results[-1].set_result(work(item))
-        while results and (results[0].done() or len(results) >= most):
-            yield _taken(results.popleft().result())
-    while results:
-        yield _taken(results.popleft().result())
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Start processes that leave Ctrl-C to this one: they inherit the blocked signal."""
+    if not hasattr(signal, "pthread_sigmask"):  # on Windows
+        yield
+        return
+    from multiprocessing.resource_tracker import ensure_running
 
-
-class _Left(NamedTuple):
-    """A result that another process left in a file.
-
-    A pipe is read by a thread in small pieces, and each would wait for the lock of the interpreter
-    that computes here.  A file is used again, by a result that may be shorter.
-    """
-
-    path: str
-
-
-def _left(work: Callable[[T], P], item: T, path: str) -> _Left:
-    """Do the work and leave what it makes in a file.  Raises CannotWriteError."""
-    result = work(item)
+    ensure_running()  # which unblocks the signal
+    usual = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
-        with open(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), "wb") as file:
-            pickle.dump(result, file, pickle.HIGHEST_PROTOCOL)
-    except OSError as error:
-        raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
-    return _Left(path)
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, usual)
 
 
-def _taken(result: P | _Left) -> P:
-    """Return a result, which may be in a file."""
-    if isinstance(result, _Left):
-        with open(result.path, "rb") as file:
-            found: P = pickle.load(file)
-            return found
-    return result
-
-
-def _start_work(work: Callable[[T], P]) -> None:
-    """Do nothing: to hand the work over has loaded what it needs."""
-
-
-def _start_worker() -> None:
-    """Leave Ctrl-C to the process that shares the work out, and end with that process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _serve(pipe: Connection, work: Callable[[Any], Any]) -> None:
+    """Say that the process has started, then do tasks until it is ended."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # where signals cannot be blocked
     Thread(target=_end_with_parent, daemon=True).start()
+    with suppress(EOFError, BrokenPipeError):  # the other end is gone
+        pipe.send(None)
+        while True:
+            path, error = pipe.recv(), None
+            try:
+                _dump(work(_load(path)), f"{path}.result")
+            except Exception as wrong:  # of any kind: it is raised where the result is wanted
+                error = wrong
+            pipe.send(error)
 
 
 def _end_with_parent() -> None:
@@ -165,3 +218,21 @@ def _end_with_parent() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)
+
+
+def _dump(value: object, path: str) -> None:
+    """Write a value to a file, which may hold a longer one.  Raises CannotWriteError."""
+    try:
+        with open(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), "wb") as file:
+            pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
+    except OSError as error:
+        raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
+
+
+def _load(path: str) -> Any:
+    """Return the value of a file.  Raises CannotWriteError if the file is gone."""
+    try:
+        with open(path, "rb") as file:
+            return pickle.load(file)
+    except OSError as error:
+        raise CannotWriteError(f"cannot read {path}: {error.strerror}") from None

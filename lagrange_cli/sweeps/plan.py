@@ -6,14 +6,12 @@ import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from hashlib import file_digest
 from io import BufferedIOBase
-from shutil import copyfileobj
-from tempfile import TemporaryFile
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from .. import __version__
 from ..arithmetic.points import Points
 from ..errors import LagtopError
-from ..inputs.files import opened
+from ..inputs.files import opened, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.ranges import Product
 from ..inputs.top import INPUTS, overridden
@@ -154,13 +152,12 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
 
 
 def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
-    """Return the digest of a file, and a copy of it on disk where it is standard input."""
+    """Return the digest of a file, and a copy of it on disk if it can be read only once."""
     with opened(path) as file:
-        if path != "-":
+        if file.seekable():
             return None, _digest(file)
-        with TemporaryFile() as copy:
-            copyfileobj(file, copy)
-            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(copy)
+        with temporary_copy(file) as copy:
+            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(cast(BufferedIOBase, copy))
 
 
 def _digest(stream: BufferedIOBase) -> str:

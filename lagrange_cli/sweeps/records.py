@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.text import quoted
+from ..arithmetic.real_arrays import doubles_of
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.mixed_body import warn_of
@@ -79,7 +79,7 @@ def together(inputs: Mapping[str, ArrayLike]) -> Sequence[Array]:
     if missing := from_example(inputs):
         warn_of(missing, stacklevel=4)
     given = dict.fromkeys(TopArrays._fields, np.nan) | overridden(Top().inputs(), inputs)
-    doubles = [_doubles(name, values) for name, values in given.items()]
+    doubles = [doubles_of(name, values) for name, values in given.items()]
     try:
         arrays = dict(zip(given, np.broadcast_arrays(*doubles), strict=True))
     except ValueError as error:
@@ -95,20 +95,6 @@ def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:
     """Return columns for so many tops, to be filled."""
     texts = {*motion_record.TEXT_KEYS, "error"}
     return {key: np.empty(count, dtype=object if key in texts else np.float64) for key in keys}
-
-
-def _doubles(name: str, values: ArrayLike) -> Array:
-    """Return real numbers as an array of doubles.  Raises LagtopError for anything else."""
-    if np.ma.isMaskedArray(values) and np.ma.getmaskarray(values).any():
-        raise LagtopError(f"{name} must not be masked: fill it or leave the elements out", name)
-    try:
-        array = np.asarray(values)
-        if array.size and array.dtype.kind not in "iufO":
-            raise TypeError
-        return array.astype(np.float64, copy=False)
-    except (TypeError, ValueError, OverflowError):
-        shown = quoted(values)
-        raise LagtopError(f"{name} must be real numbers, got {shown}", name) from None
 
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from functools import cache
+from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,8 @@ def run(top: Top, name: str, setting: Any) -> MethodRow:
 
 
 def error(row: MethodRow) -> float:
+    if row.remark == "not applicable: needs heyoka: pip install heyoka":  # not on every system
+        pytest.skip(row.remark)
     assert row.error_max is not None, row.remark
     return row.error_max
 
@@ -102,6 +105,7 @@ def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
     work = task(solve(Top()), -2.5, 1)
     assert work.times.tolist() == [-2.5]
     assert error(measure(work, "lagtop", METHODS["lagtop"], "double")) < 1e-14
+    assert error(measure(work, "RK45-euler", METHODS["RK45-euler"], 1e-12)) < 1e-9
     assert error(measure(work, "Taylor-euler", METHODS["Taylor-euler"], 1e-16)) < 1e-12
 
 
@@ -126,6 +130,17 @@ def test_front_and_what_it_says() -> None:
     marked = with_front([*rows, row("better", 1e-16, 1.5)])
     better = list(conclusions(marked, table | {"better": methods.Method([], ours)}))
     assert better[0].startswith("better at  beats lagtop: 1.0e-16 rad in 2 ns against 1.0e-15 rad")
+
+
+def test_ties_on_the_front() -> None:
+    """Equal rows do not beat each other; a tie in one number is decided by the other one."""
+    twins = with_front([row("lagtop", 1e-12, 5.0), row("twin", 1e-12, 5.0)])
+    assert [x.front for x in twins] == [True, True]
+    for other in (row("as exact", 1e-12, 4.0), row("as fast", 1e-13, 5.0)):
+        pair = with_front([row("lagtop", 1e-12, 5.0), other])
+        assert [x.method for x in pair if x.front] == [other.method]
+        table = {"lagtop": methods.Method([], ours), other.method: methods.Method([], ours)}
+        assert next(iter(conclusions(pair, table))).startswith(f"{other.method} at  beats lagtop")
 
 
 def ours(*_: Any) -> Any:
@@ -156,9 +171,9 @@ def test_what_fails_is_told() -> None:
     for name in ("RK45-euler", "LSODA-quaternion", "Radau-euler"):
         remark = measure(work, name, quick[name], 1e-7).remark
         assert remark == "failed: took more than 0.0001 s"
-    assert measure(work, "x", quick["Taylor-euler"], 1e-16).remark == (
-        "failed: took more than 10 steps"
-    )
+    if find_spec("heyoka"):
+        remark = measure(work, "x", quick["Taylor-euler"], 1e-16).remark
+        assert remark == "failed: took more than 10 steps"
     nothing = methods.Method(["x"], lambda _, __: lambda t: [np.full_like(t, np.nan)] * 3)
     lost = measure(work, "x", nothing, "x")
     assert lost.remark == "failed: gave what is not a number"

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import orjson
 import pytest
-from conftest import Lagtop
+from conftest import ROOT, Lagtop
 from pyarrow import parquet
 
 from lagrange_cli.arithmetic.text import csv_text
@@ -133,3 +133,56 @@ def test_an_ending_may_tell_a_format_of_few_commands(
     refused = lagtop("solve", "-o", tmp_path / f"solved.{ending}")
     assert refused.exit_code == 2
     assert f"solve writes table, json, csv and no {ending}, got --output" in refused.stderr
+
+
+REPORTS = [
+    "compare TRAJECTORY",
+    "bench --n 3 --t-max 1",
+    "stability --samples 1",
+    "eta --delta 0.5 --delta-star -0.5 --p 1 --q 2",
+]
+
+
+@pytest.mark.parametrize(
+    "name", "x.npz x.tsv x.xlsx x.csv.gz x.html x.table x.toml a.b/x.md".split()
+)
+@pytest.mark.parametrize("line", [*ENDED, *REPORTS])
+def test_other_extensions_are_refused(
+    line: str, name: str, lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    refused = lagtop(*line.split(), "-o", name)
+    assert (refused.exit_code, refused.stdout, list(tmp_path.iterdir())) == (2, "", [])
+    assert f" and no {name.rpartition('.')[2]}, got --output '{name}'" in refused.stderr
+    assert refused.stderr.endswith(": change the extension, or add --format\n")
+
+
+@pytest.mark.parametrize("line", ENDED)
+@pytest.mark.parametrize("ending", ["JSON", "Csv"])
+def test_capitals_of_an_extension_do_not_matter(
+    line: str, ending: str, lagtop: Lagtop, tmp_path: Path
+) -> None:
+    lagtop(*line.split(), "-o", tmp_path / f"ended.{ending}")
+    wanted = lagtop(*line.split(), "--format", ending.lower()).stdout_bytes
+    assert (tmp_path / f"ended.{ending}").read_bytes() == wanted
+
+
+@pytest.mark.parametrize("line", ENDED)
+@pytest.mark.parametrize("name", ["ended", "ended.txt", "ended.TXT", ".csv", "ended."])
+def test_no_extension_and_txt_mean_the_default(
+    line: str, name: str, lagtop: Lagtop, tmp_path: Path
+) -> None:
+    (tmp_path / "a.json").mkdir()
+    file = tmp_path / "a.json" / name
+    assert lagtop(*line.split(), "-o", file).exit_code == 0
+    assert file.read_bytes() == lagtop(*line.split()).stdout_bytes
+
+
+def test_a_format_that_is_named_may_have_any_extension(lagtop: Lagtop, tmp_path: Path) -> None:
+    assert lagtop("solve", "--format", "json", "-o", tmp_path / "x.geojson").exit_code == 0
+
+
+def test_only_fit_writes_scenes(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "FITTED.TOML"
+    assert lagtop("fit", ROOT / "sample_inputs" / "recording.csv", "-o", scene).exit_code == 0
+    assert "r0 = " in scene.read_text()

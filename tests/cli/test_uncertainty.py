@@ -115,6 +115,24 @@ def test_a_budget_adds_up(lagtop: Lagtop) -> None:
     assert f"T_nutation = {uncertain_text(0.4292501244785477, whole)}" in text
 
 
+def test_a_budget_in_radians_is_that_in_degrees(lagtop: Lagtop) -> None:
+    """Uncertain is the spin, whose unit does not change."""
+    found = []
+    for more, key in (([], "theta_max_deg"), (["--rad", "--theta0", "0.6"], "theta_max_rad")):
+        tilt = more or ["--theta0", repr(math.degrees(0.6))]
+        words = [*tilt, "--r0", "50(1)", "--thetadot0", "2.0(1)", "--budget", key]
+        text = lagtop("solve", *words, "--format", "csv").stdout
+        found.append(list(csv.DictReader(io.StringIO(text))))
+    for degrees, radians in zip(*found, strict=True):
+        for name in ("sensitivity", "contribution"):
+            if degrees[name]:
+                wanted = math.radians(float(degrees[name]))
+                assert float(radians[name]) == pytest.approx(wanted, rel=1e-9)
+    *rows, result = found[1]
+    whole = math.hypot(*(float(row["contribution"]) for row in rows))
+    assert float(result["std"]) == pytest.approx(whole, rel=1e-12)
+
+
 UNITS = "--m 1587(2)g --A-cm 13640g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
 
 

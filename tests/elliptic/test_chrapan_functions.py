@@ -26,30 +26,44 @@ from lagrange_cli.elliptic.third_kind import omega, pi_function
 chrapan = Register()
 equation, as_printed = chrapan.equation, chrapan.as_printed
 
-k = ar.mpf("0.76239")
-M, MODULI = modulus(ar, k=k), [modulus(ar, k=x) for x in ("0.3", k, "0.97")]
-COMPLEMENT = modulus(ar, k=M.k_prime)
-K, K_PRIME, E = ar.ellipk(k**2), ar.ellipk(1 - k**2), ar.ellipe(k**2)
-Q = ar.exp(-ar.pi * K_PRIME / K)
-K_BAR = k / M.k_prime
-STRETCH = ar.sqrt(1 + K_BAR**2)
+MODULUS, SMALLER = ar.mpf("0.76239"), ar.mpf("0.3")
+"""Moduli above and below their complements, for which our functions have other series."""
 ALPHA, V, W, J = ar.mpf("0.7543"), ar.mpf("0.41"), ar.mpf("1.13"), ar.mpc(0, 1)
 NUMBER = {"01": 4, "00": 3, "11": 1, "10": 2}
-S, C, D = (ar.ellipfun(f, ALPHA, m=1 - k**2) for f in ("sn", "cn", "dn"))
+MODULI = [modulus(ar, k=x) for x in (SMALLER, MODULUS, "0.97")]
 
 
-def theta_there(ij: str, v: Any, q: Any = Q, quarter: Any = K) -> Any:
+def named(k: Any) -> list[Any]:
+    """Return what the equations call by the NAMES, for a modulus."""
+    M, m = modulus(ar, k=k), k**2
+    first, other = ar.ellipk(m), ar.ellipk(1 - m)
+    k_bar, q = k / M.k_prime, ar.exp(-ar.pi * other / first)
+    return [
+        *(k, M, modulus(ar, k=M.k_prime), first, other, ar.ellipe(m), q, k_bar),
+        ar.sqrt(1 + k_bar**2),
+        *(ar.ellipfun(f, ALPHA, m=1 - m) for f in ("sn", "cn", "dn")),
+        {"q": -q, "quarter": M.k_prime * first},
+    ]
+
+
+NAMES = "k M COMPLEMENT K K_PRIME E Q K_BAR STRETCH S C D IMAGINARY".split()
+k, M, COMPLEMENT, K, K_PRIME, E, Q, K_BAR, STRETCH, S, C, D, IMAGINARY = named(MODULUS)
+# An imaginary modulus i k_bar turns the nome into -q and K into k' K.
+
+
+def theta_there(ij: str, v: Any, q: Any = None, quarter: Any = None) -> Any:
     """Return Theta_ij(v) by mpmath."""
-    return ar.jtheta(NUMBER[ij], ar.pi * v / (2 * quarter), q)
+    return ar.jtheta(NUMBER[ij], ar.pi * v / (2 * (quarter or K)), q or Q)
 
 
-def zeta_there(ij: str, v: Any, q: Any = Q, quarter: Any = K) -> Any:
+def zeta_there(ij: str, v: Any, q: Any = None, quarter: Any = None) -> Any:
     """Return Z_ij(v) by mpmath, for another modulus too where its q and K are passed."""
+    q, quarter = q or Q, quarter or K
     angle, scale = ar.pi * v / (2 * quarter), ar.pi / (2 * quarter)
     return scale * ar.jtheta(NUMBER[ij], angle, q, 1) / ar.jtheta(NUMBER[ij], angle, q)
 
 
-def ratio_there(ij: str, eta: Any, v: Any, q: Any = Q, quarter: Any = K) -> Any:
+def ratio_there(ij: str, eta: Any, v: Any, q: Any = None, quarter: Any = None) -> Any:
     """Return exp 2 Omega_ij(eta, v), in which the multiples of i pi are gone."""
     less, more = (theta_there(ij, eta + sign * v, q, quarter) for sign in (-1, 1))
     return less / more
@@ -58,10 +72,6 @@ def ratio_there(ij: str, eta: Any, v: Any, q: Any = Q, quarter: Any = K) -> Any:
 def ratio(value: Any) -> Any:
     """Return exp 2 Omega or exp 2 Pi."""
     return ar.exp(2 * value)
-
-
-# An imaginary modulus i k_bar turns the nome into -q and K into k' K.
-IMAGINARY = {"q": -Q, "quarter": M.k_prime * K}
 
 
 @equation("(1,1)")
@@ -460,6 +470,13 @@ class TestChrapan(EquationTests):
 
     register: ClassVar[Register] = chrapan
     errata: ClassVar[set[str]] = misprints("Chrapan", 1, 2, 3)
+
+    def test_equation_below_the_complement(
+        self, number: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        for name, value in zip(NAMES, named(SMALLER), strict=True):
+            monkeypatch.setattr(sys.modules[__name__], name, value)
+        self.test_equation(number)
 
     def spoil(self, patch: pytest.MonkeyPatch) -> None:
         """Put wrong functions of ours in place."""

@@ -147,6 +147,28 @@ def test_theta_and_zeta_on_arrays() -> None:
                 assert units(float(zeta(ARRAYS, ij, v, given)), scale * ratio, rate, v) <= 3
 
 
+@pytest.mark.parametrize("k", [0.25, 0.5, 0.9])
+def test_zeta_next_to_its_pole(k: float) -> None:
+    """Z10 has a pole at K; its relative digits are kept as close to it as doubles go."""
+    with mpmath.workdps(60):
+        first = mpmath.ellipk(mpmath.mpf(k) ** 2)
+        q = mpmath.exp(-mpmath.pi * mpmath.ellipk(1 - mpmath.mpf(k) ** 2) / first)
+        u = np.array(
+            [
+                float(first * (1 + sign * mpmath.mpf(10) ** -n))
+                for n in (1, 3, 6, 9, 13)
+                for sign in (-1, 1)
+            ]
+        )
+        places = [mpmath.pi * mpmath.mpf(x) / (2 * first) for x in u.tolist()]
+        slopes = [mpmath.jtheta(2, x, q, 1) / mpmath.jtheta(2, x, q) for x in places]
+        wanted = [mpmath.pi / (2 * first) * slope for slope in slopes]
+    with ARRAYS.working():
+        found = zeta(ARRAYS, "10", u, modulus(ARRAYS, k=k))
+    for got, exact in zip(found.tolist(), wanted, strict=True):
+        assert abs(got / exact - 1) < 4 * EPS
+
+
 def test_odd_and_imaginary_parameters_and_mixed_moduli() -> None:
     """Omega_11 and Omega_10 below zero, over periods, at k = 0; values of mixed moduli."""
     ar = ManyDigits(40)

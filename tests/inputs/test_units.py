@@ -267,6 +267,14 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     assert table.stdout.splitlines()[1] == "a,50.26548245743669,"
 
 
+@pytest.mark.parametrize("unit", ["/gauss", "gauss^-1", "statC^-1*cm", "/biot"])
+def test_units_with_fractional_powers_are_refused(unit: str, lagtop: Lagtop) -> None:
+    """A gauss is g^(1/2) cm^(-1/2) s^(-1): cut down to whole powers it would be a frequency."""
+    refused = lagtop("table", "--t-max", f"2 {unit}", "--n", 2)
+    said = f"--t-max must have a unit as in 2s, got the unit '{unit}' (not one of mass, length"
+    assert_one_line(refused, 2, said)
+
+
 @pytest.mark.parametrize(
     ("header", "options", "message"),
     [
@@ -280,6 +288,8 @@ def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
         ("m [rpm]", WORDS, "standard input, heading m [rpm]: m must have a unit as in 350g"),
         ("m [g],m", WORDS, "standard input must name each column once"),
         ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
+        ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
+        ('{"theta0_Deg": 1}', [], "standard input: the column theta0_Deg must be spelt theta0_deg"),
         ("theta0_deg [rad]", [], "standard input, line 1: the column theta0_deg [rad] must be"),
         ('{"m": 1}', WORDS, "standard input: JSON lines have no units"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import mpmath
+import numpy as np
 import pytest
 from conftest import process
 
@@ -65,3 +66,21 @@ def test_command(fmt: str, none: bytes) -> None:
     assert refused.returncode == 2
     assert refused.stdout == b""
     assert refused.stderr.startswith(b"Error: spin_rate_half must be within 1.8e308")
+
+
+@pytest.mark.parametrize("r0", [0.0, 1.0, 20.0])
+def test_phases_whose_hyperbolic_functions_are_beyond_all_doubles(r0: float) -> None:
+    """The axis leaves the upward vertical by 1e-315 rad in a unit of time.
+
+    As long as it is upright phi + psi = r0 t, which is what r = phi' + psi' cos(theta) says.
+    """
+    motion = solve(Top(theta0_deg=0, thetadot0=1e-315, r0=r0))
+    assert motion.T_nutation is not None
+    parts = np.array([0.0, 0.1, 0.25, 0.4, 0.6, 0.75, 0.9, 1.0])
+    times = parts * motion.T_nutation
+    angles = motion.angles(times)
+    assert np.abs(angles.theta).max() < 1e-3
+    turned = (angles.phi + angles.psi)[parts < 0.5]
+    assert turned == pytest.approx((r0 * times)[parts < 0.5], rel=1e-12, abs=1e-12)
+    assert np.isfinite(angles.phi).all()
+    assert np.isfinite(angles.psi).all()

@@ -225,12 +225,30 @@ def test_the_link_carries_the_scene(browser: Browser, page_file: Path) -> None:
     assert browser.ask("return [page.scene.psidot0, document.title]") == [
         *(-4, "Regular motion with loops · lagtop")
     ]
-    for bad in ("#r0=fast", "#colour=1", "#C=1e9", "#theta0_deg=0&psidot0=1", "#r0="):
+    bad_names = (f"#{name}=1" for name in ("colour", "__proto__", "constructor", "toString"))
+    for bad in (*bad_names, "#r0=fast", "#C=1e9", "#theta0_deg=0&psidot0=1", "#r0="):
         browser.ask("location.hash = arguments[0]", bad)
         browser.settle()
         said, r0 = browser.ask("return [at.error.textContent, page.scene.r0]")
         assert said.startswith("The link was not understood")
         assert r0 == 50
+    assert browser.complaints() == []
+
+
+def test_times_that_are_too_far_away(browser: Browser) -> None:
+    """The page is drawn at t = 0, and says so."""
+    for far in ("1e308", "-1e20"):
+        browser.ask("location.hash = arguments[0]", f"#t={far}")
+        browser.settle()
+        shown = browser.ask("return [page.clock.t, page.fresh, at.error.textContent]")
+        assert shown[:2] == [0, True]
+        assert shown[2].startswith("The link was not understood: t = ")
+        assert shown[2].endswith(" is too far away")
+    browser.ask("location.hash = '#t=1e14'")
+    browser.settle()
+    browser.ask("page.change('g', 1e25, '')")  # a period of 1e-11
+    browser.settle()
+    assert browser.ask("return [page.clock.t, page.scene.g]") == [0, 1e25]
     assert browser.complaints() == []
 
 

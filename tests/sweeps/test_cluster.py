@@ -12,6 +12,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from socketserver import BaseRequestHandler, ThreadingTCPServer
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -20,7 +22,7 @@ from distributed import Client, LocalCluster
 
 from lagrange_cli.errors import UnavailableError
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.sweeps.cluster import Computed, compute, computed
+from lagrange_cli.sweeps.cluster import Computed, compute, computed, connected
 from lagrange_cli.sweeps.folder import Folder
 from lagrange_cli.sweeps.parts import Part
 from lagrange_cli.sweeps.plan import plan
@@ -64,7 +66,10 @@ def test_workers_write_the_parts_of_a_folder_that_they_see(
     with folder.made_by_workers() as make:
         if not seen:
             next(tmp_path.glob(".lagtop-*")).unlink()
-        with computed(make, blocks, cluster.scheduler_address) as parts:
+        with (
+            connected(cluster.scheduler_address) as client,
+            computed(make, blocks, client) as parts,
+        ):
             found = list(parts)
     assert [part.is_written for part in found] == [seen] * len(blocks)
     assert [not part.text for part in found] == [seen] * len(blocks)
@@ -282,10 +287,50 @@ def test_what_is_lost_while_it_computes(number: int, who: str, tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_no_cluster() -> None:
-    result = process("sweep", "--dask", "nowhere", check=False)
-    assert (result.returncode, result.stdout) == (2, b"")
-    assert result.stderr.startswith(b"Error: --dask must be local or a scheduler, got nowhere")
+@pytest.mark.parametrize(
+    "address", ["nowhere", "tls://127.0.0.1:5", "ucx://1", "http://127.0.0.1:9", "tcp://", ""]
+)
+def test_no_cluster(address: str, tmp_path: Path) -> None:
+    options = ["--dask", address, "--parts", "out"]
+    result = process("sweep", *options, check=False, cwd=tmp_path)
+    assert (result.returncode, result.stdout, list(tmp_path.iterdir())) == (2, b"", [])
+    said = f"Error: --dask must be local or a scheduler, got {address}"
+    assert result.stderr.startswith(said.encode())
+    assert result.stderr.count(b"\n") == 1
+
+
+class Answers(BaseRequestHandler):
+    """A server that is no scheduler."""
+
+    words = b""
+
+    def handle(self) -> None:
+        """Say something, and wait."""
+        self.request.sendall(self.words)
+        time.sleep(1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    argnames="words",
+    ids=["web", "ones", "zeros", "shell"],
+    argvalues=[
+        b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n",
+        b"\xff" * 64,
+        bytes(64),
+        b"SSH-2.0",
+    ],
+)
+def test_a_server_that_is_no_scheduler(words: bytes) -> None:
+    handler = type("Says", (Answers,), {"words": words})
+    with ThreadingTCPServer(("127.0.0.1", 0), handler) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.server_address[1]}"
+        result = process("sweep", "--dask", address, check=False, timeout=60)
+        server.shutdown()
+    assert (result.returncode in {2, 69}, result.stdout) == (True, b"")
+    assert result.stderr.startswith(b"Error: ")
+    assert address.encode() in result.stderr
     assert result.stderr.count(b"\n") == 1
 
 

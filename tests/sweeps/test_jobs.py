@@ -6,19 +6,18 @@ import multiprocessing
 import os
 import signal
 import subprocess
+import sys
 import tempfile
 import time
-from collections.abc import Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import closing, nullcontext
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, nullcontext, suppress
 from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import LAGTOP, Lagtop, assert_one_line
 
 from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
-from lagrange_cli.sweeps.jobs import _start_work, in_order, parse_jobs
+from lagrange_cli.sweeps.jobs import _Worker, in_order, parse_jobs
 
 
 def number_and_place(x: int) -> tuple[int, int]:
@@ -131,7 +130,7 @@ def test_bytes_are_those_of_one_process(
     options: Sequence[str], tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("lagrange_cli.sweeps.jobs.ProcessPoolExecutor", Started)
+    monkeypatch.setattr("lagrange_cli.sweeps.jobs._Worker", Started)
     Path("tops.csv").write_text(tops(9000))
     Path("few.csv").write_text(tops(12))
     Path("times.txt").write_text("0.5\n" * 20_000)
@@ -142,15 +141,13 @@ def test_bytes_are_those_of_one_process(
         assert shared.stderr == alone.stderr
 
 
-class Started(ProcessPoolExecutor):
-    """Processes that have started when the first of the work is done: they get the next items."""
+class Started(_Worker):
+    """A process that has started before the first item is done: it gets the next ones."""
 
-    def submit(self, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand out work, and wait for the first of it."""
-        future = super().submit(*args, **kwargs)
-        if args[0] is _start_work:
-            future.result()
-        return future
+    def start(self) -> None:
+        """Start the process, and wait for it to say so."""
+        super().start()
+        assert list(self.answer()) == []
 
 
 @pytest.mark.slow
@@ -177,6 +174,124 @@ def test_a_signal_ends_all_processes(
     said = running.communicate()[1]
     if number != signal.SIGKILL:  # which nothing can clean up after
         assert (said, list(tmp_path.iterdir())) == (b"", [])
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> list[str]:
+    """Return the command as the script of an installation runs it: not from the current folder."""
+    path = tmp_path / "lagtop.py"
+    path.write_text("from lagrange_cli.__main__ import main\nif __name__ == '__main__': main()\n")
+    return [sys.executable, str(path)]
+
+
+@pytest.mark.parametrize("how", ["--jobs 2", pytest.param("--dask local", marks=pytest.mark.slow)])
+def test_no_module_of_the_current_folder_is_run(
+    how: str, script: list[str], tmp_path: Path
+) -> None:
+    folder = tmp_path / "downloads"
+    folder.mkdir()
+    names = "signal pickle socket selectors tempfile logging random struct lagrange_cli".split()
+    for name in names:
+        (folder / f"{name}.py").write_text(f"open('RAN-{name}', 'w')\nraise SystemExit\n")
+    line = ["sweep", "--r0", "1:9:20000", "--keys", "r0", *how.split()]
+    done = subprocess.run([*script, *line], cwd=folder, capture_output=True, check=False)
+    assert (done.returncode, done.stderr, done.stdout.count(b"\n")) == (0, b"", 20_001)
+    assert sorted(path.name for path in folder.iterdir()) == sorted(f"{x}.py" for x in names)
+
+
+def test_a_folder_that_is_gone(script: list[str], tmp_path: Path) -> None:
+    line = f"mkdir x; cd x; rmdir ../x; exec {' '.join(script)} sweep --jobs 2"
+    done = subprocess.run(["sh", "-c", line], cwd=tmp_path, capture_output=True, check=False)
+    assert (done.returncode, done.stdout) == (69, b"")
+    assert done.stderr == b"Error: cannot start a process: No such file or directory\n"
+
+
+def children(process: int) -> dict[int, str]:
+    """Return the command lines of the processes that a process has started."""
+    found = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    return {int(pid): Path(f"/proc/{pid}/cmdline").read_text() for pid in found}
+
+
+@contextmanager
+def sharing(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a long sweep in a process group of its own, and wait until it shares work."""
+    command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "3"]
+    running = subprocess.Popen(
+        [*command, "-o", str(folder / "out.csv")],
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        env=os.environ | {"TMPDIR": str(folder)},
+    )
+    try:
+        while len(list(folder.glob("lagtop-*/*.result"))) < 4:
+            assert running.poll() is None
+            time.sleep(0.01)
+        yield running
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["HUP", "INT", "QUIT", "TERM", "USR1"])
+def test_a_signal_to_the_whole_group(name: str, tmp_path: Path) -> None:
+    """A terminal that is closed and a batch system do that."""
+    number = getattr(signal, f"SIG{name}")
+    with sharing(tmp_path) as running:
+        os.killpg(running.pid, number)
+        assert running.communicate(timeout=60)[1] == b""
+    assert running.returncode == -number
+    assert list(tmp_path.iterdir()) == []
+
+
+LONG_WORK = """if True:
+    import sys, time
+    from pathlib import Path
+    sys.path.insert(0, {folder!r})
+    from test_jobs import sleep_long
+    from lagrange_cli.sweeps.jobs import in_order
+    if __name__ == "__main__":
+        list(in_order(sleep_long, range(9), 2))
+"""
+
+
+def sleep_long(_: int) -> None:
+    """Take a moment in the process that shares the work out, and a minute in the other one."""
+    time.sleep(60 if multiprocessing.parent_process() else 0.2)
+
+
+def test_a_worker_ends_with_its_parent_in_the_middle_of_its_work() -> None:
+    code = LONG_WORK.format(folder=str(Path(__file__).parent))
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    running = subprocess.Popen(
+        [sys.executable, "-c", code], start_new_session=True, env=environment
+    )
+    while not any("spawn_main" in line for line in children(running.pid).values()):
+        assert running.poll() is None
+        time.sleep(0.01)
+    time.sleep(1.0)  # it has an item by now
+    running.kill()
+    running.wait()
+    deadline = time.monotonic() + 20
+    while is_alive(running.pid) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not is_alive(running.pid)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("who", ["resource_tracker", "spawn_main"])
+def test_a_helper_that_is_killed(who: str, tmp_path: Path) -> None:
+    with sharing(tmp_path) as running:
+        victim = next(pid for pid, line in children(running.pid).items() if who in line)
+        os.kill(victim, signal.SIGKILL)
+        if who == "resource_tracker":  # which nothing needs
+            time.sleep(0.5)
+            running.send_signal(signal.SIGTERM)
+        said = running.communicate(timeout=60)[1]
+    lost = b"Error: a process that shared the work was lost (killed, or out of memory)\n"
+    expected = (-signal.SIGTERM, b"") if who == "resource_tracker" else (69, lost)
+    assert (running.returncode, said) == expected
+    assert list(tmp_path.iterdir()) == []
 
 
 def is_alive(group: int) -> bool:

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import LAGTOP, Lagtop
+from conftest import LAGTOP, Lagtop, assert_one_line
 
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.inputs.ranges import parse_values
@@ -189,6 +189,18 @@ def test_files_of_running_processes_are_left_alone(tmp_path: Path, lagtop: Lagto
     assert len(list(tmp_path.glob(".lagtop-*"))) == 3
 
 
+def test_leftovers_of_this_machine_alone_are_removed(tmp_path: Path, lagtop: Lagtop) -> None:
+    """Whether a process of another one has ended cannot be told here."""
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    host = os.uname().nodename
+    ours, others = (tmp_path / f".lagtop-{ended.pid}@{x}@x" for x in (host, "elsewhere"))
+    for path in (ours, others):
+        path.write_bytes(b"")
+    assert lagtop("sweep", "--parts", tmp_path).exit_code == 0
+    assert (ours.exists(), others.exists()) == (False, True)
+
+
 @pytest.mark.slow
 def test_two_runs_at_once(tmp_path: Path, lagtop: Lagtop) -> None:
     """Two shards and two runs of the whole, all at once, and then nothing is left to do."""
@@ -272,3 +284,66 @@ def test_a_part_is_written_where_its_folder_is_seen(tmp_path: Path) -> None:
     ):
         make((1, block[1]))
     assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
+
+
+FIVE = "r0\n" + "".join(f"{'x' if i == 3 else i + 1}\n" for i in range(5))
+"""Tops of which one has an error."""
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"[]", b"\xff\xfe", b"{}", b'{"failed": "x", "first": 1}', b"[" * 100_000, b"null"],
+)
+def test_a_damaged_count_of_errors_is_made_again(
+    content: bytes, tmp_path: Path, lagtop: Lagtop
+) -> None:
+    options = ["sweep", "-", "--keys", "r0", "--parts", tmp_path]
+    first = lagtop(*options, input=FIVE)
+    whole = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert "errors-000000.json" in whole
+    (tmp_path / "errors-000000.json").write_bytes(content)
+    again = lagtop(*options, input=FIVE)
+    assert (again.exit_code, again.stderr) == (first.exit_code, first.stderr) == (1, first.stderr)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == whole
+
+
+@pytest.mark.parametrize("content", [b"", b"[]", b"\xff\xfe", b"{" * 100_000, b"[" * 100_000])
+def test_a_damaged_description_is_refused(content: bytes, tmp_path: Path, lagtop: Lagtop) -> None:
+    options = ["sweep", "--keys", "r0", "--parts", tmp_path]
+    lagtop(*options)
+    (tmp_path / "sweep.json").write_bytes(content)
+    said = f"cannot write {tmp_path}: sweep.json describes no sweep"
+    assert_one_line(lagtop(*options), 74, said)
+
+
+@pytest.mark.parametrize("name", ["part-000000.csv", "errors-000000.json", "sweep.json"])
+@pytest.mark.parametrize("kind", ["folder", "pipe"])
+def test_what_is_no_regular_file_is_refused(
+    name: str, kind: str, tmp_path: Path, lagtop: Lagtop
+) -> None:
+    """A folder of the name of a part counted as done; a pipe was waited for."""
+    options = ["sweep", "-", "--keys", "r0", "--parts", tmp_path]
+    lagtop(*options, input=FIVE)
+    (tmp_path / name).unlink()
+    (os.mkdir if kind == "folder" else os.mkfifo)(tmp_path / name)
+    said = f"cannot write {tmp_path}/{name}: it is there, and is no regular file"
+    assert_one_line(lagtop(*options, input=FIVE), 74, said)
+
+
+def test_a_pipe_of_tops_is_read_once(tmp_path: Path) -> None:
+    """The digest needs the content before the sweep does."""
+    for _ in range(2):
+        line = f"{' '.join(LAGTOP)} sweep --keys r0 --parts out <(printf 'r0\\n1\\n2\\n')"
+        done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, check=False)
+        assert (done.returncode, done.stderr) == (0, b"")
+    assert (tmp_path / "out" / "part-000000.csv").read_text() == "r0,error\n1.0,\n2.0,\n"
+
+
+def test_no_space_for_a_copy_of_standard_input(tmp_path: Path) -> None:
+    line = (
+        f"ulimit -f 8; trap '' XFSZ; seq 100000 | sed '1s/.*/r0/' | "
+        f"{' '.join(LAGTOP)} sweep - --parts out"
+    )
+    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, check=False)
+    said = b"Error: cannot write temporary files: File too large\n"
+    assert (done.returncode, done.stdout, done.stderr) == (74, b"", said)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arithmetic.types import Array
 from .body import Body
-from .serve import Simulate, serve
+from .serve import Simulate
 
 TO_ENGINE = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
 """Rotation from our body axes to those of the model: z becomes x."""
@@ -60,7 +60,3 @@ def build(body: Body, scheme: str, setting: float) -> Simulate:
         return found
 
     return simulate
-
-
-if __name__ == "__main__":
-    serve(build)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arithmetic.types import Array
 from .body import Body
-from .serve import Simulate, serve
+from .serve import Simulate
 
 IMPLICIT = "GeneralizedAlpha"
 
@@ -112,7 +112,3 @@ def _sensor(system: Any, number: Any) -> Any:
             outputVariableType=exudyn.OutputVariableType.RotationMatrix,
         )
     )
-
-
-if __name__ == "__main__":
-    serve(build)

@@ -6,7 +6,7 @@ from typing import Any
 
 from ...arithmetic.types import Array
 from .body import Body
-from .serve import Simulate, serve, stepped
+from .serve import Simulate, stepped
 
 
 def build(body: Body, scheme: str, steps: float) -> Simulate:
@@ -39,7 +39,3 @@ def build(body: Body, scheme: str, steps: float) -> Simulate:
         return stepped(body, times, steps, advance, attitude)
 
     return simulate
-
-
-if __name__ == "__main__":
-    serve(build)

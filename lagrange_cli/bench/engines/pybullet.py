@@ -8,7 +8,7 @@ from typing import Any
 
 from ...arithmetic.types import Array
 from .body import Body
-from .serve import Simulate, serve, stepped
+from .serve import Simulate, stepped
 
 URDF = """<robot name="top">
   <link name="ground">
@@ -56,7 +56,3 @@ def build(body: Body, _: str, steps: float) -> Simulate:
         return stepped(body, times, steps, advance, attitude)
 
     return simulate
-
-
-if __name__ == "__main__":
-    serve(build)

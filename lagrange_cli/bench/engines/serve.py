@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import os
-import sys
 from collections.abc import Callable
-from functools import partial
-from typing import IO, Any
+from contextlib import suppress
+from importlib import import_module
+from multiprocessing.connection import Connection
+from typing import Any
 
 import numpy as np
 
 from ...arithmetic.types import Array
 from .body import Body
-from .wire import receive, send
 
 Simulate = Callable[[Array], Array]
 """Runs from the start through growing times; returns a quaternion w, x, y, z for each."""
@@ -22,42 +21,29 @@ Build = Callable[[Body, str, Any], Simulate]
 """Makes the model of a body for a scheme and a setting."""
 
 
-def serve(build: Build) -> None:
-    """Answer requests on standard input until it ends.
+def serve(pipe: Connection, folder: str, module: str, order: tuple[Body, str, Any]) -> None:
+    """Build the model of a module, then answer times by quaternions until nobody asks.
 
-    The first is the body, the scheme and the setting; each further one is times, answered by
-    quaternions.  What the engine prints goes to standard error.
+    The order is a body, a scheme and a setting.  The first answer is None.  A text in place of an
+    answer is an error of the engine, and ends the process.  What the engine prints is lost; its
+    files go to a folder.
     """
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    requests = sys.stdin.buffer
-    order = json.loads(receive(requests))
-    simulates: list[Simulate] = []
-
-    def prepare() -> bytes:
-        simulates.append(build(Body(*order["body"]), order["scheme"], order["setting"]))
-        return b""
-
-    def run(times: bytes) -> bytes:
-        return simulates[0](np.frombuffer(times)).tobytes()
-
-    go_on = _answer(answers, prepare)
-    while go_on:
+    os.chdir(folder)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(nowhere, stream)
+    with suppress(EOFError, BrokenPipeError):  # nobody asks any more
         try:
-            go_on = _answer(answers, partial(run, receive(requests)))
-        except EOFError:
-            return
-
-
-def _answer(answers: IO[bytes], work: Callable[[], bytes]) -> bool:
-    """Send what the work gives, or why it failed; return whether it gave anything."""
-    try:
-        payload = work()
-    except Exception as error:  # of any kind: it is the engine's, and is told to the bench
-        send(answers, error=f"{type(error).__name__}: {str(error).strip().partition(chr(10))[0]}")
-        return False
-    send(answers, payload)
-    return True
+            build: Build = import_module(module).build
+            simulate = build(*order)
+            pipe.send(None)
+            while True:
+                pipe.send(np.asarray(simulate(pipe.recv())))
+        except (EOFError, BrokenPipeError):
+            raise
+        except Exception as error:  # of any kind: it is the engine's, and the bench shows it
+            first = str(error).strip().partition("\n")[0]
+            pipe.send(f"{type(error).__name__}: {first}")
 
 
 def stepped(

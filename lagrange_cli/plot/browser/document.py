@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Callable
 
-from ...errors import LagtopError
+from ...errors import LagtopError, check_type
 from ...inputs.top import Top
 from ...motion.notebook import Document
 from ...motion.solve import Motion, solve
@@ -27,6 +27,7 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     are consistent.  The inputs are rounded to doubles, as sliders need them.  Raises LagtopError
     for inputs that are beyond what the page computes with.
     """
+    check_type("motion", motion, Motion)
     parts = {
         "style": _filled(text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
         "scene": json.dumps(page_scene(motion)),

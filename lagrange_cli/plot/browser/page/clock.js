@@ -32,6 +32,7 @@ export class Clock {
   /** Adapt to the period of a scene; `anew` also sets the usual speed. */
   adapt(period, anew) {
     this.period = period;
+    if (!this.reaches(this.t)) this.t = 0;
     if (anew) this.usual = nice(period / 2.5);
     this.page.scrub.max = String(100 * period);
     this.page.scrub.step = String(period / 1000);
@@ -52,9 +53,14 @@ export class Clock {
     this.set(this.t + direction * this.period / (whole ? 1 : 50));
   }
 
+  /** Whether a time is near enough for the angles to mean anything. */
+  reaches(t) {
+    return Math.abs(t) <= FARTHEST * this.period;
+  }
+
   setText(text) {
     const t = numberOf(text);
-    const fine = Math.abs(t) <= FARTHEST * this.period;
+    const fine = this.reaches(t);
     this.page.time.setAttribute("aria-invalid", String(!fine));
     if (fine) this.set(t);
   }

@@ -6,7 +6,8 @@ import { INPUTS } from "../numerics/scene.js";
 export function readLink(fragment) {
   const found = {};
   for (const [name, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
-    if (!(name in INPUTS) && name !== "t") throw new RangeError(`no input is called ${name}`);
+    const known = Object.hasOwn(INPUTS, name) || name === "t";
+    if (!known) throw new RangeError(`no input is called ${name}`);
     const x = text.trim() === "" ? NaN : Number(text);
     if (!Number.isFinite(x)) throw new RangeError(`${name} must be a number, got ${text}`);
     found[name] = x;

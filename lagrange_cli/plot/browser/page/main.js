@@ -53,8 +53,9 @@ class Page {
     }
     const { t = 0, ...inputs } = linked;
     this.show({ ...this.given, ...inputs }, true);
-    this.clock.set(t);
-    this.complain(complaint);
+    const near = this.clock.reaches(t);
+    this.clock.set(near ? t : 0);
+    this.complain(near ? complaint : `The link was not understood: t = ${t} is too far away`);
   }
 
   offerExamples() {
