@@ -39,6 +39,7 @@ section 3 a: Pi01 of Jacobi
 section 3 a: argument, parameter and modulus of Pi may be any numbers
 section 3 d: slopes of Pi
 section 3 e: slope of Pi01 as a rational function of sn, cn, dn
+section 3.1: a linear-fractional substitution
 section 3.1: definitions of sn, cn, dn
 section 3.1: property 1
 section 3.1: property 2
@@ -47,9 +48,12 @@ section 3.1: property 4
 section 3.1: property 5
 section 3.1: property 5, next terms
 section 3.1: table 2
+section 4 a: the line of nodes
+section 4 b: the angular velocity
 section 4 c: Euler's equations
 section 4 ch: rate of precession
 section 4 d: c1 and c2
+section 4 d: p and q by the rates
 section 4 d: power of the weight
 section 4 e: f and its slope at 1, -1 and u1
 section 4 e: sign of u2
@@ -80,6 +84,7 @@ section 6: the halves of the spin are alike
 section 7: precession after half a period and a whole one
 section 7: rates of the precession at T/2 and T
 section 7: the halves of the precession are alike
+section 8: rates of the precession
 sections 6 and 7: no remainder at half periods
 """.strip().splitlines()
 """Equations without a number of their own in the source: each is asked for by name."""

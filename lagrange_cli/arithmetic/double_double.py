@@ -38,7 +38,7 @@ def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
 
 
 def _product(x: Array, y: Array) -> tuple[Array, Array]:
-    """Return x * y and its rounding error, to 2^-105 of the product."""
+    """Return x * y and its rounding error, exactly."""
     product: Array = x * y
     (x_high, x_low), (y_high, y_low) = _halves(x), _halves(y)
     error = x_high * y_high
@@ -50,8 +50,8 @@ def _product(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _halves(x: Array) -> tuple[Array, Array]:
-    """Return numbers as sums of new ones with 26 and 27 bits."""
-    high = (x.view(np.int64) & -(1 << 27)).view(np.float64)
+    """Return numbers as sums of new ones with 26 bits."""
+    high = ((x.view(np.int64) + (1 << 26)) & -(1 << 27)).view(np.float64)
     return high, x - high
 
 
@@ -224,7 +224,7 @@ class DoubleDouble:
         other = self._like(other)
         high = self.high / other.high
         product, rest = _product(high, other.high)
-        np.subtract(self.high - product, rest, out=rest)
+        rest = (self.high - product) - rest
         rest += self.low
         rest -= high * other.low
         rest /= other.high

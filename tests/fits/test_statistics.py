@@ -17,7 +17,7 @@ from lagrange_cli.fits.quality import Remainder, remainder
     ("lag1", "is_noise"), [(0.05, True), (-0.09, True), (0.1, False), (-0.15, False)]
 )
 def test_the_bound_of_a_correlation(lag1: float, is_noise: bool) -> None:
-    """Of 1000 rows of noise it is within three standard deviations of 1/sqrt(1000), 0.095."""
+    """Noise of 1000 rows stays within three standard deviations of 1/sqrt(1000), 0.095."""
     assert Remainder(1000, 1e-3, lag1).is_noise is is_noise
     assert Remainder(100, 1e-3, lag1).is_noise is True
 
