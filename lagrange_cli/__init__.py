@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     from .inputs.top import Top
     from .judge.compare import compare
     from .judge.judgement import Judgement
-    from .motion.angle_sensitivities import angle_sensitivities
     from .motion.regime import Regime
-    from .motion.sensitivities import sensitivities
+    from .motion.sensitivity.angle_sensitivities import angle_sensitivities
+    from .motion.sensitivity.sensitivities import sensitivities
     from .motion.solve import Motion, solve
     from .plot.browser.document import view
     from .sweeps.angles import sweep_angles
@@ -46,12 +46,12 @@ _MODULES = {
     "Motion": "motion.solve",
     "Regime": "motion.regime",
     "Top": "inputs.top",
-    "angle_sensitivities": "motion.angle_sensitivities",
+    "angle_sensitivities": "motion.sensitivity.angle_sensitivities",
     "compare": "judge.compare",
     "find": "fits.find",
     "fit": "fits.arrays",
     "read_scene": "inputs.given",
-    "sensitivities": "motion.sensitivities",
+    "sensitivities": "motion.sensitivity.sensitivities",
     "solve": "motion.solve",
     "sweep": "sweeps.records",
     "sweep_angles": "sweeps.angles",

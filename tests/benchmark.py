@@ -31,8 +31,8 @@ from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
-from lagrange_cli.motion.proved_table import ProvedTable
-from lagrange_cli.motion.table import DEFAULT_COLUMNS
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 from lagrange_cli.output.write import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
 from lagrange_cli.sweeps.parts import runs_of

@@ -12,9 +12,9 @@ import pytest
 
 from lagrange_cli import Top
 from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.motion.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 from lagrange_cli.motion.solve import solve
-from lagrange_cli.motion.table import DEFAULT_COLUMNS
 
 
 def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:

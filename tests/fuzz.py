@@ -40,8 +40,8 @@ from fuzz_scenes import KINDS, Scene, as_decimals
 from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.errors import OutOfRangeError
+from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
-from lagrange_cli.motion.table import rows
 from lagrange_cli.sweeps.angles import sweep_angles
 
 UNITS, HALF_ULP, SWEEP_EPS = 4.0, 0.5 + 1e-9, 10.0

@@ -17,7 +17,7 @@ from conftest import ROOT
 
 from lagrange_cli import Motion, read_scene, solve
 from lagrange_cli.inputs.names import ANGLES
-from lagrange_cli.motion.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
 
 Many = Any
 """An mpf with many digits."""

@@ -18,9 +18,9 @@ from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.points import ListedPoints
 from ..arithmetic.types import Array
 from ..inputs.top import Top
+from ..motion.over_time.table import rows
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
-from ..motion.table import rows
 from .closed_forms import CLOSED_FORMS
 from .hard_scenes import HardScene
 from .integrators import integrators

@@ -29,7 +29,7 @@ def _ours(top: Top, _: str) -> Sample:
 def _ours_in_digits(top: Top, digits: int) -> Sample:
     import mpmath
 
-    from ..motion.proved_table import ProvedTable
+    from ..motion.over_time.proved_table import ProvedTable
 
     def sample(t: Array) -> Sampled:
         table = ProvedTable(solve(top), ANGLES, digits, radians=True)

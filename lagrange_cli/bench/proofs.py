@@ -18,8 +18,8 @@ from ..arithmetic.ball import Ball, TooFewDigitsError
 from ..arithmetic.balls import balls
 from ..arithmetic.rounding import decided
 from ..inputs.top import Top
-from ..motion.proved_table import BallSample, ProvedTable
-from ..motion.rational_keys import known_fraction
+from ..motion.exact.rational_keys import known_fraction
+from ..motion.over_time.proved_table import BallSample, ProvedTable
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
 from .battery import CONSERVED, Case, case_of, conserved_changes, tabulated

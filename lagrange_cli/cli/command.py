@@ -131,8 +131,8 @@ def top_layout() -> dict[str, list[Line]]:
 
 def chain_layout() -> dict[str, list[Line]]:
     """Return the keys of the steps of section 8 as the lines of a table, step by step."""
+    from ..motion.paper.worked_example import CHAIN
     from ..motion.record import KEYS, requested_keys
-    from ..motion.worked_example import CHAIN
 
     keys = KEYS | requested_keys()
     return {step: [_line(name, keys[name]) for name in names] for step, names in CHAIN.items()}
@@ -205,7 +205,7 @@ def _meaning(line: Line) -> str:
 
 def write_columns(formatter: click.HelpFormatter) -> None:
     """Write the columns of a table over time."""
-    from ..motion.columns import COLUMNS
+    from ..motion.over_time.columns import COLUMNS
 
     with formatter.section("Columns"):
         formatter.write_dl([(name, column.meaning) for name, column in COLUMNS.items()])

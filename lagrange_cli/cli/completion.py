@@ -27,7 +27,7 @@ def _keys() -> list[str]:
 
 
 def _columns() -> list[str]:
-    from ..motion.columns import column_names
+    from ..motion.over_time.columns import column_names
 
     return column_names()
 

@@ -13,7 +13,7 @@ from .options import inputs_of, motion_of
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
-    from ..motion.angle_uncertainty import AngleStds
+    from ..motion.sensitivity.angle_uncertainty import AngleStds
     from ..motion.solve import Motion
 
 
@@ -81,7 +81,7 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     """
     if not found.stds:
         return None
-    from ..motion.angle_uncertainty import AngleStds  # for few tops only
+    from ..motion.sensitivity.angle_uncertainty import AngleStds  # for few tops only
 
     stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
     if stds.reason:

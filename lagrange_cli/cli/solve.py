@@ -209,7 +209,7 @@ def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:
 
 def _steps(motion: Motion, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError where they do not hold."""
-    from ..motion.worked_example import chain
+    from ..motion.paper.worked_example import chain
 
     if motion.roots_sum is None:
         top = motion.top

@@ -116,7 +116,7 @@ def command(
     Uncertain inputs (see there too) add the standard uncertainties of the angles, theta_deg_std and
     so on, as the last columns.
     """
-    from ..motion.table import DEFAULT_COLUMNS, DEFAULT_ROWS
+    from ..motion.over_time.table import DEFAULT_COLUMNS, DEFAULT_ROWS
 
     options, interval = in_seconds(options, t_min=t_min, t_max=t_max, dt=dt)
     exclude({"--n": count, "--dt": dt})
@@ -213,7 +213,7 @@ def _same(times: Points, _: Motion) -> Points:
 
 
 def _grid(motion: Motion, **interval: Any) -> Points:
-    from ..motion.table import grid
+    from ..motion.over_time.table import grid
 
     return grid(motion, **interval)
 
@@ -227,8 +227,8 @@ def _times(motion: Motion, wish: Wish, fmt: str) -> Points:
 
 
 def _write_one(motion: Motion, wish: Wish, found: Given, fmt: str, output: str) -> None:
-    from ..motion.columns import chosen_columns
-    from ..motion.table import rows
+    from ..motion.over_time.columns import chosen_columns
+    from ..motion.over_time.table import rows
 
     times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
     header, parts = rows(motion, times, wish.columns, stds=angle_stds(found, motion), **shown)
@@ -245,7 +245,7 @@ def _write_proved(
     motion: Motion, wish: Wish, digits: int | None, radii: bool, fmt: str, output: str
 ) -> None:
     """Write a table whose numbers are rounded from enclosures."""
-    from ..motion.proved_table import ProvedTable
+    from ..motion.over_time.proved_table import ProvedTable
 
     times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
     header, parts = ProvedTable(motion, wish.columns, digits, **shown).rows(times, radii=radii)

@@ -11,7 +11,7 @@ from ..errors import AbsentError, LagtopError
 from ..inputs.measured import AS_SOLVED
 from ..inputs.names import check_names
 from ..motion.record import NUMBER_KEYS, unit_name
-from ..motion.uncertainty import FirstOrder, stds_of
+from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
 from ..output.findings import Field, Findings, with_unit
 from ..output.uncertain_text import uncertain_text
 from .command import complain, in_units, top_layout, units_of

@@ -15,9 +15,9 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
-from ..motion.angle_sensitivities import AngleDerivatives
-from ..motion.neighbourhood import PARAMETERS
 from ..motion.regime import exact
+from ..motion.sensitivity.angle_sensitivities import AngleDerivatives
+from ..motion.sensitivity.neighbourhood import PARAMETERS
 from ..sweeps.angles import sweep_angles
 
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")

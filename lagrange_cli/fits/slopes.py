@@ -9,7 +9,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..motion.record import NUMBER_KEYS
-from ..motion.sensitivities import sensitivities
+from ..motion.sensitivity.sensitivities import sensitivities
 from .search import Search
 
 _STEP = 1e-5

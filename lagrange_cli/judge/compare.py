@@ -14,8 +14,8 @@ from ..errors import LagtopError, check_type
 from ..inputs.seen import Conventions, Quantities
 from ..inputs.top import Top
 from ..inputs.trajectory_columns import QUANTITIES
+from ..motion.over_time.times import times_of
 from ..motion.solve import Motion, solve
-from ..motion.times import times_of
 from .alignment import alignment
 from .convergence import Convergence, check_steps, convergence
 from .judgement import LIMIT, Given, JudgedRun, Judgement, judge

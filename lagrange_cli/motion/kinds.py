@@ -17,8 +17,8 @@ from .regime import Facts, Regime
 from .spin_precession import SpinPrecession, period_of
 
 if TYPE_CHECKING:
-    from .samplers import Sampler
-    from .spinors import Spinor
+    from .over_time.samplers import Sampler
+    from .over_time.spinors import Spinor
 
 
 class Nutating(SpinPrecession[R]):
@@ -68,13 +68,13 @@ class Nutating(SpinPrecession[R]):
 
     def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .spinors import nutating_spinor
+        from .over_time.spinors import nutating_spinor
 
         return nutating_spinor(self)
 
     def sampler(self: Nutating[Decimal]) -> Sampler:
         """Return the attitude as a function of arrays of doubles."""
-        from .series_constants import nutating_sampler
+        from .over_time.series_constants import nutating_sampler
 
         return nutating_sampler(self)
 
@@ -141,13 +141,13 @@ class Constant(Moduli[R]):
 
     def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .spinors import constant_spinor
+        from .over_time.spinors import constant_spinor
 
         return constant_spinor(self)
 
     def sampler(self: Constant[Decimal]) -> Sampler:
         """Return the attitude as a function of arrays of doubles."""
-        from .series_constants import constant_sampler
+        from .over_time.series_constants import constant_sampler
 
         return constant_sampler(self)
 
@@ -227,13 +227,13 @@ class Separatrix(SpinPrecession[R]):
 
     def spinor(self) -> Spinor[R]:
         """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .spinors import separatrix_spinor
+        from .over_time.spinors import separatrix_spinor
 
         return separatrix_spinor(self)
 
     def sampler(self: Separatrix[Decimal]) -> Sampler:
         """Return the attitude as a function of arrays of doubles."""
-        from .series_constants import separatrix_sampler
+        from .over_time.series_constants import separatrix_sampler
 
         return separatrix_sampler(self)
 

@@ -66,7 +66,7 @@ def number_key(name: str) -> Key | None:
 
 def requested_keys() -> dict[str, Key]:
     """Return the numbers that a motion has on request only, and how they are shown."""
-    from .requested import REQUESTED  # not for a record
+    from .paper.requested import REQUESTED  # not for a record
 
     return REQUESTED
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from ..arithmetic.types import Array
     from .notebook import Document
-    from .samplers import Angles, Sampler
-    from .worked_example import WorkedExample
+    from .over_time.samplers import Angles, Sampler
+    from .paper.worked_example import WorkedExample
 
 S = TypeVar("S")
 
@@ -153,7 +153,7 @@ class Motion:
 
     def _known(self, name: str, *, radians: bool = False) -> Fraction | None:
         """Return a number if it is known as a fraction."""
-        from .rational_keys import known_fraction  # for few tops only
+        from .exact.rational_keys import known_fraction  # for few tops only
 
         return known_fraction(self.exact, name, radians=radians)
 
@@ -170,7 +170,7 @@ class Motion:
             source = kind if name in NUMBER_KEYS else self._on_request(digits)
             value: Ball | None = getattr(source, name)
         except TooFewDigitsError:
-            from .rational_keys import is_endless  # for few tops only
+            from .exact.rational_keys import is_endless  # for few tops only
 
             if is_endless(self.exact, name):
                 return None
@@ -179,7 +179,7 @@ class Motion:
 
     def _on_request(self, digits: int) -> WorkedExample[Ball]:
         """Return the keys on request in balls of so many digits."""
-        from .worked_example import WorkedExample  # the last of the classes with such keys
+        from .paper.worked_example import WorkedExample  # the last of the classes with such keys
 
         if digits not in self._requested:
             self._requested[digits] = WorkedExample(self.kind(digits), self.exact)
@@ -260,7 +260,7 @@ class Motion:
         Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
         may also be named singly.  Raises LagtopError for an unknown column or a time out of reach.
         """
-        from .table import table
+        from .over_time.table import table
 
         return table(self, t, columns, wrap=wrap)
 

@@ -11,8 +11,8 @@ from ..arithmetic.angles import per_radian
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from ..inputs.units import System
-    from ..motion.angle_uncertainty import AngleStds
     from ..motion.quantity import Key
+    from ..motion.sensitivity.angle_uncertainty import AngleStds
 
 P = TypeVar("P")
 

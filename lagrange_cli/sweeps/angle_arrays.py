@@ -18,11 +18,17 @@ from ..arithmetic.sums_of_doubles import Pair, Triple
 from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
-from ..motion.attitude import Attitude, Growth, Growths, Spinor, Times
 from ..motion.kinds import Nutating
-from ..motion.samplers import arguments_of, moduli_of, tilt_of, unwound
-from ..motion.series_constants import theta_constants
-from ..motion.theta_series import Component, Frame, Series, circular_series, hyperbolic_series
+from ..motion.over_time.attitude import Attitude, Growth, Growths, Spinor, Times
+from ..motion.over_time.samplers import arguments_of, moduli_of, tilt_of, unwound
+from ..motion.over_time.series_constants import theta_constants
+from ..motion.over_time.theta_series import (
+    Component,
+    Frame,
+    Series,
+    circular_series,
+    hyperbolic_series,
+)
 from .pair_motions import PairMotions, Start
 
 

@@ -14,9 +14,9 @@ from ..arithmetic.workspace import workspace
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
+from ..motion.over_time.times import times_of
 from ..motion.regime import Regime
 from ..motion.solve import solve
-from ..motion.times import times_of
 from .angle_arrays import ArraySampler, array_sampler
 from .pair_motions import PairMotions, released, started
 from .records import BLOCK_ROWS, Column, together

@@ -14,9 +14,9 @@ from ..errors import LagtopError
 from ..inputs.given import Given
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
-from ..motion.columns import headings
+from ..motion.over_time.columns import headings
+from ..motion.over_time.table import DEFAULT_COLUMNS, rows
 from ..motion.solve import Motion, solve
-from ..motion.table import DEFAULT_COLUMNS, rows
 from ..output.write import block_text
 from .angles import angles_of
 from .jobs import in_order

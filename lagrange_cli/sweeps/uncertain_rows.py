@@ -10,7 +10,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.record import TEXT_KEYS
-from ..motion.uncertainty import FirstOrder, stds_of
+from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
 from .records import Column
 from .top_arrays import TopArrays
 

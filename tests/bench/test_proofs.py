@@ -18,7 +18,7 @@ from lagrange_cli.arithmetic.rounding import Settled
 from lagrange_cli.bench import battery, proofs
 from lagrange_cli.bench.hard_scenes import hard_scene
 from lagrange_cli.bench.reference import Reference, angle_units, quaternion_units
-from lagrange_cli.motion.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
 
 START = {"r0": 40.0, "psidot0": 3.0, "thetadot0": 2.0}
 

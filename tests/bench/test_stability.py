@@ -23,9 +23,9 @@ from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.hard_scenes import STRATA, HardScene, hard_scene
 from lagrange_cli.bench.method import silent_steps
 from lagrange_cli.bench.reference import EPS, Reference
+from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.solve import Motion
-from lagrange_cli.motion.table import rows
 from lagrange_cli.output.findings import Findings
 
 

@@ -352,7 +352,7 @@ def test_help_shows_the_defaults_of_the_inputs(lagtop: Lagtop) -> None:
 
 
 def test_help_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
-    from lagrange_cli.motion.columns import COLUMNS
+    from lagrange_cli.motion.over_time.columns import COLUMNS
 
     for command in ("solve", "sweep"):
         record, *_ = lagtop(command, "--help").stdout.partition("\nKeys on request: ")

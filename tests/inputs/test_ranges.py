@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.points import POINTS_AT_ONCE, EvenPoints, ListedPoints
 from lagrange_cli.inputs.ranges import Product, parse_range, parse_values
-from lagrange_cli.motion.table import rows
+from lagrange_cli.motion.over_time.table import rows
 
 
 def exact_points(points: EvenPoints) -> list[float]:

@@ -14,7 +14,7 @@ from chrapan_top import MOTIONS, PARTS, J, Motion, ar, moments, slope, spoil
 from equations import EquationTests, Register, Sides
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.motion.imaginary_modulus import ImaginaryForm, imaginary_form
+from lagrange_cli.motion.paper.imaginary_modulus import ImaginaryForm, imaginary_form
 
 chrapan = Register()
 equation = chrapan.equation

@@ -15,8 +15,8 @@ from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.bench.reference import Reference
-from lagrange_cli.motion.proved_table import ProvedTable
-from lagrange_cli.motion.table import DEFAULT_COLUMNS
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 
 
 def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:

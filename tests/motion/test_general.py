@@ -18,7 +18,7 @@ from lagrange_cli.arithmetic.points import EvenPoints
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic
 from lagrange_cli.bench.reference import Reference, angle_units
-from lagrange_cli.motion.table import rows
+from lagrange_cli.motion.over_time.table import rows
 
 
 def columns(motion: Motion, names: str, t: Array) -> list[Array]:

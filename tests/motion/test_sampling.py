@@ -11,9 +11,9 @@ from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.arithmetic.workspace import ROWS, workspace
-from lagrange_cli.motion import samplers
-from lagrange_cli.motion.columns import COLUMNS, chosen_columns, name_of
-from lagrange_cli.motion.sample import samples
+from lagrange_cli.motion.over_time import samplers
+from lagrange_cli.motion.over_time.columns import COLUMNS, chosen_columns, name_of
+from lagrange_cli.motion.over_time.sample import samples
 
 STARTS: dict[str, dict[str, float]] = {
     "hyperbolic": {},

@@ -14,7 +14,7 @@ import pytest
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
-from lagrange_cli.motion.proved_table import ProvedTable
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 LARGEST, SMALLEST = 100, -300

@@ -20,7 +20,7 @@ from scenes import SAMPLES
 from lagrange_cli import LagtopError, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
-from lagrange_cli.motion.angle_uncertainty import AngleStds
+from lagrange_cli.motion.sensitivity.angle_uncertainty import AngleStds
 from lagrange_cli.plot.key_map import parse_input_range
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET
 from lagrange_cli.plot.motion_facts import nutation_period

@@ -10,7 +10,7 @@ from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve, sweep
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.motion.uncertainty import FirstOrder
+from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
 from lagrange_cli.sweeps.monte_carlo import (
     FAILS,
     HOLDS,

@@ -1,0 +1,1 @@
+"""Keys and columns that are known as fractions."""

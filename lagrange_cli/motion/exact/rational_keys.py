@@ -1,0 +1,194 @@
+"""Keys whose value is rational: rounded from the fraction, where no computing could decide.
+
+A computed number that comes out as 0 may only be too small for its digits, and one that lies
+midway between two doubles has no nearest one at any precision.  What is exactly 0, and what may be
+such a tie, is told here from the inputs.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+
+from ...arithmetic.exact_cosine import Polynomial, U
+from ..record import NUMBER_KEYS
+from ..regime import Exact
+from .half_rates import HALF_RATES, vanishing_half_rates
+
+_MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
+"""The rates that periods are made of."""
+
+
+def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
+    """Return a number of a motion, of its record or on request, where it is known as a fraction.
+
+    `radians` is for an angle, in radians instead of degrees.
+    """
+    keys = rational_keys(exact)
+    if name in HALF_RATES and name not in keys:
+        keys = keys | vanishing_half_rates(exact)
+    if name not in NUMBER_KEYS:
+        from ..paper.requested import requested_fractions
+
+        keys = keys | requested_fractions(exact, keys)
+    known = keys.get(name)
+    if not radians or known == 0:
+        return known
+    at = {"theta_min_deg": starts_at_u1, "theta_max_deg": starts_at_u2}.get(name)
+    return exact.cosine.radians if at is not None and at(exact) else None
+
+
+def is_endless(exact: Exact, name: str) -> bool:
+    """Return whether a key is the period of a mean rate that is exactly 0."""
+    return name in _MEAN_RATES and known_fraction(exact, _MEAN_RATES[name]) == 0
+
+
+@lru_cache(maxsize=8)
+def rational_keys(exact: Exact) -> dict[str, Fraction]:
+    """Return the keys of a record that are known as fractions, zeros above all.
+
+    Zeros of the rates at T/2 after a start with rates take longer: `half_rates` tells them.
+    """
+    keys = {"a": exact.a, "b": exact.b}
+    facts = exact.facts
+    keys |= _tilt_keys(exact)
+    spin = exact.r0 if facts.pole else exact.cosine.fraction(exact.r0 - exact.psi_rate * U)
+    if facts.steady or not facts.pole:  # on the vertical neither rate has a meaning of its own
+        keys["precession_rate_start"] = exact.psi_rate
+        keys |= {} if spin is None else {"spin_rate_start": spin}
+    if facts.steady:
+        keys["mean_precession_rate"] = exact.psi_rate
+        return keys | ({} if spin is None else {"mean_spin_rate": spin})
+    if facts.free or (facts.upper_root == 1 and facts.over_bottom):  # half turns about both poles
+        if facts.sign_plus == facts.sign_minus:
+            keys["mean_spin_rate"] = exact.r0 - exact.b
+        else:
+            keys["mean_precession_rate"] = Fraction(0)
+    if facts.drifts:
+        keys["mean_spin_rate"] = exact.r0 - exact.b / 2
+    return keys | _zeros_of_roots(exact) | _half_rates(exact)
+
+
+def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
+    """Return what follows from a start on a turning point: its tilt and, for some, its cosine.
+
+    Without torque and spin the axis goes round a great circle, and the other turning point is
+    opposite.
+    """
+    facts, cosine, tilt = exact.facts, exact.cosine.rational, exact.cosine.degrees
+    opposite = facts.free and not facts.spins and not facts.steady
+    keys: dict[str, Fraction] = {}
+    ends = (
+        ("u1", "theta_min_deg", starts_at_u1(exact)),
+        ("u2", "theta_max_deg", starts_at_u2(exact)),
+    )
+    for (u, theta, here), (other_u, other_theta, _) in (ends, ends[::-1]):
+        if here and cosine is not None:
+            keys |= {u: cosine} | ({other_u: -cosine} if opposite else {})
+        if here and tilt is not None:
+            keys |= {theta: tilt} | ({other_theta: 180 - tilt} if opposite else {})
+    if facts.at_rest and facts.regime == "no spin" and tilt is not None:
+        keys["modular_angle_deg"] = 90 - tilt / 2
+    return keys
+
+
+def starts_at_u1(exact: Exact) -> bool:
+    """Return whether the start is the upper turning point."""
+    if exact.facts.pole:
+        return exact.facts.pole == 1
+    return exact.facts.steady or (not exact.theta_rate and _fall(exact) < 0)
+
+
+def starts_at_u2(exact: Exact) -> bool:
+    """Return whether the start is the lower turning point."""
+    if exact.facts.pole:
+        return exact.facts.pole == -1
+    return exact.facts.steady or (not exact.theta_rate and _fall(exact) > 0)
+
+
+def _fall(exact: Exact) -> int:
+    """Return the sign of u'' for a start without nutation rate: that of c1/sin^2 theta0."""
+    psi = exact.psi_rate
+    return exact.cosine.sign(Polynomial(2 * exact.b * psi - exact.a, -2 * psi * psi))
+
+
+def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
+    """Return u1 = 0 or u2 = 0 where f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0."""
+    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
+    energy = exact.theta_rate**2 + psi * psi * sin2
+    beta = psi * sin2 + b * U
+    keys: dict[str, Fraction] = {}
+    if exact.cosine.vanishes(energy + a * U - beta * beta):
+        sign = exact.cosine.sign(U)
+        if sign:
+            keys["u2" if sign > 0 else "u1"] = Fraction(0)
+        else:  # the start is horizontal, and on one of the two
+            keys["u1" if starts_at_u1(exact) else "u2"] = Fraction(0)
+    if starts_at_u1(exact) and _quarter_is_level(exact, energy, beta):
+        keys["u_quarter"] = Fraction(0)
+    return keys
+
+
+def _quarter_is_level(exact: Exact, energy: Polynomial, beta: Polynomial) -> bool:
+    """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
+
+    Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3; with x2 + x3 = -c2/a, x2 x3 = c1/a its square
+    is a polynomial in u0.  Without torque u(T/4) is the mean of u1 and u2, and goes as beta b.
+    """
+    if exact.facts.free:
+        return exact.cosine.vanishes(exact.b * beta)
+    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
+    c2 = 2 * a * U - energy - b * b
+    c1 = 2 * b * psi * sin2 - a * sin2 - 2 * (U * energy)
+    product = a * (U * U) - U * c2 + c1  # a u2 u3
+    level = (U * U) * (c2 * c2 - 4 * a * c1) - product * product
+    return (
+        exact.cosine.vanishes(level) and exact.cosine.sign(U) > 0 and exact.cosine.sign(product) < 0
+    )
+
+
+def _half_rates(exact: Exact) -> dict[str, Fraction]:
+    """Return the rates at T/2 that are known."""
+    facts = exact.facts
+    below = facts.over_bottom and starts_at_u1(exact)
+    above = facts.upper_root == 1 and starts_at_u2(exact)
+    if below or above:  # on a pole, where no rate has a meaning
+        return {}
+    if facts.plane:
+        return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
+    if facts.cusp and starts_at_u2(exact):
+        return {"precession_rate_half": Fraction(0)}
+    if facts.free:
+        return _free_half_rates(exact)
+    return _half_rates_after_rest(exact) if facts.at_rest and facts.spins else {}
+
+
+def _half_rates_after_rest(exact: Exact) -> dict[str, Fraction]:
+    """Return psi'(T/2) = a/b (4,7), and phi'(T/2) = r0 - (a/b) u2 where it is 0."""
+    a, b = exact.a, exact.b
+    keys = {"precession_rate_half": a / b}
+    level = exact.r0 * b / a  # the u2 at which phi' is 0
+    if abs(level) <= 1 and exact.cosine.vanishes(
+        level * level - b * b / a * level + b * b / a * U - 1
+    ):
+        keys["spin_rate_half"] = Fraction(0)
+    return keys
+
+
+def _free_half_rates(exact: Exact) -> dict[str, Fraction]:
+    """Return the rates at T/2 that are 0 without torque, where u(T/2) = u1 + u2 - u0.
+
+    The roots of (4,9) have the sum 2 beta b/D with D = energy + b^2; the rates vanish where
+    beta - b u and r0 (1 - u^2) - u (beta - b u) do, at u = u(T/2).
+    """
+    b, psi, sin2 = exact.b, exact.psi_rate, 1 - U * U
+    beta = psi * sin2 + b * U
+    D = exact.theta_rate**2 + psi * psi * sin2 + b * b
+    D_u = 2 * b * beta - U * D
+    still = D * beta - b * D_u
+    keys: dict[str, Fraction] = {}
+    if exact.cosine.vanishes(still):
+        keys["precession_rate_half"] = Fraction(0)
+    if exact.cosine.vanishes(exact.r0 * (D * D - D_u * D_u) - D_u * still):
+        keys["spin_rate_half"] = Fraction(0)
+    return keys

@@ -1,0 +1,1 @@
+"""The motion over time: angles and columns at given times."""

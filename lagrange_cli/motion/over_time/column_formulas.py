@@ -1,0 +1,257 @@
+"""The formulas of the columns of `lagtop table`: rates, attitude and conserved quantities.
+
+Each is computed from the attitude
+
+    X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
+
+up to a common positive factor: with N = |X|^2 + |Y|^2, 1 + u = 2 |X|^2/N and 1 - u = 2 |Y|^2/N keep
+their digits next to the poles.  `sample` has them at arrays of times, `proved_table` in balls at
+one time.  Equation numbers are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from ...arithmetic.numbers import R
+from ...arithmetic.values import Over, Values
+from ..kinds import Kind, rate_parts
+
+if TYPE_CHECKING:
+    from ...arithmetic.protocol import Arithmetic
+    from ..regime import Exact
+
+
+class ColumnConstants(Values, Over[R]):
+    """The constants of a top on which its columns depend."""
+
+    half_A: R
+    """A/2."""
+    half_C: R
+    torque: R
+    """mgs."""
+    r0: R
+    drift: R
+    """r0 - b, or r0 on the vertical, where the next two are 0."""
+    plus: R
+    """(beta + b)/2."""
+    minus: R
+    """(beta - b)/2."""
+    alpha: R
+    a: R
+
+
+def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
+    """Return the constants of a motion in its arithmetic."""
+    ar, state = kind.ar, kind.state
+    A, C = Fraction(exact.top.A), Fraction(exact.top.C)
+    with ar.working():
+        drift, plus, minus = rate_parts(kind)
+        around = state.psi_rate * state.sin
+        return ColumnConstants(
+            half_A=ar.convert(A / 2),
+            half_C=ar.convert(C / 2),
+            torque=ar.convert(exact.a * A / 2),
+            r0=state.r0,
+            drift=drift,
+            plus=plus / 2,
+            minus=minus / 2,
+            alpha=state.theta_rate * state.theta_rate + around * around + state.a * state.cos,
+            a=state.a,
+        )
+
+
+class ColumnFormulas(Over[R]):
+    """A motion at one time or at some; a quantity is computed once, when it is asked for.
+
+    A column is the method that `columns` names.
+    """
+
+    ar: Arithmetic[R]
+    t: R
+    constants: ColumnConstants[R]
+
+    @property
+    @abstractmethod
+    def x2(self) -> R:
+        """|X|^2."""
+
+    @property
+    @abstractmethod
+    def y2(self) -> R:
+        """|Y|^2."""
+
+    @property
+    @abstractmethod
+    def around(self) -> R:
+        """The precession, up to whole turns."""
+
+    @property
+    @abstractmethod
+    def within(self) -> R:
+        """The spin, up to whole turns."""
+
+    @property
+    @abstractmethod
+    def args(self) -> tuple[R, R]:
+        """(psi + phi)/2 and (psi - phi)/2, up to whole turns of both or half a turn of both."""
+
+    @property
+    @abstractmethod
+    def theta_rate(self) -> R:
+        """The nutation rate."""
+
+    @abstractmethod
+    def theta(self) -> R:
+        """Return the tilt."""
+
+    @abstractmethod
+    def phi(self) -> R:
+        """Return the spin."""
+
+    @abstractmethod
+    def psi(self) -> R:
+        """Return the precession."""
+
+    @abstractmethod
+    def phi_remainder(self) -> R:
+        """Return the periodic part of the spin (6,4)."""
+
+    @abstractmethod
+    def psi_remainder(self) -> R:
+        """Return the periodic part of the precession (7,4)."""
+
+    @abstractmethod
+    def over(self, value: R, divisor: R) -> R:
+        """Return a quotient, and 0 for 0/0: over a pole there is no momentum about it."""
+
+    def times(self) -> R:
+        """Return the time."""
+        return self.t
+
+    def r(self) -> R:
+        """Return the angular velocity about the figure axis, which is constant."""
+        return self.constants.r0
+
+    @cached_property
+    def x(self) -> R:
+        """|X|."""
+        return self.ar.sqrt(self.x2)
+
+    @cached_property
+    def y(self) -> R:
+        """|Y|."""
+        return self.ar.sqrt(self.y2)
+
+    @cached_property
+    def norm(self) -> R:
+        """N."""
+        return self.x2 + self.y2
+
+    @cached_property
+    def u(self) -> R:
+        """cos(theta) (4,6)."""
+        return (self.x2 - self.y2) / self.norm
+
+    def cosine(self) -> R:
+        """Return cos(theta) (4,6)."""
+        return self.u
+
+    @cached_property
+    def sine(self) -> R:
+        """sin(theta)."""
+        return 2 * self.x * self.y / self.norm
+
+    @cached_property
+    def poles(self) -> tuple[R, R]:
+        """(beta + b)/2/(1 + u) and (beta - b)/2/(1 - u), the two parts of the precession rate."""
+        return (
+            self.over(self.constants.plus * self.norm, 2 * self.x2),
+            self.over(self.constants.minus * self.norm, 2 * self.y2),
+        )
+
+    def phi_rate(self) -> R:
+        """Return the spin rate (4,8)."""
+        south, north = self.poles
+        return self.constants.drift + south - north
+
+    def psi_rate(self) -> R:
+        """Return the precession rate (4,7)."""
+        south, north = self.poles
+        return south + north
+
+    def nutation_rate(self) -> R:
+        """Return the nutation rate (5,3)."""
+        return self.theta_rate
+
+    @cached_property
+    def across(self) -> R:
+        """psi' sin(theta), the angular velocity across the line of nodes (4,1)."""
+        south = self.over(self.constants.plus * self.y, self.x)
+        return south + self.over(self.constants.minus * self.x, self.y)
+
+    @cached_property
+    def turned(self) -> tuple[R, R]:
+        """Sine and cosine of the spin."""
+        return self.ar.sin(self.within), self.ar.cos(self.within)
+
+    def p(self) -> R:
+        """Return the angular velocity about the body's x axis (4,1)."""
+        sin, cos = self.turned
+        return self.across * sin + self.theta_rate * cos
+
+    def q(self) -> R:
+        """Return the angular velocity about the body's y axis (4,1)."""
+        sin, cos = self.turned
+        return self.across * cos - self.theta_rate * sin
+
+    def moment(self) -> R:
+        """Return mgs sin(theta), the moment s k' x (-mg k) of section 4 a, which has no other part.
+
+        The line of nodes lies at psi in the horizontal plane.
+        """
+        return self.constants.torque * self.sine
+
+    def axis_x(self) -> R:
+        """Return the x part of the figure axis in space."""
+        return self.sine * self.ar.sin(self.around)
+
+    def axis_y(self) -> R:
+        """Return the y part of the figure axis in space."""
+        return -self.sine * self.ar.cos(self.around)
+
+    @cached_property
+    def unit(self) -> tuple[R, R]:
+        """|X| and |Y|, each over sqrt(N)."""
+        size = self.ar.sqrt(self.norm)
+        return self.x / size, self.y / size
+
+    def quaternion_w(self) -> R:
+        """Return the real part of X = w + i z, of the rotation from body to space."""
+        return self.unit[0] * self.ar.cos(self.args[0])
+
+    def quaternion_x(self) -> R:
+        """Return the real part of Y = x + i y."""
+        return self.unit[1] * self.ar.cos(self.args[1])
+
+    def quaternion_y(self) -> R:
+        """Return the imaginary part of Y = x + i y."""
+        return self.unit[1] * self.ar.sin(self.args[1])
+
+    def quaternion_z(self) -> R:
+        """Return the imaginary part of X = w + i z."""
+        return self.unit[0] * self.ar.sin(self.args[0])
+
+    def energy(self) -> R:
+        """Return A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs cos(theta) (4,2)."""
+        c = self.constants
+        swing = self.theta_rate * self.theta_rate + self.across * self.across
+        return c.half_A * swing + c.half_C * c.r0 * c.r0 + c.torque * self.u
+
+    def vertical_momentum(self) -> R:
+        """Return A psi' sin^2 theta + C r0 cos(theta), constant (4,3)."""
+        c = self.constants
+        return 2 * c.half_A * self.across * self.sine + 2 * c.half_C * c.r0 * self.u

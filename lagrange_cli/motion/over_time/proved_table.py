@@ -1,0 +1,245 @@
+"""Columns of one motion over time in balls, each rounded where both ends of its ball are alike.
+
+The attitude is that of the theta series in balls (`spinors`), whose remainders are proved in
+`theta_series`, so that whole turns are proved with it.  Equation numbers are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from functools import cache, cached_property, partial
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from ...arithmetic.ball import Ball
+from ...arithmetic.numbers import Number
+from ...arithmetic.rounding import Settled, rounding_of, settled
+from ...arithmetic.text import NumberText, double_text
+from ..exact.rational_columns import known_column
+from ..exact.rational_keys import known_fraction
+from ..kinds import Constant, Separatrix
+from ..solve import Motion
+from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
+from .columns import Part, chosen_columns, headings, name_of
+from .spinors import Attitude
+
+if TYPE_CHECKING:
+    from ...arithmetic.points import Points
+
+ROWS = 64
+"""Rows that are handed on together."""
+_EXTRA = 16
+"""Digits by which the precision grows with the number of turns: a precision serves many rows."""
+
+
+class BallSample(ColumnFormulas[Ball]):
+    """A motion at one time in balls."""
+
+    def __init__(
+        self,
+        motion: Motion,
+        digits: int,
+        constants: ColumnConstants[Ball],
+        t: Ball,
+        at: Attitude[Ball],
+    ) -> None:
+        self.exact, self.kind = motion.exact, motion.kind(digits)
+        self.constants, self.t, self.at = constants, t, at
+        self.ar = t.ar
+
+    @property
+    def x(self) -> Ball:
+        """|X|."""
+        return self.at.x
+
+    @property
+    def y(self) -> Ball:
+        """|Y|."""
+        return self.at.y
+
+    @cached_property
+    def x2(self) -> Ball:
+        """|X|^2."""
+        return self.at.x * self.at.x
+
+    @cached_property
+    def y2(self) -> Ball:
+        """|Y|^2."""
+        return self.at.y * self.at.y
+
+    @property
+    def within(self) -> Ball:
+        """The spin."""
+        return self.at.phi
+
+    @property
+    def around(self) -> Ball:
+        """The precession."""
+        return self.at.psi
+
+    @cached_property
+    def args(self) -> tuple[Ball, Ball]:
+        """(psi + phi)/2 and (psi - phi)/2."""
+        return (self.at.psi + self.at.phi) / 2, (self.at.psi - self.at.phi) / 2
+
+    def over(self, value: Ball, divisor: Ball) -> Ball:
+        """Return a quotient, and 0 if the value is exactly 0."""
+        return value / divisor if value else value
+
+    def theta(self) -> Ball:
+        """Return the tilt."""
+        return 2 * self.ar.atan2(self.at.y, self.at.x)
+
+    def phi(self) -> Ball:
+        """Return the spin."""
+        return self.at.phi
+
+    def psi(self) -> Ball:
+        """Return the precession."""
+        return self.at.psi
+
+    def wrapped(self, angle: Ball) -> Ball:
+        """Return an angle in (-pi, pi]."""
+        ar = self.t.ar
+        if self.kind.facts.plane:  # half turns, where both ends belong to pi
+            return ar.pi * (ar.nint(angle / ar.pi) % 2)
+        return angle - 2 * ar.pi * ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))
+
+    @cached_property
+    def growths(self) -> tuple[Ball, Ball]:
+        """Growth of spin and precession by their mean rates, on the separatrix in infinite time."""
+        kind = self.kind
+        if isinstance(kind, Separatrix):
+            return kind.state.spin_drift * self.t, kind.b / 2 * self.t
+        still = known_fraction(self.exact, "mean_spin_rate") == 0
+        spin = 0 * self.t if still else kind.mean_spin_rate * self.t
+        return spin, kind.mean_precession_rate * self.t
+
+    def phi_remainder(self) -> Ball:
+        """Return the periodic part of the spin (6,4)."""
+        constant = isinstance(self.kind, Constant)
+        return 0 * self.t if constant else self.at.phi - self.growths[0]
+
+    def psi_remainder(self) -> Ball:
+        """Return the periodic part of the precession (7,4)."""
+        constant = isinstance(self.kind, Constant)
+        return 0 * self.t if constant else self.at.psi - self.growths[1]
+
+    @cached_property
+    def theta_square(self) -> Ball:
+        """theta'^2 by the energy (4,2)."""
+        return self.constants.alpha - self.constants.a * self.u - self.across * self.across
+
+    @cached_property
+    def theta_rate(self) -> Ball:
+        """theta', which has the sign of `at.tilting`."""
+        tilting = self.at.tilting
+        if not tilting:
+            return 0 * self.t
+        speed = self.ar.sqrt(self.theta_square)
+        return speed if tilting > 0 else -speed
+
+
+class ProvedTable:
+    """Columns of a motion over time, as doubles or with so many significant digits."""
+
+    def __init__(
+        self,
+        motion: Motion,
+        columns: Sequence[str],
+        digits: int | None = None,
+        *,
+        radians: bool = False,
+        wrap: bool = False,
+    ) -> None:
+        """Raise LagtopError for an unknown column."""
+        self.motion, self.digits, self.radians, self.wrap = motion, digits, radians, wrap
+        self.chosen = chosen_columns(columns)
+        self.header = headings(columns, radians=radians)
+        scene = motion.exact
+        rates = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate)
+        self._speed = sum(map(abs, rates)) + scene.a + 1
+        self._spinors: dict[int, Callable[[Ball], Attitude[Ball]]] = {}
+        self._constants: dict[int, ColumnConstants[Ball]] = {}
+
+    def row(self, time: Fraction) -> list[Settled]:
+        """Return the numbers of the columns at a time, which is exact.
+
+        Raises LagtopError if no precision tells one from 0 or a tie.
+        """
+        sample = cache(lambda digits: self.sample(time, digits))
+        return [self._number(part, time, sample) for part in self.chosen]
+
+    def sample(self, time: Fraction, digits: int) -> BallSample:
+        """Return the motion at a time in balls of so many digits.
+
+        Raises TooFewDigitsError if these do not tell the roots or the half periods apart.
+        """
+        kind = self.motion.kind(digits)
+        if digits not in self._constants:
+            self._constants[digits] = column_constants(kind, self.motion.exact)
+        t = kind.ar.convert(time)
+        if time:
+            if digits not in self._spinors:
+                self._spinors[digits] = kind.spinor()
+            at = self._spinors[digits](t)
+        else:
+            state = kind.state
+            at = Attitude(state.cos_half, state.sin_half, t, t, state.theta_rate)
+        return BallSample(self.motion, digits, self._constants[digits], t, at)
+
+    def _number(self, part: Part, time: Fraction, sample: Callable[[int], BallSample]) -> Settled:
+        """Return a column at a time, at which `sample` gives the motion in so many digits."""
+        what = f"{name_of(part)} at t = {float(time)}"
+        rounding = rounding_of(what, self.digits)
+        if part.method == "times":
+            return Settled(rounding(time), (time,))
+        units = {"radians": self.radians, "wrap": self.wrap}
+        number = settled(
+            what,
+            lambda digits: self._enclosure(part, sample(digits)),
+            rounding,
+            digits=self.digits or 0,
+            more=self._digits_of(time),
+            exactly=partial(known_column, self.motion.exact, part.method, time, **units),
+        )
+        assert number is not None
+        return number
+
+    def _enclosure(self, part: Part, sample: BallSample) -> Ball:
+        """Return a ball that holds a column, angles in the unit in use."""
+        value: Ball = getattr(sample, part.method)()
+        if self.wrap and part.method in {"phi", "psi"}:
+            value = sample.wrapped(value)
+        in_degrees = part.heading.endswith("*") and not self.radians
+        return value * 180 / sample.t.ar.pi if in_degrees else value
+
+    def _digits_of(self, time: Fraction) -> int:
+        """Return about how many digits whole turns take."""
+        turns = len(str(int(abs(time) * self._speed)))
+        return turns // _EXTRA * _EXTRA
+
+    def rows(
+        self, times: Points, *, radii: bool = False
+    ) -> tuple[list[str], Iterator[list[list[NumberText]]]]:
+        """Return the header and lists of rows; with `radii` a KEY_radius follows for each KEY.
+
+        Times are the doubles that `lagtop table` computes at or, if digits are asked for, decimals.
+        """
+        header = [*self.header, *(f"{name}_radius" for name in self.header if radii)]
+        return header, self._lists(times, radii=radii)
+
+    def _lists(self, times: Points, *, radii: bool) -> Iterator[list[list[NumberText]]]:
+        waiting: Iterator[Number] = times.decimals()
+        if self.digits is None:
+            waiting = (float(time) for time in waiting)
+        while block := list(islice(waiting, ROWS)):
+            yield [_texts(self.row(Fraction(time)), radii=radii) for time in block]
+
+
+def _texts(row: Sequence[Settled], *, radii: bool) -> list[NumberText]:
+    values: list[Any] = [
+        NumberText(double_text(x.value)) if isinstance(x.value, float) else x.value for x in row
+    ]
+    return [*values, *(x.radius for x in row if radii)]

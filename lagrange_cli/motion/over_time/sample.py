@@ -1,0 +1,128 @@
+"""The columns of `lagtop table` at arrays of times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...arithmetic.arrays import ARRAYS
+from ...arithmetic.blocks import BLOCK, blocks
+from ...arithmetic.types import Array
+from ...arithmetic.workspace import workspace
+from ..solve import Motion
+from .attitude import Attitude, needed
+from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
+from .columns import Part, needs_of
+
+
+class Sample(ColumnFormulas[Array]):
+    """The motion at a block of times."""
+
+    ar: Any = ARRAYS
+
+    def __init__(
+        self,
+        t: Array,
+        attitude: Attitude,
+        constants: ColumnConstants[Array],
+        rises: int,
+        wrap: bool,
+    ) -> None:
+        self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
+        self.rises = rises
+
+    def write(self, part: Part, target: Array) -> None:
+        """Write a column into an array."""
+        target[:] = getattr(self, part.method)()
+
+    def theta(self) -> Array:
+        """Return the tilt."""
+        return self.attitude.theta()
+
+    def phi(self) -> Array:
+        """Return the spin."""
+        return self.attitude.phi(wrap=self.wrap)
+
+    def psi(self) -> Array:
+        """Return the precession."""
+        return self.attitude.psi(wrap=self.wrap)
+
+    def phi_remainder(self) -> Array:
+        """Return the periodic part of the spin (6,4)."""
+        return self.attitude.phi_remainder()
+
+    def psi_remainder(self) -> Array:
+        """Return the periodic part of the precession (7,4)."""
+        return self.attitude.psi_remainder()
+
+    @cached_property
+    def x2(self) -> Array:
+        """|X|^2."""
+        return needed(self.attitude.spinor.x2)
+
+    @cached_property
+    def y2(self) -> Array:
+        """|Y|^2."""
+        return needed(self.attitude.spinor.y2)
+
+    @cached_property
+    def theta_rate(self) -> Array:
+        """(5,3), with its sign; on a pole by the energy (4,2), with the sign of the start."""
+        product = 2.0 * self.norm * self.x * self.y
+        rate = needed(self.attitude.spinor.rate)
+        speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
+        speed *= self.rises
+        return np.divide(rate, product, out=speed, where=product != 0.0)
+
+    @cached_property
+    def within(self) -> Array:
+        """The spin, without whole turns."""
+        return self.attitude.phi(wrap=True)
+
+    @cached_property
+    def around(self) -> Array:
+        """The precession, without whole turns; the line of nodes lies along x at psi = 0."""
+        return self.attitude.psi(wrap=True)
+
+    @cached_property
+    def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """(psi + phi)/2 and (psi - phi)/2, each less half turns, and the sign of X or Y for it."""
+        return self.attitude.quarters()
+
+    @cached_property
+    def args(self) -> tuple[Array, Array]:
+        """(psi + phi)/2 and (psi - phi)/2, each less half turns."""
+        (arg_x, _), (arg_y, _) = self.quarters
+        return arg_x, arg_y
+
+    @cached_property
+    def unit(self) -> tuple[Array, Array]:
+        """|X| and |Y|, each over sqrt(N), with the signs that make the quaternion continuous."""
+        (_, sign_x), (_, sign_y) = self.quarters
+        x, y = super().unit
+        return sign_x * x, sign_y * y
+
+    def over(self, value: Array, divisor: Array) -> Array:
+        """Return the quotient, and 0 where both vanish."""
+        return np.divide(value, divisor, out=np.zeros_like(divisor), where=divisor != 0.0)
+
+
+def samples(
+    motion: Motion, t: Array, chosen: Sequence[Part], *, wrap: bool
+) -> Iterator[tuple[slice, Sample]]:
+    """Yield the motion at the times t, a block at a time, with what some columns need.
+
+    A sample is used up when the next one is asked for.
+    """
+    sampler, needs, kind = motion.sampler(), needs_of(chosen), motion.middle()
+    constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
+    rises = -1 if kind.state.theta_rate < 0 else 1
+    farthest = sampler.check(t)
+    with workspace(min(t.size, BLOCK)) as space:
+        for part in blocks(t.size):
+            with ARRAYS.working():
+                attitude = sampler.attitude(t[part], needs, farthest, space)
+            yield part, Sample(t[part], attitude, constants, rises, wrap)

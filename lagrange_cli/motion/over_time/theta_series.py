@@ -1,0 +1,255 @@
+"""The theta series of the attitude as polynomials: coefficients in many digits, then doubles.
+
+X = cos(theta/2) exp(i (psi + phi)/2) goes as theta2(x - i s+ y+) and
+Y = sin(theta/2) exp(i (psi - phi)/2) as theta1(x - i s- y-), with x = pi t/T counted from a passage
+of u1.  While K <= K' the series run in the nome q; beyond, Jacobi's imaginary transformation gives
+series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so four terms are enough for
+doubles.  The phase is counted from the nearer of u1 and u2: no argument is ever near the end of
+its branch, and none can leap there.
+
+s is sin^2 x or -sinh^2 x, and S and C are sine and cosine (see `multiple_angles`).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ...arithmetic.formulas import polynomial
+from ...arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
+from ...elliptic.complete import nome
+from ...elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
+from .multiple_angles import (
+    COS_EVEN,
+    COS_ODD,
+    SIN_EVEN,
+    SIN_ODD,
+    Coefficients,
+    alternated,
+    doubled,
+    multiples,
+    summed,
+)
+
+TERMS = 4
+"""Enough for doubles."""
+
+
+class Component(NamedTuple):
+    """X or Y about one turning point.
+
+    Real and imaginary part are C P(s) and S Q(s), or P(s) and S C Q(s) where `even`.
+    """
+
+    real: Coefficients
+    imag: Coefficients
+    even: bool = False
+
+
+Components = tuple[Component, Component]
+"""theta2 and theta1 for one of X, Y."""
+
+
+class Frame(NamedTuple):
+    """X, Y and S C `rate` = theta1(2x) about one turning point."""
+
+    x: Component
+    y: Component
+    rate: Coefficients
+
+
+class Place(NamedTuple):
+    """A number eta from 0 to K', by sn^2(eta, k') and cn^2(eta, k') with any common factor."""
+
+    s2: Value
+    c2: Value
+
+
+class ThetaConstants(NamedTuple):
+    """What the series need to know of a nutating top."""
+
+    period: Value
+    quarter: Value
+    """K."""
+    quarter_prime: Value
+    """K'; None where it is infinite (no torque)."""
+    m: Value
+    """k^2."""
+    k: Value
+    k_prime: Value
+    plus: Place
+    """The parameter of X, 2K y+/pi."""
+    minus: Place
+    """The parameter of Y, 2K y-/pi."""
+    x_size: Value
+    """|X| at u1, which is cos(theta_min/2)."""
+    y_size: Value
+    """|Y| at u2, sin(theta_max/2), times sqrt(k') as theta3(x)/theta3(0) shrinks on the way."""
+    sign_plus: Value
+    sign_minus: Value
+    offset: Value
+    """Periods since the nearest passage of u1, at t = 0."""
+    rises: int
+    """Sign of the nutation rate at t = 0; +1 where it is 0."""
+    nutation: Value
+    """-du/dt near a passage of u1 is `nutation` times the phase x; None where it is not needed."""
+
+
+class Series(NamedTuple):
+    """The series about u1 and about u2, in the caller's digits; a step is half a period."""
+
+    hyperbolic: bool
+    frames: list[Frame]
+    scale: Value
+    """Argument of the functions per step of the phase."""
+    spin_slope: Value
+    """What the spin has over its mean growth per step; the series winds by as much less."""
+    precession_slope: Value
+
+
+def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
+    """Return the series in the smaller nome."""
+    hyperbolic = c.quarter_prime is not None and ar.either(c.quarter > c.quarter_prime)
+    return (hyperbolic_series if hyperbolic else circular_series)(ar, c, terms)
+
+
+def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
+    """Return the series in q, which wind by +-pi over a period."""
+    weights = _weights(ar, nome(ar, m=c.m, k_prime=c.k_prime), 2, terms)
+    plus, minus = (
+        hyperbolic_cosine_and_sine(ar, m=c.m, k_prime=c.k_prime, s2=place.s2, c2=place.c2)
+        for place in (c.plus, c.minus)
+    )
+    x = _circular_components(weights, plus, c.x_size, c.sign_plus)
+    y = _circular_components(weights, minus, c.y_size, c.sign_minus)
+    quarter_turn = ar.pi / 2
+    return Series(
+        hyperbolic=False,
+        frames=_frames(x, y, _rate(weights, 1, c.nutation)),
+        scale=quarter_turn,
+        spin_slope=-(c.sign_plus - c.sign_minus) * quarter_turn,
+        precession_slope=-(c.sign_plus + c.sign_minus) * quarter_turn,
+    )
+
+
+def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
+    """Return the series in q'; Jacobi's transformation adds a linear exponent of its own."""
+    ratio: Value = c.quarter / c.quarter_prime
+    mc = c.k_prime * c.k_prime
+    q = nome(ar, m=mc, k_prime=c.k)
+    plus, minus = (
+        cosine_and_sine(ar, m=mc, k_prime=c.k, s2=place.s2, c2=place.c2)
+        for place in (c.plus, c.minus)
+    )
+    even = [(2 if n else 1) * weight for n, weight in enumerate(_weights(ar, q, 1, terms))]
+    odd = [2 * ar.sqrt(ar.sqrt(q)) * weight for weight in _weights(ar, q, 2, terms)]
+    x = _hyperbolic_components(even, odd, plus, c.sign_plus, c.x_size)
+    y = _hyperbolic_components(even, odd, minus, c.sign_minus, c.y_size)
+    slope_x, slope_y = -c.sign_plus * ar.atan2(*plus), -c.sign_minus * ar.atan2(*minus)
+    return Series(
+        hyperbolic=True,
+        frames=_frames(x, y, _rate(odd, -1, c.nutation and c.nutation / ratio)),
+        scale=ar.pi / 2 * ratio,
+        spin_slope=slope_x - slope_y,
+        precession_slope=slope_x + slope_y,
+    )
+
+
+def _frames(x: Components, y: Components, rate: Coefficients) -> list[Frame]:
+    """Return the series about u1 and u2: half a period turns theta2 into theta1 and back."""
+    return [Frame(x[0], y[1], rate), Frame(x[1], y[0], [-coefficient for coefficient in rate])]
+
+
+def _circular_components(
+    weights: list[Value], first: tuple[Value, Value], size: Value, sign: Value
+) -> Components:
+    """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0.
+
+    `first` are cosh y and sinh y.
+    """
+    odd = multiples(first, doubled(*first, -1), -1, len(weights))
+    cosh, sinh = ([w * x for w, x in zip(weights, part, strict=True)] for part in odd)
+    unit = size / sum(cosh)
+    return (
+        Component(summed(COS_ODD, 1, unit, cosh), summed(SIN_ODD, 1, sign * unit, sinh)),
+        Component(
+            summed(COS_ODD, 1, unit, alternated(sinh)),
+            summed(SIN_ODD, 1, sign * unit, alternated(cosh)),
+        ),
+    )
+
+
+def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Value]:
+    """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2.
+
+    What the series leave out, of N terms in a nome q <= 1/20, is added to the first two weights,
+    which multiply constants: |y| <= log(1/q)/2 in circular series, and |z| <= 3 log(1/q)/8 in
+    hyperbolic ones, as no phase is beyond 3/4.  |sin jx| <= j |sin x|, sinh jx <= j e^((j-1) x)
+    sinh x and cosh jx <= e^((j-1) x) cosh x for x >= 0, so that a term, over the constant that the
+    weight multiplies, is at most 2 (2n+1)^2 q^(n(n-1)); from n = 1 on each of these is less than
+    half of the one before, and all from n = N are at most 4 (2N+1)^2 times the last weight.
+    """
+    weights, power = [0 * q + 1], q if first == 1 else q * q
+    for _ in range(terms - 1):
+        weights.append(weights[-1] * power)
+        power = power * q * q
+    last, factor = weights[-1], 4 * (2 * terms + 1) * (2 * terms + 1)
+    first_two = (
+        ar.widened(weight, lambda: (last,), lambda last: factor * last, values_only=True)
+        for weight in weights[:2]
+    )
+    return [*first_two, *weights[2:]]
+
+
+def _hyperbolic_components(
+    even: list[Value], odd: list[Value], first: tuple[Value, Value], sign: Value, size: Value
+) -> Components:
+    """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h.
+
+    `first` are cos v and sin v.
+    """
+    zero = 0 * first[0]
+    step, none = doubled(*first, 1), (1 + zero, zero)
+    (cos_even, sin_even), (cos_odd, sin_odd) = (
+        [alternated([w * x for w, x in zip(weights, part, strict=True)]) for part in functions]
+        for weights, functions in (
+            (even, multiples(none, step, 1, len(even))),
+            (odd, multiples(first, step, 1, len(odd))),
+        )
+    )
+    unit = size / sum(cos_even)
+    return (
+        Component(
+            summed(COS_EVEN, -1, unit, cos_even), summed(SIN_EVEN, -1, -sign * unit, sin_even), True
+        ),
+        Component(summed(COS_ODD, -1, unit, sin_odd), summed(SIN_ODD, -1, sign * unit, cos_odd)),
+    )
+
+
+def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients:
+    """Return theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
+    if nutation is None:
+        return []
+    terms = [0 * nutation] * (2 * len(weights))
+    terms[1::2] = alternated(weights)
+    unit = nutation / sum(2 * n * term for n, term in enumerate(terms))
+    return summed(SIN_EVEN, curvature, unit, terms)
+
+
+def evaluate(
+    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Value, rises: int
+) -> tuple[Value, Value, Value, Value]:
+    """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
+
+    On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
+    that just before; on the lower pole, where X = 0, the other way round.
+    """
+    z = phase * series.scale
+    S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
+    s = S * S
+
+    def polar(c: Component, side: int) -> tuple[Value, Value]:
+        P, Q = polynomial(c.real, s), polynomial(c.imag, s)
+        real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
+        return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
+
+    return *polar(frame.x, -rises), *polar(frame.y, rises)

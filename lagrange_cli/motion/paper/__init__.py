@@ -1,0 +1,1 @@
+"""Keys on request and what else the paper computes."""

@@ -1,0 +1,143 @@
+"""Sections 5 to 7: angles after half a period and a whole one, and mean rates of the quarters.
+
+All are computed on request, and only a top that nutates has them.  Quarters are counted from a
+passage of u1: the first and the last are next to u1, the other two next to u2, and by symmetry the
+two of a kind have the same mean rates, but for the sign of the nutation.
+Equation numbers in parentheses are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Generic, NamedTuple, cast
+
+from ...arithmetic.numbers import R
+from ..kinds import Nutating
+from ..quantity import key, quantity
+from .energy_momentum import EnergyMomentum
+
+angle_key = partial(key, "Angles after half a period and a whole one", unit="angle")
+rate_key = partial(key, "Mean rates of the quarters", unit="rad/time")
+
+
+class Turned(NamedTuple, Generic[R]):
+    """Angles in radians by which spin and precession have grown."""
+
+    phi: R
+    psi: R
+
+
+class Quarters(EnergyMomentum[R]):
+    """Angles and mean rates of parts of a period; None where there is no period, or on a pole."""
+
+    @quantity
+    def nutating(self) -> Nutating[R] | None:
+        """The kind, if it nutates."""
+        return self.kind if isinstance(self.kind, Nutating) else None
+
+    @quantity
+    def over_half(self) -> Turned[R] | None:
+        """The growth in half a period; half of the mean growth from a turning point."""
+        kind = self.nutating
+        if kind is None or kind.precession_rate_half is None:
+            return None
+        half, gaps, facts = kind.T_nutation / 2, self.gaps, self.facts
+        turning = not (gaps.u1_u > 0 and gaps.u_u2 > 0)
+        if turning and not facts.over_bottom and facts.upper_root != 1:
+            return Turned(kind.mean_spin_rate * half, kind.mean_precession_rate * half)
+        at = kind.spinor()(half)
+        return Turned(at.phi, at.psi)
+
+    @quantity
+    def over_quarter(self) -> Turned[R] | None:
+        """The growth in the quarter that follows a passage of u1; None over a pole."""
+        kind = self.nutating
+        if kind is None or self.facts.over_bottom or self.facts.upper_root == 1:
+            return None
+        from ..over_time.series_constants import periods_since_top
+
+        spinor, since_top = kind.spinor(), -periods_since_top(kind)
+        first, last = (
+            spinor(kind.T_nutation * passed) for passed in (since_top, (4 * since_top + 1) / 4)
+        )
+        return Turned(last.phi - first.phi, last.psi - first.psi)
+
+    @angle_key("φ(T/2)", "spin after half a period", equation="§6")
+    def phi_half_deg(self) -> R | None:
+        """The spin after half a period, in degrees."""
+        return None if self.over_half is None else self.over_half.phi / self.kind.degree
+
+    @angle_key("φ(T)", "spin after a period", equation="§6")
+    def phi_period_deg(self) -> R | None:
+        """The spin after a period, in degrees."""
+        kind = self.nutating
+        return None if kind is None else kind.mean_spin_rate * kind.T_nutation / kind.degree
+
+    @angle_key("ψ(T/2)", "precession after half a period", equation="§7")
+    def psi_half_deg(self) -> R | None:
+        """The precession after half a period, in degrees."""
+        return None if self.over_half is None else self.over_half.psi / self.kind.degree
+
+    @angle_key("ψ(T)", "precession after a period", equation="§7")
+    def psi_period_deg(self) -> R | None:
+        """The precession after a period, in degrees."""
+        kind = self.nutating
+        return None if kind is None else kind.mean_precession_rate * kind.T_nutation / kind.degree
+
+    @quantity
+    def tilts(self) -> tuple[R, R, R] | None:
+        """The tilts at u1, a quarter of a period later (5,2), and at u2."""
+        kind, ar, gaps = self.nutating, self.ar, self.gaps
+        if kind is None:
+            return None
+        fall, rise = (gaps.u1_u2 * part / (1 + kind.k_prime) for part in (kind.k_prime, 1))
+        places = (
+            (gaps.above_u1, gaps.below_u1),
+            (gaps.above_u1 + fall, gaps.below_u2 + rise),
+            (gaps.above_u2, gaps.below_u2),
+        )
+        first, middle, last = (2 * ar.atan2(ar.sqrt(x), ar.sqrt(y)) for x, y in places)
+        return first, middle, last
+
+    @rate_key("ϑ' 1st", "nutation, quarter after u1", equation="§5")
+    def nutation_rate_upper(self) -> R | None:
+        """The mean nutation rate from u1 to T/4; in the last quarter it is the opposite."""
+        if self.tilts is None:
+            return None
+        return self._rate(self.tilts[1] - self.tilts[0])
+
+    @rate_key("ϑ' 2nd", "nutation, quarter before u2", equation="§5")
+    def nutation_rate_lower(self) -> R | None:
+        """The mean nutation rate from T/4 to u2; in the third quarter it is the opposite."""
+        if self.tilts is None:
+            return None
+        return self._rate(self.tilts[2] - self.tilts[1])
+
+    @rate_key("φ' 1st", "spin, quarters next to u1", equation="§6")
+    def spin_rate_upper(self) -> R | None:
+        """The mean spin rate of the first and of the last quarter."""
+        return None if self.over_quarter is None else self._rate(self.over_quarter.phi)
+
+    @rate_key("φ' 2nd", "spin, quarters next to u2", equation="§6")
+    def spin_rate_lower(self) -> R | None:
+        """The mean spin rate of the second and of the third quarter."""
+        if self.spin_rate_upper is None:
+            return None
+        return 2 * cast("Nutating[R]", self.kind).mean_spin_rate - self.spin_rate_upper
+
+    @rate_key("ψ' 1st", "precession, next to u1", equation="§7")
+    def precession_rate_upper(self) -> R | None:
+        """The mean precession rate of the first and of the last quarter."""
+        return None if self.over_quarter is None else self._rate(self.over_quarter.psi)
+
+    @rate_key("ψ' 2nd", "precession, next to u2", equation="§7")
+    def precession_rate_lower(self) -> R | None:
+        """The mean precession rate of the second and of the third quarter."""
+        if self.precession_rate_upper is None:
+            return None
+        kind = cast("Nutating[R]", self.kind)
+        return 2 * kind.mean_precession_rate - self.precession_rate_upper
+
+    def _rate(self, angle: R) -> R:
+        """Return the mean rate of an angle over a quarter."""
+        return 4 * angle / cast("Nutating[R]", self.kind).T_nutation

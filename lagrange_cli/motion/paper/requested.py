@@ -1,0 +1,67 @@
+"""Keys on request: numbers of a motion that are not part of its record.
+
+They are declared like those of the record, where their formulas stand: section 4 in
+`energy_momentum`, sections 5 to 7 in `quarters`, section 8 in `worked_example`.  None of these
+modules is imported before one of their keys is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from ...arithmetic.exact_cosine import Polynomial, U
+from ..exact.rational_keys import starts_at_u1, starts_at_u2
+from ..quantity import keys_of
+from ..regime import Exact
+from .worked_example import WorkedExample
+
+REQUESTED = keys_of(WorkedExample)
+"""The keys and how they are shown."""
+
+
+def requested_fractions(exact: Exact, known: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Return the keys on request that are known as fractions, from the `known` of the record."""
+    keys = {"spin_share": 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))}
+    keys |= _constants(exact)
+    if known.get("u2") == 0:
+        keys |= {"u2_criterion": Fraction(0), "u2_twice": Fraction(0)}
+    turning = starts_at_u1(exact) or starts_at_u2(exact)
+    even = turning and not (exact.facts.over_bottom or exact.facts.upper_root == 1)
+    for angle, rate in (("phi", "mean_spin_rate"), ("psi", "mean_precession_rate")):
+        if known.get(rate) == 0:
+            keys[f"{angle}_period_deg"] = Fraction(0)
+        if known.get(rate) == 0 and even:
+            keys[f"{angle}_half_deg"] = Fraction(0)
+        if exact.facts.plane:  # whole half turns: what does not show itself is 0
+            keys[f"{angle}_half_deg"] = Fraction(0)
+    if exact.facts.at_rest and exact.a:
+        total = exact.b * exact.b / exact.a
+        keys |= {"roots_sum": total, "roots_sum_squared": total * total}
+        if exact.cosine.vanishes(total * U - 1):
+            keys |= {"roots_product": Fraction(0), "roots_product_fourfold": Fraction(0)}
+    return keys
+
+
+def _constants(exact: Exact) -> dict[str, Fraction]:
+    """Return what is rational of the constants of section 4."""
+    psi, facts, sin2 = exact.psi_rate, exact.facts, 1 - U * U
+    alpha = exact.theta_rate * exact.theta_rate + psi * psi * sin2 + exact.a * U
+    beta = psi * sin2 + exact.b * U
+    half, whole = Fraction(exact.top.A) / 2, Fraction(exact.top.A)
+    polynomials: dict[str, Polynomial] = {
+        "energy_constant": alpha,
+        "energy_without_spin": half * alpha,
+        "momentum_constant": beta,
+        "Lz": whole * beta,
+        "f_upright": -1 * (beta - exact.b) * (beta - exact.b),
+        "f_hanging": -1 * (beta + exact.b) * (beta + exact.b),
+    }
+    if facts.steady:
+        wide = psi * psi * sin2 + exact.b * exact.b - 2 * exact.a * U
+        polynomials |= {"discriminant": wide * wide, "u2_criterion": U * (wide + exact.a * U)}
+    values = {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
+    keys = {name: value for name, value in values.items() if value is not None}
+    if facts.steady or facts.regime == "separatrix":
+        keys["f_slope_u1"] = Fraction(0)
+    return keys

@@ -1,0 +1,136 @@
+"""Section 8: the steps by which the worked example is computed, for any release from rest.
+
+Each step is a number of the record or one of those on request, under the symbol and the equation
+of the text; `CHAIN` has them in its order.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+from ...arithmetic.numbers import R
+from ..quantity import key, quantity
+from ..record import unit_name
+from .quarters import Quarters
+
+step_key = partial(key, "Steps of section 8")
+
+
+class WorkedExample(Quarters[R]):
+    """Steps of section 8; None where a top is not released from rest or does not nutate."""
+
+    @quantity
+    def follows(self) -> bool:
+        """Whether the equations of the text hold: release from rest to a nutation."""
+        return self.nutating is not None and self.facts.at_rest
+
+    @key("Constants of section 4", "1 - C/2A", "share of steady spin", equation="(6,1)")
+    def spin_share(self) -> R:
+        """The share 1 - C/2A of the spin that grows steadily (6,1)."""
+        top = self.exact.top
+        return self.ar.convert(1 - Fraction(top.C) / (2 * Fraction(top.A)))
+
+    @step_key("u3 + u2", "b²/a", equation="(4,11)")
+    def roots_sum(self) -> R | None:
+        """The sum u3 + u2 = b^2/a (4,11)."""
+        if not self.follows:
+            return None
+        return self.state.b * self.state.b / self.state.a
+
+    @step_key("u3 u2", "b² u1/a - 1", equation="(4,12)")
+    def roots_product(self) -> R | None:
+        """The product u3 u2 = b^2 u1/a - 1 (4,12)."""
+        if self.roots_sum is None:
+            return None
+        return self.roots_sum * self.state.cos - 1
+
+    @step_key("(u3 + u2)²", "square of the sum", equation="§8")
+    def roots_sum_squared(self) -> R | None:
+        """The square of the sum of the roots."""
+        return None if self.roots_sum is None else self.roots_sum * self.roots_sum
+
+    @step_key("-4 u3 u2", "product times -4", equation="§8")
+    def roots_product_fourfold(self) -> R | None:
+        """The product of the roots times -4."""
+        return None if self.roots_product is None else -4 * self.roots_product
+
+    @step_key("(u3 - u2)²", "sum of the last two", equation="§8")
+    def roots_gap_squared(self) -> R | None:
+        """The square of the distance of the roots, D/a^2."""
+        return None if self.roots_gap is None else self.roots_gap * self.roots_gap
+
+    @step_key("u3 - u2", "its root", equation="§8")
+    def roots_gap(self) -> R | None:
+        """The distance of the roots u3 and u2."""
+        return self.gaps.a_u3_u2 / self.state.a if self.follows else None
+
+    @step_key("2 u3", "sum and distance", equation="§8")
+    def u3_twice(self) -> R | None:
+        """Twice the root u3."""
+        u3 = self.kind.u3 if self.follows else None
+        return None if u3 is None else 2 * u3
+
+    @step_key("2 u2", "sum less distance", equation="§8")
+    def u2_twice(self) -> R | None:
+        """Twice the root u2."""
+        return 2 * self.kind.u2 if self.follows else None
+
+    @step_key("k²", "(u1 - u2)/(u3 - u2)", equation="(4,19)")
+    def k_squared(self) -> R | None:
+        """The square of the modulus (4,19)."""
+        return self.kind.m if self.follows else None
+
+    @step_key("arcsin k'", "complementary angle", "angle", "(4,21)")
+    def comodular_angle_deg(self) -> R | None:
+        """The angle arcsin k' (4,21), in degrees."""
+        if not self.follows:
+            return None
+        return self.ar.atan2(self.kind.k_prime, self.kind.k) / self.kind.degree
+
+    @step_key("E(am, k')", "second kind, to am α", equation="(7,1)")
+    def E_amplitude(self) -> R | None:
+        """The integral E(phi, k') of (7,1), as a sum of positive terms (DLMF 19.25.10)."""
+        if not self.follows:
+            return None
+        from ...elliptic.carlson import carlson_rd, carlson_rf  # for few keys
+
+        ar: Any = self.ar
+        gaps, m = self.gaps, self.kind.m
+        sine2 = gaps.a_u3_u2 / gaps.a_below_u3
+        cosine2 = self.state.a * gaps.below_u2 / gaps.a_below_u3
+        delta2 = self.state.a * gaps.below_u1 / gaps.a_below_u3
+        one = sine2 * 0 + 1
+        mc = self.kind.k_prime * self.kind.k_prime
+        first = carlson_rf(ar, cosine2, delta2, one)
+        second: R = mc * sine2 * carlson_rd(ar, cosine2, one, delta2) / 3
+        size: R = ar.sqrt(sine2)
+        integral: R = size * (m * (first + second) + mc * ar.sqrt(cosine2 / delta2))
+        return integral
+
+
+CHAIN = {
+    "Inputs": ["m", "A", "C", "s", "g", "r0", "theta0_deg"],
+    "The body": ["a", "spin_share"],
+    "The start": ["u1", "b", "roots_sum", "roots_product"],
+    "The roots": [
+        *("roots_sum_squared", "roots_product_fourfold", "roots_gap_squared", "roots_gap"),
+        *("u3_twice", "u2_twice", "u3", "u2"),
+    ],
+    "Modulus and amplitude": [
+        *("k_squared", "modular_angle_deg", "comodular_angle_deg", "amplitude_deg"),
+    ],
+    "Integrals": ["K", "E", "alpha", "E_amplitude"],
+    "Nutation": ["T_nutation", "u_quarter"],
+    "Spin and precession": [
+        *("mean_spin_rate", "mean_precession_rate", "spin_rate_half", "precession_rate_half"),
+        *("T_spin", "T_precession"),
+    ],
+}
+"""Keys by the steps of section 8, in its order."""
+
+
+def chain(*, radians: bool = False) -> list[str]:
+    """Return the keys of the steps of section 8, in its order."""
+    return [unit_name(name, radians=radians) for names in CHAIN.values() for name in names]

@@ -1,0 +1,1 @@
+"""Derivatives of the numbers and angles by the inputs, and uncertainties."""

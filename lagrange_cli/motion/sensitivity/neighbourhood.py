@@ -1,0 +1,178 @@
+"""The tops next to a top: its start and its gaps as dual numbers, with their partial derivatives.
+
+The formulas know a top by six parameters: a, b, r0, the tilt and the two rates at the start.  What
+is exactly so at the top itself, such as u1 = u2, need not be so next to it; `Neighbourhood` says
+along which parameters it is not.  Equation numbers are Chrapan's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+
+from ...arithmetic.ball import Ball, TooFewDigitsError
+from ...arithmetic.balls import balls
+from ...arithmetic.duals import Dual, Duals, independent
+from ...arithmetic.values import Values
+from ..gaps import Gaps, State, are_told_apart, gaps_from_start, largest_root, state
+from ..regime import Exact, Facts, Regime
+
+PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
+"""What the partial derivatives are by; the tilt in degrees or radians, as it was given."""
+
+
+_USUAL = 8
+"""Orders of magnitude that the digits of a neighbourhood have to spare."""
+
+
+class Neighbourhood(Values):
+    """A top and those next to it, in dual numbers by `PARAMETERS`."""
+
+    ar: Duals
+    facts: Facts
+    """What holds at the top, but for the release from rest: formulas for any start are in use."""
+    state: State[Dual]
+    """The start; without torque a is a constant 0."""
+    gaps: Gaps[Dual]
+    moved: State[Dual]
+    """The start, where a may leave 0, too."""
+    broken: frozenset[str]
+    """The parameters along which the degenerate facts of the top do not hold."""
+
+
+def neighbourhood(exact: Exact, digits: int) -> Neighbourhood:
+    """Return the dual numbers of a top over balls of so many digits.
+
+    Raises TooFewDigitsError if these do not tell the roots apart.
+    """
+    facts = exact.facts.replace(at_rest=False, cusp=False, drifts=False)
+    ar = Duals(balls(digits))
+    moved = dual_state(ar, exact)
+    begin = moved.replace(a=ar.convert(0)) if facts.free else moved
+    gaps = dual_gaps(ar, begin, facts)
+    if not are_told_apart(facts, gaps):
+        raise TooFewDigitsError
+    return Neighbourhood(ar, facts, begin, gaps, moved, frozenset(broken_by(exact)))
+
+
+def smallness(near: Neighbourhood) -> int:
+    """Return by how many orders of magnitude k^2, a gap or a rate is smaller than is usual.
+
+    Gaps are those of the cosines, rates are compared with the fastest one; what is 0 is not small.
+    """
+    start, gaps = near.moved, near.gaps
+    rates = [near.ar.plain.sqrt(start.a.value).least]
+    rates += [x.value.least for x in (start.b, start.r0, start.theta_rate, start.psi_rate)]
+    cosines = [x.value.least for x in (start.above, start.below, *list(gaps)[:7])]
+    widths = [(start.a * gaps.u1_u2 / gaps.a_u3_u2).value.least] if gaps.a_u3_u2 else []
+    orders = [size.adjusted() for size in (*cosines, *widths) if size]
+    orders += [rate.adjusted() - max(rates).adjusted() for rate in rates if rate]
+    return int(max(-min(orders) - _USUAL, 0))
+
+
+def broken_by(exact: Exact) -> Iterable[str]:
+    """Yield the parameters along which a degenerate fact of the top does not hold."""
+    facts = exact.facts
+    if facts.regime is Regime.SEPARATRIX:
+        yield from ("a", "b", "tilt", "theta_rate", "psi_rate")
+    elif facts.steady:
+        vertical, still = bool(facts.pole), facts.free and facts.at_rest
+        yield from ("theta_rate", "psi_rate")
+        yield from () if vertical else ("a",)
+        yield from () if vertical or still else ("b",)
+        yield from () if still and not vertical else ("tilt",)
+    else:
+        over = (facts.over_bottom and facts.pole != -1) or (facts.upper_root and facts.pole != 1)
+        level = not exact.b and not exact.psi_rate  # beta = b = 0 at every tilt
+        yield from ("a",) if facts.free else ()
+        yield from ("b",) if over else ()
+        yield from ("psi_rate",) if facts.pole or over else ()
+        yield from ("tilt",) if facts.pole or (over and not level) else ()
+
+
+def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
+    """Return the start of a top with its derivatives by the parameters."""
+    plain = state(ar.plain, exact)
+    zero = ar.plain.convert(0)
+    arc = zero + 1 if exact.top.theta0_rad is not None else ar.plain.pi / 180
+    parameters = plain.a, plain.b, plain.r0, zero, plain.theta_rate, plain.psi_rate
+    a, b, r0, tilt, theta_rate, psi_rate = independent(parameters)
+
+    def turned(value: Ball, slope: Ball) -> Dual:
+        """Return a function of the tilt by its value and slope."""
+        return Dual(value) + tilt * Dual(slope * arc)
+
+    return State(
+        a=a,
+        b=b,
+        r0=r0,
+        sleep=_with_value(b * b / 2 - a, plain.sleep),
+        spin_drift=_with_value(r0 - b / 2, plain.spin_drift),
+        pole_drift=_with_value(r0 - b, plain.pole_drift),
+        sin=turned(plain.sin, plain.cos),
+        cos=turned(plain.cos, -plain.sin),
+        sin_half=turned(plain.sin_half, plain.cos_half / 2),
+        cos_half=turned(plain.cos_half, -plain.sin_half / 2),
+        below=turned(plain.below, -plain.sin),
+        above=turned(plain.above, plain.sin),
+        theta_rate=theta_rate,
+        psi_rate=psi_rate,
+    )
+
+
+def dual_gaps(ar: Duals, begin: State[Dual], facts: Facts) -> Gaps[Dual]:
+    """Return the gaps with their derivatives, those that stay 0 all around as constants."""
+    gaps = gaps_from_start(ar, begin, facts, dual_root)
+    zeros = {
+        "below_u2": facts.over_bottom,
+        "above_u1": facts.upper_root == 1,
+        "a_u3_above": facts.upper_root == 3,
+    }
+    return gaps.replace(**{name: ar.convert(0) for name, zero in zeros.items() if zero})
+
+
+def generic_gaps(near: Neighbourhood) -> Gaps[Dual]:
+    """Return the gaps by the formulas of tops with nothing special, with the values of this top."""
+    facts = near.facts.replace(over_bottom=False, upper_root=0)
+    with near.ar.working():
+        gaps = gaps_from_start(near.ar, near.moved, facts, dual_root)
+        values = zip(gaps.fields, gaps, near.gaps, strict=True)
+        return Gaps(**{name: _with_value(x, y.value) for name, x, y in values})
+
+
+def dual_root(ar: Duals, c2: Dual, c1: Dual, c0: Dual, above: Dual) -> Dual:
+    """Return the largest root of x^3 + c2 x^2 + c1 x + c0 with its derivatives."""
+    x = largest_root(ar.plain, c2.value, c1.value, c0.value, above.value)
+    return moving_root(ar.convert(1), c2, c1, c0, x)
+
+
+def moving_root(c3: Dual, c2: Dual, c1: Dual, c0: Dual, x: Ball) -> Dual:
+    """Return a simple root of a cubic whose value is known, by the implicit function theorem."""
+    cubic = ((c3 * Dual(x) + c2) * Dual(x) + c1) * Dual(x) + c0
+    slope = (3 * c3.value * x + 2 * c2.value) * x + c1.value
+    return Dual(x, [-partial / slope for partial in cubic.partials or ()])
+
+
+def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
+    """Return the derivatives of a = 2mgs/A, b = C r0/A and the start by each input, but for 0."""
+    top = exact.top
+    m, A, C, s, g = (Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g))
+    a, b, r0 = exact.a, exact.b, exact.r0
+    tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
+    one = Fraction(1)
+    derivatives = {
+        "m": {"a": a / m},
+        "A": {"a": -a / A, "b": -b / A},
+        "C": {"b": r0 / A},
+        "s": {"a": 2 * m * g / A},
+        "g": {"a": 2 * m * s / A},
+        "r0": {"b": C / A, "r0": one},
+        tilt: {"tilt": one},
+        "thetadot0": {"theta_rate": one},
+        "psidot0": {"psi_rate": one},
+    }
+    return {name: {by: x for by, x in row.items() if x} for name, row in derivatives.items()}
+
+
+def _with_value(x: Dual, value: Ball) -> Dual:
+    return Dual(value, x.partials)

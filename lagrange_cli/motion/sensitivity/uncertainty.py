@@ -1,0 +1,168 @@
+"""First-order propagation of uncertainties (GUM 5.1.2), by the exact derivatives of the record.
+
+Every number is rounded from an enclosure, as those of the record are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from fractions import Fraction
+from functools import partial
+from typing import Any, NamedTuple
+
+from ...arithmetic.ball import Ball
+from ...arithmetic.balls import balls
+from ...arithmetic.numbers import R
+from ...arithmetic.protocol import Arithmetic
+from ...arithmetic.rounding import rounded
+from ...inputs.top import Top
+from ..record import NUMBER_KEYS, TEXT_KEYS
+from ..regime import exact
+from ..solve import Motion
+from .sensitivities import Slopes
+
+
+class Contribution(NamedTuple):
+    """What one input contributes to the uncertainty of a number, a line of a budget."""
+
+    input: str
+    value: float
+    std: float
+    sensitivity: float
+    """The derivative of the number by the input."""
+    contribution: float
+    """Sensitivity times uncertainty, with its sign."""
+    elasticity: float | None
+    """By how many parts the number grows where the input grows by one part of itself."""
+    share: float | None
+    """The part of the variance."""
+
+
+class FirstOrder:
+    """Standard uncertainties of the record of a top, whose inputs are not correlated.
+
+    A key in radians ends in `_rad`.
+    """
+
+    def __init__(self, top: Top, stds: Mapping[str, float], given: Collection[str]) -> None:
+        """Take the uncertainties of the inputs as they were given, and the names of all inputs.
+
+        Raises LagtopError for a top that has no motion.
+        """
+        self.top, self.stds, self.given = top, stds, given
+        self.motion = Motion(exact(top))
+        self.slopes = Slopes(self.motion.exact)
+
+    @staticmethod
+    def name_of(key: str) -> str:
+        """Return the name of a key in degrees."""
+        return f"{key.removesuffix('_rad')}_deg" if key.endswith("_rad") else key
+
+    def has(self, key: str) -> bool:
+        """Return whether a key is an input, or a number that the motion has."""
+        name = self.name_of(key)
+        if name in self.top.fields or name in self.given:
+            return True
+        return name in NUMBER_KEYS and self.slopes.has(name)
+
+    def slope(self, key: str, name: str, digits: int) -> Ball:
+        """Return the derivative of a key, or an input, by an input that was given; NaN for none."""
+        ar = balls(digits)
+        row = by_given(ar, self.top, self.given)[name]
+        tilt = "theta0_deg" if self.top.theta0_rad is None else "theta0_rad"
+        same = tilt if self.name_of(key) == "theta0_deg" else self.name_of(key)
+        if same in self.slopes.chain or same in self.given:
+            total = row.get(same, ar.convert(0))
+        else:
+            total = self.slopes.enclosure(same, row, digits)
+        if same == key:
+            return total
+        return total * (ar.pi / 180) if key.endswith("_rad") else total * 180 / ar.pi
+
+    def derivative(self, key: str, name: str) -> float | None:
+        """Return the derivative of a key, or an input, by an input that was given.
+
+        None says that the motion has no such key, NaN that it has no derivative.
+        """
+        return self._rounded(key, lambda digits: self.slope(key, name, digits))
+
+    def std(self, key: str) -> float | None:
+        """Return the standard uncertainty of a key or of an input; None where there is none."""
+        std = self._rounded(key, lambda digits: balls(digits).sqrt(self._variance(key, digits)))
+        return None if std is None or math.isnan(std) else std
+
+    def _rounded(self, key: str, enclosure: Any) -> float | None:
+        return rounded(f"the uncertainty of {key}", enclosure) if self.has(key) else None
+
+    def _part(self, key: str, name: str, digits: int) -> Ball:
+        return self.slope(key, name, digits) * balls(digits).convert(self.stds[name])
+
+    def _variance(self, key: str, digits: int) -> Ball:
+        parts = [self._part(key, name, digits) for name in self.stds]
+        return sum((part * part for part in parts), balls(digits).convert(0))
+
+    def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
+        """Return what each uncertain input contributes to a key, the greatest first.
+
+        `given` has the values of the inputs.
+        """
+        value, whole = self.motion.number(self.name_of(key)), self.std(key)
+        assert value is not None
+        lines = [
+            Contribution(
+                name,
+                given[name],
+                std,
+                rounded(key, partial(self.slope, key, name)),
+                rounded(key, partial(self._part, key, name)),
+                rounded(key, partial(self._elasticity, key, name, given)) if value.value else None,
+                rounded(key, partial(self._share, key, name)) if whole else None,
+            )
+            for name, std in self.stds.items()
+        ]
+        return sorted(lines, key=lambda line: -abs(line.contribution))
+
+    def _elasticity(self, key: str, name: str, given: Mapping[str, float], digits: int) -> Ball:
+        """Return the relative change of a key over that of an input."""
+        in_degrees = self.name_of(key)
+        value = self.motion.enclosure(in_degrees, digits)
+        assert value is not None
+        slope = self.slope(in_degrees, name, digits)
+        return slope * balls(digits).convert(given[name]) / value
+
+    def _share(self, key: str, name: str, digits: int) -> Ball:
+        """Return the share of an input in the variance of a key."""
+        part = self._part(key, name, digits)
+        return part * part / self._variance(key, digits)
+
+
+def by_given(ar: Arithmetic[R], top: Top, given: Collection[str]) -> dict[str, dict[str, R]]:
+    """Return the derivatives of the inputs of a solved top by those that were given.
+
+    These are the same but for A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
+    """
+    tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
+    one, m, s = (ar.convert(Fraction(x)) for x in (1, top.m, top.s))
+    names = ["m", "A", "C", "s", "g", "r0", tilt, "thetadot0", "psidot0"]
+    chain = {name: {name: one} for name in names}
+    if "A_cm" in given:
+        del chain["A"]
+        chain["A_cm"] = {"A": one}
+        chain["m"]["A"], chain["s"]["A"] = s * s, 2 * m * s
+    if "phidot0" in given:
+        angle, arc = top.tilt(ar), one if top.theta0_deg is None else ar.pi / 180
+        del chain["r0"]
+        chain["phidot0"] = {"r0": one}
+        chain["psidot0"]["r0"] = angle.cos
+        chain[tilt]["r0"] = -ar.convert(Fraction(top.psidot0)) * angle.sin * arc
+    return chain
+
+
+def stds_of(record: Mapping[str, Any], uncertain: FirstOrder) -> dict[str, float | None]:
+    """Return `KEY_std` for every number of a record, in its units."""
+    return {
+        f"{name}_std": None if value is None else uncertain.std(name)
+        for name, value in record.items()
+        if not isinstance(value, str) and name not in TEXT_KEYS
+    }
