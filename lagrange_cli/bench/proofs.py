@@ -18,7 +18,6 @@ from ..arithmetic.ball import Ball, TooFewDigitsError
 from ..arithmetic.balls import balls
 from ..arithmetic.rounding import decided
 from ..inputs.top import Top
-from ..motion.exact.rational_keys import known_fraction
 from ..motion.over_time.proved_table import BallSample, ProvedTable
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
@@ -74,7 +73,7 @@ def key_bound(motion: Motion, key: str, value: float | None) -> float:
                 return 0.0 if value is None and exact is None else math.inf
             return ulps(value, exact)
         except TooFewDigitsError:
-            known = known_fraction(motion.exact, key)
+            known = motion.fraction(key)
             if known is None or value is None:
                 raise
             return ulps(value, balls(digits).convert(known))

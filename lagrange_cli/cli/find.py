@@ -158,7 +158,7 @@ def _write(
     output: str,
 ) -> None:
     """Write the records as `lagtop sweep` does, a row for each motion."""
-    from ..motion.record import record_in_range
+    from ..motion.solve import record_in_range
     from ..output.write import block_text, write_text_blocks
 
     records = [record_in_range(motion, radians=radians, keys=keys)[0] for motion in motions]

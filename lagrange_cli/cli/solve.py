@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import AbsentError, LagtopError
-from ..motion.record import all_keys, record_in_range, record_keys
+from ..motion.record import all_keys, record_keys
+from ..motion.solve import record_in_range
 from ..output.write import write_record, write_values
 from .command import (
     ExamplesFirst,

@@ -231,7 +231,9 @@ def _write_one(motion: Motion, wish: Wish, found: Given, fmt: str, output: str) 
     from ..motion.over_time.table import rows
 
     times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
-    header, parts = rows(motion, times, wish.columns, stds=angle_stds(found, motion), **shown)
+    stds = angle_stds(found, motion)
+    spread = stds.at if stds else None
+    header, parts = rows(motion, times, wish.columns, stds=spread, **shown)
     if fmt == "table":
         units = [part.unit for part in chosen_columns(wish.columns)]
         if found.system is not None:

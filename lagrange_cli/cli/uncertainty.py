@@ -10,7 +10,8 @@ from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
 from ..inputs.measured import AS_SOLVED
 from ..inputs.names import check_names
-from ..motion.record import NUMBER_KEYS, unit_name
+from ..motion.quantity import unit_name
+from ..motion.record import NUMBER_KEYS
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
 from ..output.findings import Field, Findings, with_unit
 from ..output.uncertain_text import uncertain_text

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 from ..arithmetic.text import parse_number, quoted, shortened
 from ..errors import LagtopError
 from ..inputs.names import check_names
-from ..motion.record import all_keys, unit_name
+from ..motion.quantity import unit_name
+from ..motion.record import all_keys
 from ..motion.regime import Regime
 
 _PATHS = ("cusped", "looping", "wavy")

@@ -16,8 +16,7 @@ from ..inputs.mixed_body import warn_of
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
-from ..motion.record import record_in_range
-from ..motion.solve import Motion, solve
+from ..motion.solve import Motion, record_in_range, solve
 from .roots import roots
 from .search import Scan, Search, Watch, scan_of, search_of
 from .several import solutions

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from ..arithmetic.angles import unit_in_radians
 from ..errors import AbsentError, LagtopError
 from ..inputs.top import Top
-from ..motion.record import unit_name
+from ..motion.quantity import unit_name
 from ..motion.solve import Motion, solve
 from .body import completed, told_of
 from .conditions import read_conditions

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.numbers import R
@@ -15,10 +15,6 @@ from .moduli import Moduli
 from .quantity import quantity
 from .regime import Facts, Regime
 from .spin_precession import SpinPrecession, period_of
-
-if TYPE_CHECKING:
-    from .over_time.samplers import Sampler
-    from .over_time.spinors import Spinor
 
 
 class Nutating(SpinPrecession[R]):
@@ -65,18 +61,6 @@ class Nutating(SpinPrecession[R]):
     def excess(self) -> R:
         """How far the mean precession (7,3) exceeds the elementary rate, relative to that."""
         return self.mean_precession_rate / self.elementary_rate - 1
-
-    def spinor(self) -> Spinor[R]:
-        """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .over_time.spinors import nutating_spinor
-
-        return nutating_spinor(self)
-
-    def sampler(self: Nutating[Decimal]) -> Sampler:
-        """Return the attitude as a function of arrays of doubles."""
-        from .over_time.series_constants import nutating_sampler
-
-        return nutating_sampler(self)
 
 
 class Constant(Moduli[R]):
@@ -138,18 +122,6 @@ class Constant(Moduli[R]):
     def T_precession(self) -> R | None:
         """One turn at the precession rate (section 8)."""
         return period_of(self.ar, self.mean_precession_rate)
-
-    def spinor(self) -> Spinor[R]:
-        """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .over_time.spinors import constant_spinor
-
-        return constant_spinor(self)
-
-    def sampler(self: Constant[Decimal]) -> Sampler:
-        """Return the attitude as a function of arrays of doubles."""
-        from .over_time.series_constants import constant_sampler
-
-        return constant_sampler(self)
 
 
 class Steady(Constant[R]):
@@ -224,18 +196,6 @@ class Separatrix(SpinPrecession[R]):
     def E(self) -> R:
         """The complete integral of the second kind, which is 1."""
         return self.m
-
-    def spinor(self) -> Spinor[R]:
-        """Return the attitude as a function of time, in the arithmetic of this motion."""
-        from .over_time.spinors import separatrix_spinor
-
-        return separatrix_spinor(self)
-
-    def sampler(self: Separatrix[Decimal]) -> Sampler:
-        """Return the attitude as a function of arrays of doubles."""
-        from .over_time.series_constants import separatrix_sampler
-
-        return separatrix_sampler(self)
 
 
 Real = float | Decimal

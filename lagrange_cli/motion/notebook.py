@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from .record import KEYS
-
-if TYPE_CHECKING:
-    from .solve import Motion
 
 
 class Document(str):
@@ -27,9 +25,8 @@ class Document(str):
         Path(path).write_text(self, encoding="utf-8")
 
 
-def record_table(motion: Motion) -> str:
+def record_table(record: Mapping[str, Any]) -> str:
     """Return the record of a motion as a table of HTML: symbol, meaning, value and unit."""
-    record = motion.record()
     rows = "".join(
         f'<tr title="{name}"><td>{KEYS[name].symbol}</td><td style="text-align: left">'
         f"{escape(KEYS[name].meaning or name)}</td><td>{escape(str(value))}</td>"
@@ -37,4 +34,4 @@ def record_table(motion: Motion) -> str:
         for name, value in record.items()
         if value is not None
     )
-    return f"<table><caption>{escape(str(motion.regime))}</caption>{rows}</table>"
+    return f"<table><caption>{escape(record['regime'])}</caption>{rows}</table>"

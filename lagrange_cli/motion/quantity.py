@@ -62,3 +62,8 @@ def keys_of(owner: type) -> dict[str, Key]:
         for name, attribute in vars(base).items()
         if isinstance(attribute, quantity) and attribute.key is not None
     }
+
+
+def unit_name(name: str, *, radians: bool) -> str:
+    """Return the name of a key in the unit of angles in use: its `_deg` becomes `_rad`."""
+    return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name

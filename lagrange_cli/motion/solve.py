@@ -4,32 +4,25 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Collection, Sequence
-from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.ball import Ball, TooFewDigitsError
+from ..arithmetic.ball import Ball
 from ..arithmetic.balls import balls
-from ..arithmetic.rounding import Settled, decided, rounding_of, settled
-from ..errors import OutOfRangeWarning
+from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounding_of, settled
+from ..errors import OutOfRangeError, OutOfRangeWarning
 from ..inputs.top import Top
-from .gaps import are_told_apart, gaps_of, largest_root, state
-from .kinds import Kind, kind_of, middle_of
-from .record import NUMBER_KEYS, number_key, record_in_range, requested_keys
-from .regime import Exact, Regime, exact
+from .quantity import unit_name
+from .record import NUMBER_KEYS, all_keys, record_keys, requested_keys
+from .regime import exact
+from .solution import Solution
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..arithmetic.types import Array
     from .notebook import Document
-    from .over_time.samplers import Angles, Sampler
-    from .paper.worked_example import WorkedExample
-
-S = TypeVar("S")
-
-SAMPLER_DIGITS = 40
-"""Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
+    from .over_time.samplers import Angles
 
 
 def solve(top: Top) -> Motion:
@@ -37,31 +30,13 @@ def solve(top: Top) -> Motion:
     return Motion(exact(top))
 
 
-class Motion:
+class Motion(Solution):
     """The motion of one top: the numbers of its record as attributes, and its angles over time.
 
     Each number is the double nearest to its exact value, proved by an enclosure when it is first
     asked for; one that the regime does not have is None.  Their names are those of `lagtop solve`:
     a, b, u1, u2, u3, k, T_nutation, mean_precession_rate ...; `record` gives all of them.
     """
-
-    def __init__(self, scene: Exact) -> None:
-        self.exact = scene
-        self.kind_class = kind_of(scene.facts)
-        self._kinds: dict[int, Kind[Ball]] = {}
-        self._requested: dict[int, WorkedExample[Ball]] = {}
-        self._doubles: dict[str, Settled | None] = {}
-        self._sampler: Sampler | None = None
-
-    @property
-    def top(self) -> Top:
-        """The top, and its start."""
-        return self.exact.top
-
-    @property
-    def regime(self) -> Regime:
-        """The kind of motion."""
-        return self.exact.facts.regime
 
     @property
     def path(self) -> str | None:
@@ -76,13 +51,6 @@ class Motion:
     def remark_in(self, *, radians: bool = False) -> str | None:
         """Return the remark, with angles in degrees or `radians`."""
         return self.decide("remark", lambda kind: kind.remark(radians=radians))
-
-    def __getattr__(self, name: str) -> Any:
-        """Return a number by its key, a float, or None where the motion has none."""
-        if number_key(name) is None:
-            raise AttributeError(f"a motion has no {name!r}")
-        found = self.number(name)
-        return None if found is None else found.value
 
     def __dir__(self) -> Sequence[str]:
         """Return all names, the keys of the record among them."""
@@ -129,99 +97,6 @@ class Motion:
             warnings.warn("; ".join(map(str, beyond)), OutOfRangeWarning, stacklevel=2)
         return record
 
-    def number(
-        self, name: str, digits: int | None = None, *, radians: bool = False
-    ) -> Settled | None:
-        """Return the double nearest to a number, or so many digits of it; None if it has none.
-
-        Raises LagtopError if no precision tells it from 0 or a tie.
-        """
-        in_radians = radians and name.endswith("_deg")
-        is_usual = digits is None and not in_radians
-        if is_usual and name in self._doubles:
-            return self._doubles[name]
-        found = settled(
-            name,
-            lambda working: self.enclosure(name, working, radians=in_radians),
-            rounding_of(name, digits),
-            digits=digits or 0,
-            exactly=lambda: self._known(name, radians=in_radians),
-        )
-        if is_usual:
-            self._doubles[name] = found
-        return found
-
-    def _known(self, name: str, *, radians: bool = False) -> Fraction | None:
-        """Return a number if it is known as a fraction."""
-        from .exact.rational_keys import known_fraction  # for few tops only
-
-        return known_fraction(self.exact, name, radians=radians)
-
-    def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
-        """Return a ball that holds a number, by its key; None if the motion has none.
-
-        Angles are in degrees or `radians`.  Raises TooFewDigitsError if these digits leave open
-        which formula holds.
-        """
-        if name in self.kind_class.lacks:
-            return None
-        kind = self.kind(digits)
-        try:
-            source = kind if name in NUMBER_KEYS else self._on_request(digits)
-            value: Ball | None = getattr(source, name)
-        except TooFewDigitsError:
-            from .exact.rational_keys import is_endless  # for few tops only
-
-            if is_endless(self.exact, name):
-                return None
-            raise
-        return value * kind.degree if radians and value is not None else value
-
-    def _on_request(self, digits: int) -> WorkedExample[Ball]:
-        """Return the keys on request in balls of so many digits."""
-        from .paper.worked_example import WorkedExample  # the last of the classes with such keys
-
-        if digits not in self._requested:
-            self._requested[digits] = WorkedExample(self.kind(digits), self.exact)
-        return self._requested[digits]
-
-    def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
-        """Return an answer of the motion, at the first precision that decides it.
-
-        Raises LagtopError if none does.
-        """
-        return decided(what, lambda digits: ask(self.kind(digits)))
-
-    def kind(self, digits: int) -> Kind[Ball]:
-        """Return the motion in balls of so many digits.
-
-        Raises TooFewDigitsError if these do not tell the roots apart.
-        """
-        if digits not in self._kinds:
-            ar, facts = balls(digits), self.exact.facts
-            start = state(ar, self.exact)
-            gaps = gaps_of(ar, facts, start, largest_root)
-            if not are_told_apart(facts, gaps):
-                raise TooFewDigitsError
-            self._kinds[digits] = self.kind_class(ar, facts, start, gaps)
-        return self._kinds[digits]
-
-    def middle(self, digits: int = SAMPLER_DIGITS) -> Kind[Decimal]:
-        """Return the motion in decimals, from a start and gaps that are proved to so many digits.
-
-        Nothing cancels in the constants of its series, which need no balls.
-        """
-
-        def sharp(working: int) -> Kind[Ball]:
-            kind = self.kind(working)
-            constant = kind.facts.steady  # none of the gaps is used
-            if not (constant or all(gap.is_known_to(digits) for gap in kind.gaps)):
-                raise TooFewDigitsError
-            return kind
-
-        middle: Kind[Decimal] = middle_of(decided("the roots of the cubic", sharp, digits))
-        return middle
-
     def __repr__(self) -> str:
         return f"<Motion: {self.regime}, T_nutation = {self.T_nutation}, {self.top}>"
 
@@ -229,7 +104,7 @@ class Motion:
         """Return the record as a table for a notebook."""
         from .notebook import record_table
 
-        return record_table(self)
+        return record_table(self.record())
 
     def view(self) -> Document:
         """Return a page on which the top turns, for a notebook or, with `save`, for a browser.
@@ -264,8 +139,56 @@ class Motion:
 
         return table(self, t, columns, wrap=wrap)
 
-    def sampler(self) -> Sampler:
-        """Return the series behind `angles`, made once."""
-        if self._sampler is None:
-            self._sampler = self.middle().sampler()
-        return self._sampler
+
+def record_in_range(
+    motion: Motion,
+    *,
+    digits: int | None = None,
+    radii: bool = False,
+    radians: bool = False,
+    keys: Collection[str] | None = None,
+) -> tuple[dict[str, Any], list[OutOfRangeError]]:
+    """Return `Motion.record`, and an error for each number beyond the range of doubles."""
+    names = record_keys(radians=radians)
+    wanted = set(names if keys is None else keys)
+    numbers = NUMBER_KEYS
+    if not wanted <= set(names):
+        names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
+    found, beyond = _inputs(motion.top, digits, radians=radians), []
+    for name in numbers:
+        shown = unit_name(name, radians=radians)
+        if shown in wanted:
+            try:
+                found[shown] = motion.number(name, digits, radians=radians)
+            except OutOfRangeError as error:
+                found[shown] = None
+                beyond.append(error)
+    values = {name: None if number is None else number.value for name, number in found.items()}
+    values["regime"] = motion.regime.value
+    if "path" in wanted:
+        values["path"] = motion.path
+    if "remark" in wanted:
+        values["remark"] = motion.remark_in(radians=radians)
+    record = {name: values[name] for name in names if name in wanted}
+    if radii:
+        known = {name: found[name] for name in record if name in found}
+        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
+    return record, beyond
+
+
+def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
+    """Return the inputs as they are printed."""
+
+    def shown(name: str, value: Any) -> Settled | None:
+        rounding = rounding_of(name, digits)
+        if not isinstance(value, Ball):
+            return Settled(rounding(Fraction(value)), (Fraction(value),))
+        return settled(
+            name,
+            lambda working: top.inputs(radians=radians, ar=balls(working))[name],
+            rounding,
+            digits=digits or 0,
+        )
+
+    given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))
+    return {name: shown(name, value) for name, value in given.items()}

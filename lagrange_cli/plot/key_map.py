@@ -13,7 +13,8 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
-from ..motion.record import NUMBER_KEYS, unit_name
+from ..motion.quantity import unit_name
+from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion
 from ..sweeps.records import sweep
 from .request import InputRange, Progress, no_progress

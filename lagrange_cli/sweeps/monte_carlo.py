@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..motion.record import unit_name
+from ..motion.quantity import unit_name
 from .records import sweep
 
 QUANTILES = (2.5, 16.0, 50.0, 84.0, 97.5)

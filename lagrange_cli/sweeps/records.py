@@ -25,7 +25,7 @@ from ..motion import record as motion_record
 from ..motion.gaps import gaps_of
 from ..motion.kinds import fast_remark, kind_of, vertical_remark
 from ..motion.regime import FAST, Facts, Regime
-from ..motion.solve import solve
+from ..motion.solve import record_in_range, solve
 from .measured_arrays import top_arrays
 from .start_arrays import StartArrays
 from .top_arrays import TopArrays
@@ -220,7 +220,7 @@ class _Block:
             return
         try:
             motion = solve(Top(**self.tops.one(row)))
-            record, beyond = motion_record.record_in_range(motion, radians=self.radians, keys=keys)
+            record, beyond = record_in_range(motion, radians=self.radians, keys=keys)
         except LagtopError as error:
             self.columns["error"][row] = str(error)
             return

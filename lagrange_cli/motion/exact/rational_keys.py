@@ -11,7 +11,6 @@ from fractions import Fraction
 from functools import lru_cache
 
 from ...arithmetic.exact_cosine import Polynomial, U
-from ..record import NUMBER_KEYS
 from ..regime import Exact
 from .half_rates import HALF_RATES, vanishing_half_rates
 
@@ -20,17 +19,13 @@ _MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate
 
 
 def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
-    """Return a number of a motion, of its record or on request, where it is known as a fraction.
+    """Return a number of the record of a motion if it is known as a fraction.
 
     `radians` is for an angle, in radians instead of degrees.
     """
     keys = rational_keys(exact)
     if name in HALF_RATES and name not in keys:
         keys = keys | vanishing_half_rates(exact)
-    if name not in NUMBER_KEYS:
-        from ..paper.requested import requested_fractions
-
-        keys = keys | requested_fractions(exact, keys)
     known = keys.get(name)
     if not radians or known == 0:
         return known

@@ -19,10 +19,10 @@ from ...arithmetic.text import NumberText, double_text
 from ..exact.rational_columns import known_column
 from ..exact.rational_keys import known_fraction
 from ..kinds import Constant, Separatrix
-from ..solve import Motion
+from ..solution import Solution
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
 from .columns import Part, chosen_columns, headings, name_of
-from .spinors import Attitude
+from .spinors import Attitude, spinor_of
 
 if TYPE_CHECKING:
     from ...arithmetic.points import Points
@@ -38,7 +38,7 @@ class BallSample(ColumnFormulas[Ball]):
 
     def __init__(
         self,
-        motion: Motion,
+        motion: Solution,
         digits: int,
         constants: ColumnConstants[Ball],
         t: Ball,
@@ -146,7 +146,7 @@ class ProvedTable:
 
     def __init__(
         self,
-        motion: Motion,
+        motion: Solution,
         columns: Sequence[str],
         digits: int | None = None,
         *,
@@ -182,7 +182,7 @@ class ProvedTable:
         t = kind.ar.convert(time)
         if time:
             if digits not in self._spinors:
-                self._spinors[digits] = kind.spinor()
+                self._spinors[digits] = spinor_of(kind)
             at = self._spinors[digits](t)
         else:
             state = kind.state

@@ -12,7 +12,7 @@ from ...arithmetic.arrays import ARRAYS
 from ...arithmetic.blocks import BLOCK, blocks
 from ...arithmetic.types import Array
 from ...arithmetic.workspace import workspace
-from ..solve import Motion
+from ..solution import Solution
 from .attitude import Attitude, needed
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
 from .columns import Part, needs_of
@@ -111,7 +111,7 @@ class Sample(ColumnFormulas[Array]):
 
 
 def samples(
-    motion: Motion, t: Array, chosen: Sequence[Part], *, wrap: bool
+    motion: Solution, t: Array, chosen: Sequence[Part], *, wrap: bool
 ) -> Iterator[tuple[slice, Sample]]:
     """Yield the motion at the times t, a block at a time, with what some columns need.
 

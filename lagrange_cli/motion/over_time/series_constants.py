@@ -14,6 +14,7 @@ from ...arithmetic.numbers import R
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.protocol import Value
 from ...elliptic.landen import place
+from ..kinds import Constant, Kind, Nutating, Separatrix
 from .multiple_angles import Coefficients
 from .theta_series import (
     Component,
@@ -26,8 +27,7 @@ from .theta_series import (
 )
 
 if TYPE_CHECKING:
-    from ..kinds import Constant, Nutating, Separatrix
-    from .samplers import ConstantSampler, SeparatrixSampler, ThetaSampler
+    from .samplers import ConstantSampler, Sampler, SeparatrixSampler, ThetaSampler
 
 _NEGLIGIBLE = Decimal(2) ** -60
 _SIZE = 2**16
@@ -141,6 +141,15 @@ def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
     x, y = ar.sqrt(gaps.below_u2 / 2), ar.sqrt(gaps.above_u2 / 2)
     side = ar.sinh(offset) / ar.cosh(offset) if offset or x else -falls  # on the lower pole
     return Swing(offset, x, y, sign, ar.atan2(sign * y * side, x))
+
+
+def sampler_of(motion: Kind[Decimal]) -> Sampler:
+    """Return the attitude of a motion as a function of arrays of doubles."""
+    if isinstance(motion, Nutating):
+        return nutating_sampler(motion)
+    if isinstance(motion, Separatrix):
+        return separatrix_sampler(motion)
+    return constant_sampler(motion)
 
 
 def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:

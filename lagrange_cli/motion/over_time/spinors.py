@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple
+from typing import Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R
+from ..kinds import Constant, Kind, Nutating, Separatrix
 from .series_constants import direction, periods_since_top, swing_of, theta_constants
 from .theta_series import ThetaConstants, evaluate, theta_series
-
-if TYPE_CHECKING:
-    from ..kinds import Constant, Nutating, Separatrix
 
 
 class Attitude(NamedTuple, Generic[R]):
@@ -31,6 +29,13 @@ class Attitude(NamedTuple, Generic[R]):
 
 Spinor = Callable[[R], Attitude[R]]
 """The attitude as a function of time."""
+
+
+def spinor_of(motion: Kind[R]) -> Spinor[R]:
+    """Return the attitude of a motion as a function of time, in its arithmetic."""
+    if isinstance(motion, Nutating):
+        return nutating_spinor(motion)
+    return separatrix_spinor(motion) if isinstance(motion, Separatrix) else constant_spinor(motion)
 
 
 def nutating_spinor(motion: Nutating[R]) -> Spinor[R]:

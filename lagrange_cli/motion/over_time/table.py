@@ -10,21 +10,20 @@ from typing import TYPE_CHECKING
 from ...arithmetic.points import EvenPoints, Points
 from ...errors import LagtopError
 from ...inputs.names import ANGLES
-from ..solve import Motion
+from ..solution import Solution
 from .columns import chosen_columns, headings, name_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...arithmetic.types import Array
-    from ..sensitivity.angle_uncertainty import AngleStds
 
 DEFAULT_ROWS = 101
 DEFAULT_COLUMNS = ("t", *ANGLES)
 
 
 def grid(
-    motion: Motion,
+    motion: Solution,
     t_min: Fraction | None = None,
     t_max: Fraction | None = None,
     *,
@@ -56,18 +55,19 @@ def grid(
 
 
 def rows(
-    motion: Motion,
+    motion: Solution,
     times: Points,
     columns: Sequence[str] = DEFAULT_COLUMNS,
     *,
     radians: bool = False,
     wrap: bool = False,
-    stds: AngleStds | None = None,
+    stds: Callable[[Array], Array] | None = None,
 ) -> tuple[list[str], Iterator[Array]]:
     """Return the header and blocks of rows; angles in degrees or radians, wrapped or not.
 
-    With `stds` the uncertainties of the angles among the columns stand last.  Raises LagtopError
-    for an unknown column and, before the first block, for a time out of reach.
+    `stds` gives the uncertainties of the three angles at some times, shape (3, times); those of
+    the angles among the columns are the last columns.  Raises LagtopError for an unknown column
+    and, before the first block, for a time out of reach.
     """
     import numpy as np
 
@@ -93,7 +93,7 @@ def rows(
                 if (first := sample.t == 0).any():
                     block[first, : len(chosen)] = start()
                 if stds is not None:
-                    spread = stds.at(sample.t)[angles]
+                    spread = stds(sample.t)[angles]
                     block.T[len(chosen) :] = spread if radians else np.degrees(spread)
                 yield block
 
@@ -101,7 +101,7 @@ def rows(
 
 
 def table(
-    motion: Motion, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
+    motion: Solution, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
 ) -> dict[str, Array]:
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
     import numpy as np
@@ -126,7 +126,7 @@ def table(
 
 
 def _start(
-    motion: Motion, columns: Sequence[str], *, radians: bool, wrap: bool
+    motion: Solution, columns: Sequence[str], *, radians: bool, wrap: bool
 ) -> Callable[[], list[float]]:
     """Return what gives the columns at t = 0 as the nearest doubles, computed once, if at all."""
 

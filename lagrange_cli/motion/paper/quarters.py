@@ -45,7 +45,9 @@ class Quarters(EnergyMomentum[R]):
         turning = not (gaps.u1_u > 0 and gaps.u_u2 > 0)
         if turning and not facts.over_bottom and facts.upper_root != 1:
             return Turned(kind.mean_spin_rate * half, kind.mean_precession_rate * half)
-        at = kind.spinor()(half)
+        from ..over_time.spinors import spinor_of  # start-up: not for a record
+
+        at = spinor_of(kind)(half)
         return Turned(at.phi, at.psi)
 
     @quantity
@@ -54,9 +56,10 @@ class Quarters(EnergyMomentum[R]):
         kind = self.nutating
         if kind is None or self.facts.over_bottom or self.facts.upper_root == 1:
             return None
-        from ..over_time.series_constants import periods_since_top
+        from ..over_time.series_constants import periods_since_top  # start-up: not for a record
+        from ..over_time.spinors import spinor_of
 
-        spinor, since_top = kind.spinor(), -periods_since_top(kind)
+        spinor, since_top = spinor_of(kind), -periods_since_top(kind)
         first, last = (
             spinor(kind.T_nutation * passed) for passed in (since_top, (4 * since_top + 1) / 4)
         )

@@ -7,11 +7,10 @@ modules is imported before one of their keys is asked for.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 
 from ...arithmetic.exact_cosine import Polynomial, U
-from ..exact.rational_keys import starts_at_u1, starts_at_u2
+from ..exact.rational_keys import rational_keys, starts_at_u1, starts_at_u2
 from ..quantity import keys_of
 from ..regime import Exact
 from .worked_example import WorkedExample
@@ -20,8 +19,9 @@ REQUESTED = keys_of(WorkedExample)
 """The keys and how they are shown."""
 
 
-def requested_fractions(exact: Exact, known: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """Return the keys on request that are known as fractions, from the `known` of the record."""
+def requested_fractions(exact: Exact) -> dict[str, Fraction]:
+    """Return the keys on request that are known as fractions."""
+    known = rational_keys(exact)
     keys = {"spin_share": 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))}
     keys |= _constants(exact)
     if known.get("u2") == 0:

@@ -11,8 +11,7 @@ from functools import partial
 from typing import Any
 
 from ...arithmetic.numbers import R
-from ..quantity import key, quantity
-from ..record import unit_name
+from ..quantity import key, quantity, unit_name
 from .quarters import Quarters
 
 step_key = partial(key, "Steps of section 8")

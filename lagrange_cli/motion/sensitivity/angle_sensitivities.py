@@ -26,7 +26,7 @@ from ..kinds import middle_of
 from ..over_time.samplers import Angles
 from ..over_time.times import check_times, times_of
 from ..regime import Exact, Regime, exact
-from ..solve import Motion
+from ..solution import Solution
 from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .sensitivities import Partials
 from .series_derivatives import SeriesDerivatives
@@ -176,7 +176,7 @@ class Spinning:
     """Motions of which only the spin by r0 alone is told: the others part from them at once."""
 
     def __init__(self, scene: Exact) -> None:
-        self.sampler = Motion(scene).sampler()
+        self.sampler = Solution(scene).sampler()
         self.max_time = self.sampler.max_time
 
     def at(self, t: Array) -> tuple[Array, Array]:

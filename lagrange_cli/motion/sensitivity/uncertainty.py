@@ -19,7 +19,7 @@ from ...arithmetic.rounding import rounded
 from ...inputs.top import Top
 from ..record import NUMBER_KEYS, TEXT_KEYS
 from ..regime import exact
-from ..solve import Motion
+from ..solution import Solution
 from .sensitivities import Slopes
 
 
@@ -51,7 +51,7 @@ class FirstOrder:
         Raises LagtopError for a top that has no motion.
         """
         self.top, self.stds, self.given = top, stds, given
-        self.motion = Motion(exact(top))
+        self.motion = Solution(exact(top))
         self.slopes = Slopes(self.motion.exact)
 
     @staticmethod

@@ -1,0 +1,165 @@
+"""What is computed of one motion: enclosures of its numbers in any precision, and its sampler."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ..arithmetic.ball import Ball, TooFewDigitsError
+from ..arithmetic.balls import balls
+from ..arithmetic.rounding import Settled, decided, rounding_of, settled
+from ..inputs.top import Top
+from .gaps import are_told_apart, gaps_of, largest_root, state
+from .kinds import Kind, kind_of, middle_of
+from .record import NUMBER_KEYS, number_key
+from .regime import Exact, Regime
+
+if TYPE_CHECKING:
+    from .over_time.samplers import Sampler
+    from .paper.worked_example import WorkedExample
+
+S = TypeVar("S")
+
+SAMPLER_DIGITS = 40
+"""Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
+
+
+class Solution:
+    """The motion of one top: each number is computed once, in balls of as many digits as it takes.
+
+    Numbers are attributes, by the keys of the record; see `Motion`.
+    """
+
+    def __init__(self, scene: Exact) -> None:
+        self.exact = scene
+        self.kind_class = kind_of(scene.facts)
+        self._kinds: dict[int, Kind[Ball]] = {}
+        self._requested: dict[int, WorkedExample[Ball]] = {}
+        self._doubles: dict[str, Settled | None] = {}
+        self._sampler: Sampler | None = None
+
+    @property
+    def top(self) -> Top:
+        """The top, and its start."""
+        return self.exact.top
+
+    @property
+    def regime(self) -> Regime:
+        """The kind of motion."""
+        return self.exact.facts.regime
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a number by its key, a float, or None where the motion has none."""
+        if number_key(name) is None:
+            raise AttributeError(f"a motion has no {name!r}")
+        found = self.number(name)
+        return None if found is None else found.value
+
+    def number(
+        self, name: str, digits: int | None = None, *, radians: bool = False
+    ) -> Settled | None:
+        """Return the double nearest to a number, or so many digits of it; None if it has none.
+
+        Raises LagtopError if no precision tells it from 0 or a tie.
+        """
+        in_radians = radians and name.endswith("_deg")
+        is_usual = digits is None and not in_radians
+        if is_usual and name in self._doubles:
+            return self._doubles[name]
+        found = settled(
+            name,
+            lambda working: self.enclosure(name, working, radians=in_radians),
+            rounding_of(name, digits),
+            digits=digits or 0,
+            exactly=lambda: self.fraction(name, radians=in_radians),
+        )
+        if is_usual:
+            self._doubles[name] = found
+        return found
+
+    def fraction(self, name: str, *, radians: bool = False) -> Fraction | None:
+        """Return a number if it is known as a fraction."""
+        if name in NUMBER_KEYS:
+            from .exact.rational_keys import known_fraction  # start-up: for few tops only
+
+            return known_fraction(self.exact, name, radians=radians)
+        from .paper.requested import requested_fractions  # start-up: not for a record
+
+        return requested_fractions(self.exact).get(name)
+
+    def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
+        """Return a ball that holds a number, by its key; None if the motion has none.
+
+        Angles are in degrees or `radians`.  Raises TooFewDigitsError if these digits leave open
+        which formula holds.
+        """
+        if name in self.kind_class.lacks:
+            return None
+        kind = self.kind(digits)
+        try:
+            source = kind if name in NUMBER_KEYS else self._on_request(digits)
+            value: Ball | None = getattr(source, name)
+        except TooFewDigitsError:
+            from .exact.rational_keys import is_endless  # start-up: for few tops only
+
+            if is_endless(self.exact, name):
+                return None
+            raise
+        return value * kind.degree if radians and value is not None else value
+
+    def _on_request(self, digits: int) -> WorkedExample[Ball]:
+        """Return the keys on request in balls of so many digits."""
+        from .paper.worked_example import (
+            WorkedExample,  # start-up; the last of the classes with such keys
+        )
+
+        if digits not in self._requested:
+            self._requested[digits] = WorkedExample(self.kind(digits), self.exact)
+        return self._requested[digits]
+
+    def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
+        """Return an answer of the motion, at the first precision that decides it.
+
+        Raises LagtopError if none does.
+        """
+        return decided(what, lambda digits: ask(self.kind(digits)))
+
+    def kind(self, digits: int) -> Kind[Ball]:
+        """Return the motion in balls of so many digits.
+
+        Raises TooFewDigitsError if these do not tell the roots apart.
+        """
+        if digits not in self._kinds:
+            ar, facts = balls(digits), self.exact.facts
+            start = state(ar, self.exact)
+            gaps = gaps_of(ar, facts, start, largest_root)
+            if not are_told_apart(facts, gaps):
+                raise TooFewDigitsError
+            self._kinds[digits] = self.kind_class(ar, facts, start, gaps)
+        return self._kinds[digits]
+
+    def middle(self, digits: int = SAMPLER_DIGITS) -> Kind[Decimal]:
+        """Return the motion in decimals, from a start and gaps that are proved to so many digits.
+
+        Nothing cancels in the constants of its series, which need no balls.
+        """
+
+        def sharp(working: int) -> Kind[Ball]:
+            kind = self.kind(working)
+            constant = kind.facts.steady  # none of the gaps is used
+            if not (constant or all(gap.is_known_to(digits) for gap in kind.gaps)):
+                raise TooFewDigitsError
+            return kind
+
+        middle: Kind[Decimal] = middle_of(decided("the roots of the cubic", sharp, digits))
+        return middle
+
+    def sampler(self) -> Sampler:
+        """Return the series behind `angles`, made once."""
+        from .over_time.series_constants import sampler_of  # start-up: loads NumPy
+
+        if self._sampler is None:
+            self._sampler = sampler_of(self.middle())
+        return self._sampler
