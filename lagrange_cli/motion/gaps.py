@@ -51,6 +51,17 @@ class State(Values, Over[R]):
     theta_rate: R
     psi_rate: R
 
+    @property
+    def energy(self) -> R:
+        """theta'^2 + psi'^2 sin^2(theta0), of which alpha - a u0 consists (4,4)."""
+        around = self.psi_rate * self.sin
+        return self.theta_rate * self.theta_rate + around * around
+
+    @property
+    def momentum(self) -> R:
+        """psi' sin^2(theta0), which is beta - b u0 (4,5)."""
+        return self.psi_rate * self.sin * self.sin
+
 
 class Gaps(Values, Over[R]):
     """Distances between roots, poles and start, and beta - b u (4,7) at the roots and the poles."""
@@ -225,8 +236,7 @@ def gaps_from_start(
 def cubic(start: State[R]) -> tuple[R, R, tuple[R, R, R]]:
     """Return theta'^2 + (psi' sin)^2, psi' sin^2, and c0, c1, c2 of a x^3 + c2 x^2 + c1 x + c0."""
     a, b, u0 = start.a, start.b, start.cos
-    around = start.psi_rate * start.sin
-    energy, momentum = start.theta_rate * start.theta_rate + around * around, around * start.sin
+    energy, momentum = start.energy, start.momentum
     along, b2 = start.sin * start.theta_rate, b * b
     c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
     return energy, momentum, (along * along, c1, 2 * a * u0 - energy - b2)

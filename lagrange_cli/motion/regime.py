@@ -11,7 +11,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from ..arithmetic.exact_cosine import Cosine, Polynomial
+from ..arithmetic.exact_cosine import Cosine, Polynomial, U
 from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
 from ..inputs.top import Top
@@ -96,6 +96,16 @@ class Exact(Values):
     psi_rate: Fraction
     cosine: Cosine
     facts: Facts
+
+    @property
+    def energy(self) -> Polynomial:
+        """theta'^2 + psi'^2 sin^2(theta0) by u0; alpha less a u0 (4,4)."""
+        return self.theta_rate**2 + self.psi_rate**2 * (1 - U * U)
+
+    @property
+    def momentum(self) -> Polynomial:
+        """psi' sin^2(theta0) by u0; beta less b u0 (4,5)."""
+        return self.psi_rate * (1 - U * U)
 
 
 def exact(top: Top) -> Exact:

@@ -193,8 +193,7 @@ class _ErrorBounds:
         start, doubles = _rounded(state), _rounded(gaps)
         a, b, above, below = start.a, start.b, start.above, start.below
         D, x1, x2 = doubles.a_u3_u, doubles.u1_u, doubles.u_u2
-        around = start.psi_rate * start.sin
-        momentum, energy = around * start.sin, start.theta_rate**2 + around**2
+        momentum, energy = start.momentum, start.energy
         c0 = (start.sin * start.theta_rate) ** 2
         c1_parts = abs(2 * b * momentum) + a * start.sin**2 + abs(2 * start.cos * energy)
         of_total = (_EPS * c1_parts + 2 * error * (c1_parts + a * c0 / D)) / D

@@ -29,12 +29,11 @@ def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
     """Return the rates at T/2 that are 0 for a top with torque that does not start at rest."""
     if exact.facts.free or exact.facts.at_rest or exact.facts.steady or exact.facts.pole:
         return {}
-    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
-    beta = psi * sin2 + b * U
-    energy = exact.theta_rate**2 + psi * psi * sin2 + b * b
-    pairs = 2 * b * beta - a
-    cubic = [energy - b * b + a * U - beta * beta, pairs, -1 * energy, Polynomial(a)]
-    N = [-1 * pairs, 2 * energy - a * U, Polynomial(-2 * a)]
+    a, b = exact.a, exact.b
+    alpha, beta = exact.energy + a * U, exact.momentum + b * U
+    pairs, total = 2 * b * beta - a, exact.energy + b * b
+    cubic = [alpha - beta * beta, pairs, -1 * total, Polynomial(a)]
+    N = [-1 * pairs, 2 * total - a * U, Polynomial(-2 * a)]
     M = [-a * U, Polynomial(a)]
     momentum = _sum(_product([beta], M), _product([Polynomial(-b)], N))  # M (beta - b u)
     spin = _sum(

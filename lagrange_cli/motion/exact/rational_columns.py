@@ -39,11 +39,10 @@ def known_column(
 def _conserved(exact: Exact, method: str) -> Fraction | None:
     """Return the energy (4,2) or the vertical momentum (4,3), polynomials in cos(theta0)."""
     A, C = Fraction(exact.top.A), Fraction(exact.top.C)
-    psi, r0, sin2 = exact.psi_rate, exact.r0, 1 - U * U
     if method == "energy":
-        swing = exact.theta_rate**2 + psi * psi * sin2
-        return exact.cosine.fraction(A / 2 * swing + C * r0 * r0 / 2 + A * exact.a / 2 * U)
-    return exact.cosine.fraction(A * psi * sin2 + C * r0 * U)
+        alpha, spin = exact.energy + exact.a * U, C * exact.r0 * exact.r0 / 2
+        return exact.cosine.fraction(A / 2 * alpha + spin)
+    return exact.cosine.fraction(A * (exact.momentum + exact.b * U))
 
 
 def _of_some_tops(exact: Exact, method: str) -> Fraction | None:

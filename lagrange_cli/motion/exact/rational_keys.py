@@ -109,32 +109,30 @@ def _fall(exact: Exact) -> int:
 
 def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
     """Return u1 = 0 or u2 = 0 where f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0."""
-    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
-    energy = exact.theta_rate**2 + psi * psi * sin2
-    beta = psi * sin2 + b * U
+    beta = exact.momentum + exact.b * U
     keys: dict[str, Fraction] = {}
-    if exact.cosine.vanishes(energy + a * U - beta * beta):
+    if exact.cosine.vanishes(exact.energy + exact.a * U - beta * beta):
         sign = exact.cosine.sign(U)
         if sign:
             keys["u2" if sign > 0 else "u1"] = Fraction(0)
         else:  # the start is horizontal, and on one of the two
             keys["u1" if starts_at_u1(exact) else "u2"] = Fraction(0)
-    if starts_at_u1(exact) and _quarter_is_level(exact, energy, beta):
+    if starts_at_u1(exact) and _quarter_is_level(exact):
         keys["u_quarter"] = Fraction(0)
     return keys
 
 
-def _quarter_is_level(exact: Exact, energy: Polynomial, beta: Polynomial) -> bool:
+def _quarter_is_level(exact: Exact) -> bool:
     """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
 
     Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3; with x2 + x3 = -c2/a, x2 x3 = c1/a its square
     is a polynomial in u0.  Without torque u(T/4) is the mean of u1 and u2, and goes as beta b.
     """
+    a, b, energy, momentum = exact.a, exact.b, exact.energy, exact.momentum
     if exact.facts.free:
-        return exact.cosine.vanishes(exact.b * beta)
-    a, b, psi, sin2 = exact.a, exact.b, exact.psi_rate, 1 - U * U
+        return exact.cosine.vanishes(b * (momentum + b * U))
     c2 = 2 * a * U - energy - b * b
-    c1 = 2 * b * psi * sin2 - a * sin2 - 2 * (U * energy)
+    c1 = 2 * b * momentum - a * (1 - U * U) - 2 * (U * energy)
     product = a * (U * U) - U * c2 + c1  # a u2 u3
     level = (U * U) * (c2 * c2 - 4 * a * c1) - product * product
     return (
@@ -176,9 +174,8 @@ def _free_half_rates(exact: Exact) -> dict[str, Fraction]:
     The roots of (4,9) have the sum 2 beta b/D with D = energy + b^2; the rates vanish where
     beta - b u and r0 (1 - u^2) - u (beta - b u) do, at u = u(T/2).
     """
-    b, psi, sin2 = exact.b, exact.psi_rate, 1 - U * U
-    beta = psi * sin2 + b * U
-    D = exact.theta_rate**2 + psi * psi * sin2 + b * b
+    b = exact.b
+    beta, D = exact.momentum + b * U, exact.energy + b * b
     D_u = 2 * b * beta - U * D
     still = D * beta - b * D_u
     keys: dict[str, Fraction] = {}

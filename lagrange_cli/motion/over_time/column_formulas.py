@@ -50,7 +50,6 @@ def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
     A, C = Fraction(exact.top.A), Fraction(exact.top.C)
     with ar.working():
         drift, plus, minus = rate_parts(kind)
-        around = state.psi_rate * state.sin
         return ColumnConstants(
             half_A=ar.convert(A / 2),
             half_C=ar.convert(C / 2),
@@ -59,7 +58,7 @@ def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
             drift=drift,
             plus=plus / 2,
             minus=minus / 2,
-            alpha=state.theta_rate * state.theta_rate + around * around + state.a * state.cos,
+            alpha=state.energy + state.a * state.cos,
             a=state.a,
         )
 

@@ -42,15 +42,12 @@ class EnergyMomentum(Generic[R]):
     @constant_key("α (4,4)", "energy constant over A/2", "1/time²", "(4,4)")
     def energy_constant(self) -> R:
         """The constant alpha = 2 c1/A (4,4), which is not the parameter alpha of (1,6)."""
-        state = self.state
-        around = state.psi_rate * state.sin
-        return state.theta_rate * state.theta_rate + around * around + state.a * state.cos
+        return self.state.energy + self.state.a * self.state.cos
 
     @constant_key("β (4,5)", "momentum over A", "1/time", "(4,5)")
     def momentum_constant(self) -> R:
         """The constant beta = c2/A (4,5)."""
-        state = self.state
-        return state.psi_rate * state.sin * state.sin + state.b * state.cos
+        return self.state.momentum + self.state.b * self.state.cos
 
     @constant_key("D", "discriminant, (a (u3 - u2))²", "1/time⁴", "(4,10)")
     def discriminant(self) -> R:

@@ -45,9 +45,7 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
 
 def _constants(exact: Exact) -> dict[str, Fraction]:
     """Return what is rational of the constants of section 4."""
-    psi, facts, sin2 = exact.psi_rate, exact.facts, 1 - U * U
-    alpha = exact.theta_rate * exact.theta_rate + psi * psi * sin2 + exact.a * U
-    beta = psi * sin2 + exact.b * U
+    alpha, beta = exact.energy + exact.a * U, exact.momentum + exact.b * U
     half, whole = Fraction(exact.top.A) / 2, Fraction(exact.top.A)
     polynomials: dict[str, Polynomial] = {
         "energy_constant": alpha,
@@ -57,11 +55,11 @@ def _constants(exact: Exact) -> dict[str, Fraction]:
         "f_upright": -1 * (beta - exact.b) * (beta - exact.b),
         "f_hanging": -1 * (beta + exact.b) * (beta + exact.b),
     }
-    if facts.steady:
-        wide = psi * psi * sin2 + exact.b * exact.b - 2 * exact.a * U
+    if exact.facts.steady:
+        wide = exact.energy + exact.b * exact.b - 2 * exact.a * U
         polynomials |= {"discriminant": wide * wide, "u2_criterion": U * (wide + exact.a * U)}
     values = {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
     keys = {name: value for name, value in values.items() if value is not None}
-    if facts.steady or facts.regime == "separatrix":
+    if exact.facts.steady or exact.facts.regime == "separatrix":
         keys["f_slope_u1"] = Fraction(0)
     return keys
