@@ -210,7 +210,7 @@ def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:
 
 def _steps(motion: Motion, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError where they do not hold."""
-    from ..motion.paper.worked_example import chain
+    from ..motion.paper.worked_example import derivation_keys
 
     if motion.roots_sum is None:
         top = motion.top
@@ -219,4 +219,4 @@ def _steps(motion: Motion, radians: bool) -> list[str]:
             f"regime {motion.regime.value!r}, thetadot0 = {float(top.thetadot0)}, "
             f"psidot0 = {float(top.psidot0)}"
         )
-    return chain(radians=radians)
+    return derivation_keys(radians=radians)

@@ -14,7 +14,7 @@ from ..arithmetic.numbers import R
 from .moduli import Moduli
 from .quantity import quantity
 from .regime import Facts, Regime
-from .spin_precession import SpinPrecession, period_of
+from .spin_precession import SpinPrecession, turn_time
 
 
 class Nutating(SpinPrecession[R]):
@@ -116,12 +116,12 @@ class Constant(Moduli[R]):
     @quantity
     def T_spin(self) -> R | None:
         """One turn at the spin rate (section 8)."""
-        return period_of(self.ar, self.mean_spin_rate)
+        return turn_time(self.ar, self.mean_spin_rate)
 
     @quantity
     def T_precession(self) -> R | None:
         """One turn at the precession rate (section 8)."""
-        return period_of(self.ar, self.mean_precession_rate)
+        return turn_time(self.ar, self.mean_precession_rate)
 
 
 class Steady(Constant[R]):

@@ -25,7 +25,7 @@ class Document(str):
         Path(path).write_text(self, encoding="utf-8")
 
 
-def record_table(record: Mapping[str, Any]) -> str:
+def record_html(record: Mapping[str, Any]) -> str:
     """Return the record of a motion as a table of HTML: symbol, meaning, value and unit."""
     rows = "".join(
         f'<tr title="{name}"><td>{KEYS[name].symbol}</td><td style="text-align: left">'

@@ -12,10 +12,10 @@ from ..arithmetic.balls import balls
 from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounding_of, settled
 from ..errors import OutOfRangeError, OutOfRangeWarning
 from ..inputs.top import Top
+from .numbers import Numbers
 from .quantity import unit_name
 from .record import NUMBER_KEYS, all_keys, record_keys, requested_keys
 from .regime import exact
-from .solution import Solution
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -30,7 +30,7 @@ def solve(top: Top) -> Motion:
     return Motion(exact(top))
 
 
-class Motion(Solution):
+class Motion(Numbers):
     """The motion of one top: the numbers of its record as attributes, and its angles over time.
 
     Each number is the double nearest to its exact value, proved by an enclosure when it is first
@@ -102,9 +102,9 @@ class Motion(Solution):
 
     def _repr_html_(self) -> str:
         """Return the record as a table for a notebook."""
-        from .notebook import record_table
+        from .notebook import record_html
 
-        return record_table(self.record())
+        return record_html(self.record())
 
     def view(self) -> Document:
         """Return a page on which the top turns, for a notebook or, with `save`, for a browser.

@@ -92,12 +92,12 @@ class SpinPrecession(Nutation[R]):
     @key("Periods", "Tφ", "of the mean spin", "time", "§8")
     def T_spin(self) -> R | None:
         """One turn at the mean spin rate (section 8)."""
-        return period_of(self.ar, self.mean_spin_rate)
+        return turn_time(self.ar, self.mean_spin_rate)
 
     @key("Periods", "Tψ", "of the mean precession", "time", "§8")
     def T_precession(self) -> R | None:
         """One turn at the mean precession rate (section 8)."""
-        return period_of(self.ar, self.mean_precession_rate)
+        return turn_time(self.ar, self.mean_precession_rate)
 
     @key("Rates", "φ'(0)", "spin at the start", "rad/time", "(6,2)")
     def spin_rate_start(self) -> R | None:
@@ -166,7 +166,7 @@ def mean_over(ar: Arithmetic[R], k_prime: R, distances: Sequence[R], values: Seq
     return period_mean(ar, k_prime, p, values[0], values[1] * mc) / from_u1 / 2
 
 
-def period_of(ar: Arithmetic[R], rate: R) -> R | None:
+def turn_time(ar: Arithmetic[R], rate: R) -> R | None:
     """Return 2 pi over a mean rate; None, or NaN in an array, where it is 0."""
     stands = abs(rate) <= 0
     if ar.everywhere(stands):

@@ -21,7 +21,7 @@ from errata import FIGURES, round_alike, true_values
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve, sweep
-from lagrange_cli.motion.paper.worked_example import chain
+from lagrange_cli.motion.paper.worked_example import derivation_keys
 from lagrange_cli.motion.record import KEYS, all_keys, record_keys, requested_keys
 
 DIGITS = 40
@@ -124,7 +124,7 @@ def test_next_to_poles_and_zeros_they_are_the_nearest_doubles(start: dict[str, f
 def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
     """To the digits printed, where the print is right; the others are the true ones."""
     header, cells = lagtop("solve", "--derivation", "--format", "csv").stdout.splitlines()
-    assert header.split(",") == chain()
+    assert header.split(",") == derivation_keys()
     steps, values = [ar.mpf(cell) for cell in cells.split(",")], true_values()
     assert header.startswith("m,A,C,s,g,r0,theta0_deg,a,")  # as section 8 begins
     assert cells.startswith("1587.0,39032.0,17458.0,4.0,981.0,50.0,30.0,319.0914")
@@ -142,9 +142,9 @@ def test_every_figure_of_section_8_is_in_the_derivation(lagtop: Lagtop) -> None:
 def test_the_derivation_is_a_table_of_every_step(lagtop: Lagtop) -> None:
     shown = lagtop("solve", "--derivation", "--rad").stdout
     assert max(map(len, shown.splitlines())) <= 80
-    assert set(map(str, solve(Top()).record(radians=True, keys=chain(radians=True)).values())) <= (
-        set(shown.split())
-    )
+    assert set(
+        map(str, solve(Top()).record(radians=True, keys=derivation_keys(radians=True)).values())
+    ) <= (set(shown.split()))
     lines = shown.splitlines()
     names = ("Inputs", "m   ", "ϑ0", "2mgs/A", "2 u3", "(7,2)")
     order = [next(i for i, line in enumerate(lines) if name in line) for name in names]

@@ -18,7 +18,7 @@ from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.arithmetic.balls import Balls
 from lagrange_cli.elliptic.complete import complete_k
 from lagrange_cli.motion.over_time.theta_series import (
-    Place,
+    SquaredRatio,
     ThetaConstants,
     circular_series,
     evaluate,
@@ -41,7 +41,8 @@ def constants(ar: Balls, k2: str, s_plus: str, s_minus: str) -> ThetaConstants:
     k, k_prime = ar.sqrt(m), ar.sqrt(mc)
     one = ar.convert(1)
     places = [
-        Place(ar.convert(Fraction(s2)), ar.convert(1 - Fraction(s2))) for s2 in (s_plus, s_minus)
+        SquaredRatio(ar.convert(Fraction(s2)), ar.convert(1 - Fraction(s2)))
+        for s2 in (s_plus, s_minus)
     ]
     return ThetaConstants(
         period=one,

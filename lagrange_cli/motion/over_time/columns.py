@@ -27,7 +27,7 @@ MODULI = Needs(moduli=True)
 ATTITUDE, SWING = MODULI | TURN, MODULI | Needs(rate=True)
 
 
-class Part(NamedTuple):
+class ScalarColumn(NamedTuple):
     """One column."""
 
     heading: str
@@ -43,11 +43,11 @@ class Column(NamedTuple):
     """One or several columns by name."""
 
     meaning: str
-    parts: Sequence[Part]
+    parts: Sequence[ScalarColumn]
 
 
 def _one(meaning: str, needs: Needs, method: str, heading: str, unit: str = "") -> Column:
-    return Column(meaning, [Part(heading, method, needs, unit)])
+    return Column(meaning, [ScalarColumn(heading, method, needs, unit)])
 
 
 COLUMNS: dict[str, Column] = {
@@ -74,14 +74,14 @@ COLUMNS: dict[str, Column] = {
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
         [
-            Part("axis_x", "axis_x", ATTITUDE),
-            Part("axis_y", "axis_y", ATTITUDE),
-            Part("axis_z", "cosine", MODULI),
+            ScalarColumn("axis_x", "axis_x", ATTITUDE),
+            ScalarColumn("axis_y", "axis_y", ATTITUDE),
+            ScalarColumn("axis_z", "cosine", MODULI),
         ],
     ),
     "quaternion": Column(
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
-        [Part(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE) for part in "wxyz"],
+        [ScalarColumn(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE) for part in "wxyz"],
     ),
     "energy": _one(
         "energy; constant but for rounding", SWING, "energy", "energy", "mass len²/time²"
@@ -104,7 +104,7 @@ _SINGLE = {
 """Each column of a group by its own name."""
 
 
-def name_of(part: Part) -> str:
+def name_of(part: ScalarColumn) -> str:
     """Return the heading of a column without a unit."""
     return part.heading.removesuffix("_*")
 
@@ -114,7 +114,7 @@ def column_names() -> list[str]:
     return [*COLUMNS, *_SINGLE]
 
 
-def chosen_columns(names: Sequence[str]) -> list[Part]:
+def chosen_columns(names: Sequence[str]) -> list[ScalarColumn]:
     """Return the columns of some names, groups expanded.
 
     Raises LagtopError for a name that is unknown or comes twice.
@@ -130,7 +130,7 @@ def chosen_columns(names: Sequence[str]) -> list[Part]:
     return chosen
 
 
-def needs_of(chosen: Sequence[Part]) -> Needs:
+def needs_of(chosen: Sequence[ScalarColumn]) -> Needs:
     """Return what some columns need together."""
     return reduce(Needs.__or__, (part.needs for part in chosen), NOTHING)
 

@@ -19,15 +19,15 @@ from ...arithmetic.text import NumberText, double_text
 from ..exact.rational_columns import known_column
 from ..exact.rational_keys import known_fraction
 from ..kinds import Constant, Separatrix
-from ..solution import Solution
+from ..numbers import Numbers
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import Part, chosen_columns, headings, name_of
+from .columns import ScalarColumn, chosen_columns, headings, name_of
 from .spinors import Attitude, spinor_of
 
 if TYPE_CHECKING:
     from ...arithmetic.points import Points
 
-ROWS = 64
+ROWS_AT_ONCE = 64
 """Rows that are handed on together."""
 _EXTRA = 16
 """Digits by which the precision grows with the number of turns: a precision serves many rows."""
@@ -38,7 +38,7 @@ class BallSample(ColumnFormulas[Ball]):
 
     def __init__(
         self,
-        motion: Solution,
+        motion: Numbers,
         digits: int,
         constants: ColumnConstants[Ball],
         t: Ball,
@@ -146,7 +146,7 @@ class ProvedTable:
 
     def __init__(
         self,
-        motion: Solution,
+        motion: Numbers,
         columns: Sequence[str],
         digits: int | None = None,
         *,
@@ -189,7 +189,9 @@ class ProvedTable:
             at = Attitude(state.cos_half, state.sin_half, t, t, state.theta_rate)
         return BallSample(self.motion, digits, self._constants[digits], t, at)
 
-    def _number(self, part: Part, time: Fraction, sample: Callable[[int], BallSample]) -> Settled:
+    def _number(
+        self, part: ScalarColumn, time: Fraction, sample: Callable[[int], BallSample]
+    ) -> Settled:
         """Return a column at a time, at which `sample` gives the motion in so many digits."""
         what = f"{name_of(part)} at t = {float(time)}"
         rounding = rounding_of(what, self.digits)
@@ -207,7 +209,7 @@ class ProvedTable:
         assert number is not None
         return number
 
-    def _enclosure(self, part: Part, sample: BallSample) -> Ball:
+    def _enclosure(self, part: ScalarColumn, sample: BallSample) -> Ball:
         """Return a ball that holds a column, angles in the unit in use."""
         value: Ball = getattr(sample, part.method)()
         if self.wrap and part.method in {"phi", "psi"}:
@@ -234,7 +236,7 @@ class ProvedTable:
         waiting: Iterator[Number] = times.decimals()
         if self.digits is None:
             waiting = (float(time) for time in waiting)
-        while block := list(islice(waiting, ROWS)):
+        while block := list(islice(waiting, ROWS_AT_ONCE)):
             yield [_texts(self.row(Fraction(time)), radii=radii) for time in block]
 
 

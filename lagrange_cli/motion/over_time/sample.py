@@ -12,10 +12,10 @@ from ...arithmetic.arrays import ARRAYS
 from ...arithmetic.blocks import BLOCK, blocks
 from ...arithmetic.types import Array
 from ...arithmetic.workspace import workspace
-from ..solution import Solution
+from ..numbers import Numbers
 from .attitude import Attitude, needed
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import Part, needs_of
+from .columns import ScalarColumn, needs_of
 
 
 class Sample(ColumnFormulas[Array]):
@@ -34,7 +34,7 @@ class Sample(ColumnFormulas[Array]):
         self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
         self.rises = rises
 
-    def write(self, part: Part, target: Array) -> None:
+    def write(self, part: ScalarColumn, target: Array) -> None:
         """Write a column into an array."""
         target[:] = getattr(self, part.method)()
 
@@ -111,7 +111,7 @@ class Sample(ColumnFormulas[Array]):
 
 
 def samples(
-    motion: Solution, t: Array, chosen: Sequence[Part], *, wrap: bool
+    motion: Numbers, t: Array, chosen: Sequence[ScalarColumn], *, wrap: bool
 ) -> Iterator[tuple[slice, Sample]]:
     """Yield the motion at the times t, a block at a time, with what some columns need.
 

@@ -19,8 +19,8 @@ from .multiple_angles import Coefficients
 from .theta_series import (
     Component,
     Frame,
-    Place,
     Series,
+    SquaredRatio,
     ThetaConstants,
     evaluate,
     theta_series,
@@ -53,8 +53,8 @@ def theta_constants(
             m=motion.m,
             k=motion.k,
             k_prime=motion.k_prime,
-            plus=Place(gaps.below_u2, gaps.u1_u2),
-            minus=Place(gaps.above_u1 * gaps.a_u3_u2, gaps.a_u3_above * gaps.u1_u2),
+            plus=SquaredRatio(gaps.below_u2, gaps.u1_u2),
+            minus=SquaredRatio(gaps.above_u1 * gaps.a_u3_u2, gaps.a_u3_above * gaps.u1_u2),
             x_size=ar.sqrt(gaps.below_u1 / 2),
             y_size=ar.sqrt(motion.k_prime * gaps.above_u2 / 2),
             sign_plus=facts.sign_plus,
@@ -117,7 +117,7 @@ def greatest_argument(ar: Any, series: Series) -> Any:
     return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
 
 
-class Swing(NamedTuple, Generic[R]):
+class SeparatrixConstants(NamedTuple, Generic[R]):
     """The separatrix by its lowest point."""
 
     offset: R
@@ -132,7 +132,7 @@ class Swing(NamedTuple, Generic[R]):
     """arg X at t = 0."""
 
 
-def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
+def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
     """Return the separatrix by its lowest point."""
     ar: Any = motion.ar
     gaps, falls = motion.gaps, direction(motion)
@@ -140,7 +140,7 @@ def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
     offset = -falls * ar.asinh(ar.sqrt(gaps.u_u2 / gaps.u1_u))
     x, y = ar.sqrt(gaps.below_u2 / 2), ar.sqrt(gaps.above_u2 / 2)
     side = ar.sinh(offset) / ar.cosh(offset) if offset or x else -falls  # on the lower pole
-    return Swing(offset, x, y, sign, ar.atan2(sign * y * side, x))
+    return SeparatrixConstants(offset, x, y, sign, ar.atan2(sign * y * side, x))
 
 
 def sampler_of(motion: Kind[Decimal]) -> Sampler:
@@ -208,7 +208,7 @@ def separatrix_sampler(motion: Separatrix[Decimal]) -> SeparatrixSampler:
 
     ar: Any = motion.ar
     with ar.working():
-        swing, speed = swing_of(motion), motion.argument_rate
+        swing, speed = separatrix_constants(motion), motion.argument_rate
         rates = motion.r0 - motion.b / 2, motion.b / 2
         return SeparatrixSampler(
             tilt=tilt_of(motion),

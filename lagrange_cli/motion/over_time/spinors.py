@@ -8,7 +8,7 @@ from typing import Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R
 from ..kinds import Constant, Kind, Nutating, Separatrix
-from .series_constants import direction, periods_since_top, swing_of, theta_constants
+from .series_constants import direction, periods_since_top, separatrix_constants, theta_constants
 from .theta_series import ThetaConstants, evaluate, theta_series
 
 
@@ -105,7 +105,7 @@ def separatrix_spinor(motion: Separatrix[R]) -> Spinor[R]:
     """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
     ar: Any = motion.ar
     with ar.working():
-        swing = swing_of(motion)
+        swing = separatrix_constants(motion)
 
     def spinor(t: R) -> Attitude[R]:
         with ar.working():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ...arithmetic.points import EvenPoints, Points
 from ...errors import LagtopError
 from ...inputs.names import ANGLES
-from ..solution import Solution
+from ..numbers import Numbers
 from .columns import chosen_columns, headings, name_of
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ DEFAULT_COLUMNS = ("t", *ANGLES)
 
 
 def grid(
-    motion: Solution,
+    motion: Numbers,
     t_min: Fraction | None = None,
     t_max: Fraction | None = None,
     *,
@@ -55,7 +55,7 @@ def grid(
 
 
 def rows(
-    motion: Solution,
+    motion: Numbers,
     times: Points,
     columns: Sequence[str] = DEFAULT_COLUMNS,
     *,
@@ -101,7 +101,7 @@ def rows(
 
 
 def table(
-    motion: Solution, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
+    motion: Numbers, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
 ) -> dict[str, Array]:
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
     import numpy as np
@@ -126,7 +126,7 @@ def table(
 
 
 def _start(
-    motion: Solution, columns: Sequence[str], *, radians: bool, wrap: bool
+    motion: Numbers, columns: Sequence[str], *, radians: bool, wrap: bool
 ) -> Callable[[], list[float]]:
     """Return what gives the columns at t = 0 as the nearest doubles, computed once, if at all."""
 

@@ -57,7 +57,7 @@ class Frame(NamedTuple):
     rate: Coefficients
 
 
-class Place(NamedTuple):
+class SquaredRatio(NamedTuple):
     """A number eta from 0 to K', by sn^2(eta, k') and cn^2(eta, k') with any common factor."""
 
     s2: Value
@@ -76,9 +76,9 @@ class ThetaConstants(NamedTuple):
     """k^2."""
     k: Value
     k_prime: Value
-    plus: Place
+    plus: SquaredRatio
     """The parameter of X, 2K y+/pi."""
-    minus: Place
+    minus: SquaredRatio
     """The parameter of Y, 2K y-/pi."""
     x_size: Value
     """|X| at u1, which is cos(theta_min/2)."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..solve import Motion
 
 
-class Values(NamedTuple):
+class SnCnDn(NamedTuple):
     """The functions sn, cn, dn at one place, or their squares."""
 
     sn: Any
@@ -65,11 +65,11 @@ class ImaginaryForm:
         """Return the argument eta = sqrt(a (u3 - u1)) t/2 at a time (4 g)."""
         return self.rate * t
 
-    def jacobi(self, v: Any) -> Values:
+    def jacobi(self, v: Any) -> SnCnDn:
         """Return sn, cn, dn of a real or complex v for the modulus kappa: k' sd, cd and nd of k."""
         k_prime = self.modulus.k_prime
         _, sn, cn, dn = jacobi(self.ar, v / k_prime, self.modulus)
-        return Values(k_prime * sn / dn, cn / dn, 1 / dn)
+        return SnCnDn(k_prime * sn / dn, cn / dn, 1 / dn)
 
     def u(self, t: Any) -> Any:
         """Return cos theta = u1 - (u1 - u2) sn^2(eta, kappa) at a time (4 g)."""
@@ -88,26 +88,26 @@ class ImaginaryForm:
         return first, first + self.half_periods[1]
 
     @property
-    def squares(self) -> tuple[Values, Values]:
+    def squares(self) -> tuple[SnCnDn, SnCnDn]:
         """The squares of sn, cn, dn at alpha1 and at alpha2, from the roots (4 i)."""
         u1, u2, u3 = self.u1, self.u2, self.u3
         south, north = 1 + u1, 1 - u1
         return (
-            Values(-(u3 - u1) / south, (u3 + 1) / south, (1 + u2) / south),
-            Values((u3 - u1) / north, -(u3 - 1) / north, (1 - u2) / north),
+            SnCnDn(-(u3 - u1) / south, (u3 + 1) / south, (1 + u2) / south),
+            SnCnDn((u3 - u1) / north, -(u3 - 1) / north, (1 - u2) / north),
         )
 
     @property
-    def at_parameters(self) -> tuple[Values, Values]:
+    def at_parameters(self) -> tuple[SnCnDn, SnCnDn]:
         """The functions sn, cn, dn at alpha1 and at alpha2, from the roots (4 i).
 
         The text gives the squares and takes positive roots; of alpha2 = alpha1 + iK', sn and dn
         are negative.
         """
         first, second = (
-            Values(*(self.ar.sqrt(self.ar.mpc(x)) for x in part)) for part in self.squares
+            SnCnDn(*(self.ar.sqrt(self.ar.mpc(x)) for x in part)) for part in self.squares
         )
-        return first, Values(-second.sn, second.cn, -second.dn)
+        return first, SnCnDn(-second.sn, second.cn, -second.dn)
 
     def pi01(self, t: Any) -> tuple[Any, Any]:
         """Return Pi01(eta, alpha1, kappa) and Pi01(eta, alpha2, kappa) at a time.

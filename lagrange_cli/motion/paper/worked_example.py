@@ -130,6 +130,6 @@ CHAIN = {
 """Keys by the steps of section 8, in its order."""
 
 
-def chain(*, radians: bool = False) -> list[str]:
+def derivation_keys(*, radians: bool = False) -> list[str]:
     """Return the keys of the steps of section 8, in its order."""
     return [unit_name(name, radians=radians) for names in CHAIN.values() for name in names]

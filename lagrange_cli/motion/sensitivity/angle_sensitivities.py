@@ -23,10 +23,10 @@ from ...arithmetic.types import Array
 from ...inputs.names import check_names
 from ...inputs.top import Top
 from ..kinds import middle_of
+from ..numbers import Numbers
 from ..over_time.samplers import Angles
 from ..over_time.times import check_times, times_of
 from ..regime import Exact, Regime, exact
-from ..solution import Solution
 from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .sensitivities import Partials
 from .series_derivatives import SeriesDerivatives
@@ -176,7 +176,7 @@ class Spinning:
     """Motions of which only the spin by r0 alone is told: the others part from them at once."""
 
     def __init__(self, scene: Exact) -> None:
-        self.sampler = Solution(scene).sampler()
+        self.sampler = Numbers(scene).sampler()
         self.max_time = self.sampler.max_time
 
     def at(self, t: Array) -> tuple[Array, Array]:

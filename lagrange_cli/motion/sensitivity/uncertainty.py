@@ -17,9 +17,9 @@ from ...arithmetic.numbers import R
 from ...arithmetic.protocol import Arithmetic
 from ...arithmetic.rounding import rounded
 from ...inputs.top import Top
+from ..numbers import Numbers
 from ..record import NUMBER_KEYS, TEXT_KEYS
 from ..regime import exact
-from ..solution import Solution
 from .sensitivities import Slopes
 
 
@@ -51,7 +51,7 @@ class FirstOrder:
         Raises LagtopError for a top that has no motion.
         """
         self.top, self.stds, self.given = top, stds, given
-        self.motion = Solution(exact(top))
+        self.motion = Numbers(exact(top))
         self.slopes = Slopes(self.motion.exact)
 
     @staticmethod

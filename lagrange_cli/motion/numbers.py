@@ -26,7 +26,7 @@ SAMPLER_DIGITS = 40
 """Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
 
 
-class Solution:
+class Numbers:
     """The motion of one top: each number is computed once, in balls of as many digits as it takes.
 
     Numbers are attributes, by the keys of the record; see `Motion`.
