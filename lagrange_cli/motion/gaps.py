@@ -9,14 +9,11 @@ continues him to starts that are not at rest.
 from __future__ import annotations
 
 from collections.abc import Callable
-from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.ball import Ball, TooFewDigitsError
-from ..arithmetic.balls import Balls
-from ..arithmetic.decimals import Decimals, decimals
 from ..arithmetic.numbers import R, absolute
 from ..arithmetic.values import Over, Values
+from .cubic_roots import two_roots
 from .regime import Exact, Facts
 
 if TYPE_CHECKING:
@@ -191,7 +188,7 @@ def gaps_from_start(
     """
     a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
     zero = 0 * u0
-    energy, momentum, (c0, c1, c2) = cubic(start)
+    momentum, (c0, c1, c2) = start.momentum, cubic(start)
     a_c0 = a * c0
     separatrix = facts.regime == "separatrix"
     if separatrix or facts.upper_root == 3:
@@ -200,7 +197,7 @@ def gaps_from_start(
         D = -c2
     else:
         assert find_root is not None
-        D = find_root(ar, c2, a * c1, a * a_c0, energy + b * b + 2 * a)
+        D = find_root(ar, c2, a * c1, a * a_c0, start.energy + b * b + 2 * a)
     if facts.steady:
         x1, x2 = zero, zero
     elif separatrix:
@@ -233,65 +230,12 @@ def gaps_from_start(
     )
 
 
-def cubic(start: State[R]) -> tuple[R, R, tuple[R, R, R]]:
-    """Return theta'^2 + (psi' sin)^2, psi' sin^2, and c0, c1, c2 of a x^3 + c2 x^2 + c1 x + c0."""
-    a, b, u0 = start.a, start.b, start.cos
-    energy, momentum = start.energy, start.momentum
-    along, b2 = start.sin * start.theta_rate, b * b
-    c1 = 2 * b * momentum - a * start.sin * start.sin - 2 * u0 * energy
-    return energy, momentum, (along * along, c1, 2 * a * u0 - energy - b2)
-
-
-def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
-    """Return the roots x1 >= 0 >= x2 of x^2 - total x + product, for product <= 0."""
-    upward = ar.either(total >= 0)  # next to 0 nothing cancels in either
-    larger = (ar.where(upward, total, -total) + ar.sqrt(total * total - 4 * product)) / 2
-    smaller = -product / larger
-    return ar.where(upward, larger, smaller), -ar.where(upward, smaller, larger)
-
-
-def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
-    """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
-
-    Some root is within 3 |f/f'| of any point p, because f'/f is the sum of 1/(p - root).  If f' and
-    f'' are positive in this ball X around p, they are so beyond it: X holds the largest root alone.
-    Newton's step p - f(p)/f'(X) then holds it too, by the mean value theorem.  Raises
-    TooFewDigitsError if these digits do not prove it.
-    """
-
-    def cubic(x: Ball) -> Ball:
-        return ((x + c2) * x + c1) * x + c0
-
-    def slope(x: Ball) -> Ball:
-        return (3 * x + 2 * c2) * x + c1
-
-    middles = (x.middle for x in (c2, c1, c0, above))
-    point = ar.exact(near_largest_root(decimals(ar.digits), *middles))
-    around = point.enlarged((3 * cubic(point) / slope(point)).greatest)
-    if not (slope(around) > 0 and 3 * around + c2 > 0):
-        raise TooFewDigitsError
-    return point - cubic(point) / slope(around)
-
-
-def near_largest_root(
-    ar: Decimals, c2: Decimal, c1: Decimal, c0: Decimal, above: Decimal
-) -> Decimal:
-    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, all of them real.
-
-    Laguerre's method falls to it from a point above, three times as many digits at each step, but
-    for a double root.
-    """
-    with ar.working():
-        x, least = above, 1000 * ar.eps
-        for _ in range(4 * ar.digits):
-            value, slope = ((x + c2) * x + c1) * x + c0, (3 * x + 2 * c2) * x + c1
-            curved = max(4 * slope * slope - 12 * value * (3 * x + c2), Decimal(0))
-            divisor = slope + curved.sqrt()
-            step = 3 * value / divisor if divisor else divisor
-            x -= step
-            if not step > least * abs(x):
-                break
-        return x
+def cubic(start: State[R]) -> tuple[R, R, R]:
+    """Return c0, c1, c2 of the cubic (4,9) in x = u - u0, which is a x^3 + c2 x^2 + c1 x + c0."""
+    a, b, u0, energy = start.a, start.b, start.cos, start.energy
+    along = start.sin * start.theta_rate
+    c1 = 2 * b * start.momentum - a * start.sin * start.sin - 2 * u0 * energy
+    return along * along, c1, 2 * a * u0 - energy - b * b
 
 
 def are_told_apart(facts: Facts, gaps: Gaps[Any]) -> bool:

@@ -11,7 +11,8 @@ from ..arithmetic.ball import Ball, TooFewDigitsError
 from ..arithmetic.balls import balls
 from ..arithmetic.rounding import Settled, decided, rounding_of, settled
 from ..inputs.top import Top
-from .gaps import are_told_apart, gaps_of, largest_root, state
+from .cubic_roots import largest_root
+from .gaps import are_told_apart, gaps_of, state
 from .kinds import Kind, kind_of, middle_of
 from .record import NUMBER_KEYS, number_key
 from .regime import Exact, Regime

@@ -14,7 +14,8 @@ from ...arithmetic.ball import Ball, TooFewDigitsError
 from ...arithmetic.balls import balls
 from ...arithmetic.duals import Dual, Duals, independent
 from ...arithmetic.values import Values
-from ..gaps import Gaps, State, are_told_apart, gaps_from_start, largest_root, state
+from ..cubic_roots import largest_root
+from ..gaps import Gaps, State, are_told_apart, gaps_from_start, state
 from ..regime import Exact, Facts, Regime
 
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")

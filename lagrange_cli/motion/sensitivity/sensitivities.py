@@ -247,7 +247,7 @@ def mean_gaps(near: Neighbourhood) -> Gaps[Dual]:
 
     There c0 and c1 vanish, so that D = a (u3 - u0) = -c2 - a (x1 + x2) and x1 + x2 = c1/D.
     """
-    _, momentum, (_, c1, c2) = cubic(near.moved)
+    momentum, (_, c1, c2) = near.moved.momentum, cubic(near.moved)
     x = c1 / -c2 / 2
     D = -c2 - 2 * near.moved.a * x
     x = Dual(near.ar.plain.convert(0), x.partials)
@@ -267,7 +267,7 @@ def mean_gaps(near: Neighbourhood) -> Gaps[Dual]:
 
 def lowest_gaps(near: Neighbourhood) -> Gaps[Dual]:
     """Return the gaps next to the separatrix; only those of the simple root u2 are right."""
-    _, _, (c0, c1, c2) = cubic(near.moved)
+    c0, c1, c2 = cubic(near.moved)
     root = moving_root(near.moved.a, c2, c1, c0, -near.gaps.u_u2.value)
     below, above = near.moved.below + root, near.moved.above - root
     return near.gaps.replace(u_u2=-root, below_u2=below, above_u2=above)

@@ -29,7 +29,7 @@ class SteadyDerivatives:
         ar = near.ar.middles
         with ar.working():
             state = State(*(x.middle for x in near.moved))
-            _, _, (_, c1, c2) = cubic(state)
+            _, c1, c2 = cubic(state)
             self.force = _partials(c1) / 2
             frequency = ar.plain.sqrt(-c2.value)
             self.frequency = float(frequency)
