@@ -159,7 +159,9 @@ def faults_of(words: Sequence[str], result: Result, folder: Path) -> Iterator[st
         yield f"says {result.stderr[-200:]!r}"
     if code in {2, 65, 69} and result.stdout_bytes:
         yield f"is refused with {code}, and prints {result.stdout[:80]!r}"
-    if re.search(rb"(?<![\w\"\-])-?(?:inf|nan|NaN|Infinity)(?![\w])", result.stdout_bytes):
+    is_page = result.stdout_bytes.startswith(b"<!DOCTYPE html>")  # its programs name NaN
+    no_number = rb"(?<![\w\"\-])-?(?:inf|nan|NaN|Infinity)(?![\w])"
+    if not is_page and re.search(no_number, result.stdout_bytes):
         yield "prints what is no number"
     if "json" in words and not code and result.stdout_bytes[:1] in {b"[", b"{"}:
         json.loads(result.stdout)

@@ -253,7 +253,7 @@ COMMANDS = {
 }
 CODES = {0, 1, 2, 65}
 MEMORY, SECONDS = 3 << 29, 60
-"""What a run may use: bytes of address space beyond those after all imports, and time."""
+"""What a run may use: bytes of address space beyond those after all imports, and processor time."""
 
 
 def files(count: int, seed: int) -> dict[str, Make]:
@@ -273,7 +273,8 @@ def run(words: list[str], said: BinaryIO) -> NoReturn:
         sys.stderr = open(said.fileno(), "w", errors="backslashreplace")  # noqa: SIM115
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY,) * 2)
-        signal.alarm(SECONDS)
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+        signal.alarm(10 * SECONDS)
         command(prog_name="lagtop", args=words)
     except SystemExit as end:
         status = int(end.code or 0)

@@ -7,6 +7,7 @@ empty cells are NaN, and what is no number is named by its line and column.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import chain
@@ -260,8 +261,8 @@ def _check_once(line: bytes, name: str) -> None:
     """Raise DataError for an object that has a key twice, of which a reader sees the last alone."""
     import json
 
-    keys = [key for key, _ in json.loads(line, object_pairs_hook=list)]
-    if twice := [key for i, key in enumerate(keys) if key in keys[:i]]:
+    counts = Counter(key for key, _ in json.loads(line, object_pairs_hook=list))
+    if twice := [key for key, count in counts.items() if count > 1]:
         raise DataError(f"{name} must name each quantity once, got {twice[0]!r} and {twice[0]!r}")
 
 

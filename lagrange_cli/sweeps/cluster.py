@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import pickle
 import pkgutil
@@ -77,6 +78,7 @@ def _client(address: str) -> Client:
         logging.getLogger(name).setLevel(silent)
     try:
         if address != "local":
+            asyncio.run(asyncio.wait_for(_greet(address), PATIENCE))
             return Client(address, timeout=PATIENCE)
         with interrupts_blocked():
             return Client(threads_per_worker=1, dashboard_address=":0", silence_logs=silent)
@@ -88,6 +90,14 @@ def _client(address: str) -> Client:
         started = "a cluster of this machine cannot be started"
         what = started if address == "local" else f"no scheduler answers at {address}"
         raise UnavailableError(f"{what}: {error}") from None
+
+
+async def _greet(address: str) -> None:
+    """Exchange greetings with a scheduler: a client waits for them without end."""
+    from distributed.comm.core import connect
+
+    connection = await connect(address, timeout=PATIENCE)
+    await connection.close()
 
 
 def _check_workers(client: Client) -> None:

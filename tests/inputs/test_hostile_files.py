@@ -180,6 +180,14 @@ def test_a_header_of_many_columns_is_read_at_once(tmp_path: Path, lagtop: Lagtop
     assert lagtop("sweep", path, "--keys", "r0").exit_code == 0
 
 
+def test_an_object_of_many_keys_is_read_at_once(tmp_path: Path, lagtop: Lagtop) -> None:
+    """The time must not grow with the square of their number: it took a minute."""
+    path = tmp_path / "run.ndjson"
+    path.write_text("{" + ",".join(f'"k{i}": 1' for i in range(100_000)) + "}\n")
+    result = lagtop("compare", path)
+    assert (result.exit_code, result.stderr.count("\n")) == (65, 1)
+
+
 def test_times_that_are_far_apart(tmp_path: Path, lagtop: Lagtop) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"t,theta\n-1.7e308,30\n1.7e308,31\n")

@@ -305,20 +305,25 @@ class Answers(BaseRequestHandler):
     words = b""
 
     def handle(self) -> None:
-        """Say something, and wait."""
+        """Say something and close soon, or say nothing until the other side closes."""
         self.request.sendall(self.words)
-        time.sleep(1)
+        if self.words:
+            time.sleep(1)
+        else:
+            while self.request.recv(1 << 16):
+                pass
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     argnames="words",
-    ids=["web", "ones", "zeros", "shell"],
+    ids=["web", "ones", "zeros", "shell", "silent"],
     argvalues=[
         b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n",
         b"\xff" * 64,
         bytes(64),
         b"SSH-2.0",
+        b"",
     ],
 )
 def test_a_server_that_is_no_scheduler(words: bytes) -> None:
