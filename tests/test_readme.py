@@ -17,6 +17,7 @@ from judge_tables import JUDGE_TABLES
 from published import published_table
 
 from lagrange_cli.cli.group import main
+from lagrange_cli.inputs.input_keys import DECLARED, TILT
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 ROOT = Path(__file__).parent.parent
@@ -102,7 +103,19 @@ def requested_table() -> list[str]:
     return lines
 
 
+def inputs_table() -> list[str]:
+    """Return the inputs of a scene file as a table in Markdown."""
+    lines = ["| key | option | meaning | default |", "|---|---|---|---|"]
+    for name, x in DECLARED.items():
+        key = "`theta0_deg` or `theta0_rad`" if name == TILT else f"`{name}`"
+        meaning = ", ".join(filter(None, (x.meaning, x.bound)))
+        default = "" if x.default is None else f"{x.default:g} "
+        lines.append(f"| {key} | `--{name.replace('_', '-')}` | {meaning} | {default}|")
+    return lines
+
+
 TABLES = [
+    (inputs_table, "sample_inputs"),
     (errata_table, "tests"),
     (figures_table, "tests"),
     (requested_table, "lagrange_cli/motion"),

@@ -24,14 +24,15 @@ from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..inputs.units import System
+    from ..inputs.value import Value
     from ..motion.solve import Motion
 
 
-def _parse_input(text: str) -> Any:
-    from ..inputs.quantity_text import parse_quantity
+def _parse_input(text: str) -> Value:
     from ..inputs.ranges import parse_number_or_span
+    from ..inputs.value import parse_value
 
-    return parse_quantity(text, parse_number_or_span)
+    return parse_value(text, parse_number_or_span)
 
 
 @click.command(
@@ -140,7 +141,7 @@ def _inverted(
     from ..inputs.ranges import Span
 
     for name, x in inputs.items():
-        if name not in INPUTS or isinstance(getattr(x, "number", x), Span):
+        if name not in INPUTS or isinstance(x.number, Span):
             option = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
             raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got --{option}")
     found = gather(inputs, scenes[0] if scenes else None)

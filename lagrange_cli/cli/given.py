@@ -13,20 +13,24 @@ from .options import inputs_of, motion_of
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
+    from ..inputs.value import Value
     from ..motion.sensitivity.angle_uncertainty import AngleStds
     from ..motion.solve import Motion
 
 
-def in_seconds(options: Mapping[str, Any], **times: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+def in_seconds(
+    options: Mapping[str, Any], **times: Value | None
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the options and times, these as numbers of seconds where they have units.
 
     A time with a unit asks for units of all inputs, as --units does.
     """
-    if not any(hasattr(x, "unit") for x in times.values()):
-        return dict(options), times
-    from ..inputs.units import converted
+    given = {name: x for name, x in times.items() if x is not None}
+    if any(x.unit for x in given.values()):
+        from ..inputs.units import converted
 
-    return {**options, "units": options.get("units") or "si"}, converted(times, None)
+        options, given = {**options, "units": options.get("units") or "si"}, converted(given, None)
+    return dict(options), {name: given[name].number if name in given else None for name in times}
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..arithmetic.text import is_decimal, parse_number, quoted
+from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
 from .command import complain
 
@@ -17,12 +17,13 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from ..inputs.given import Given
+    from ..inputs.input_keys import Input
+    from ..inputs.value import Value
     from ..motion.solve import Motion
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
 F = TypeVar("F", bound=Callable[..., Any])
-V = TypeVar("V")
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
@@ -74,17 +75,10 @@ def _parse_count(text: str) -> int:
     return int(exact)
 
 
-def _parse_input(text: str, *, uncertain: bool = False) -> Any:
-    """Return a number, one with an uncertainty where it may be `uncertain`, or either in a unit."""
-    if is_decimal(text.strip()):
-        return parse_number(text)
-    from ..inputs.quantity_text import parse_quantity  # where there is more than a number
+def _parse_input(text: str, *, uncertain: bool = False) -> Value:
+    from ..inputs.value import parse_value  # not for commands without a top
 
-    if not uncertain:
-        return parse_quantity(text, parse_number)
-    from ..inputs.uncertain import parse_uncertain
-
-    return parse_quantity(text, parse_uncertain)
+    return parse_value(text, uncertain=uncertain)
 
 
 def _split_names(text: str) -> list[str]:
@@ -122,17 +116,17 @@ def say_missing(found: Given) -> None:
             f"Warning: {found.empty} has no inputs: what is not given is as in the worked example"
         )
     if found.missing:
-        from ..inputs import mixed_body  # for few tops only
+        from ..inputs.input_keys import example_options, remark_on
 
-        words = mixed_body.options(found.missing, units=found.system is not None)
-        complain(f"Warning: {mixed_body.remark(found.missing, words)}")
+        words = example_options(found.missing, units=found.system is not None)
+        complain(f"Warning: {remark_on(found.missing, words)}")
 
 
-def by_key(options: Mapping[str, V | None], *, radians: bool) -> dict[str, V]:
+def by_key(options: Mapping[str, Any], *, radians: bool) -> dict[str, Any]:
     """Return the options on the command line by the keys of the inputs."""
     tilt = "theta0_rad" if radians else "theta0_deg"
     return {
-        tilt if name == "theta0" and not hasattr(x, "unit") else name: x
+        tilt if name == "theta0" and not x.unit else name: x
         for name, x in options.items()
         if x is not None
     }
@@ -162,20 +156,6 @@ NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
 )
 PICTURES = Parsed("text", str, "pictures")
 
-_SCENE_OPTIONS = [
-    ("--m", "Mass."),
-    ("--A", "Equatorial moment of inertia about the pivot."),
-    ("--A-cm", "That moment about the mass centre, in place of --A: A = A_cm + m s^2."),
-    ("--C", "Polar moment of inertia, at most 2A."),
-    ("--s", "Distance from the pivot to the centre of mass."),
-    ("--g", "Gravity."),
-    ("--r0", "Total rate about the figure axis, phi' + psi' cos(theta)."),
-    ("--phidot0", "Rate of the spin angle phi at the start, in place of --r0."),
-    ("--theta0", "Tilt of the axis from the upward vertical, 0 to 180 degrees."),
-    ("--thetadot0", "Nutation rate at the start."),
-    ("--psidot0", "Precession rate at the start."),
-]
-
 
 def input_options(
     kind: click.ParamType,  # type: ignore[type-arg]
@@ -184,7 +164,7 @@ def input_options(
     whole: bool = True,
 ) -> Callable[[F], F]:
     """Add options for the inputs of a top, or of one not known in whole, --units and --rad."""
-    from ..inputs.top import EXAMPLE  # not for commands without a top
+    from ..inputs.input_keys import DECLARED  # not for commands without a top
 
     def decorate(command: F) -> F:
         if units:
@@ -193,15 +173,21 @@ def input_options(
         command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
             command
         )
-        offered = [x for x in _SCENE_OPTIONS if whole or x[0] != "--phidot0"]  # of a whole start
-        for option, text in reversed(offered):
-            name = option[2:].replace("-", "_")
-            default = EXAMPLE.get(f"{name}_deg", EXAMPLE.get(name))
-            shown = f"{text}  [default: {default:g}]" if whole and default is not None else text
-            command = click.option(option, name, type=kind, help=shown)(command)
+        for name in reversed(DECLARED):
+            if whole or name != "phidot0":  # which needs a whole start
+                option = f"--{name.replace('_', '-')}"
+                text = _help_of(DECLARED[name], shows_default=whole)
+                command = click.option(option, name, type=kind, help=text)(command)
         return command
 
     return decorate
+
+
+def _help_of(declared: Input, *, shows_default: bool) -> str:
+    """Return the help of an input, with its bounds and its default."""
+    text = ", ".join(filter(None, (declared.meaning, declared.bound)))
+    ending = f"  [default: {declared.default:g}]" if declared.default is not None else ""
+    return f"{text[0].upper()}{text[1:]}.{ending if shows_default else ''}"
 
 
 def scene_options(command: F) -> F:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -34,6 +34,9 @@ from .options import (
     motion_of,
 )
 from .progress import with_progress
+
+if TYPE_CHECKING:
+    from ..inputs.value import Value
 
 FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
@@ -111,7 +114,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
 def command(
     words: tuple[str, ...],
     rad: bool,
-    t_max: Fraction | None,
+    t_max: Value | None,
     key: str,
     x: str | None,
     y: str | None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -27,15 +27,15 @@ from .progress import with_count, with_progress
 from .row_options import jobs_option
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Points
+    from ..inputs.value import Value
     from ..sweeps.parts import Make
 
 
-def _parse_values(text: str) -> Any:
-    from ..inputs.quantity_text import parse_quantity
-    from ..inputs.ranges import parse_uncertain_values
+def _parse_values(text: str) -> Value:
+    from ..inputs.ranges import parse_values
+    from ..inputs.value import parse_value
 
-    return parse_quantity(text, parse_uncertain_values)
+    return parse_value(text, parse_values, uncertain=True)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -98,7 +98,7 @@ def command(
     fmt: str,
     output: str,
     units: str | None,
-    **axes: Points | None,
+    **axes: Value | None,
 ) -> None:
     """The record of `solve` for each top of a grid or of a file.
 

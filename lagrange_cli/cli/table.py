@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -38,6 +37,7 @@ from .row_options import jobs_option
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..inputs.given import Given
+    from ..inputs.value import Value
     from ..motion.solve import Motion
 
 LONG, LONG_IN_DIGITS = 3_000_000, 1000
@@ -91,10 +91,10 @@ LONG, LONG_IN_DIGITS = 3_000_000, 1000
 def command(
     scene: str | None,
     rad: bool,
-    t_max: Fraction | None,
-    t_min: Fraction | None,
+    t_max: Value | None,
+    t_min: Value | None,
     count: int | None,
-    dt: Fraction | None,
+    dt: Value | None,
     times: str | None,
     columns: list[str] | None,
     tops: str | None,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
-from ..inputs.measured import AS_SOLVED
+from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
 from ..motion.quantity import unit_name
 from ..motion.record import NUMBER_KEYS
@@ -140,7 +140,7 @@ def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
     if found.system is None:
         return {}
     named = in_units(top_layout(), found.system.named)
-    solved = {key: AS_SOLVED.get(key, key) for key in keys}
+    solved = {key: STANDS_FOR.get(key, key) for key in keys}
     units = units_of(set(solved.values()), named)
     return {key: units[one] for key, one in solved.items() if one in units}
 
@@ -211,7 +211,7 @@ def sampled(
 def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
     """Return every input once, as it was given or as it was solved."""
     inputs = {name: float(x) for name, x in motion.top.as_dict().items() if x is not None}
-    for measured, solved in AS_SOLVED.items():
+    for measured, solved in STANDS_FOR.items():
         if measured in found.inputs:
             del inputs[solved]
             inputs[measured] = float(found.inputs[measured])

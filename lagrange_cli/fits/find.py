@@ -12,7 +12,7 @@ import numpy as np
 from ..arithmetic.text import double_text
 from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError, check_type
-from ..inputs.mixed_body import warn_of
+from ..inputs.input_keys import warn_of
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS

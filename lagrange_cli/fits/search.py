@@ -11,8 +11,9 @@ from ..arithmetic.text import double_text
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given, gather
+from ..inputs.input_keys import overridden
 from ..inputs.ranges import Product, Span
-from ..inputs.top import Top, overridden
+from ..inputs.top import Top
 from ..motion.solve import solve
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
@@ -99,7 +100,7 @@ def search_of(
 ) -> tuple[Search, Given]:
     """Return a search, and what is given of the top: by inputs and by a scene file, if any.
 
-    An input is a number or a `Span`, or a `Quantity` of one of these.  Raises LagtopError.
+    An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError.
     """
     wanted = read_conditions(conditions, radians=radians)
     given = gather(inputs, scene)

@@ -11,7 +11,9 @@ from ..arithmetic.numbers import Number
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
-from .top import BODY, Top, from_example, one_of_each, overridden
+from .input_keys import BODY, from_example, one_of_each, overridden, warn_of
+from .top import Top
+from .value import Value, as_value
 
 if TYPE_CHECKING:
     from .scene_file import SceneFile
@@ -22,7 +24,7 @@ class Given(Values):
     """Inputs of a top by key, all in units of one system."""
 
     inputs: Mapping[str, Any]
-    """What was given, as exact numbers, or what a sweep has in their place."""
+    """The numbers that were given, or the `Points` or `Span` in their place."""
     others: Mapping[str, Any]
     """What else was given with units, such as times."""
     body: Mapping[str, Number]
@@ -58,22 +60,22 @@ def gather(
     *,
     system: str | None = None,
     varying: Collection[str] = (),
-    others: Mapping[str, Any] = MappingProxyType({}),
+    others: Mapping[str, Value] = MappingProxyType({}),
 ) -> Given:
     """Return the inputs of a scene file, if any, and those that are `given`, which win.
 
-    An input is a number, or a `Quantity` where it has a unit; those with units are converted to a
+    An input is a `Value`, or a number without a unit; those with units are converted to a
     `system`, `si` (the default) or `cgs`, and so are `others`, such as times or the units of
     columns.  Inputs that are `varying` are given later.  Raises SceneError for a file, LagtopError
     for an input that was given.
     """
-    inputs: Mapping[str, Any] = given
+    inputs = {name: as_value(x) for name, x in given.items()}
     file: SceneFile | None = None
     if path is not None:
         from .scene_file import SceneFile
 
         file = SceneFile(path)
-        inputs = overridden(file.inputs, given)
+        inputs = overridden(file.inputs, inputs)
 
     def blame(error: LagtopError) -> LagtopError:
         return error if file is None or error.key in given else file.error(error)
@@ -82,7 +84,7 @@ def gather(
     body: Mapping[str, Number] = BODY
     try:
         one_of_each(inputs)
-        if system or any(hasattr(x, "unit") for x in (*inputs.values(), *others.values())):
+        if system or any(x.unit for x in (*inputs.values(), *others.values())):
             from .units import converted, system_of
 
             units = system_of(overridden(inputs, others), system)
@@ -90,12 +92,13 @@ def gather(
             body = units.worked_example() if units else BODY
     except LagtopError as error:
         raise blame(error) from None
-    stds = {name: float(x.std) for name, x in inputs.items() if hasattr(x, "std")}
-    inputs = {name: x.value if name in stds else x for name, x in inputs.items()}
-    known = {name: _if_one(x) for name, x in inputs.items()}
-    missing = from_example(dict.fromkeys(varying) | known)
+    stds = {name: float(x.std) for name, x in inputs.items() if x.std is not None}
+    numbers, known = ({name: x.number for name, x in values.items()} for values in (inputs, others))
+    missing = from_example(
+        dict.fromkeys(varying) | {name: _if_one(x) for name, x in numbers.items()}
+    )
     empty = file.name if file is not None and not file.inputs else None
-    return Given(inputs, others, body, units, missing, blame, stds, empty)
+    return Given(numbers, known, body, units, missing, blame, stds, empty)
 
 
 def _if_one(value: Any) -> Any:
@@ -116,8 +119,6 @@ def read_scene(
     found = gather(given or {}, os.fsdecode(path))
     top = found.top(exact=exact)
     if found.missing:
-        from .mixed_body import warn_of
-
         warn_of(found.missing, stacklevel=3)
     return top
 

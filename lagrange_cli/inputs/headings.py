@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 from fractions import Fraction
-from typing import Any
 
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError, UnavailableError
+from .input_keys import TILT
 from .names import repeated
-from .quantity_text import TILT, Quantity
 from .top import INPUTS
+from .value import Value
 
 
 def check_spelling(carried: Sequence[str], name: str) -> None:
@@ -50,28 +50,25 @@ def check_header(columns: Sequence[str], known: Collection[str], name: str) -> N
 
 def units_of(
     headings: Sequence[tuple[str, str]], known: Collection[str], name: str
-) -> dict[str, Any]:
-    """Return what 1 means in each column of an input: a `Quantity` where its heading has a unit.
+) -> dict[str, Value]:
+    """Return 1 in each column of an input, in the unit of its heading.
 
     Raises DataError for a unit that is none of its input, UnavailableError where pint is missing.
     """
-    found: dict[str, Any] = {}
-    for column, unit in headings:
-        if column in known:
-            found[column] = Quantity(Fraction(1), unit) if unit else Fraction(1)
-            _check_unit(column, found[column], name)
+    found = {x: Value(Fraction(1), unit) for x, unit in headings if x in known}
+    for column, one in found.items():
+        if one.unit:
+            _check_unit(column, one, name)
     return found
 
 
-def _check_unit(column: str, meaning: Any, name: str) -> None:
-    if not isinstance(meaning, Quantity):
-        return
+def _check_unit(column: str, one: Value, name: str) -> None:
     from .units import converted
 
     try:
-        converted({column: meaning}, None)
+        converted({column: one}, None)
     except UnavailableError:
         raise
     except LagtopError as error:
-        place = f"{name}, heading {column} [{meaning.unit}]"
+        place = f"{name}, heading {column} [{one.unit}]"
         raise DataError(f"{place}: {error}") from None

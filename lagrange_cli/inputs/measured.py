@@ -11,9 +11,8 @@ from ..arithmetic.exact_cosine import Cosine
 from ..arithmetic.numbers import Number
 from ..arithmetic.rounding import nearest_double, rounding_of, settled
 from ..errors import LagtopError
+from .input_keys import STANDS_FOR
 
-AS_SOLVED = {"A_cm": "A", "phidot0": "r0"}
-"""The inputs that are measured, and what a top has in their place."""
 EXACT_DIGITS = 1100
 """Digits of an irrational number that has to stand as a fraction: more than any output shows."""
 
@@ -27,7 +26,7 @@ def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
     solved = dict(inputs)
     for measured, formula in (("A_cm", moment), ("phidot0", spin)):
         if measured in inputs:
-            solved[AS_SOLVED[measured]] = formula(inputs)
+            solved[STANDS_FOR[measured]] = formula(inputs)
             del solved[measured]
     return solved
 

@@ -1,20 +1,18 @@
-"""The one grammar of ranges, `[log:]start:stop:count`, and products of several."""
+"""The one grammar of ranges, `[log:]start:stop:count`, and blocks of the tops of several."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from ..arithmetic.points import MOST_POINTS, EvenPoints, ListedPoints, LogPoints, Points
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
-from .block import InputArrays
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .uncertain import Uncertain
 
 
 def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
@@ -44,17 +42,6 @@ def parse_values(text: str) -> Points:
     if ":" in text:
         return parse_range(text)
     return ListedPoints([parse_number(part) for part in text.split(",")])
-
-
-def parse_uncertain_values(text: str) -> Points | Uncertain:
-    """Return points, or those of one uncertain number.  Raises LagtopError."""
-    from .uncertain import Uncertain, parse_uncertain
-
-    if not set(text) & set("(±/") and "+-" not in text:
-        return parse_values(text)
-    found = parse_uncertain(text)
-    assert isinstance(found, Uncertain)
-    return Uncertain(ListedPoints([found.value]), found.std)
 
 
 class Span(NamedTuple):
@@ -98,6 +85,32 @@ def parse_span(text: str) -> Span:
 def parse_number_or_span(text: str) -> Fraction | Span:
     """Return a number, or the values of a range `[log:]from:to`.  Raises LagtopError."""
     return parse_span(text) if ":" in text else parse_number(text)
+
+
+class InputArrays(NamedTuple):
+    """The inputs of some tops and what goes with each of them."""
+
+    size: int
+    """The number of tops."""
+    inputs: Mapping[str, Array | float]
+    """An array for each input, or one number for all; NaN where a top lacks it."""
+    carried: Sequence[Sequence[Any]] = ()
+    """The columns that are carried through."""
+    lines: Sequence[int] | None = None
+    """The number of the line of each top, if they come from a file."""
+    errors: Mapping[int, str] = {}
+    """What is already known to be wrong, by row."""
+
+
+class Block(Protocol):
+    """Neighbouring tops of a grid or of a file, not read yet."""
+
+    @property
+    def size(self) -> int:
+        """The number of tops."""
+
+    def arrays(self, shared: Mapping[str, float]) -> InputArrays:
+        """Return the inputs of the tops; `shared` ones stand where a top has none of its own."""
 
 
 class Product(NamedTuple):

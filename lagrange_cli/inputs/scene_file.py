@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 import tomllib
 from fractions import Fraction
-from typing import Any
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError, SceneError
 from .files import opened, shown_path
+from .input_keys import TILT
 from .names import suggestion
-from .quantity_text import TILT, Quantity, parse_quantity
 from .top import INPUTS
+from .value import Value, parse_value
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
@@ -40,14 +40,14 @@ class SceneFile:
         except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
             why = f"{error}{_remedy(str(error), self.text)}"
             raise SceneError(f"{self.name}: not a TOML file: {why}") from None
-        self.inputs = {key: self._number(key, value) for key, value in table.items()}
+        self.inputs = {key: self._value(key, value) for key, value in table.items()}
 
-    def _number(self, key: str, value: object) -> Any:
+    def _value(self, key: str, value: object) -> Value:
         if key not in KEYS:
             wrong = f"unknown key {quoted(key)}{suggestion(key, KEYS)} (known: {', '.join(KEYS)})"
             raise self.error(LagtopError(wrong, key))
         if isinstance(value, str) and not isinstance(value, _NoNumber):
-            return self._quantity(key, value)
+            return self._value_of_text(key, value)
         if isinstance(value, int) and not isinstance(value, bool):
             value = Fraction(value)
         if not isinstance(value, Fraction):
@@ -56,24 +56,20 @@ class SceneFile:
         if key == TILT:
             wrong = f"{key} must have a unit, as '30 deg', or be called {key}_deg or {key}_rad"
             raise self.error(LagtopError(wrong, key))
-        return value
+        return Value(value)
 
-    def _quantity(self, key: str, text: str) -> Any:
-        """Return what a text says, a number in a unit or an uncertain one."""
-        from .uncertain import Uncertain, parse_uncertain
-
+    def _value_of_text(self, key: str, text: str) -> Value:
+        """Return a number in a unit, or an uncertain one."""
         try:
-            value = parse_quantity(text, parse_uncertain)
+            value = parse_value(text, uncertain=True)
         except LagtopError as error:
             raise self.error(LagtopError(f"{key} {error}", key)) from None
-        if isinstance(value, Uncertain) and key != TILT:
-            return value
-        if not isinstance(value, Quantity):
+        if not value.unit and (value.std is None or key == TILT):
             wrong = (
                 f"{key} must have a unit between quotes, or be a number without, got {quoted(text)}"
             )
             raise self.error(LagtopError(wrong, key))
-        if key.startswith(f"{TILT}_"):
+        if value.unit and key.startswith(f"{TILT}_"):
             wrong = (
                 f"{key} must be called {TILT} where it has a unit of its own, got {quoted(text)}"
             )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self
 
 from ..arithmetic.decimals import own_context
 from ..arithmetic.doubles import DOUBLES
@@ -15,11 +15,10 @@ from ..arithmetic.numbers import Number, R, is_real, unrounded
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError
+from .input_keys import EXAMPLE, NINE, TILT, from_example, one_of_each, overridden, warn_of
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
-
-N = TypeVar("N")
 
 _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT = 1e-150
@@ -27,14 +26,6 @@ _LARGEST = 1e100
 _UNITS = "choose other units"
 _DIGITS_SHOWN = own_context(50, [])
 """A context of our own, so that no message depends on the one of the caller."""
-
-
-BODY = {"m": 1587.0, "A": 39032.0, "C": 17458.0, "s": 4.0, "g": 981.0}
-"""The body of the worked example of Chrapan (1952), section 8, in CGS."""
-EXAMPLE = {**BODY, "r0": 50.0, "theta0_deg": 30.0, "thetadot0": 0.0, "psidot0": 0.0}
-"""What stands where nothing is given."""
-_SAME = {"A_cm": "A", "phidot0": "r0"} | dict.fromkeys(("theta0_deg", "theta0_rad"), "theta0")
-"""What an input is that may be given in several ways."""
 
 
 class Top(Values):
@@ -104,8 +95,6 @@ class Top(Values):
         super().__init__(*map(inputs.get, self.fields))
         _check_ranges(self)
         if missing:
-            from .mixed_body import warn_of  # for few tops only
-
             warn_of(missing, stacklevel=3)
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Top], tuple[dict[str, Any]]]:
@@ -123,10 +112,13 @@ class Top(Values):
 
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
-        names = ["m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"]
-        values: dict[str, Any] = {name: getattr(self, name) for name in names[:6]}
-        values["theta0_rad" if radians else "theta0_deg"] = self._tilt_in(radians, ar)
-        return values | {name: getattr(self, name) for name in names[6:]}
+        tilt = f"{TILT}_rad" if radians else f"{TILT}_deg"
+        return {
+            tilt if name == TILT else name: self._tilt_in(radians, ar)
+            if name == TILT
+            else getattr(self, name)
+            for name in NINE
+        }
 
     def _tilt_in(self, radians: bool, ar: Arithmetic[Any]) -> Any:
         wanted, other = self.theta0_deg, self.theta0_rad
@@ -257,32 +249,3 @@ def _shown(value: Number) -> str:
     parts = Decimal(exact.numerator), Decimal(exact.denominator)
     quotient = _DIGITS_SHOWN.normalize(_DIGITS_SHOWN.divide(*parts))
     return _DIGITS_SHOWN.to_sci_string(quotient)
-
-
-def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
-    """Return inputs by key, with those given in the place of others.
-
-    A tilt takes the place of one in either unit, A_cm that of A, and phidot0 that of r0.
-    """
-    taken = {_SAME.get(key, key) for key in given}
-    kept = {key: x for key, x in inputs.items() if _SAME.get(key, key) not in taken}
-    return kept | dict(given)
-
-
-def one_of_each(given: Iterable[str]) -> None:
-    """Raise LagtopError where an input is given in two ways."""
-    keys = set(given)
-    for key, other in (("A_cm", "A"), ("phidot0", "r0"), ("theta0_rad", "theta0_deg")):
-        if {key, other} <= keys:
-            raise LagtopError(f"{key} and {other} are both given: leave one out", key)
-
-
-def from_example(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the inputs of the body that are not given, where others of them are, by key.
-
-    What is given as 0 fits in any units: no gravity, or a centre of mass in the pivot.
-    """
-    own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
-    if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
-        return {}
-    return {name: value for name, value in BODY.items() if name not in own}

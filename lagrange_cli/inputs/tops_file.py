@@ -18,11 +18,13 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.text import json_text, parse_number, shortened
 from ..errors import DataError, LagtopError
-from .block import InputArrays
 from .files import numbered_lines, opened, shown_path
 from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, heading, units_of
-from .top import INPUTS, from_example, one_of_each, overridden
+from .input_keys import from_example, one_of_each, overridden
+from .ranges import InputArrays
+from .top import INPUTS
+from .value import Value
 
 LARGEST_BLOCK = 1 << 27
 """Bytes of lines that are kept at a time."""
@@ -91,8 +93,8 @@ class TopsFile(NamedTuple):
     """Names that are neither read nor carried."""
     named: Collection[str]
     """The inputs that the rows have: by the header, or by the first JSON object with any."""
-    units: Mapping[str, Any] = MappingProxyType({})
-    """What 1 means in each column of an input: a quantity, where its heading has a unit."""
+    units: Mapping[str, Value] = MappingProxyType({})
+    """1 in each column of an input, in the unit of its heading."""
     factors: Mapping[str, Fraction] = MappingProxyType({})
     """What the numbers of a column are multiplied with, where its heading has a unit."""
 
@@ -107,7 +109,8 @@ class TopsFile(NamedTuple):
         try:
             found = gather(inputs, scene, system=system, varying=self.named, others=self.units)
         except LagtopError as error:
-            if isinstance(self.units.get(error.key or ""), Fraction):  # a heading without a unit
+            column = self.units.get(error.key or "")
+            if column is not None and not column.unit:
                 raise DataError(f"{self.name}, heading {error.key}: {error}") from None
             raise
         if self.columns is not None:
@@ -122,7 +125,7 @@ class TopsFile(NamedTuple):
     def _in_units(self, found: Given) -> TopsFile:
         assert self.columns is not None
         keys = dict(zip(self.units, found.others, strict=True))
-        factors = {keys[x]: found.others[keys[x]] for x in keys if hasattr(self.units[x], "unit")}
+        factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
         return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
     def row(self, number: int, raw: bytes) -> TopRow:

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
+from ..inputs.input_keys import DECLARED, NINE, TILT
 from .quantity import Key, keys_of, unit_name
 from .spin_precession import SpinPrecession
 
 _INPUTS = {
-    "m": Key("Inputs", "m", "mass", "mass"),
-    "A": Key("Inputs", "A", "equatorial moment", "mass len²"),
-    "C": Key("Inputs", "C", "polar moment", "mass len²"),
-    "s": Key("Inputs", "s", "pivot to mass centre", "len"),
-    "g": Key("Inputs", "g", "gravity", "len/time²"),
-    "r0": Key("Inputs", "r0", "total spin rate", "rad/time"),
-    "theta0_deg": Key("Inputs", "ϑ0", "tilt at the start", "angle"),
-    "thetadot0": Key("Inputs", "ϑ'0", "nutation rate at start", "rad/time"),
-    "psidot0": Key("Inputs", "ψ'0", "precession rate at start", "rad/time"),
+    f"{name}_deg" if name == TILT else name: Key("Inputs", x.symbol, x.name, x.unit)
+    for name, x in DECLARED.items()
+    if name in NINE
 }
 _GROUPS = (
     "Constants",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..errors import SomeFailedError
-from ..inputs.block import Block
+from ..inputs.ranges import Block
 from ..output.row_texts import Columns
 from ..output.write import block_text
 from .measured_arrays import top_arrays

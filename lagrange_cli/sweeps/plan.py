@@ -13,9 +13,11 @@ from ..arithmetic.points import Points
 from ..errors import LagtopError
 from ..inputs.files import opened, temporary_copy
 from ..inputs.given import Given, checked_double, gather
+from ..inputs.input_keys import overridden
 from ..inputs.ranges import Product
-from ..inputs.top import INPUTS, overridden
+from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
+from ..inputs.value import Value, as_value
 from .parts import NumberedBlock, Sweep
 from .records import BLOCK_ROWS, check_keys, record_keys
 
@@ -37,7 +39,7 @@ class Plan(NamedTuple):
 
 def plan(
     files: Sequence[str],
-    axes: Mapping[str, Points],
+    axes: Mapping[str, Value | Points],
     *,
     keys: Sequence[str] | None = None,
     radians: bool = False,
@@ -62,20 +64,20 @@ def plan(
     wanted = Sweep((), {}, chosen, radians, fmt, until_error)
     if not tables:
         return _of_grid(wanted, axes, scene, system)
-    if ranges := ranges_of(axes):
+    if ranges := ranges_of({name: as_value(x).number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     return _of_file(wanted, tables[0], axes, scene, system, described=described)
 
 
 def _of_grid(
-    wanted: Sweep, axes: Mapping[str, Points], scene: str | None, system: str | None
+    wanted: Sweep, axes: Mapping[str, Value | Points], scene: str | None, system: str | None
 ) -> Plan:
     """Return the plan for all tops of a grid."""
     found = gather(axes, scene, system=system)
-    axes = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
-    grid = Product(axes)
+    points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
+    grid = Product(points)
     grid.check()
-    ranges = ranges_of(axes)
+    ranges = ranges_of(points)
     shared = shared_inputs(found, varying=ranges)
     sweep = _with_inputs(wanted, found, shared, found.stds)
     inputs = shared | {name: str(axis) for name, axis in ranges.items()}
@@ -86,7 +88,7 @@ def _of_grid(
 def _of_file(
     wanted: Sweep,
     path: str,
-    axes: Mapping[str, Points],
+    axes: Mapping[str, Value | Points],
     scene: str | None,
     system: str | None,
     *,
@@ -128,10 +130,8 @@ def _told_of(
     return told | ({"units": [sweep.system.mass, sweep.system.length]} if sweep.system else {})
 
 
-def ranges_of(axes: Mapping[str, Any]) -> dict[str, Points]:
-    """Return the axes that have more than one value, in units or without."""
-    axes = {name: getattr(axis, "number", axis) for name, axis in axes.items()}
-    axes = {name: getattr(axis, "value", axis) for name, axis in axes.items()}  # the uncertain
+def ranges_of(axes: Mapping[str, Points]) -> dict[str, Points]:
+    """Return the axes that have more than one value."""
     return {name: axis for name, axis in axes.items() if axis.count > 1}
 
 

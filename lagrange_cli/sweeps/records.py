@@ -18,9 +18,9 @@ from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.real_arrays import doubles_of
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
-from ..inputs.mixed_body import warn_of
+from ..inputs.input_keys import from_example, one_of_each, overridden, warn_of
 from ..inputs.names import check_names
-from ..inputs.top import INPUTS, Top, from_example, one_of_each, overridden
+from ..inputs.top import INPUTS, Top
 from ..motion import record as motion_record
 from ..motion.gaps import gaps_of
 from ..motion.kinds import fast_remark, kind_of, vertical_remark

@@ -14,20 +14,19 @@ import pytest
 from conftest import Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, read_scene
-from lagrange_cli.arithmetic.text import parse_number
-from lagrange_cli.inputs.common_units import UNITS
 from lagrange_cli.inputs.given import gather
-from lagrange_cli.inputs.quantity_text import parse_quantity
-from lagrange_cli.inputs.units import CGS, SYSTEMS, factor_of, meaning_by_pint, meaning_of
+from lagrange_cli.inputs.unit_sizes import UNITS, unit_by_pint, unit_of_text
+from lagrange_cli.inputs.units import CGS, SYSTEMS, factor_of
+from lagrange_cli.inputs.value import Value, parse_value
 
 PAPER = "--m 1587g --A 39032g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
 BODY = {"m": "350g", "A": "8.5e-4 kg m²", "C": "4000 g*cm^2", "s": "3cm", "g": "9.81 m/s^2"}
 WORDS = [word for name, text in BODY.items() for word in (f"--{name}", text)]
 
 
-def read(inputs: dict[str, str]) -> dict[str, Any]:
+def read(inputs: dict[str, str]) -> dict[str, Value]:
     """Return inputs as they are read from their texts."""
-    return {name: parse_quantity(text, parse_number) for name, text in inputs.items()}
+    return {name: parse_value(text) for name, text in inputs.items()}
 
 
 @pytest.mark.parametrize(
@@ -53,9 +52,7 @@ def read(inputs: dict[str, str]) -> dict[str, Any]:
     ],
 )
 def test_definitions_are_exact(key: str, text: str, size: Fraction) -> None:
-    value = parse_quantity(text, parse_number)
-    assert not isinstance(value, Fraction)
-    assert factor_of(key, value) == size
+    assert factor_of(key, parse_value(text)) == size
 
 
 @pytest.mark.parametrize(
@@ -63,10 +60,10 @@ def test_definitions_are_exact(key: str, text: str, size: Fraction) -> None:
     [("rpm", "1/60"), ("turn/s", "1"), ("rev/min", "1/60"), ("deg/s", "1/360"), ("°/s", "1/360")],
 )
 def test_turns_have_pi_in_all_digits(unit: str, turns: str) -> None:
-    meaning = meaning_of(unit)
-    assert (meaning.rational, meaning.power_of_pi) == (2 * Fraction(turns), 1)
+    found = unit_of_text(unit)
+    assert (found.rational, found.power_of_pi) == (2 * Fraction(turns), 1)
     with mpmath.workdps(1150):
-        size = mpmath.mpf(meaning.size.numerator) / meaning.size.denominator
+        size = mpmath.mpf(found.size.numerator) / found.size.denominator
         exact = 2 * mpmath.pi * mpmath.mpf(Fraction(turns).numerator) / Fraction(turns).denominator
         assert abs(size - exact) < mpmath.mpf(10) ** -1098
 
@@ -81,10 +78,10 @@ N m s ** 2, ft s^-2, 1 / s, m / s s, rad / min, s/s/s, s*s^-2, rpm*s/min
 
 @pytest.mark.parametrize("text", [*UNITS, *map(str.strip, PRODUCTS.split(","))])
 def test_common_units_are_those_of_pint(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = meaning_by_pint(text)
+    exact = unit_by_pint(text)
     monkeypatch.setitem(sys.modules, "pint", None)
-    monkeypatch.setattr("lagrange_cli.inputs.units.meaning_by_pint", None)
-    assert meaning_of(text) == exact
+    monkeypatch.setattr("lagrange_cli.inputs.unit_sizes.unit_by_pint", None)
+    assert unit_of_text(text) == exact
 
 
 @pytest.mark.parametrize(
@@ -337,11 +334,11 @@ def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
 
 
 def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> None:
-    from lagrange_cli.inputs import units
+    from lagrange_cli.inputs import unit_sizes
 
     monkeypatch.setitem(sys.modules, "pint", None)
-    units.meaning_by_pint.cache_clear()
-    monkeypatch.setattr(units, "_registry", units._registry.__wrapped__)
+    unit_by_pint.cache_clear()
+    monkeypatch.setattr(unit_sizes, "_registry", unit_sizes._registry.__wrapped__)
     assert lagtop("solve", *WORDS, "--r0", "480rpm", "--get", "m").stdout == "0.35\n"
     result = lagtop("solve", "--m", "1slug")
     assert_one_line(
@@ -351,7 +348,7 @@ def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> N
     )
     with pytest.raises(LagtopError, match="need pint"):
         gather(read({"theta0": "3gon"}))
-    units.meaning_by_pint.cache_clear()
+    unit_by_pint.cache_clear()
 
 
 def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, solved: Any) -> None:

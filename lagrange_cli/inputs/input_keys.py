@@ -1,0 +1,165 @@
+"""The inputs of a top by key: what each is, its unit and its default, and which stands for which.
+
+Help texts, tables of records, units, pictures and READMEs take the inputs from here.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from ..arithmetic.values import Values
+from ..errors import LagtopError, MixedBodyWarning
+
+N = TypeVar("N")
+
+
+class Input(Values):
+    """An input of a top; the unit `angle` stands for degrees or radians."""
+
+    symbol: str
+    name: str
+    """A few words, for tables and pictures."""
+    meaning: str
+    """The full meaning, for help texts."""
+    bound: str
+    unit: str
+    default: float | None = None
+    """The value in the worked example, in CGS; None for an input that stands for another."""
+
+
+_RATE = "rad/time"
+DECLARED = {
+    "m": Input("m", "mass", "mass", "positive", "mass", 1587.0),
+    "A": Input(
+        "A",
+        "equatorial moment",
+        "equatorial moment of inertia about the pivot",
+        "positive",
+        "mass len²",
+        39032.0,
+    ),
+    "A_cm": Input(
+        "A_cm",
+        "equatorial moment",
+        "equatorial moment about the mass centre, in place of A: A = A_cm + m s^2",
+        "",
+        "mass len²",
+    ),
+    "C": Input(
+        "C", "polar moment", "polar moment of inertia", "positive, at most 2A", "mass len²", 17458.0
+    ),
+    "s": Input(
+        "s",
+        "pivot to mass centre",
+        "distance from the pivot to the mass centre",
+        "0 or more",
+        "len",
+        4.0,
+    ),
+    "g": Input("g", "gravity", "gravity", "0 or more", "len/time²", 981.0),
+    "r0": Input(
+        "r0",
+        "total spin rate",
+        "total rate about the figure axis, phi' + psi' cos(theta)",
+        "",
+        _RATE,
+        50.0,
+    ),
+    "phidot0": Input(
+        "φ'0",
+        "spin rate",
+        "rate of the spin angle, in place of r0: r0 = phidot0 + psidot0 cos(theta0)",
+        "",
+        _RATE,
+    ),
+    "theta0": Input(
+        "ϑ0",
+        "tilt at the start",
+        "tilt of the axis from the upward vertical",
+        "0 to 180 degrees",
+        "angle",
+        30.0,
+    ),
+    "thetadot0": Input(
+        "ϑ'0", "nutation rate at start", "nutation rate at the start", "", _RATE, 0.0
+    ),
+    "psidot0": Input(
+        "ψ'0", "precession rate at start", "precession rate at the start", "", _RATE, 0.0
+    ),
+}
+"""Every input, in the order in which they stand everywhere."""
+
+TILT = "theta0"
+"""The key of a tilt that has a unit of its own; `theta0_deg` and `theta0_rad` have none."""
+STANDS_FOR = {"A_cm": "A", "phidot0": "r0"}
+"""The inputs that are measured, and what a top has in their place."""
+NINE = tuple(name for name in DECLARED if name not in STANDS_FOR)
+EXAMPLE = {
+    f"{name}_deg" if name == TILT else name: x.default
+    for name, x in DECLARED.items()
+    if x.default is not None
+}
+"""The inputs of the worked example of Chrapan (1952), section 8, in CGS: the defaults."""
+BODY = {name: EXAMPLE[name] for name in ("m", "A", "C", "s", "g")}
+_SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
+
+
+def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
+    """Return inputs by key, with those given in the place of others.
+
+    A tilt takes the place of one in either unit, A_cm that of A, and phidot0 that of r0.
+    """
+    taken = {_SAME.get(key, key) for key in given}
+    kept = {key: x for key, x in inputs.items() if _SAME.get(key, key) not in taken}
+    return kept | dict(given)
+
+
+def one_of_each(given: Iterable[str]) -> None:
+    """Raise LagtopError where an input is given in two ways."""
+    keys = set(given)
+    for key, other in (*STANDS_FOR.items(), ("theta0_rad", "theta0_deg")):
+        if {key, other} <= keys:
+            raise LagtopError(f"{key} and {other} are both given: leave one out", key)
+
+
+def from_example(given: Mapping[str, Any]) -> dict[str, float]:
+    """Return the inputs of the body that are not given, where others of them are, by key.
+
+    What is given as 0 fits in any units: no gravity, or a centre of mass in the pivot.
+    """
+    own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
+    if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
+        return {}
+    return {name: value for name, value in BODY.items() if name not in own}
+
+
+def remark_on(missing: Iterable[str], words: Sequence[str]) -> str:
+    """Return the line on the inputs that were not given, with the words that would give them."""
+    *others, last = missing
+    named = f"{', '.join(others)} and {last} are those" if others else f"{last} is that"
+    return f"{named} of the worked example, in g, cm and s: {' '.join(words)}"
+
+
+def example_options(missing: Mapping[str, float], *, units: bool = False) -> list[str]:
+    """Return the options that give what the worked example has, with units or without."""
+    if not units:
+        return [f"--{name} {value:g}" for name, value in missing.items()]
+    return [
+        f"--{name} '{value:g} {_in_cgs(DECLARED[name].unit)}'" for name, value in missing.items()
+    ]
+
+
+def _in_cgs(unit: str) -> str:
+    """Return a unit such as `g*cm^2` in place of `mass len²`."""
+    for word, of_cgs in (("mass", "g"), ("len", "cm"), ("time", "s"), (" ", "*"), ("²", "^2")):
+        unit = unit.replace(word, of_cgs)
+    return unit
+
+
+def warn_of(missing: Mapping[str, float], stacklevel: int) -> None:
+    """Warn of inputs that were not given, with the arguments that would give them."""
+    arguments = ", ".join(f"{name}={value:g}" for name, value in missing.items())
+    warnings.warn(remark_on(missing, [arguments]), MixedBodyWarning, stacklevel)

@@ -1,0 +1,108 @@
+"""An input as people write it: a number, its standard uncertainty and its unit.
+
+`1587(2)`, `1587+/-2`, `1587+-2`, `1587±2` and `1587 +/- 0.1 %` are uncertain numbers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+from ..arithmetic.text import is_decimal, parse_number, quoted
+from ..arithmetic.values import Values
+from ..errors import LagtopError
+
+_UNIT = r"(?s)(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*"
+"""From the first letter on that begins no exponent; `1/` or `/` before it belongs to the unit."""
+_LOG = "log:"
+"""How a range with equal ratios begins."""
+_DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_PLUS_MINUS = rf"(?P<number>{_DECIMAL})\s*(?:\+/?-|±)\s*(?P<std>{_DECIMAL})\s*(?P<percent>%?)"
+_FORMS = (
+    r"(?P<number>[+-]?(?:\d+\.?\d*|\.\d+))\((?P<last>\d+\.?\d*)\)(?P<exponent>[eE].*)?",
+    _PLUS_MINUS,
+    rf"\(\s*{_PLUS_MINUS}\s*\)(?P<exponent>[eE].*)?",
+)
+
+
+class Value(Values):
+    """An input as it was given; nothing is converted yet."""
+
+    number: Any
+    """A real number; in a sweep the `Points` of an input, in a search its `Span`."""
+    unit: str = ""
+    std: Fraction | None = None
+    """Standard uncertainty, in the same unit; None for a number that is certain."""
+
+    def scaled(self, factor: Fraction) -> Value:
+        """Return the value times the size of its unit, without the unit."""
+        number = self.number
+        number = number * factor if isinstance(number, Fraction) else number.scaled(factor)
+        return Value(number, "", None if self.std is None else self.std * abs(factor))
+
+
+def as_value(given: Any) -> Value:
+    """Return a number as a value without a unit."""
+    return given if isinstance(given, Value) else Value(given)
+
+
+def parse_value(
+    text: str, parse: Callable[[str], Any] = parse_number, *, uncertain: bool = False
+) -> Value:
+    """Return the value that a text stands for; `parse` reads its number.
+
+    Only where it may be `uncertain` an uncertainty is read.  Raises LagtopError as `parse` does,
+    with the whole text in place of the number, and for an uncertainty that is none.
+    """
+    number, unit = split_unit(text)
+    try:
+        if uncertain and not is_decimal(number) and re.search(r"[(±%]|\+/?-", number):
+            return _uncertain(number, parse).replace(unit=unit)
+        return Value(parse(number), unit)
+    except LagtopError as error:
+        whole = str(error).replace(f"got {quoted(number)}", f"got {quoted(text.strip())}")
+        raise LagtopError(whole, error.key) from None
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Return the number part of an input text and its unit, empty where there is none.
+
+    The number part is what stands before the first letter that is not the e of an exponent; it may
+    hold an uncertainty, such as `1587(2)` or `1587 +/- 0.1 %`.  A text without a digit before its
+    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end,
+    behind a number: no colon and no comma follows it or precedes it.
+    """
+    text = text.strip()
+    found = re.compile(_UNIT).search(text, len(_LOG) if text.startswith(_LOG) else 0)
+    if found is None:
+        return text, ""
+    number, unit = text[: found.start()].rstrip(), found[0]
+    if set(unit) & {":", ","} or number.endswith((":", ",")) or not re.search(r"\d", number):
+        return text, ""
+    return number, unit
+
+
+def _uncertain(text: str, parse: Callable[[str], Any]) -> Value:
+    """Return an uncertain number.
+
+    Raises LagtopError for another text, and for an uncertainty that is negative.
+    """
+    found = next((match for form in _FORMS if (match := re.fullmatch(form, text))), None)
+    if found is None:
+        forms = "1587(2), 1587+/-2 or 1587+/-0.1%"
+        raise LagtopError(f"must be a number, or an uncertain one as {forms}, got {quoted(text)}")
+    parts = found.groupdict(default="")
+    exponent = parts.get("exponent", "")
+    number, power = parts["number"] + exponent, parse_number(f"1{exponent}")
+    if "last" in parts:
+        last = parts["last"]
+        decimals = 0 if "." in last else len(parts["number"].partition(".")[2])
+        std = parse_number(f"{last}e-{decimals}") * power
+    else:
+        std = parse_number(parts["std"]) * power
+        std = abs(parse_number(number)) * std / 100 if parts["percent"] else std
+    if std < 0:
+        raise LagtopError(f"must have an uncertainty >= 0, got {quoted(text)}")
+    return Value(parse(number), "", std)

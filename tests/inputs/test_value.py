@@ -1,0 +1,105 @@
+"""Inputs as people write them: the number, its uncertainty, and where the unit begins."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from lagrange_cli.errors import LagtopError
+from lagrange_cli.inputs.ranges import parse_values
+from lagrange_cli.inputs.value import Value, parse_value, split_unit
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "unit"),
+    [
+        ("30", "30", ""),
+        (" -1.5e-3 ", "-1.5e-3", ""),
+        ("350g", "350", "g"),
+        ("3.9e-3 kg*m^2", "3.9e-3", "kg*m^2"),
+        ("2e3eV", "2e3", "eV"),
+        ("2e g", "2", "e g"),
+        ("50 1/s", "50", "1/s"),
+        ("50/s", "50", "/s"),
+        ("1 1 / s", "1", "1 / s"),
+        ("-30°/s", "-30", "°/s"),
+        ("5 µm", "5", "µm"),
+        ("1587(2) g", "1587(2)", "g"),
+        ("1587(2)e-3kg", "1587(2)e-3", "kg"),
+        ("1587+/-2 g", "1587+/-2", "g"),
+        ("1587 ± 0.1 % g", "1587 ± 0.1 %", "g"),
+        ("(1.587 +/- 0.002)e3 g", "(1.587 +/- 0.002)e3", "g"),
+        ("1587+/-2", "1587+/-2", ""),
+        ("100:200:5 rpm", "100:200:5", "rpm"),
+        ("log:1:1e4:50 rpm", "log:1:1e4:50", "rpm"),
+        ("log:1:1e4:50", "log:1:1e4:50", ""),
+        ("1,2,3kg", "1,2,3", "kg"),
+        ("1kg,2kg", "1kg,2kg", ""),
+        ("0:x:2", "0:x:2", ""),
+        ("0:1:x", "0:1:x", ""),
+        ("log:1:2: x", "log:1:2: x", ""),
+        ("1,2,x", "1,2,x", ""),
+        ("nan", "nan", ""),
+        ("-inf", "-inf", ""),
+        ("pi/6", "pi/6", ""),
+        ("", "", ""),
+        ("1_000", "1_000", ""),
+        ("5O", "5", "O"),
+    ],
+)
+def test_the_unit_begins_at_the_first_letter(text: str, number: str, unit: str) -> None:
+    assert split_unit(text) == (number, unit)
+
+
+def test_a_value_has_its_number_read_and_its_unit_as_written() -> None:
+    assert parse_value("350 g") == Value(Fraction(350), "g")
+    assert parse_value("1e3") == Value(Fraction(1000))
+    assert parse_value("350(2) g", uncertain=True) == Value(Fraction(350), "g", Fraction(2))
+    with pytest.raises(LagtopError, match=r"got '3,5 g' \(write a decimal point, not a comma"):
+        parse_value("3,5 g")
+    with pytest.raises(LagtopError, match=r"must be a finite decimal number, got '1\(2\)'"):
+        parse_value("1(2)")
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "std"),
+    [
+        ("73.9(12)", "73.9", "1.2"),
+        ("73.9(1.2)", "73.9", "1.2"),
+        ("73.95(12)", "73.95", "0.12"),
+        ("1587(2)", "1587", "2"),
+        ("-20(0)", "-20", "0"),
+        ("-0.4293(48)", "-0.4293", "0.0048"),
+        ("1.587(2)e3", "1587", "2"),
+        ("1.23(4)e-5", "1.23e-5", "0.04e-5"),
+        ("1.23(4.5)e2", "123", "450"),
+        ("1587+/-2", "1587", "2"),
+        ("1587±2", "1587", "2"),
+        ("1587 +- 2", "1587", "2"),
+        (" 1587 +/- 0.1 % ", "1587", "1.587"),
+        ("(-1.5+/-0.1)e3", "-1500", "100"),
+        ("(1.5 ± 0.25)e3", "1500", "250"),
+        ("-200 +- 5 %", "-200", "10"),
+    ],
+)
+def test_uncertain_numbers_are_exact(text: str, number: str, std: str) -> None:
+    assert parse_value(text, uncertain=True) == Value(Fraction(number), "", Fraction(std))
+    points = parse_value(text, parse_values, uncertain=True)
+    assert (points.number.exact, points.std) == ([Fraction(number)], Fraction(std))
+
+
+@pytest.mark.parametrize(
+    "text", ["1(2", "(1)", "1+/-", "1(-2)", "1(2)(3)", "1±2±3", "5%", "nan+/-1", "()"]
+)
+def test_other_texts_are_refused(text: str) -> None:
+    with pytest.raises(LagtopError, match=r"must be a number, or an uncertain one as 1587\(2\)"):
+        parse_value(text, uncertain=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"), [("1+/--2", "uncertainty >= 0"), ("3(1)e999", "1.8e308")]
+)
+def test_an_uncertainty_is_at_least_0_and_finite(text: str, wrong: str) -> None:
+    with pytest.raises(LagtopError, match=wrong):
+        parse_value(text, uncertain=True)
