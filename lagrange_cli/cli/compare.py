@@ -29,7 +29,7 @@ from .reading_options import reading_options
 
 if TYPE_CHECKING:
     from ..inputs.seen import Quantities
-    from ..judge.files import Comparison
+    from ..judge.compare import Comparison
     from ..output.findings import Findings
 
 LONG = 1_000_000
@@ -133,7 +133,7 @@ def command(
     """
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
-    from ..judge.files import Request, compare_files
+    from ..judge.compare import ComparisonRequest, compare_files
     from ..judge.report import comparison_report, failures
     from ..plot.files import check_plot
 
@@ -143,7 +143,7 @@ def command(
     exclude({"--scene -": scene == "-" or None, "the trajectory -": "-" in trajectories or None})
     limit = None if max_error is None else float(max_error)
     conventions = Conventions(quaternion, euler, rates, rad).checked()
-    request = Request(columns, conventions, alignment(align or []), limit, steps)
+    request = ComparisonRequest(columns, conventions, alignment(align or []), limit, steps)
     motion = solved(scene, rad, False, options)
 
     def find() -> Findings:

@@ -114,12 +114,12 @@ def _found(
     count: int | None,
     radians: bool,
 ) -> tuple[list[Motion], System | None]:
-    from ..fits.find import look
+    from ..fits.find import find_tops
     from ..fits.search import search_of
 
     scene = scenes[0] if scenes else None
     search, given = search_of(inputs, conditions, scene=scene, radians=radians)
-    found = look(search, count, _watched)
+    found = find_tops(search, count, _watched)
     say_missing(given)
     say_unused(given.stds)
     complain(f"{len(found.motions)} found; {found.looked}")
@@ -135,17 +135,19 @@ def _watched(blocks: Iterable[Any]) -> Iterator[Any]:
 def _inverted(
     scenes: list[str], conditions: list[str], inputs: dict[str, Any], radians: bool
 ) -> tuple[list[Motion], System | None]:
-    from ..fits.body import INPUTS
+    from ..fits.implied_body import BODY_INPUTS
     from ..fits.invert import invert
     from ..inputs.given import gather
     from ..inputs.ranges import Span
 
     for name, x in inputs.items():
-        if name not in INPUTS or isinstance(x.number, Span):
+        if name not in BODY_INPUTS or isinstance(x.number, Span):
             option = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
-            raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got --{option}")
+            raise LagtopError(
+                f"--from goes with numbers for {' '.join(BODY_INPUTS)}, got --{option}"
+            )
     found = gather(inputs, scenes[0] if scenes else None)
-    given = {name: float(x) for name, x in found.inputs.items() if name in INPUTS}
+    given = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
     say_unused(name for name in found.stds if name in given)
     return invert(conditions, radians=radians, known=given), found.system
 

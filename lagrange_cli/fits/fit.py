@@ -11,7 +11,7 @@ from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from .attempts import Attempt, best_attempt, sigma_of
 from .least_squares import Problem, Solution, sigma_left
-from .parameters import QUANTITIES, Parameters, parameters_of
+from .parameters import FIT_QUANTITIES, Parameters, parameters_of
 from .recording import Recording
 
 _STEADY, _REWEIGHTINGS = 0.01, 6
@@ -71,7 +71,8 @@ def _named(where: str, recording: Recording) -> str:
 def _joined(together: Parameters, alone: Sequence[Attempt]) -> Array:
     """Return where a fit of several recordings starts: from the fits of each."""
     found = [
-        dict(zip(QUANTITIES, one.solution.quantities(0)[0].tolist(), strict=True)) for one in alone
+        dict(zip(FIT_QUANTITIES, one.solution.quantities(0)[0].tolist(), strict=True))
+        for one in alone
     ]
     for one in found:
         one["ratio"] = one["b"] / one["r0"] if one["r0"] else 1.0

@@ -9,11 +9,9 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .coordinates import Coordinates
-from .model import STATE, angles_and_slopes
-from .parameters import QUANTITIES, Parameters
+from .model import STATE, Residuals, angles_and_slopes, residuals
+from .parameters import FIT_QUANTITIES, Coordinates, Parameters
 from .recording import Recording
-from .residuals import Residuals, residuals
 
 _FAR = 1e3
 """Residuals, in standard deviations, of a state that is no top."""
@@ -209,8 +207,8 @@ def _seen_angles(
     t: Array, quantities: Array, by_parameter: Array, angles: Array, by_state: Array
 ) -> tuple[Array, Array]:
     """Return the angles from the zeros of the recording, with the spin rate, and derivatives."""
-    value = dict(zip(QUANTITIES, quantities, strict=True))
-    slope = dict(zip(QUANTITIES, by_parameter, strict=True))
+    value = dict(zip(FIT_QUANTITIES, quantities, strict=True))
+    slope = dict(zip(FIT_QUANTITIES, by_parameter, strict=True))
     by_values = by_state @ by_parameter[:_N]
     moved = angles.copy()
     spins = bool(value["r0"] or slope["r0"].any())

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
-from .body import Told, completed, told_of
 from .fit import Fit
-from .model import STATE, angles_of
-from .parameters import QUANTITIES
-from .quality import Remainder, chi2_bounds, remainder
+from .implied_body import DeterminedProduct, completed_body, determined_products
+from .model import STATE, motion_angles
+from .parameters import FIT_QUANTITIES
 
-ANGLES = ("theta0", "psi_zero", "phi_zero")
+_ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
 _BODY = ("a", "b", "r0")
 FAILED = "failed"
@@ -44,15 +43,15 @@ class Outcome:
         self.recording = found.recordings[index]
         self.known = found.solution.parameters.known
         values, covariance = found.solution.quantities(index)
-        self.values = dict(zip(QUANTITIES, values.tolist(), strict=True))
+        self.values = dict(zip(FIT_QUANTITIES, values.tolist(), strict=True))
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
-        self.deviations = dict(zip(QUANTITIES, deviations.tolist(), strict=True))
+        self.deviations = dict(zip(FIT_QUANTITIES, deviations.tolist(), strict=True))
         self.seen = {name: self.values[name] for name in _BODY if self._is_seen(name)}
-        self.told = told_of(self.seen, self.known) if all(self.seen.values()) else []
+        self.told = determined_products(self.seen, self.known) if all(self.seen.values()) else []
         channels = self.recording.channels
-        self.remainders: dict[str, Remainder] = {
-            channel: remainder([values])
+        self.remainders: dict[str, Residual] = {
+            channel: residual_of(values)
             for channel, values in zip(channels, found.solution.left[index], strict=True)
         }
 
@@ -78,7 +77,7 @@ class Outcome:
         """Return the reasons why the numbers are none, if there are any."""
         solution, found = self.fit.solution, []
         if self.fit.rival is not None:
-            rival = dict(zip(QUANTITIES, self.fit.rival.tolist(), strict=True))
+            rival = dict(zip(FIT_QUANTITIES, self.fit.rival.tolist(), strict=True))
             shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.seen)
             found.append(f"another top explains the recording as well: {shown}")
         if solution.unknown:
@@ -97,11 +96,11 @@ class Outcome:
 
     def unit(self, name: str) -> str:
         """Return the key of a quantity in the unit of angles in use."""
-        return f"{name}_{'rad' if self.radians else 'deg'}" if name in ANGLES else name
+        return f"{name}_{'rad' if self.radians else 'deg'}" if name in _ANGLES else name
 
     def scale(self, name: str) -> float:
         """Return what takes a quantity from radians to the unit of angles in use."""
-        return per_radian(radians=self.radians or name not in ANGLES)
+        return per_radian(radians=self.radians or name not in _ANGLES)
 
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of what was found of the motion."""
@@ -116,9 +115,9 @@ class Outcome:
             if is_there.get(name, True):
                 yield name, self.values[name], self.deviations[name]
 
-    def products(self) -> Iterator[tuple[Told, float]]:
+    def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
         """Yield what is told of the body, beside r0, and its standard deviation."""
-        rows = [QUANTITIES.index(name) for name in self.seen]
+        rows = [FIT_QUANTITIES.index(name) for name in self.seen]
         covariance = self.covariance[np.ix_(rows, rows)]
         for told in self.told:
             if told.name == "r0":
@@ -134,7 +133,7 @@ class Outcome:
         names = [name for name in self.seen if self.deviations[name] > 0]
         for i, first in enumerate(names):
             for second in names[i + 1 :]:
-                both = self.covariance[QUANTITIES.index(first), QUANTITIES.index(second)]
+                both = self.covariance[FIT_QUANTITIES.index(first), FIT_QUANTITIES.index(second)]
                 yield (
                     first,
                     second,
@@ -221,7 +220,7 @@ class Outcome:
 
     def inputs(self) -> dict[str, float]:
         """Return inputs of `Top` that move so; what is not told is 1, or such that C = A."""
-        body = completed(self.seen, _of_body(self.known), self.told)
+        body = completed_body(self.seen, _of_body(self.known), self.told)
         return {
             **body,
             "theta0_deg": math.degrees(self.values["theta0"]),
@@ -243,10 +242,53 @@ def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
     """Return the angles of the motion that was found, counted as in the recording."""
     values = outcome.values
     state = np.array([[values[name] for name in STATE]])
-    theta, phi, psi = angles_of(state, t)[:, 0]
+    theta, phi, psi = motion_angles(state, t)[:, 0]
     spin = (values["r0"] - values["b"]) * t if "phi" in outcome.recording.angles else 0.0
     return {
         "theta": theta,
         "phi": phi + spin + values["phi_zero"],
         "psi": psi + values["psi_zero"],
     }
+
+
+_BEYOND = 0.00135
+"""Probability beyond each bound of chi^2: that of three standard deviations."""
+_DEVIATIONS = 3.0
+"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
+_ROUNDING = 1e-11
+"""Radians that are left of data without noise."""
+
+
+class Residual(NamedTuple):
+    """What is left of one channel."""
+
+    rows: int
+    rms: float
+    """Root of the mean square, in radians."""
+    lag1: float
+    """Correlation of what is left with itself a row later."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the correlation is within three standard deviations of 0; roundings count too."""
+        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
+
+
+def residual_of(values: Array) -> Residual:
+    """Return what the residuals of one channel are like; NaN is missing."""
+    known = values[np.isfinite(values)]
+    total = float(np.sum(known * known))
+    if not total:
+        return Residual(known.size, 0.0, 0.0)
+    return Residual(
+        known.size, math.sqrt(total / known.size), float(known[1:] @ known[:-1]) / total
+    )
+
+
+def chi2_bounds(dof: int) -> tuple[float, float]:
+    """Return the bounds that chi^2/dof keeps within but for one time in 370."""
+    from scipy.special import gammaincinv
+
+    half = dof / 2
+    low, high = (float(gammaincinv(half, p)) / half for p in (_BEYOND, 1 - _BEYOND))
+    return low, high

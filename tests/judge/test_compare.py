@@ -13,11 +13,10 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli import Judgement, LagtopError, Top, compare, solve
 from lagrange_cli.inputs.seen import Conventions
 from lagrange_cli.judge.alignment import Alignment
-from lagrange_cli.judge.compare import settled
+from lagrange_cli.judge.compare import VERDICTS, with_verdicts
 from lagrange_cli.judge.convergence import convergence
-from lagrange_cli.judge.judgement import Given, judge
+from lagrange_cli.judge.judgement import ReadTrajectory, judge
 from lagrange_cli.judge.tally import MOST_KEPT, Kept
-from lagrange_cli.judge.verdict import VERDICTS
 
 TOP = Top(thetadot0=1, psidot0=3)
 T = np.linspace(0, 2, 201)
@@ -306,9 +305,9 @@ def judged(top: Top, runs: list[tuple[Array, Array]], steps: list[float]) -> lis
     cases = []
     for t, states in runs:
         block = {"t": t[:, np.newaxis], "quaternion": states[:, :4]}
-        given = Given([block], {}, Conventions("wxyz", radians=True), Alignment())
+        given = ReadTrajectory([block], {}, Conventions("wxyz", radians=True), Alignment())
         cases.append((judge(motion, given), given))
-    return settled(motion, cases, None, steps)[0]
+    return with_verdicts(motion, cases, None, steps)[0]
 
 
 @pytest.mark.parametrize(
@@ -537,7 +536,7 @@ def test_blocks_make_no_difference(rows: int) -> None:
     pieces = [{key: x[i : i + rows] for key, x in block.items()} for i in range(0, 201, rows)]
     conventions = Conventions("wxyz", radians=True)
     whole, parts = (
-        judge(solve(TOP), Given(blocks, {}, conventions, Alignment())).judgement
+        judge(solve(TOP), ReadTrajectory(blocks, {}, conventions, Alignment())).judgement
         for blocks in ([block], pieces)
     )
     for key, value in whole.record().items():

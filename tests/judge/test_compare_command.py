@@ -15,7 +15,7 @@ from engines import Body, Run, rk4, semi_implicit_euler
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
-from lagrange_cli.judge.judgement import KEYS
+from lagrange_cli.judge.judgement import JUDGEMENT_KEYS
 from lagrange_cli.plot.error_curves import ErrorCurve, draw_errors
 
 TOP = Top(psidot0=3)
@@ -54,7 +54,7 @@ def test_formats_say_the_same(lagtop: Lagtop, right: Path, coarse: Path) -> None
     assert {result.exit_code for result in shown.values()} == {1}
     rows = rows_of(shown["json"].stdout)
     assert [row["verdict"] for row in rows] == ["fine", "drifts"]
-    assert [list(row) for row in rows] == [[*KEYS]] * 2
+    assert [list(row) for row in rows] == [[*JUDGEMENT_KEYS]] * 2
     for row, cells in zip(rows, csv.DictReader(io.StringIO(shown["csv"].stdout)), strict=True):
         known = {key: "" if x is None else str(x) for key, x in row.items()}
         assert cells["verdict"] == known["verdict"]
