@@ -8,10 +8,10 @@ from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.ball_functions import BallFunctions, ball_functions
-from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.sums_of_doubles import Pair, pair
 from .complete import complete_k
 from .eta import Band, EtaConstants, band_of, eta_constants, modulus_in_use
