@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any
@@ -14,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from .double_double import DoubleDouble
+from .scalars import Unenclosed
 from .sums_of_doubles import pair
 from .types import Array
 
 
-class Arrays:
+class Arrays(Unenclosed):
     """The arithmetic of float64 arrays, as far as both kinds of arrays share it."""
 
     is_array = True
@@ -70,27 +70,6 @@ class Arrays:
     def everywhere(condition: Any) -> bool:
         """Return whether a condition holds for every element."""
         return bool(np.all(condition))
-
-    @staticmethod
-    def widened(
-        x: Any,
-        small: Callable[[], tuple[Any, ...]],
-        bound: Callable[..., Any],
-        *,
-        values_only: bool = False,
-    ) -> Any:
-        """Return x: what an iteration leaves out is below the last bit."""
-        return x
-
-    @staticmethod
-    def either(condition: Any) -> Any:
-        """Return a condition on which only the way to the result depends."""
-        return condition
-
-    @staticmethod
-    def fixed(x: Any) -> Any:
-        """Return x as a constant."""
-        return x
 
 
 class ArrayFunctions(Arrays):

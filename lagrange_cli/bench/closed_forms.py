@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.names import ANGLES
 from ..inputs.top import Top

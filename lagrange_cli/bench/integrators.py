@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.doubles import DOUBLES
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 from .method import FailedError, Method, NotApplicableError, Sample, Sampled

@@ -12,6 +12,7 @@ from .options import Parsed, exclude
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
+    from ..elliptic.tables import Table
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -31,6 +32,16 @@ def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Poin
 
     exclude({f"--{name}": single or None, f"--{name}-range": grid})
     return grid or (ListedPoints(list(single)) if single else None)
+
+
+def write_functions(table: Table, digits: int | None, fmt: str, output: str) -> None:
+    """Write a table of functions, with its progress."""
+    from ..output.write import write_table
+    from .progress import with_progress
+
+    header, blocks = table.rows(digits)
+    long = table.long[digits is not None]
+    write_table(header, with_progress(blocks, table.count, long), fmt, output)
 
 
 def _parse_jobs(text: str) -> int:

@@ -25,7 +25,7 @@ def known_values(u: Fraction, request: Request) -> dict[str, float]:
     K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
     rational places to think of.
     """
-    name, value, _ = request.modulus
+    name, value, _ = request.real_modulus
     suffix = "_imag" if request.imaginary else ""
     known: dict[str, float] = {}
 
@@ -38,10 +38,10 @@ def known_values(u: Fraction, request: Request) -> dict[str, float]:
     if u == 0:
         add(VANISH["u"] + ("" if request.imaginary else " omega11 pi11"), 0)
         add("zeta11", math.nan)
-    if request.parameter == 0:
+    if request.size == 0:
         add(VANISH["param"], 0)
         add("pi11", math.nan)
-    elif abs(u) == abs(request.parameter) and not (request.imaginary or request.in_quarters):
+    elif abs(u) == abs(request.size) and not (request.imaginary or request.in_quarters):
         add("omega11 pi11", math.nan)
     if request.in_quarters and u.denominator == 1:
         known |= known_at_quarter(int(u % 4), request)
@@ -71,7 +71,7 @@ def known_at_quarter(quarter: int, request: Request) -> dict[str, float]:
 
 
 def put_exact_values(table: dict[str, Array], u: Array, request: Request) -> None:
-    """Put what is known at u = 0, and at whole multiples of K, in its place."""
+    """Put what is known at u = 0, at whole multiples of K and at poles in its place."""
     import numpy as np
 
     def put(here: Array, known: dict[str, float]) -> None:
@@ -87,3 +87,6 @@ def put_exact_values(table: dict[str, Array], u: Array, request: Request) -> Non
         if request.imaginary:
             put(u == 1, {"omega11_imag": 0})
     put(u == 0, known_values(Fraction(0), request))
+    if request.size and not request.imaginary:
+        poles = abs(table["u"]) == abs(float(request.size))
+        put(poles, dict.fromkeys(("omega11", "pi11"), math.nan))

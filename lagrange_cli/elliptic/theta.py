@@ -287,4 +287,5 @@ def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
 
 def negligible(ar: FunctionArithmetic) -> float:
     """Return -log of the largest number that does not matter beside 1."""
-    return 2.0 - math.log(10) * ar.magnitude
+    magnitude: float = ar.magnitude
+    return 2.0 - math.log(10) * magnitude

@@ -16,11 +16,11 @@ import math
 from typing import Any, Protocol
 
 from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
+from ..arithmetic.scalars import DOUBLES
 from ..errors import LagtopError
 from .complete import complete_k
 from .modulus import Modulus

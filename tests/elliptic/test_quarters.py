@@ -12,10 +12,11 @@ import pytest
 from conftest import Lagtop
 from flint import acb, arb, ctx
 from function_judge import EPS, INDEX, Judge, ball
+from function_tables import array_rows
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.elliptic.function_table import digit_rows, rows
+from lagrange_cli.elliptic.function_table import FunctionTable
 from lagrange_cli.elliptic.modulus_input import ModulusInput
 from lagrange_cli.elliptic.request import Request
 from lagrange_cli.inputs.multiples import Multiple, parse_multiple
@@ -126,8 +127,7 @@ def test_any_multiple(seed: int) -> None:
     rng = random.Random(f"K {seed}")
     for _ in range(30):
         judge, request, factor = random_request(rng)
-        header, blocks = rows(ListedPoints([factor]), request)
-        cells = dict(zip(header, next(iter(blocks))[0].tolist(), strict=True))
+        (cells,) = array_rows(FunctionTable(ListedPoints([factor]), request))
         for name, (exact, slope) in exact_values(judge, factor).items():
             unit = EPS * (max(1.0, abs(float(exact.mid()))) + slope)
             error = float(abs(ball(cells[name]) - exact).mid()) / unit
@@ -137,8 +137,8 @@ def test_any_multiple(seed: int) -> None:
 def test_digits_of_a_third_of_a_quarter() -> None:
     judge = Judge("k", Fraction(1, 2))
     request = Request(ModulusInput("k", Fraction(1, 2)), ("am", "theta"), in_quarters=True)
-    header, texts = digit_rows(ListedPoints([Fraction(1, 3)]), request, 40)
-    for name, text in zip(header, next(iter(texts)), strict=True):
+    (cells,) = FunctionTable(ListedPoints([Fraction(1, 3)]), request).digit_rows(40)
+    for name, text in cells.items():
         exact, _ = exact_values(judge, Fraction(1, 3))[name]
         assert float(abs((ball(Fraction(text)) - exact) / exact).mid()) < 5.01e-40, name
 
@@ -149,8 +149,8 @@ def test_small_tables_of_multiples_have_the_nearest_doubles(seed: int) -> None:
     rng = random.Random(f"few {seed}")
     for _ in range(4):
         judge, request, factor = random_request(rng)
-        header, texts = digit_rows(ListedPoints([factor]), request)
-        cells = dict(zip(header, map(float, next(texts)), strict=True))
+        (texts,) = FunctionTable(ListedPoints([factor]), request).digit_rows()
+        cells = {name: float(text) for name, text in texts.items()}
         for name, (exact, _) in exact_values(judge, factor).items():
             if exact.contains(0):
                 assert cells[name] == 0, name
