@@ -15,7 +15,6 @@ from ..inputs.ranges import parse_range
 from ..inputs.top import Top
 from ..motion.record import NUMBER_KEYS, unit_name
 from ..motion.solve import Motion
-from ..sweeps.records import sweep
 from .request import InputRange, Progress, no_progress
 
 INPUTS = {
@@ -118,6 +117,8 @@ def key_map(
 
 def _values(inputs: dict[str, Any], key: str, radians: bool) -> Array:
     """Return the key at each top of one row.  Raises LagtopError where one cannot be."""
+    from ..sweeps.records import sweep  # loaded by the map alone, and not by all pictures
+
     records = sweep(keys=[key, "error"], radians=radians, **inputs)
     for error in filter(None, records["error"]):
         raise LagtopError(error)
