@@ -16,7 +16,6 @@ from ..inputs.top import Top
 from ..motion.quantity import unit_name
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion
-from ..sweeps.records import sweep
 from .request import InputRange, Progress, no_progress
 
 INPUTS = {
@@ -119,6 +118,8 @@ def key_map(
 
 def _values(inputs: dict[str, Any], key: str, radians: bool) -> Array:
     """Return the key at each top of one row.  Raises LagtopError where one cannot be."""
+    from ..sweeps.records import sweep  # loaded by the map alone, and not by all pictures
+
     records = sweep(keys=[key, "error"], radians=radians, **inputs)
     for error in filter(None, records["error"]):
         raise LagtopError(error)
