@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from hypothesis import HealthCheck, settings
 
 from lagrange_cli.cli.group import main
 
@@ -26,6 +27,11 @@ def pytest_configure(config: pytest.Config) -> None:
     """Write the bytecode of the package, as pip does: else each tested command makes it again."""
     if not hasattr(config, "workerinput"):  # once, not in each worker of pytest-xdist
         compileall.compile_dir(ROOT / "lagrange_cli", quiet=1)
+
+
+# No test may fail because the machine is busy.
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

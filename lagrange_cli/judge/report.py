@@ -119,8 +119,12 @@ def _sentence(judgement: Judgement) -> str:
 
 
 def _drift(judgement: Judgement) -> str:
-    drifts = {key: getattr(judgement, f"{key}_drift") for key in ANGLES}
+    seen = [key for key in ANGLES if getattr(judgement, f"{key}_error_max") is not None]
+    drifts = {key: getattr(judgement, f"{key}_drift") for key in seen}
     known = {key: x for key, x in drifts.items() if x is not None}
+    if judgement.rows > 2 and len(known) < len(seen):
+        uncounted = " and ".join(key for key in seen if key not in known)
+        return f"; rows are too far apart to count whole turns of {uncounted}"
     if not known:
         return ""
     worst = max(known, key=lambda key: abs(known[key]))

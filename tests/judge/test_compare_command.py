@@ -104,6 +104,19 @@ def test_a_trajectory_that_is_not_fine_is_a_failure(
     assert "Error: 2 of 2 trajectories failed; the first: " in both.stderr
 
 
+def test_an_angle_whose_turns_cannot_be_counted_is_named(lagtop: Lagtop, tmp_path: Path) -> None:
+    """The last line named psi, which drifts by 1e-17 rad, where it is phi that drifts."""
+    t, path = np.linspace(0, 20, 200), tmp_path / "run.csv"
+    theta, phi, psi = solve(TOP).angles(t)
+    run = np.column_stack([t, theta, phi + 33.6 * t, psi])
+    np.savetxt(
+        path, run, delimiter=",", header="t,theta_rad,phi_rad,psi_rad", comments="", fmt="%.17g"
+    )
+    result = lagtop("compare", path, *OPTIONS)
+    assert "rows are too far apart to count whole turns of phi" in result.stderr
+    assert "drifts by" not in result.stdout + result.stderr
+
+
 def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> None:
     """The engine takes the moment about the pivot as that about the mass centre."""
     steps, wrong = [4e-3, 2e-3], TOP.replace(A=39032 + 1587 * 16)
