@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Value
-from .any_modulus import AnyModulus, Kind
+from ..arithmetic.sums_of_doubles import triple
+from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
 from .modulus import Modulus
-from .periods import Complex, Rate, reduced
+from .periods import Complex, reduced
 
 
 @in_arithmetic
@@ -38,30 +39,27 @@ def _real(
 ) -> tuple[Jacobi, Value]:
     """Return the functions of real numbers times a factor, and the whole periods in these."""
     k, k_prime, _ = modulus
-    rate = stretch / (2 * complete_k(_context(k), k_prime)) if k_prime else 0 * k
+    rate = stretch / (2 * complete_k(k.context, k_prime)) if k_prime else 0 * k
     if not ar.is_array:
         return jacobi(ar, stretch * u, modulus), ar.nint(rate * u)
     if not rate:
         return jacobi(ar, u, Modulus(float(k), float(k_prime))), 0 * u
-    high = float(rate)
-    middle = float(rate - high)
-    x = reduced(u, Rate(high, middle, float(rate - high - middle)))
+    x = reduced(u, triple(rate))
     return jacobi_at(ar, x, Modulus(float(k), float(k_prime))), x.turns
 
 
-def _context(x: Value) -> Value:
-    """Return the context of a many-digit number."""
-    return x.context
-
-
 def _combined(
-    ar: ComplexArithmetic, real: Jacobi, other: Jacobi, kind: Kind, inner: tuple[Value, Value]
+    ar: ComplexArithmetic,
+    real: Jacobi,
+    other: Jacobi,
+    kind: ModulusKind,
+    inner: tuple[Value, Value],
 ) -> Jacobi:
     """Return the functions from those of the real part and of the imaginary part."""
     k, k_prime = inner
     am, s, c, d = real
     _, s1, c1, d1 = other
-    if kind is Kind.IMAGINARY:
+    if kind is ModulusKind.IMAGINARY:
         s, c, d = c / d, -k_prime * s / d, k_prime / d
     slant, ratio = k * s * s1, d1 / c1
     lift = slant / c1
@@ -70,10 +68,10 @@ def _combined(
     cn = ar.mpc(c, -s * d * s1 * ratio) / below
     dn = ar.mpc(d * d1, -k * c * lift) / below
     size = ar.sqrt(c1 * c1 + slant * slant)
-    if kind is Kind.IMAGINARY:
+    if kind is ModulusKind.IMAGINARY:
         angle = _near(ar, ar.atan2(-c * c1, s * d1), am)
         return Jacobi(ar.mpc(angle, ar.asinh(d * s1 / size)), -cn, sn, dn / k_prime)
-    if kind is Kind.LARGE:
+    if kind is ModulusKind.LARGE:
         angle, rise = ar.atan2(k * s, d * c1), k * c * s1 / size
         return Jacobi(ar.mpc(angle, ar.asinh(rise)), k * sn, dn, cn)
     angle = _near(ar, ar.atan2(s * d1, c * c1), am)

@@ -29,13 +29,13 @@ _SMALL = 1e-290
 """Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
 
 
-Coefficients = tuple[Value, ...]
-"""Coefficients, the lowest power first."""
-Functions = tuple[Array, Array, Array, Array]
+Powers = tuple[Value, ...]
+"""Powers, the lowest power first."""
+JacobiArrays = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
 
 
-def jacobi_of_arrays(u: Value, modulus: Modulus) -> Functions:
+def jacobi_of_arrays(u: Value, modulus: Modulus) -> JacobiArrays:
     """Return the functions of arguments and moduli of shapes that broadcast."""
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
@@ -56,7 +56,7 @@ def jacobi_of_arrays(u: Value, modulus: Modulus) -> Functions:
     return am, sn, cn, dn
 
 
-def jacobi_of_places(x: Periods, modulus: Modulus) -> Functions:
+def jacobi_of_places(x: Periods, modulus: Modulus) -> JacobiArrays:
     """Return the functions at places in the periods of one modulus k < 1."""
     return _evaluate(x.turns, x.rest, 0.0, _series(modulus), x.low)
 
@@ -71,8 +71,8 @@ class _Series(NamedTuple):
     """Half periods per unit of u, 1/(2K)."""
     stretch: Value
     """Argument y per half period."""
-    above: Coefficients
-    below: Coefficients
+    above: Powers
+    below: Powers
     q: Value
     """The nome in use."""
 
@@ -91,7 +91,7 @@ def _series(modulus: Modulus) -> _Series:
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
-def _circular(q: Value, root: Value) -> tuple[Coefficients, Coefficients]:
+def _circular(q: Value, root: Value) -> tuple[Powers, Powers]:
     """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
@@ -100,7 +100,7 @@ def _circular(q: Value, root: Value) -> tuple[Coefficients, Coefficients]:
     return above, tuple(root * c for c in below)
 
 
-def _hyperbolic(q: Value) -> tuple[Coefficients, Coefficients]:
+def _hyperbolic(q: Value) -> tuple[Powers, Powers]:
     """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
     q2 = q * q
     q4 = q2 * q2
@@ -121,14 +121,14 @@ def _hyperbolic(q: Value) -> tuple[Coefficients, Coefficients]:
     return above, tuple(scale * c for c in below)
 
 
-def _of_arguments(u: Array, series: _Series) -> Functions:
+def _of_arguments(u: Array, series: _Series) -> JacobiArrays:
     """Return the functions of one block of arguments."""
     return _evaluate(*reduce_phase(u, series.rate), u, series)
 
 
 def _evaluate(
     halves: Array, since: Array, u: Value, series: _Series, low: Value = 0.0
-) -> Functions:
+) -> JacobiArrays:
     """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0.
 
     `low` is what rounding took from `since`.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..arithmetic.protocol import FunctionArithmetic, Value
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
+    from ..arithmetic.sums_of_doubles import Triple
     from ..arithmetic.types import Array
 
 Complex = Value
@@ -27,7 +28,7 @@ class Periods(NamedTuple):
 
     def half_further(self, ar: FunctionArithmetic) -> Periods:
         """Return the place half a period further on."""
-        forward = ar.either(real_part(ar, self.rest) < 0)
+        forward = ar.either(ar.re(self.rest) < 0)
         if not ar.is_array:
             return Periods(self.turns + (not forward), self.rest + (0.5 if forward else -0.5))
         half, turns = ar.where(forward, 0.5, -0.5), self.turns + ar.where(forward, 0.0, 1.0)
@@ -39,17 +40,9 @@ class Periods(NamedTuple):
         return Periods(turns, self.rest + half)
 
 
-class Rate(NamedTuple):
-    """1/(2K), the rate of periods, as a sum of three doubles."""
-
-    high: float | Array
-    middle: float | Array
-    low: float | Array = 0.0
-
-
 def whole_and_rest(ar: FunctionArithmetic, x: Complex) -> Periods:
     """Return a number of periods as whole ones and the rest."""
-    real = real_part(ar, x)
+    real = ar.re(x)
     turns = ar.nint(real)
     return Periods(turns, x - turns)
 
@@ -59,8 +52,8 @@ def of_quarters(ar: FunctionArithmetic, factor: Value) -> Periods:
     return whole_and_rest(ar, factor / 2)
 
 
-def reduced(u: Array, rate: Rate) -> Periods:
-    """Return real arguments in periods, for |u| up to 1e290."""
+def reduced(u: Array, rate: Triple) -> Periods:
+    """Return real arguments in periods by the rate 1/(2K), for |u| up to 1e290."""
     import numpy as np
 
     from ..arithmetic.double_double import two_product, two_sum
@@ -84,13 +77,3 @@ def is_real_array(ar: FunctionArithmetic, x: Complex) -> bool:
     import numpy as np
 
     return bool(np.isrealobj(x))
-
-
-def real_part(ar: FunctionArithmetic, x: Complex) -> Value:
-    """Return the real part of a number or an array."""
-    return ar.re(x)
-
-
-def imaginary_part(ar: FunctionArithmetic, x: Complex) -> Value:
-    """Return the imaginary part of a number or an array."""
-    return ar.im(x)

@@ -20,17 +20,14 @@ from ..arithmetic.ball_functions import ball_functions
 from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
-from ..arithmetic.sums_of_doubles import triple
+from ..arithmetic.sums_of_doubles import Triple, triple
 from ..errors import LagtopError
 from .complete import complete_k, nome
 from .modulus import Modulus, rate_of_half_periods
 from .periods import (
     Complex,
     Periods,
-    Rate,
-    imaginary_part,
     is_real_array,
-    real_part,
     reduced,
     whole_and_rest,
 )
@@ -56,11 +53,11 @@ class ThetaSeries(NamedTuple):
     odd_size: Value
     rate: Value
     """1/(2K)."""
-    exact_rate: Rate | None
+    exact_rate: Triple | None
     """1/(2K) to reduce arrays of real arguments with; None for numbers."""
 
 
-def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
+def series_constants(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     """Return the constants in balls or an mpmath context or, for an array of moduli, in numpy."""
     k, k_prime = modulus.k, modulus.k_prime
     circular = ar.either(k <= k_prime)
@@ -74,6 +71,9 @@ def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     steepness = ar.where(circular, ar.pi, ar.pi * quarter / other)
     if not (ar.is_array or steepness > 3):
         raise TooFewDigitsError  # the bounds of what the sums leave out take it for granted
+    exact_rate = None
+    if ar.is_array:
+        exact_rate = Triple(*rate_of_half_periods(k_prime, modulus.rest), 0.0)
     return ThetaSeries(
         circular=circular,
         q=q,
@@ -81,18 +81,18 @@ def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
         even_size=ar.where(circular, 1 + 0 * q, gauss),
         odd_size=ar.where(circular, root, gauss),
         rate=1 / (2 * quarter),
-        exact_rate=Rate(*rate_of_half_periods(k_prime, modulus.rest)) if ar.is_array else None,
+        exact_rate=exact_rate,
     )
 
 
-def rounded(series: ThetaSeries) -> ThetaSeries:
+def series_in_doubles(series: ThetaSeries) -> ThetaSeries:
     """Return constants of many digits as doubles.
 
     Raises TooFewDigitsError for balls that do not know them.
     """
     q, steepness, even_size, odd_size, rate = map(float, series[1:-1])
-    exact_rate = Rate(*triple(series.rate))
-    return ThetaSeries(series.circular, q, steepness, even_size, odd_size, rate, exact_rate)
+    sizes = even_size, odd_size
+    return ThetaSeries(series.circular, q, steepness, *sizes, rate, triple(series.rate))
 
 
 def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
@@ -103,11 +103,11 @@ def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     if not ar.everywhere(modulus.k_prime > 0):
         raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
     if not ar.is_array:
-        return theta_series(ar, modulus)
+        return series_constants(ar, modulus)
     import numpy as np
 
     if any(np.ndim(part) for part in modulus):
-        return theta_series(ar, modulus)
+        return series_constants(ar, modulus)
     return rounded_series(modulus)
 
 
@@ -116,7 +116,7 @@ def rounded_series(modulus: Modulus) -> ThetaSeries:
 
     def series(digits: int) -> ThetaSeries:
         ar = ball_functions(digits)
-        return rounded(theta_series(ar, in_many_digits(ar, modulus)))
+        return series_in_doubles(series_constants(ar, in_many_digits(ar, modulus)))
 
     return decided("the constants of the modulus", series)
 
@@ -230,7 +230,7 @@ def _fourier(
 
 def _bell(ar: FunctionArithmetic, ij: str, x: Complex, series: ThetaSeries) -> Complex:
     """Return the greatest of the Gaussians, over which their sums are; 1 for Fourier series."""
-    distance = ar.where(real_part(ar, x) < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
+    distance = ar.where(ar.re(x) < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
     bell = ar.exp(-series.steepness * distance * distance)
     return ar.where(series.circular, 1 + 0 * bell, bell)
 
@@ -244,7 +244,7 @@ def _gaussians(
     Gaussian and its mirror image are taken together, so that nothing cancels near x = 0.
     """
     half, subtracted = ij[1] == "1", ij == "11"
-    left = real_part(ar, x) < 0
+    left = ar.re(x) < 0
     x = ar.where(left, -x, x)
     value = slope = 0 * x
     if not half:
@@ -276,7 +276,7 @@ def widened_by(ar: FunctionArithmetic, value: Value, left_out: Value) -> Value:
 
 def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
     """Return how many terms there are until q^(h^2) exp(2 pi h |Im x|) is negligible."""
-    height = ar.where(q > 0, abs(imaginary_part(ar, x)), 0 * q)
+    height = ar.where(q > 0, abs(ar.im(x)), 0 * q)
     peaks = -ar.pi * height / ar.log(ar.where(q > 0, q, 0 * q + ar.eps))
     if ar.is_array:
         import numpy as np

@@ -18,7 +18,7 @@ from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.function_table import FunctionTable
 from lagrange_cli.elliptic.modulus_input import ModulusInput
-from lagrange_cli.elliptic.request import Request
+from lagrange_cli.elliptic.request import FunctionRequest
 from lagrange_cli.inputs.multiples import Multiple, parse_multiple
 
 TABLE_2 = {
@@ -72,7 +72,7 @@ def test_zeros_and_poles_of_the_theta_functions(
         assert [i for i, x in enumerate(cells) if not x] == list(poles.get(name, [])), name
 
 
-def random_request(rng: random.Random) -> tuple[Judge, Request, Fraction]:
+def random_request(rng: random.Random) -> tuple[Judge, FunctionRequest, Fraction]:
     """Return a modulus and a multiple of K, next to whole quarters or far from 0 among others."""
     name, value = rng.choice(
         [
@@ -92,7 +92,7 @@ def random_request(rng: random.Random) -> tuple[Judge, Request, Fraction]:
     )
     judge = Judge(name, Fraction(value), 2600 if value < 1e-20 else 700)
     modulus = ModulusInput(name, Fraction(value))
-    return judge, Request(modulus, ("am", "theta"), in_quarters=True), Fraction(factor)
+    return judge, FunctionRequest(modulus, ("am", "theta"), in_quarters=True), Fraction(factor)
 
 
 def exact_values(judge: Judge, factor: Fraction) -> dict[str, tuple[Any, float]]:
@@ -136,7 +136,7 @@ def test_any_multiple(seed: int) -> None:
 
 def test_digits_of_a_third_of_a_quarter() -> None:
     judge = Judge("k", Fraction(1, 2))
-    request = Request(ModulusInput("k", Fraction(1, 2)), ("am", "theta"), in_quarters=True)
+    request = FunctionRequest(ModulusInput("k", Fraction(1, 2)), ("am", "theta"), in_quarters=True)
     (cells,) = FunctionTable(ListedPoints([Fraction(1, 3)]), request).digit_rows(40)
     for name, text in cells.items():
         exact, _ = exact_values(judge, Fraction(1, 3))[name]
