@@ -1,4 +1,4 @@
-"""How formulas are evaluated: inside their arithmetic, block by block over long arrays."""
+"""How formulas are evaluated: inside their arithmetic; polynomials by Horner's rule."""
 
 from __future__ import annotations
 
@@ -31,32 +31,3 @@ def in_arithmetic(function: F) -> F:
             return function(ar, *arguments, **named)
 
     return cast(F, evaluate)
-
-
-def blockwise(function: F) -> F:
-    """Return a formula f(ar, *arguments) that is evaluated block by block over long arrays."""
-
-    @in_arithmetic
-    @wraps(function)
-    def evaluate(ar: Any, *arguments: Any) -> Any:
-        if not ar.is_array:
-            return function(ar, *arguments)
-        return _in_blocks(function, ar, arguments)
-
-    return cast(F, evaluate)
-
-
-def _in_blocks(function: Callable[..., Any], ar: Any, arguments: tuple[Any, ...]) -> Any:
-    import numpy as np
-
-    from .blocks import BLOCK, blocks
-    from .double_double import DoubleDouble
-
-    if any(isinstance(x, DoubleDouble) for x in arguments):
-        return function(ar, *arguments)
-    arrays = np.broadcast_arrays(*arguments)
-    if arrays[0].size <= BLOCK:
-        return function(ar, *arrays)
-    flat = [array.ravel() for array in arrays]
-    parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
-    return np.concatenate(parts).reshape(arrays[0].shape)

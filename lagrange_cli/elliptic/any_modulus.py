@@ -12,14 +12,16 @@ from __future__ import annotations
 import math
 from enum import Enum
 from fractions import Fraction
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.exact_complex import ExactComplex
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
 from .modulus import Modulus, constants, exact_modulus
+
+if TYPE_CHECKING:  # mpmath is loaded for complex numbers only
+    from ..arithmetic.many_digits import ManyDigits
 
 
 class ModulusKind(Enum):

@@ -14,10 +14,10 @@ from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
 from .agreeing_digits import AgreeingNumbers, agreed_or_rounded
 from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
-from .complex_jacobi import complex_jacobi
 from .complex_known import known_parts
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
+from .jacobi import complex_jacobi
 from .lattice import Lattice, Place, lattice, place_of
 from .modulus_input import ModulusInput
 from .request import THETA, THIRD, Arguments, FunctionRequest

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import ComplexArithmetic
 from ..errors import LagtopError
-from .any_modulus import ModulusKind
+from .any_modulus import AnyModulus, ModulusKind
 from .cell_series import Base, cell_series
-from .lattice import Fine, Lattice, Place, coarse, coordinate_of, fine_whole, place_of
-from .periods import Complex
-from .theta import NAMES
+from .lattice import Fine, Lattice, Place, coarse, coordinate_of, fine_whole, lattice, place_of
+from .modulus import Modulus, in_many_digits
+from .periods import NAMES, Complex
 
 _OTHER_NAMES = {
     ModulusKind.UNIT: {},
@@ -52,6 +53,30 @@ def complex_theta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) 
 def complex_zeta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
     """Return Z_ij(v), the derivative of log Theta_ij(v), of complex numbers v."""
     return zeta_at_place(ar, ij, place_of(ar, v, periods), periods)
+
+
+def theta_of_modulus(ar: ComplexArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
+    """Return theta_ij(x, iK'/K) of complex x, for one modulus between 0 and 1."""
+    periods = _lattice_of(ar, modulus)
+    parts = ar.re(x), ar.im(x) / periods.ratio
+    if ar.is_array:
+        parts = DoubleDouble(parts[0]), DoubleDouble(parts[1])
+    at = Place(*(coordinate_of(ar, part) for part in parts))
+    return theta_at_place(ar, ij, at, periods)
+
+
+def zeta_of_modulus(ar: ComplexArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
+    """Return Z_ij(v) of complex v, for one modulus between 0 and 1."""
+    return complex_zeta(ar, ij, v, _lattice_of(ar, modulus))
+
+
+def _lattice_of(ar: ComplexArithmetic, modulus: Modulus) -> Lattice:
+    """Return the periods of a modulus in [0, 1], for arrays rounded from many digits."""
+    if not ar.is_array:
+        return lattice(ar, AnyModulus(ModulusKind.UNIT, modulus))
+    many = ManyDigits()
+    exact = in_many_digits(many, modulus)
+    return lattice(many, AnyModulus(ModulusKind.UNIT, exact)).rounded(ar)
 
 
 def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:

@@ -13,6 +13,7 @@ A parameter of many digits and one rounded to doubles obey the same formulas, ov
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any, Protocol
 
 from ..arithmetic.ball_functions import ball_functions
@@ -23,13 +24,10 @@ from ..arithmetic.rounding import decided
 from ..arithmetic.scalars import DOUBLES
 from ..errors import LagtopError
 from .complete import complete_k
-from .modulus import Modulus
-from .periods import Complex, Periods
+from .modulus import Modulus, in_many_digits
+from .periods import Complex, Periods, each_alone, negligible
 from .theta import (
-    in_many_digits,
     in_periods,
-    negligible,
-    rounded_series,
     series_for,
     zeta_at,
 )
@@ -150,23 +148,19 @@ def _evaluate(
     ar: Any, name: str, ij: str, place: tuple[Value, Complex], modulus: Modulus
 ) -> Complex:
     """Return Omega or Pi of numbers of a context, or of arrays that broadcast."""
+
+    def function(eta: Value, v: Complex, *parts: Value) -> Complex:
+        given = Modulus(*parts)
+        size, imaginary = parameter_of(ar, v)
+        make = rounded_kind if ar.is_array else partial(third_kind, ar)
+        kind = make(ij, size, given, imaginary=imaginary)
+        value = getattr(kind, name)(ar, in_periods(ar, eta, series_for(ar, given)))
+        return ar.mpc(0 * value, value) if imaginary else value
+
     eta, v = place
     if not ar.is_array:
-        size, imaginary = parameter_of(ar, ar.convert(v))
-        kind = third_kind(ar, ij, size, modulus, imaginary=imaginary)
-        value = getattr(kind, name)(ar, in_periods(ar, ar.convert(eta), series_for(ar, modulus)))
-        return ar.mpc(0, value) if imaginary else value
-    import numpy as np
-
-    eta, v, *parts = np.broadcast_arrays(eta, v, *modulus)
-    values = np.zeros(eta.shape, dtype=v.dtype if np.iscomplexobj(v) else float)
-    for pair in {tuple(pair) for pair in zip(*(x.ravel() for x in (v, *parts)), strict=True)}:
-        same = np.all([x == y for x, y in zip((v, *parts), pair, strict=True)], axis=0)
-        size, imaginary = parameter_of(ar, pair[0])
-        kind = rounded_kind(ij, size, Modulus(*pair[1:]), imaginary=imaginary)
-        x = in_periods(ar, eta[same], rounded_series(Modulus(*pair[1:])))
-        values[same] = getattr(kind, name)(ar, x) * (1j if imaginary else 1)
-    return values
+        eta, v = ar.convert(eta), ar.convert(v)
+    return each_alone(ar, function, eta, v, *modulus)
 
 
 def parameter_of(ar: FunctionArithmetic, v: Complex) -> tuple[Value, bool]:
