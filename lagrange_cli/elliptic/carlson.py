@@ -13,8 +13,7 @@ from functools import reduce, wraps
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, cast
 
-from ..arithmetic.formulas import F, in_arithmetic
-from ..arithmetic.numbers import R, absolute, power, root_of_epsilon
+from ..arithmetic.numbers import F, R, absolute, in_arithmetic, power, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Value

@@ -10,8 +10,8 @@ from cell to cell are exponentials of polynomials, which are written out.
 from __future__ import annotations
 
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind

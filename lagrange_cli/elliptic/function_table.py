@@ -22,7 +22,8 @@ from .periods import Periods, of_quarters
 from .request import THETA, THIRD, FunctionRequest
 from .tables import RealTable
 from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
-from .third_kind import ThirdKind, check_near, third_kind
+from .third_kind import check_near, third_kind
+from .third_kind_real import ThirdKind
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

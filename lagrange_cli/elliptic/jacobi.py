@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
 from ..arithmetic.sums_of_doubles import triple
 from .any_modulus import AnyModulus, ModulusKind

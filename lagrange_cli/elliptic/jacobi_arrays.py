@@ -15,7 +15,7 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks
 from ..arithmetic.double_double import reduce_phase, sqrt_pair, two_product, two_sum
-from ..arithmetic.formulas import polynomial
+from ..arithmetic.numbers import polynomial
 from ..arithmetic.protocol import Value
 from ..arithmetic.sums_of_doubles import Pair
 from ..arithmetic.types import Array

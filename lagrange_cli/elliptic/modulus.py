@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..errors import LagtopError
 from .complete import complete_e, complete_k, nome
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
 from ..arithmetic.sums_of_doubles import Triple, triple

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
@@ -32,42 +32,7 @@ from .theta import (
     zeta_at,
 )
 from .third_kind_imaginary import ImaginaryCircular, ImaginaryHyperbolic
-from .third_kind_real import RealCircular, RealHyperbolic
-
-
-class ThirdKind(Protocol):
-    """Omega and Pi of one modulus and one parameter, at places in the periods of eta.
-
-    Those of an imaginary parameter are imaginary, and given without the i.
-    """
-
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Omega at x = eta/2K."""
-
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi at x = eta/2K; not a number where it has a pole for every eta."""
-
-    def rounded(self) -> ThirdKind:
-        """Return the parameter with its constants in doubles."""
-
-
-class ZeroParameter:
-    """The parameter 0, where Omega vanishes, and Pi but for the pole of Z_11."""
-
-    def __init__(self, ij: str) -> None:
-        self.ij = ij
-
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return 0."""
-        return 0 * x.rest
-
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return 0 or, of the function 11, not a number."""
-        return (math.nan if self.ij == "11" else 0) * x.rest
-
-    def rounded(self) -> ZeroParameter:
-        """Return the parameter itself."""
-        return self
+from .third_kind_real import RealCircular, RealHyperbolic, ThirdKind, ZeroParameter
 
 
 def check_parameter(

@@ -14,11 +14,11 @@ from typing import Any, Self
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .periods import Periods
 from .theta import widened_by
-from .third_kind_real import Rounded
+from .third_kind_real import ThirdKind
 
 
 @dataclass(frozen=True)
-class ImaginaryCircular(Rounded):
+class ImaginaryCircular(ThirdKind):
     """The parameter for k <= k', where the series run in the nome q."""
 
     odd: bool
@@ -105,7 +105,7 @@ class ImaginaryCircular(Rounded):
 
 
 @dataclass(frozen=True)
-class ImaginaryHyperbolic(Rounded):
+class ImaginaryHyperbolic(ThirdKind):
     """The parameter for k > k', where the theta functions are sums of Gaussians.
 
     theta(x - i y) is exp(2 i c x y) times a sum over n > 0, half-integers or (for 00 and 10)

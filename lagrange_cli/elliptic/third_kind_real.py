@@ -6,6 +6,7 @@ Both are odd in x and in y and, but for the growth of Pi, periodic; so the formu
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -17,13 +18,39 @@ from .theta import widened_by
 
 
 @dataclass(frozen=True)
-class Rounded:
-    """Constants of a modulus and a parameter, in balls or in doubles."""
+class ThirdKind:
+    """Omega and Pi of one modulus and one parameter, with constants in balls or in doubles.
+
+    Those of an imaginary parameter are imaginary, and given without the i.
+    """
+
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return Omega at x = eta/2K."""
+        raise NotImplementedError
+
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return Pi at x = eta/2K; not a number where it has a pole for every eta."""
+        raise NotImplementedError
 
     def rounded(self, **others: Any) -> Self:
         """Return the parameter with its constants in doubles, but for `others`."""
         values = {x.name: getattr(self, x.name) for x in fields(self)} | others
         return replace(self, **{name: _in_doubles(x) for name, x in values.items()})
+
+
+@dataclass(frozen=True)
+class ZeroParameter(ThirdKind):
+    """The parameter 0, where Omega vanishes, and Pi but for the pole of Z_11."""
+
+    ij: str
+
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return 0."""
+        return 0 * x.rest
+
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return 0 or, of the function 11, not a number."""
+        return (math.nan if self.ij == "11" else 0) * x.rest
 
 
 def _in_doubles(x: Any) -> Any:
@@ -39,7 +66,7 @@ def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Va
 
 
 @dataclass(frozen=True)
-class RealCircular(Rounded):
+class RealCircular(ThirdKind):
     """The parameter for k <= k', where the series run in the nome q."""
 
     odd: bool
@@ -121,7 +148,7 @@ class RealCircular(Rounded):
 
 
 @dataclass(frozen=True)
-class RealHyperbolic(Rounded):
+class RealHyperbolic(ThirdKind):
     """The parameter for k > k', where the theta functions are sums of Gaussians.
 
     theta(a) = exp(-c (1/2 - a)^2) S(a) for a in [0, 1/2], where S is close to 1 unless a is small,

@@ -182,26 +182,6 @@ def test_what_is_no_multiple(text: str) -> None:
         parse_multiple(text)
 
 
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        ("--k 0.3 --u K/0", "--u must be a multiple of K such as K, -2.5K, K/2 or 3K/4, got 'K/0'"),
-        ("--k 0.3 --u K --u 1", "--u must be in units of K every time or never, got both"),
-        ("--k 0.3 --u-range 1:2K:3", "--u-range must have both ends in units of K or none"),
-        ("--k 0.3 --u K --u-range 0:K:3", "--u and --u-range exclude each other"),
-        ("--k 0.3 --u 1e16K", "u in units of K must be within 2^50 periods = 2.25e+15 of 0"),
-        ("--k 1 --u K", "--u must be a number, without K, for k = 1, where K is infinite"),
-        ("--k 1 --u K --digits 9", "--u must be a number, without K, for k = 1"),
-        ("--k 1 --u K --series 2", "the nome series need 0 < k < 1, got k = 1.0"),
-    ],
-)
-def test_bad_input(args: str, message: str, lagtop: Lagtop) -> None:
-    result = lagtop("jacobi", *args.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1
-
-
 def test_zero_goes_with_both_kinds(lagtop: Lagtop) -> None:
     for arguments in (["0", "K"], ["0K", "K"], ["0", "1"]):
         args = [x for u in arguments for x in ("--u", u)]
