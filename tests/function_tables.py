@@ -8,11 +8,11 @@ from typing import cast
 from lagrange_cli.arithmetic.exact_complex import ExactComplex
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.elliptic.modulus_input import ModulusInput
-from lagrange_cli.elliptic.request import Request
-from lagrange_cli.elliptic.tables import Table
+from lagrange_cli.elliptic.request import FunctionRequest
+from lagrange_cli.elliptic.tables import TableOfFunctions
 
 
-def array_rows(table: Table) -> list[dict[str, float]]:
+def array_rows(table: TableOfFunctions) -> list[dict[str, float]]:
     """Return the rows of a table in doubles, computed in arrays, each by the columns."""
     header, blocks = table.array_rows()
     rows = (row for block in blocks for row in cast(Array, block).tolist())
@@ -21,7 +21,7 @@ def array_rows(table: Table) -> list[dict[str, float]]:
 
 def request_of(
     modulus: ModulusInput, families: tuple[str, ...], size: Fraction, imaginary: bool = False
-) -> Request:
+) -> FunctionRequest:
     """Return a request of real functions with a parameter, or with i times it."""
     parameter = ExactComplex(Fraction(0), size) if imaginary else ExactComplex(size)
-    return Request(modulus, families, parameter, imaginary)
+    return FunctionRequest(modulus, families, parameter, imaginary)

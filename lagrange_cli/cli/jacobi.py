@@ -26,8 +26,8 @@ from .row_options import RANGE, listed, write_functions
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.modulus_input import ModulusInput
-    from ..elliptic.request import Arguments, Request
-    from ..elliptic.tables import Table
+    from ..elliptic.request import Arguments, FunctionRequest
+    from ..elliptic.tables import TableOfFunctions
     from ..inputs.multiples import Multiple, Multiples
 
 MOST_TERMS = 10_000
@@ -184,10 +184,10 @@ def command(
         record = any_constants_record(k, digits)
         write_record(record, fmt, output, lambda: in_parts(JACOBI, record))
         return
-    from ..elliptic.request import Request
+    from ..elliptic.request import FunctionRequest
 
     given = k if k is not None and beyond else modulus
-    request = Request(given, families, parameter, imaginary, rad, in_quarters)
+    request = FunctionRequest(given, families, parameter, imaginary, rad, in_quarters)
     write_functions(_table(arguments, request, real=real), digits, fmt, output)
 
 
@@ -231,7 +231,7 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactCompl
     return value, not value.real and param.strip().endswith("i")
 
 
-def _table(arguments: Arguments, request: Request, *, real: bool) -> Table:
+def _table(arguments: Arguments, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
     """Return the table of real functions, or that of complex ones."""
     if real:
         from ..elliptic.function_table import FunctionTable

@@ -12,7 +12,7 @@ from .options import Parsed, exclude
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..elliptic.tables import Table
+    from ..elliptic.tables import TableOfFunctions
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -34,7 +34,7 @@ def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Poin
     return grid or (ListedPoints(list(single)) if single else None)
 
 
-def write_functions(table: Table, digits: int | None, fmt: str, output: str) -> None:
+def write_functions(table: TableOfFunctions, digits: int | None, fmt: str, output: str) -> None:
     """Write a table of functions, with its progress."""
     from ..output.write import write_table
     from .progress import with_progress

@@ -12,10 +12,10 @@ from typing import NamedTuple
 from ..arithmetic.exact_complex import ExactComplex
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
-from .any_modulus import AnyModulus, Kind
+from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
 from .modulus_input import ModulusInput
-from .request import Request
+from .request import FunctionRequest
 
 _RIGHT = ModulusInput("modular_angle", Fraction(45))
 """The modulus sin 45 degrees, of which K' = K."""
@@ -41,18 +41,18 @@ class Known(NamedTuple):
         return {name: 0 * part if name in none else part for name, part in parts.items()}
 
 
-def known_parts(u: ExactComplex, request: Request, given: AnyModulus) -> Known:
+def known_parts(u: ExactComplex, request: FunctionRequest, given: AnyModulus) -> Known:
     """Return the parts that are exactly 0 at u, and the poles."""
     v, am, kind, zeros = request.parameter, request.am, given.kind, "u_re u_im"
-    large, along, upright = kind is Kind.LARGE, not u.imag, not u.real
+    large, along, upright = kind is ModulusKind.LARGE, not u.imag, not u.real
     if along:
         zeros += f" {am}_im sn_im cn_im dn_im"
         zeros += "" if large else " zeta01_im zeta00_im zeta11_im zeta10_im theta01_im theta00_im"
-        zeros += " theta11_im theta10_im" if kind is Kind.UNIT else ""
+        zeros += " theta11_im theta10_im" if kind is ModulusKind.UNIT else ""
     if upright:
         zeros += f" {am}_re sn_re cn_im dn_im"
         zeros += "" if large else " zeta01_re zeta00_re zeta11_re zeta10_re theta01_im theta00_im"
-        zeros += " theta11_re theta10_im" if kind is Kind.UNIT else ""
+        zeros += " theta11_re theta10_im" if kind is ModulusKind.UNIT else ""
     if along and upright:
         zeros += f" u {am} sn zeta01_re zeta01_im zeta00_re zeta00_im zeta10_re zeta10_im"
         zeros += " theta11_re theta11_im"

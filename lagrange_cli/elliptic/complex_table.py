@@ -13,15 +13,15 @@ from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
 from .agreeing_digits import AgreeingNumbers, agreed_or_rounded
-from .any_modulus import AnyModulus, Kind, any_constants, any_modulus
-from .complex_jacobi import complex_jacobi
+from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
 from .complex_known import known_parts
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
-from .lattice import Lattice, Place, lattice, place
+from .jacobi import complex_jacobi
+from .lattice import Lattice, Place, lattice, place_of
 from .modulus_input import ModulusInput
-from .request import THETA, THIRD, Arguments, Request
-from .tables import Table
+from .request import THETA, THIRD, Arguments, FunctionRequest
+from .tables import TableOfFunctions
 
 if TYPE_CHECKING:
     from ..arithmetic.text import NumberText
@@ -33,7 +33,7 @@ _MOST = 1e20
 """Greatest k above 1 in doubles."""
 
 
-class _Functions(NamedTuple):
+class _ComplexConstants(NamedTuple):
     """What follows from the modulus and the parameter alone."""
 
     modulus: AnyModulus
@@ -41,13 +41,13 @@ class _Functions(NamedTuple):
     """None if only am, sn, cn, dn are due."""
     third: dict[str, Parameter]
 
-    def rounded(self) -> _Functions:
+    def rounded(self) -> _ComplexConstants:
         """Return them for arrays."""
         third = {ij: kind.rounded(ARRAYS) for ij, kind in self.third.items()}
-        return _Functions(self.modulus, self.periods and self.periods.rounded(ARRAYS), third)
+        return _ComplexConstants(self.modulus, self.periods and self.periods.rounded(ARRAYS), third)
 
 
-class ComplexTable(Table):
+class ComplexTable(TableOfFunctions):
     """Functions by their real and imaginary parts; u, am, sn, cn, dn of real arguments are real.
 
     Raises LagtopError for a modulus out of range and, in doubles, for a tiny modulus, and for
@@ -56,14 +56,14 @@ class ComplexTable(Table):
 
     long = (100_000, 300)
 
-    def __init__(self, arguments: Arguments, request: Request) -> None:
+    def __init__(self, arguments: Arguments, request: FunctionRequest) -> None:
         self.arguments, self.request, self.count = arguments, request, arguments.real.count
 
     def modulus_in(self, ar: ManyDigits) -> AnyModulus:
         """Return the modulus in a context.  Raises LagtopError if it is out of range."""
         modulus = self.request.modulus
         if isinstance(modulus, ModulusInput):
-            return AnyModulus(Kind.UNIT, modulus.in_digits(ar))
+            return AnyModulus(ModulusKind.UNIT, modulus.in_digits(ar))
         return any_modulus(ar, modulus)
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
@@ -93,7 +93,7 @@ class ComplexTable(Table):
         ready = exact.rounded()
         return lambda u: table._parts(ARRAYS, u, ready), self.arguments.blocks()
 
-    def _constants(self, ar: ManyDigits) -> _Functions:
+    def _constants(self, ar: ManyDigits) -> _ComplexConstants:
         """Return the constants in an mpmath context."""
         request, given = self.request, self.modulus_in(ar)
         periods = lattice(ar, given) if request.families != ("am",) else None
@@ -101,12 +101,12 @@ class ComplexTable(Table):
         if periods and request.has_parameter:
             v = ar.mpc(ar.convert(request.parameter.real), ar.convert(request.parameter.imag))
             third = {ij: parameter(ar, ij, v, periods) for ij in THIRD}
-        return _Functions(given, periods, third)
+        return _ComplexConstants(given, periods, third)
 
-    def _check_doubles(self, functions: _Functions) -> None:
+    def _check_doubles(self, functions: _ComplexConstants) -> None:
         """Raise LagtopError for what doubles cannot name: tiny moduli, arguments too far away."""
         k, k_prime, _ = functions.modulus.modulus
-        if functions.modulus.kind is Kind.LARGE and functions.modulus.stretch > _MOST:
+        if functions.modulus.kind is ModulusKind.LARGE and functions.modulus.stretch > _MOST:
             raise LagtopError(f"k must be at most {_MOST:g} (or give --digits)", "k")
         if 0 < k < _LEAST or 0 < k_prime < _LEAST:
             raise LagtopError(
@@ -132,7 +132,11 @@ class ComplexTable(Table):
                 )
 
     def _parts(
-        self, ar: ComplexArithmetic, u: Value, constants: _Functions, poles: Collection[str] = ()
+        self,
+        ar: ComplexArithmetic,
+        u: Value,
+        constants: _ComplexConstants,
+        poles: Collection[str] = (),
     ) -> dict[str, Value]:
         """Return the parts of the functions at u by their names; `poles` are not numbers."""
         parts, both = {"u": u}, {}
@@ -145,13 +149,13 @@ class ComplexTable(Table):
         else:
             parts, both = {}, parts
         if constants.periods is not None:
-            at = place(ar, u, constants.periods)
+            at = place_of(ar, u, constants.periods)
             for name, compute in self._families(ar, at, constants, constants.periods):
                 both[name] = ar.mpc(ar.nan, ar.nan) if name in poles else compute()
         return parts | _both(ar, both)
 
     def _families(
-        self, ar: ComplexArithmetic, at: Place, functions: _Functions, periods: Lattice
+        self, ar: ComplexArithmetic, at: Place, functions: _ComplexConstants, periods: Lattice
     ) -> Iterator[tuple[str, Callable[[], Value]]]:
         """Yield the columns of the families by name, and how to compute each."""
         functions_of_u = {"theta": theta_at_place, "zeta": zeta_at_place}

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .tables import Known
 
 
-class Motion(NamedTuple):
+class EtaMotion(NamedTuple):
     """How eta moves in its band."""
 
     constants: EtaConstants
@@ -65,7 +65,7 @@ class EtaTable(RealTable):
         """Raise LagtopError unless the motion is periodic."""
         self.quadrature.check()
 
-    def constants(self, ar: BallFunctions) -> Motion:
+    def constants(self, ar: BallFunctions) -> EtaMotion:
         """Return the motion in balls."""
         c, band = eta_constants(ar, self.quadrature), band_of(ar, self.quadrature)
         c3, quarter = ar.convert(self.c3), complete_k(ar, modulus_in_use(c, band).k_prime)
@@ -74,9 +74,9 @@ class EtaTable(RealTable):
             turns, rest, _ = whole_and_rest(ar, (tau + c3) / c.period)
             return turns, rest
 
-        return Motion(c, band, 2 * quarter, periods)
+        return EtaMotion(c, band, 2 * quarter, periods)
 
-    def rounded_constants(self) -> Motion:
+    def rounded_constants(self) -> EtaMotion:
         """Return the motion in doubles; raise LagtopError for times beyond 2^50 periods."""
         from ..arithmetic.arrays import ARRAYS
         from ..arithmetic.double_double import reduce_phase
@@ -98,10 +98,10 @@ class EtaTable(RealTable):
             turns, since = reduce_phase(tau, rate, shift)
             return turns + whole, since + shift
 
-        return Motion(c, band, 2 * quarter, periods)
+        return EtaMotion(c, band, 2 * quarter, periods)
 
     def columns(
-        self, ar: FunctionArithmetic, x: Value, constants: Motion, known: Known
+        self, ar: FunctionArithmetic, x: Value, constants: EtaMotion, known: Known
     ) -> dict[str, Value]:
         """Return tau, eta and what else the table has."""
         c, band, half_period, periods = constants

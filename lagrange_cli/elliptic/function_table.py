@@ -19,17 +19,18 @@ from .jacobi import Jacobi, jacobi, jacobi_at
 from .known_values import known_values, put_exact_values
 from .modulus import Modulus
 from .periods import Periods, of_quarters
-from .request import THETA, THIRD, Request
+from .request import THETA, THIRD, FunctionRequest
 from .tables import RealTable
-from .theta import ThetaSeries, in_periods, rounded, series_for, theta_at, zeta_at
-from .third_kind import ThirdKind, check_near, third_kind
+from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
+from .third_kind import check_near, third_kind
+from .third_kind_real import ThirdKind
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .tables import Known
 
 
-class Functions(NamedTuple):
+class FunctionConstants(NamedTuple):
     """The modulus of a request and all that follows from it and the parameter alone."""
 
     modulus: Modulus
@@ -39,11 +40,11 @@ class Functions(NamedTuple):
     K: Value
     """The quarter period; a pair in doubles, None for k = 1."""
 
-    def rounded(self, modulus: Modulus) -> Functions:
+    def rounded(self, modulus: Modulus) -> FunctionConstants:
         """Return them in doubles, beside the modulus in doubles."""
-        series = self.series and rounded(self.series)
+        series = self.series and series_in_doubles(self.series)
         third = {ij: kind.rounded() for ij, kind in self.third.items()}
-        return Functions(modulus, series, third, self.K and pair(self.K))
+        return FunctionConstants(modulus, series, third, self.K and pair(self.K))
 
 
 class FunctionTable(RealTable):
@@ -54,7 +55,7 @@ class FunctionTable(RealTable):
     doubles, for arguments or a parameter at which doubles name no place in the periods.
     """
 
-    def __init__(self, points: Points, request: Request) -> None:
+    def __init__(self, points: Points, request: FunctionRequest) -> None:
         super().__init__(points)
         self.request, self.modulus = request, request.real_modulus
         self.functions, self.rounds = 4 * len(request.families), not request.in_quarters
@@ -81,7 +82,7 @@ class FunctionTable(RealTable):
         if "k_prime" in self.modulus.zeros():
             raise LagtopError("u must be a number, without K, for k = 1, where K is infinite", "u")
 
-    def constants(self, ar: BallFunctions) -> Functions:
+    def constants(self, ar: BallFunctions) -> FunctionConstants:
         """Return the constants of the modulus and the parameter."""
         request, exact = self.request, self.modulus.in_digits(ar)
         endless = "k_prime" in self.modulus.zeros() and request.families == ("am",)
@@ -90,9 +91,11 @@ class FunctionTable(RealTable):
         if request.has_parameter:
             size, imaginary = ar.convert(request.size), request.imaginary
             third = {ij: third_kind(ar, ij, size, exact, imaginary=imaginary) for ij in THIRD}
-        return Functions(exact, series, third, None if endless else complete_k(ar, exact.k_prime))
+        return FunctionConstants(
+            exact, series, third, None if endless else complete_k(ar, exact.k_prime)
+        )
 
-    def rounded_constants(self) -> Functions:
+    def rounded_constants(self) -> FunctionConstants:
         """Return the constants in doubles."""
         modulus = self.modulus.in_doubles()
         return decided(
@@ -101,7 +104,7 @@ class FunctionTable(RealTable):
         )
 
     def columns(
-        self, ar: FunctionArithmetic, x: Value, constants: Functions, known: Known
+        self, ar: FunctionArithmetic, x: Value, constants: FunctionConstants, known: Known
     ) -> dict[str, Value]:
         """Return the columns at arguments; those `known` are not computed."""
         u, series = x, constants.series
@@ -124,7 +127,7 @@ class FunctionTable(RealTable):
         yield from zip(("sn", "cn", "dn"), found[1:], strict=True)
 
     def _families(
-        self, ar: FunctionArithmetic, at: Periods, functions: Functions, series: ThetaSeries
+        self, ar: FunctionArithmetic, at: Periods, functions: FunctionConstants, series: ThetaSeries
     ) -> Iterator[tuple[str, Callable[[], Value]]]:
         """Yield the columns of the families by name, and how to compute each."""
         suffix = "_imag" if self.request.imaginary else ""

@@ -6,7 +6,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from .request import Request
+from .request import FunctionRequest
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -19,7 +19,7 @@ VANISH = {
 """The columns that are exactly 0 where u, the parameter or k is; no other is, at rational u."""
 
 
-def known_values(u: Fraction, request: Request) -> dict[str, float]:
+def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
     """Return the columns that are exactly 0 at u, and not a number where they have a pole.
 
     K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
@@ -50,7 +50,7 @@ def known_values(u: Fraction, request: Request) -> dict[str, float]:
     return known
 
 
-def known_at_quarter(quarter: int, request: Request) -> dict[str, float]:
+def known_at_quarter(quarter: int, request: FunctionRequest) -> dict[str, float]:
     """Return the columns that are 0, 1, -1 or a pole at the multiples quarter + 4n of K.
 
     These are the entries of Aksenov's table 2, and what follows for theta and Zeta functions and
@@ -70,7 +70,7 @@ def known_at_quarter(quarter: int, request: Request) -> dict[str, float]:
     return known
 
 
-def put_exact_values(table: dict[str, Array], u: Array, request: Request) -> None:
+def put_exact_values(table: dict[str, Array], u: Array, request: FunctionRequest) -> None:
     """Put what is known at u = 0, at whole multiples of K and at poles in its place."""
     import numpy as np
 

@@ -17,7 +17,7 @@ THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
 """The functions of one argument, and those of an argument and a parameter."""
 
 
-class Request(NamedTuple):
+class FunctionRequest(NamedTuple):
     """What to evaluate: some families of functions, Omega and Pi with their parameter."""
 
     modulus: ModulusInput | ExactComplex
@@ -52,7 +52,7 @@ class Request(NamedTuple):
         """Whether Omega or Pi are among the families."""
         return bool({"omega", "pi"} & set(self.families))
 
-    def in_doubles(self) -> Request:
+    def in_doubles(self) -> FunctionRequest:
         """Return the request with the parameter that its nearest double is."""
         return self._replace(parameter=self.parameter.nearest())
 

@@ -17,7 +17,7 @@ from .jacobi import jacobi
 from .modulus import Modulus
 from .modulus_input import ModulusInput
 from .nome_series import (
-    Bound,
+    ErrorBound,
     am_bound,
     am_sums,
     cn_bound,
@@ -27,7 +27,7 @@ from .nome_series import (
     sn_bound,
     sn_sums,
 )
-from .tables import Table
+from .tables import TableOfFunctions
 
 if TYPE_CHECKING:
     from .tables import Rows
@@ -44,10 +44,10 @@ class _Series(NamedTuple):
 
     sums: Iterator[Value]
     exact: Value
-    bound: Bound
+    bound: ErrorBound
 
 
-class SeriesTable(Table):
+class SeriesTable(TableOfFunctions):
     """Partial sums 1 to `terms`, each with its error and a bound of the error that is proved.
 
     They are of (3.1.8) for K and, at u (a factor of K if `in_quarters`), of (3.1.7), (3.1.4),
@@ -119,7 +119,7 @@ def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[st
     }
 
 
-def terms_needed(bound: Bound, tolerance: Value) -> int:
+def terms_needed(bound: ErrorBound, tolerance: Value) -> int:
     """Return the least number of terms from which a falling bound is at most the tolerance."""
     enough = 1  # Python's integers have no end, and k may be as close to 1 as it likes
     while bound(enough) > tolerance:

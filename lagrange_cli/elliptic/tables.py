@@ -35,7 +35,7 @@ FEW = 24
 """Numbers that are computed as enclosures in the time that NumPy takes to load."""
 
 
-class Table:
+class TableOfFunctions:
     """A row of functions for each of `count` arguments."""
 
     count: int
@@ -75,7 +75,7 @@ class Table:
         raise NotImplementedError
 
 
-class RealTable(Table):
+class RealTable(TableOfFunctions):
     """A table of functions of real points: numbers with N digits are proved by enclosures."""
 
     rounds = True
@@ -117,7 +117,7 @@ class RealTable(Table):
         return 0
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
-        """Yield rows of proved numbers; see `Table`."""
+        """Yield rows of proved numbers; see `TableOfFunctions`."""
         if digits is None:
             table = self.in_doubles()
         else:

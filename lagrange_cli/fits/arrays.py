@@ -8,7 +8,7 @@ from types import NoneType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.real_arrays import doubles_of
+from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError, check_type
 from ..inputs.names import ANGLES

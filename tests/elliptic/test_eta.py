@@ -258,50 +258,6 @@ def test_digits_agree_with_doubles() -> None:
 
 
 @pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        (
-            "--delta 0.2 --delta-star 0.5 --p 0 --q 2",
-            "--delta must be >= --delta-star = 0.5, got 0.2",
-        ),
-        (
-            "--delta 1 --delta-star 0 --p 0 --q 0.5",
-            "outside the band from delta* to delta, [0.0, 1.0]",
-        ),
-        (
-            "--delta 1 --delta-star 0 --p 0 --q -2",
-            "--q must be >= 0, or imaginary as 0.7i, got -2.0",
-        ),
-        ("--delta 1 --delta-star 0 --p 0", "give either --p and --q or"),
-        ("--delta 1 --delta-star 0", "give either --p and --q or"),
-        (
-            "--delta 1 --delta-star 0 --gap-above 0",
-            "--gap-above must be > 0",
-        ),
-        ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "--g must be > 0, got 0.0"),
-        ("--delta 1 --delta-star 0 --gap-below 1 --tau-range 0:1:0", "--tau-range must have"),
-        ("--delta 1 --delta-star 0 --gap-below 1 --tau 1 --tau-range 0:1:5", "exclude each other"),
-        ("--delta x --delta-star 0 --gap-below 1", "--delta must be a finite decimal"),
-        ("--delta 1 --delta-star 0 --p 0 --q xi", "--q must be a finite number, complex as"),
-        (
-            "--delta 1 --delta-star 0 --p 0 --q=-2i",
-            "--q must be >= 0, or imaginary as 0.7i, got -2.0i",
-        ),
-        ("--delta 1 --delta-star 0 --p 0 --q 1+i", "--q must be real, or imaginary as 0.7i, got"),
-        ("--delta 1 --delta-star 0 --p 0 --quadratic", "--quadratic and --p exclude each other"),
-        ("--delta 1 --delta-star 0 --p 3 --q 2", "makes the period infinite (k1 = 1), got 1.0"),
-        ("--delta 1 --delta-star 0 --quadratic --chain", "--chain needs --tau or --tau-range"),
-        ("--delta 1 --delta-star 0 --quadratic --rate", "--rate needs --tau or --tau-range"),
-    ],
-)
-def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
-    result = lagtop("eta", *args.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize(
     ("outer", "kind"),
     [
         ("--p 0 --q 2", "quartic"),
