@@ -7,8 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from lagrange_cli.bench import diagrams
-from lagrange_cli.bench.front import FIELDS, MethodRow, with_front
+from lagrange_cli.bench.compare_methods import METHOD_FIELDS, with_front
+from lagrange_cli.bench.method import MethodRow
+from lagrange_cli.bench.pictures import draw_stability, draw_work_precision
 from lagrange_cli.output.findings import Findings
 
 
@@ -21,7 +22,7 @@ def test_points_beyond_the_edge_have_their_errors_beside_it(tmp_path: Path) -> N
         for i, error in enumerate(found)
     ]
     path = tmp_path / "x.svg"
-    diagrams.draw_work_precision(Findings({"times": "9"}, FIELDS, with_front(rows), []), str(path))
+    draw_work_precision(Findings({"times": "9"}, METHOD_FIELDS, with_front(rows), []), str(path))
     text = path.read_text()
     assert text.count("beyond this edge") == 1
     assert ">← 5e-48, 5e-18: beyond this edge<" in text
@@ -44,7 +45,7 @@ def test_failures_are_written_beside_their_stratum(tmp_path: Path) -> None:
         for name, scipy, failed in (("generic", 1e9, 0), ("top pass", None, 3))
     ]
     path = tmp_path / "x.svg"
-    diagrams.draw_stability(Findings({"scenes": "4 per stratum; odd"}, [], rows, []), str(path))
+    draw_stability(Findings({"scenes": "4 per stratum; odd"}, [], rows, []), str(path))
     text = path.read_text()
     assert text.count("× 3/4") == 1
     assert "× 0/4" not in text

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from colour_vision import VISIONS, seen
 
-from lagrange_cli.bench.series import HUES, series
-from lagrange_cli.bench.work_precision import all_methods
+from lagrange_cli.bench.measure import all_methods
+from lagrange_cli.bench.pictures import HUES, method_looks
 from lagrange_cli.plot.style import LIGHT
 
 
@@ -21,13 +21,15 @@ def test_the_hues_of_the_families_differ_for_everybody(vision: str) -> None:
 
 
 def test_no_two_methods_look_alike() -> None:
-    found = series(all_methods(1))
+    found = method_looks(all_methods(1))
     assert len({x[1:] for x in found.values()}) == len(found)  # without any colour
     assert {x.family for x in found.values()} == set(HUES)
 
 
 def test_forms_of_an_integrator_share_a_mark_and_schemes_of_an_engine_do_not() -> None:
-    found = series(["mujoco-euler", "mujoco-rk4", "RK45-euler", "RK45-quaternion", "lagtop", "x"])
+    found = method_looks(
+        ["mujoco-euler", "mujoco-rk4", "RK45-euler", "RK45-quaternion", "lagtop", "x"]
+    )
     assert next(iter(found)) == "lagtop"
     assert found["RK45-euler"].mark == found["RK45-quaternion"].mark
     assert [name for name, x in found.items() if x.is_dashed] == ["RK45-euler"]
