@@ -10,7 +10,16 @@ from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
 from .integrators import STEPS_PER_SECOND
 from .machine import common_conditions
-from .measure import DIGITS, FEWER_DIGITS, RUNS, SECONDS_OF_RUNS, Task, measure, period_of, task
+from .measure import (
+    DIGITS,
+    FEWER_DIGITS,
+    RUNS,
+    SECONDS_OF_RUNS,
+    Task,
+    measure,
+    reference_period,
+    task,
+)
 from .method import OURS, Method, MethodRow, StepsThrough, is_done, is_out, silent_steps
 
 SPANS = [10.0**power + 0.3 for power in range(7)]
@@ -87,7 +96,8 @@ def compare_spans(
     Raises LagtopError as `task` does.
     """
     spans = [
-        task(motion, span * period_of(motion), count, judged=_JUDGED_IN_A_SPAN) for span in SPANS
+        task(motion, span * reference_period(motion), count, judged=_JUDGED_IN_A_SPAN)
+        for span in SPANS
     ]
     runs = [(name, work) for name in methods for work in spans]
     rows: list[MethodRow] = []

@@ -56,10 +56,10 @@ class Task(NamedTuple):
     @property
     def periods(self) -> float:
         """The span in nutation periods."""
-        return float(self.times[-1]) / period_of(self.motion)
+        return float(self.times[-1]) / reference_period(self.motion)
 
 
-def period_of(motion: Motion) -> float:
+def reference_period(motion: Motion) -> float:
     """Return the nutation period of a scene that `check_scene` has passed."""
     return float(motion.T_nutation or math.inf)
 

@@ -91,7 +91,7 @@ def command(
 
     use_one_thread()
     from ..bench.compare_methods import compare_methods, compare_spans
-    from ..bench.measure import check_scene, chosen_methods, period_of
+    from ..bench.measure import check_scene, chosen_methods, reference_period
     from ..bench.pictures import draw_long_spans, draw_work_precision
     from ..plot.files import check_plot
 
@@ -102,7 +102,7 @@ def command(
     motion = solved(scene, rad, False, options)
     check_scene(motion)
     how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
-    end = float(PERIODS * period_of(motion) if t_max is None else t_max)
+    end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
 
     def find() -> Findings:
         if is_long:

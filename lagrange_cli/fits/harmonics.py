@@ -32,7 +32,7 @@ class Harmonics(NamedTuple):
     frequency: float
     factors: Array
     grows: bool
-    left: float
+    misfit: float
     """Sum of the squares of the residuals."""
     rows: int
 
@@ -49,7 +49,7 @@ class Harmonics(NamedTuple):
     @property
     def noise(self) -> float:
         """The standard deviation of the residuals."""
-        return float(np.sqrt(self.left / max(self.rows - self.factors.size, 1)))
+        return float(np.sqrt(self.misfit / max(self.rows - self.factors.size, 1)))
 
     def at(self, t: Array) -> Array:
         """Return its values."""
@@ -93,7 +93,7 @@ def frequency_of(t: Array, y: Array, *, grows: bool = False) -> float:
     count = _harmonics(t, fine=False)
 
     def left(frequency: float) -> float:
-        return _fitted(t, y, frequency, count, grows=grows).left
+        return _fitted(t, y, frequency, count, grows=grows).misfit
 
     tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
     sums = np.array([left(float(x)) for x in tried])

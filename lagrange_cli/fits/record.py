@@ -47,15 +47,17 @@ class Outcome:
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
         self.deviations = dict(zip(FIT_QUANTITIES, deviations.tolist(), strict=True))
-        self.seen = {name: self.values[name] for name in _BODY if self._is_seen(name)}
-        self.told = determined_products(self.seen, self.known) if all(self.seen.values()) else []
+        self.shown = {name: self.values[name] for name in _BODY if self._is_shown(name)}
+        self.determined = (
+            determined_products(self.shown, self.known) if all(self.shown.values()) else []
+        )
         channels = self.recording.channels
         self.remainders: dict[str, Residual] = {
             channel: residual_of(values)
-            for channel, values in zip(channels, found.solution.left[index], strict=True)
+            for channel, values in zip(channels, found.solution.residuals[index], strict=True)
         }
 
-    def _is_seen(self, name: str) -> bool:
+    def _is_shown(self, name: str) -> bool:
         """Return whether a number of the body is there, and not as an input that is known."""
         if name == "r0":
             return self.fit.solution.parameters.spins and "r0" not in self.known
@@ -78,7 +80,7 @@ class Outcome:
         solution, found = self.fit.solution, []
         if self.fit.rival is not None:
             rival = dict(zip(FIT_QUANTITIES, self.fit.rival.tolist(), strict=True))
-            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.seen)
+            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.shown)
             found.append(f"another top explains the recording as well: {shown}")
         if solution.unknown:
             found.append(f"the recording does not determine {' and '.join(solution.unknown)}")
@@ -117,20 +119,20 @@ class Outcome:
 
     def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
         """Yield what is told of the body, beside r0, and its standard deviation."""
-        rows = [FIT_QUANTITIES.index(name) for name in self.seen]
+        rows = [FIT_QUANTITIES.index(name) for name in self.shown]
         covariance = self.covariance[np.ix_(rows, rows)]
-        for told in self.told:
+        for told in self.determined:
             if told.name == "r0":
                 continue
             change = np.array(
-                [float(told.shares.get(name, 0)) / self.seen[name] for name in self.seen]
+                [float(told.shares.get(name, 0)) / self.shown[name] for name in self.shown]
             )
             spread = abs(told.value) * math.sqrt(max(float(change @ covariance @ change), 0.0))
             yield told, spread
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
         """Yield the correlations of a, b and r0."""
-        names = [name for name in self.seen if self.deviations[name] > 0]
+        names = [name for name in self.shown if self.deviations[name] > 0]
         for i, first in enumerate(names):
             for second in names[i + 1 :]:
                 both = self.covariance[FIT_QUANTITIES.index(first), FIT_QUANTITIES.index(second)]
@@ -140,10 +142,10 @@ class Outcome:
                     float(both) / (self.deviations[first] * self.deviations[second]),
                 )
 
-    def untold(self) -> list[str]:
+    def undetermined(self) -> list[str]:
         """Return sentences on inputs that cannot be told apart."""
         sentences = []
-        for told in self.told:
+        for told in self.determined:
             names = list(told.powers)
             if len(names) > 1:
                 listed = f"{', '.join(names[:-1])} and {names[-1]}"
@@ -215,12 +217,12 @@ class Outcome:
             record[f"{channel}_lag1"] = left.lag1
         return record | {
             "verdict": self.verdict,
-            "remark": "; ".join([*self.notes(), *self.untold(), *self.warnings()]) or None,
+            "remark": "; ".join([*self.notes(), *self.undetermined(), *self.warnings()]) or None,
         }
 
     def inputs(self) -> dict[str, float]:
         """Return inputs of `Top` that move so; what is not told is 1, or such that C = A."""
-        body = completed_body(self.seen, _of_body(self.known), self.told)
+        body = completed_body(self.shown, _of_body(self.known), self.determined)
         return {
             **body,
             "theta0_deg": math.degrees(self.values["theta0"]),
@@ -281,7 +283,7 @@ def residual_of(values: Array) -> Residual:
     if not total:
         return Residual(known.size, 0.0, 0.0)
     return Residual(
-        known.size, math.sqrt(total / known.size), float(known[1:] @ known[:-1]) / total
+        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
@@ -16,7 +18,6 @@ from .record import MEANINGS, Outcome, angles_at, chi2_bounds
 
 if TYPE_CHECKING:
     from ..inputs.units import System
-import numpy as np
 
 
 class ReportRow(NamedTuple):
@@ -107,7 +108,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:
         yield f"{name}Correlation: {related}."
-    for text in [*outcome.notes(), *outcome.untold()]:
+    for text in [*outcome.notes(), *outcome.undetermined()]:
         yield f"{name}{text}."
     for text in outcome.warnings():
         yield f"{name}Warning: {text}."
@@ -118,7 +119,7 @@ def scene_text(outcome: Outcome, source: str) -> str:
     lines = [
         f"# Found by `lagtop fit` from {one_line(source)}: the start is its first row, at "
         f"t = {outcome.recording.t_start!r}.",
-        *(f"# {text}: one of them is put in." for text in outcome.untold()),
+        *(f"# {text}: one of them is put in." for text in outcome.undetermined()),
         *(f"# Warning: {text}." for text in outcome.warnings()),
     ]
     spread = {

@@ -29,7 +29,7 @@ from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.compare_methods import METHOD_FIELDS, conclusions, with_front
 from lagrange_cli.bench.hard_scenes import STRATA
 from lagrange_cli.bench.integrators import integrators
-from lagrange_cli.bench.measure import Task, all_methods, measure, period_of, task
+from lagrange_cli.bench.measure import Task, all_methods, measure, reference_period, task
 from lagrange_cli.bench.method import MethodRow
 from lagrange_cli.bench.pictures import draw_long_spans, draw_work_precision
 from lagrange_cli.output.findings import Findings
@@ -41,7 +41,7 @@ METHODS = CLOSED_FORMS | integrators(10)
 @cache
 def work_on(top: Top) -> Task:
     motion = solve(top)
-    return task(motion, 3.3 * period_of(motion), 40, judged=10)
+    return task(motion, 3.3 * reference_period(motion), 40, judged=10)
 
 
 def run(top: Top, name: str, setting: Any) -> MethodRow:
