@@ -17,7 +17,6 @@ from lagrange_cli import LagtopError, Top, compare, solve
 from lagrange_cli.bench import compare_methods
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.engines import process
-from lagrange_cli.bench.engines.body import scaled_body
 from lagrange_cli.bench.engines.process import (
     FAMILIES,
     IMPORTS,
@@ -25,6 +24,7 @@ from lagrange_cli.bench.engines.process import (
     engine_sample,
     engines,
 )
+from lagrange_cli.bench.engines.scaled_body import scaled_body
 from lagrange_cli.bench.measure import chosen_methods, measure, task
 from lagrange_cli.bench.method import FailedError, NotApplicableError
 from lagrange_cli.judge.convergence import convergence

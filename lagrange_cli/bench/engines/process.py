@@ -21,7 +21,7 @@ from ...motion.solve import solve
 from ...sweeps.jobs import interrupts_blocked, safe_path
 from ..integrators import quaternion_angles
 from ..method import AngleFunction, FailedError, Method, NotApplicableError
-from .body import Body, scaled_body
+from .scaled_body import Body, scaled_body
 from .serve import serve
 
 SECONDS_TO_START = 60.0
