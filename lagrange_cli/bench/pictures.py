@@ -31,6 +31,19 @@ LEAST_UNITS = 1e-2
 """Least error in units that is drawn; a smaller one stands there as an arrow."""
 LETTERS = 0.85
 """Size of the letters over that of `lagtop plot`."""
+HUES = {
+    OURS: LIGHT.ink,
+    "closed forms": "#005000",
+    "scipy": "#c8a000",
+    "heyoka": "#7828a0",
+    "mujoco": "#2800eb",
+    "exudyn": "#eb5078",
+    "pybullet": "#00c8eb",
+    "drake": "#780050",
+}
+"""Colours of the families, in the order of the legend."""
+SHAPES = "os^Dv<>pP*Xhd"
+"""Marks, which are first filled, and then empty."""
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:
@@ -171,21 +184,6 @@ def _save(figure: Figure, path: str, title: str, findings: Findings) -> None:
     text = "; ".join(f"{name}: {line}" for name, line in findings.conditions.items())
     about = About(f"lagtop: {title}", text)
     write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about))
-
-
-HUES = {
-    OURS: LIGHT.ink,
-    "closed forms": "#005000",
-    "scipy": "#c8a000",
-    "heyoka": "#7828a0",
-    "mujoco": "#2800eb",
-    "exudyn": "#eb5078",
-    "pybullet": "#00c8eb",
-    "drake": "#780050",
-}
-"""Colours of the families, in the order of the legend."""
-SHAPES = "os^Dv<>pP*Xhd"
-"""Marks, which are first filled, and then empty."""
 
 
 class MethodLook(NamedTuple):

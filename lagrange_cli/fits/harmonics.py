@@ -24,6 +24,11 @@ _DIPS = 4
 """Frequencies that are looked at closely, where the residual has a dip."""
 _AS_GOOD = 1.2
 """How much more than the least a frequency may leave that is as good: noise makes that much."""
+_MOST_ROWS = 4000
+_CELLS, _MOST_CELLS = 4, 1 << 18
+"""Cells per frame of a spectrum, and in all: times need not be even."""
+_ALIASES = range(-3, 4)
+"""Turns per frame that are tried."""
 
 
 class Harmonics(NamedTuple):
@@ -132,13 +137,6 @@ def _fitted(
     factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
     left = float(np.sum((y - basis @ factors) ** 2))
     return Harmonics(frequency, factors, grows, left, t.size)
-
-
-_MOST_ROWS = 4000
-_CELLS, _MOST_CELLS = 4, 1 << 18
-"""Cells per frame of a spectrum, and in all: times need not be even."""
-_ALIASES = range(-3, 4)
-"""Turns per frame that are tried."""
 
 
 def frame_of(t: Array) -> float:

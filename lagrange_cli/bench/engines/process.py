@@ -28,6 +28,11 @@ SECONDS_TO_START = 60.0
 """How long the import of an engine may take."""
 LONGEST_ERROR = 80
 """Letters of the error of an engine that are shown."""
+STEPS = [50, 200, 800, 3200]
+MANY_STEPS = [200, 800, 3200, 12800]
+"""Steps per nutation period of schemes with a fixed step; many for those of order 1."""
+IMPORTS = {"drake": "pydrake"}
+"""Modules of packages, where they have another name than the package."""
 
 
 class EngineProcess:
@@ -114,11 +119,6 @@ def engine_attitudes(
     return attitudes
 
 
-STEPS = [50, 200, 800, 3200]
-MANY_STEPS = [200, 800, 3200, 12800]
-"""Steps per nutation period of schemes with a fixed step; many for those of order 1."""
-
-
 class Scheme(NamedTuple):
     """An integrator of an engine, and the settings that it is tried at."""
 
@@ -142,9 +142,6 @@ FAMILIES: dict[str, dict[str, Scheme]] = {
     },
 }
 """Schemes of each engine, by the module of this folder that runs it: that of its package."""
-
-IMPORTS = {"drake": "pydrake"}
-"""Modules of packages, where they have another name than the package."""
 
 
 def engines(limit: float) -> dict[str, Method]:
