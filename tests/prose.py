@@ -23,7 +23,7 @@ VERBS = frozenset(
     Bound Break Bring Build Call Cancel Carry Catch Change Check Choose Clean Clear Close Collect
     Combine Compare Compute Connect Continue Convert Copy Correct Count Cover Create Cut Decide
     Define Describe Determine Differentiate Divide Do Draw Drop Echo Empty End Ensure Enter Estimate
-    Evaluate Exit Expand Explain Export Fail Feed Fill Find Finish Fit Flush Fold Follow Format
+    Evaluate Exchange Exit Expand Explain Export Fail Feed Fill Find Finish Fit Flush Fold Follow Format
     Forward Gather Generate Get Give Group Guard Hand Hide Hold Ignore Import Include Insert
     Install Integrate Interpolate Invert Iterate Join Judge Keep Kill Label Lay Leave Let List Load
     Look Lose Make Map Mark Mask Match Measure Merge Move Multiply Name Normalize Note Offer Open
