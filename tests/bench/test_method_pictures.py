@@ -1,16 +1,21 @@
-"""Pictures of the reports mark what they cannot show: points beyond the edge, and failures."""
+"""The pictures of the reports, and the hues and marks of methods in them."""
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from colour_vision import VISIONS, seen
 
 from lagrange_cli.bench.compare_methods import METHOD_FIELDS, with_front
+from lagrange_cli.bench.measure import all_methods
 from lagrange_cli.bench.method import MethodRow
-from lagrange_cli.bench.pictures import draw_stability, draw_work_precision
+from lagrange_cli.bench.pictures import HUES, draw_stability, draw_work_precision, method_looks
 from lagrange_cli.output.findings import Findings
+from lagrange_cli.plot.style import LIGHT
 
 
 @pytest.mark.slow
@@ -51,3 +56,27 @@ def test_failures_are_written_beside_their_stratum(tmp_path: Path) -> None:
     assert "× 0/4" not in text
     assert "promised: 4" in text
     assert "rounding errors, eps" in text
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+def test_the_hues_of_the_families_differ_for_everybody(vision: str) -> None:
+    """Least distance seen: 27 (the ink and the darkest green, protan)."""
+    colours = [seen(colour, VISIONS[vision]) for colour in (*HUES.values(), LIGHT.paper)]
+    assert min(np.linalg.norm(p - q) for p, q in combinations(colours, 2)) > 20
+
+
+def test_no_two_methods_look_alike() -> None:
+    found = method_looks(all_methods(1))
+    assert len({x[1:] for x in found.values()}) == len(found)  # without any colour
+    assert {x.family for x in found.values()} == set(HUES)
+
+
+def test_forms_of_an_integrator_share_a_mark_and_schemes_of_an_engine_do_not() -> None:
+    found = method_looks(
+        ["mujoco-euler", "mujoco-rk4", "RK45-euler", "RK45-quaternion", "lagtop", "x"]
+    )
+    assert next(iter(found)) == "lagtop"
+    assert found["RK45-euler"].mark == found["RK45-quaternion"].mark
+    assert [name for name, x in found.items() if x.is_dashed] == ["RK45-euler"]
+    assert found["mujoco-euler"].mark != found["mujoco-rk4"].mark
+    assert found["x"].look()["color"] == LIGHT.quiet
