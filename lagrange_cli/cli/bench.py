@@ -24,7 +24,7 @@ MOST_SAMPLES = 10_000_000
 
 def _write_methods(formatter: click.HelpFormatter) -> None:
     """Write the names of the methods and of their groups."""
-    from ..bench.work_precision import all_methods, groups
+    from ..bench.measure import all_methods, groups
 
     with formatter.section("Methods"):
         formatter.write_text(", ".join(all_methods(1.0)))
@@ -80,25 +80,25 @@ def command(
     from ..bench.machine import use_one_thread
 
     use_one_thread()
-    from ..bench import work_precision as bench
-    from ..bench.diagrams import draw_long_spans, draw_work_precision
-    from ..bench.long_spans import compare_spans
+    from ..bench.compare_methods import compare_methods, compare_spans
+    from ..bench.measure import check_scene, chosen_methods, reference_period
+    from ..bench.pictures import draw_long_spans, draw_work_precision
     from ..plot.files import check_plot
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)
     check_plot(plot, output)
-    chosen = bench.chosen_methods(methods, float(limit))
+    chosen = chosen_methods(methods, float(limit))
     motion = solved(scene, rad, False, options)
-    bench.check_scene(motion)
+    check_scene(motion)
     how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
-    end = float(PERIODS * bench.nutation_period(motion) if t_max is None else t_max)
+    end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
 
     def find() -> Findings:
         if is_long:
             findings = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
         else:
-            findings = bench.compare_methods(motion, end, count or SAMPLES, chosen, **how)
+            findings = compare_methods(motion, end, count or SAMPLES, chosen, **how)
         if plot:
             (draw_long_spans if is_long else draw_work_precision)(findings, plot)
         return findings

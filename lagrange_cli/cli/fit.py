@@ -218,7 +218,7 @@ def _write(found: list[Outcome], source: str, system: System | None, fmt: str, o
         write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)
     for outcome in found:
         name = f"{outcome.recording.name}: " if outcome.recording.name else ""
-        notes = [*outcome.notes(), *outcome.untold()]
+        notes = [*outcome.notes(), *outcome.undetermined()]
         for word, texts in (("Note", notes), ("Warning", outcome.warnings())):
             if texts:
                 complain(f"{word}: {name}{'; '.join(texts)}")

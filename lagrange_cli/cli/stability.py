@@ -72,7 +72,7 @@ def command(
     if samples is not None and not 1 <= samples <= MOST_SAMPLES:
         raise LagtopError(f"--samples must be in [1, {MOST_SAMPLES}], got {samples}")
     from ..bench import stability
-    from ..bench.diagrams import draw_stability
+    from ..bench.pictures import draw_stability
     from ..plot.files import check_plot
 
     check_plot(plot, output)

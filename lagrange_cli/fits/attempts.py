@@ -11,7 +11,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
 from .harmonics import frame_of, slowest_spin
-from .least_squares import LEAST_SIGMA, Problem, Solution
+from .least_squares import LEAST_SIGMA, FittedParameters, Problem
 from .nutation import Shown, Turns, shown_by, turns_in
 from .parameters import FIT_QUANTITIES, Parameters, parameters_of
 from .recording import Recording
@@ -35,7 +35,7 @@ class Attempt(NamedTuple):
     """A fit of one recording."""
 
     problem: Problem
-    solution: Solution
+    solution: FittedParameters
     mirrored: bool
     """Whether psi is counted the other way."""
     noise: Mapping[str, float]
@@ -66,7 +66,7 @@ class Attempt(NamedTuple):
 
     def explains(self) -> bool:
         """Return whether no residual exceeds what harmonics leave of its channel, but by chance."""
-        left = dict(zip(self.recording.channels, self.solution.left[0], strict=True))
+        left = dict(zip(self.recording.channels, self.solution.residuals[0], strict=True))
         return all(
             np.isfinite(left[channel]).any()
             and float(np.sqrt(np.nanmean(left[channel] ** 2))) < _MUCH * noise
@@ -149,9 +149,9 @@ def _cases(ways: Sequence[_Way], known: Mapping[str, float], *, wide: bool) -> l
             or start.state[1] * known.get("r0", start.state[1]) >= 0
         ]
         first, others = first + cases[:1], others + cases[1:]
-    nearest = min((case.start.left for case in first), default=0.0)
-    others = [case for case in others if case.start.left <= _COMPARABLE * nearest]
-    return first + sorted(others, key=lambda case: case.start.left)[: _MOST_STARTS - len(first)]
+    nearest = min((case.start.misfit for case in first), default=0.0)
+    others = [case for case in others if case.start.misfit <= _COMPARABLE * nearest]
+    return first + sorted(others, key=lambda case: case.start.misfit)[: _MOST_STARTS - len(first)]
 
 
 def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | None:

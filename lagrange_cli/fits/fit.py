@@ -10,7 +10,7 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from .attempts import Attempt, best_attempt, sigma_of
-from .least_squares import Problem, Solution, sigma_left
+from .least_squares import FittedParameters, Problem, sigma_left
 from .parameters import FIT_QUANTITIES, Parameters, parameters_of
 from .recording import Recording
 
@@ -25,7 +25,7 @@ class Fit(NamedTuple):
 
     recordings: Sequence[Recording]
     """Recordings as they were understood: psi may be counted the other way."""
-    solution: Solution
+    solution: FittedParameters
     sigma_known: bool
     """Whether the standard deviations were given; else they are those of the residuals."""
     mirrored: Sequence[bool]
@@ -33,7 +33,7 @@ class Fit(NamedTuple):
     noise: Sequence[Mapping[str, float]]
     """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Array | None = None
-    """Another top that explains the only recording as well, as of `Solution.quantities`."""
+    """Another top that explains the only recording as well, as of `FittedParameters.quantities`."""
 
 
 def fit_recordings(

@@ -24,6 +24,11 @@ _DIPS = 4
 """Frequencies that are looked at closely, where the residual has a dip."""
 _AS_GOOD = 1.2
 """How much more than the least a frequency may leave that is as good: noise makes that much."""
+_MOST_ROWS = 4000
+_CELLS, _MOST_CELLS = 4, 1 << 18
+"""Cells per frame of a spectrum, and in all: times need not be even."""
+_ALIASES = range(-3, 4)
+"""Turns per frame that are tried."""
 
 
 class Harmonics(NamedTuple):
@@ -32,7 +37,7 @@ class Harmonics(NamedTuple):
     frequency: float
     factors: Array
     grows: bool
-    left: float
+    misfit: float
     """Sum of the squares of the residuals."""
     rows: int
 
@@ -49,7 +54,7 @@ class Harmonics(NamedTuple):
     @property
     def noise(self) -> float:
         """The standard deviation of the residuals."""
-        return float(np.sqrt(self.left / max(self.rows - self.factors.size, 1)))
+        return float(np.sqrt(self.misfit / max(self.rows - self.factors.size, 1)))
 
     def at(self, t: Array) -> Array:
         """Return its values."""
@@ -93,7 +98,7 @@ def frequency_of(t: Array, y: Array, *, grows: bool = False) -> float:
     count = _harmonics(t, fine=False)
 
     def left(frequency: float) -> float:
-        return _fitted(t, y, frequency, count, grows=grows).left
+        return _fitted(t, y, frequency, count, grows=grows).misfit
 
     tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
     sums = np.array([left(float(x)) for x in tried])
@@ -132,13 +137,6 @@ def _fitted(
     factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
     left = float(np.sum((y - basis @ factors) ** 2))
     return Harmonics(frequency, factors, grows, left, t.size)
-
-
-_MOST_ROWS = 4000
-_CELLS, _MOST_CELLS = 4, 1 << 18
-"""Cells per frame of a spectrum, and in all: times need not be even."""
-_ALIASES = range(-3, 4)
-"""Turns per frame that are tried."""
 
 
 def frame_of(t: Array) -> float:

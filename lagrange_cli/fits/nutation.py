@@ -138,7 +138,7 @@ def _check(series: Harmonics, y: Array, t: Array, what: str) -> None:
 def _clearness(series: Harmonics, y: Array, t: Array) -> float:
     """Return how much of the data a harmonic explains on average, over the noise."""
     steady = np.polyval(np.polyfit(t, y, int(series.grows)), t)
-    explained = (float(np.sum((y - steady) ** 2)) - series.left) / (2 * series.order)
+    explained = (float(np.sum((y - steady) ** 2)) - series.misfit) / (2 * series.order)
     return explained / max(series.noise**2, 1e-300)
 
 

@@ -43,6 +43,14 @@ _A, _B, _R0 = (FIT_QUANTITIES.index(name) for name in ("a", "b", "r0"))
 
 Name = tuple[str, int]
 """A parameter, and the number of its recording; -1 for one of the body."""
+_INSTEAD = ("A_cm", "phidot0")
+_NOT_ZERO = ("s", "g", "r0")
+"""Inputs that stand in a product, of which nothing else could be told."""
+_NEEDED = {"a", "b", "theta0", "psidot0"}
+_REACH = 3.0
+"""Standard deviations at which uncertainties hold."""
+_STEP = 1e-30
+"""An imaginary step, which rounds nothing off a derivative."""
 
 
 class Parameters(NamedTuple):
@@ -131,11 +139,6 @@ def _torque(known: Mapping[str, float]) -> float | None:
     return None if weight is None or "A" not in known else 2 * weight / known["A"]
 
 
-_INSTEAD = ("A_cm", "phidot0")
-_NOT_ZERO = ("s", "g", "r0")
-"""Inputs that stand in a product, of which nothing else could be told."""
-
-
 def known_inputs(given: Mapping[str, Any]) -> dict[str, float]:
     """Return inputs that are known, by key of `Top`, with A for A_cm and theta0 in radians.
 
@@ -166,13 +169,6 @@ def _guard(known: Mapping[str, float]) -> None:
     others = {"m": 1.0, "s": 1.0, "g": 1.0, "C": moment}
     others |= {} if "A_cm" in known else {"A": moment}
     Top(**others | dict(known))
-
-
-_NEEDED = {"a", "b", "theta0", "psidot0"}
-_REACH = 3.0
-"""Standard deviations at which uncertainties hold."""
-_STEP = 1e-30
-"""An imaginary step, which rounds nothing off a derivative."""
 
 
 class Coordinates:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,13 +11,12 @@ import numpy as np
 from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from .fit import Fit
-from .implied_body import DeterminedProduct, completed_body, determined_products
+from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .model import STATE, motion_angles
 from .parameters import FIT_QUANTITIES
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
-_BODY = ("a", "b", "r0")
 FAILED = "failed"
 _MUCH = 2.0
 """A fit has failed if its residuals of a channel exceed so many times the noise."""
@@ -33,6 +32,12 @@ MEANINGS = {
     "psi_zero": "psi of the data there",
     "phi_zero": "phi of the data there",
 }
+_BEYOND = 0.00135
+"""Probability beyond each bound of chi^2: that of three standard deviations."""
+_DEVIATIONS = 3.0
+"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
+_ROUNDING = 1e-11
+"""Radians that are left of data without noise."""
 
 
 class Outcome:
@@ -47,19 +52,16 @@ class Outcome:
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
         self.deviations = dict(zip(FIT_QUANTITIES, deviations.tolist(), strict=True))
-        self.seen = {name: self.values[name] for name in _BODY if self._is_seen(name)}
-        self.told = determined_products(self.seen, self.known) if all(self.seen.values()) else []
+        spins = found.solution.parameters.spins and "r0" not in self.known
+        self.shown = {name: self.values[name] for name in ("a", "b", *["r0"] * spins)}
+        self.determined = (
+            determined_products(self.shown, self.known) if all(self.shown.values()) else []
+        )
         channels = self.recording.channels
         self.remainders: dict[str, Residual] = {
             channel: residual_of(values)
-            for channel, values in zip(channels, found.solution.left[index], strict=True)
+            for channel, values in zip(channels, found.solution.residuals[index], strict=True)
         }
-
-    def _is_seen(self, name: str) -> bool:
-        """Return whether a number of the body is there, and not as an input that is known."""
-        if name == "r0":
-            return self.fit.solution.parameters.spins and "r0" not in self.known
-        return True
 
     @property
     def chi2_dof(self) -> float:
@@ -78,7 +80,7 @@ class Outcome:
         solution, found = self.fit.solution, []
         if self.fit.rival is not None:
             rival = dict(zip(FIT_QUANTITIES, self.fit.rival.tolist(), strict=True))
-            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.seen)
+            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.shown)
             found.append(f"another top explains the recording as well: {shown}")
         if solution.unknown:
             found.append(f"the recording does not determine {' and '.join(solution.unknown)}")
@@ -117,20 +119,28 @@ class Outcome:
 
     def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
         """Yield what is told of the body, beside r0, and its standard deviation."""
-        rows = [FIT_QUANTITIES.index(name) for name in self.seen]
+        rows = [FIT_QUANTITIES.index(name) for name in self.shown]
         covariance = self.covariance[np.ix_(rows, rows)]
-        for told in self.told:
-            if told.name == "r0":
-                continue
-            change = np.array(
-                [float(told.shares.get(name, 0)) / self.seen[name] for name in self.seen]
-            )
-            spread = abs(told.value) * math.sqrt(max(float(change @ covariance @ change), 0.0))
-            yield told, spread
+        for product in self.determined:
+            if product.name != "r0":
+                change = np.array(
+                    [float(product.shares.get(x, 0)) / y for x, y in self.shown.items()]
+                )
+                variance = max(float(change @ covariance @ change), 0.0)
+                yield product, abs(product.value) * math.sqrt(variance)
+
+    def numbers(self) -> Iterator[tuple[str, float, float, str]]:
+        """Yield key, value, standard deviation and meaning of everything, in the unit in use."""
+        for name, value, deviation in self.found():
+            scale = self.scale(name)
+            yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
+        for product, deviation in self.products():
+            meaning = "" if len(product.powers) == 1 else "not to be told apart"
+            yield product.name, product.value, deviation, meaning
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
         """Yield the correlations of a, b and r0."""
-        names = [name for name in self.seen if self.deviations[name] > 0]
+        names = [name for name in self.shown if self.deviations[name] > 0]
         for i, first in enumerate(names):
             for second in names[i + 1 :]:
                 both = self.covariance[FIT_QUANTITIES.index(first), FIT_QUANTITIES.index(second)]
@@ -140,15 +150,10 @@ class Outcome:
                     float(both) / (self.deviations[first] * self.deviations[second]),
                 )
 
-    def untold(self) -> list[str]:
+    def undetermined(self) -> list[str]:
         """Return sentences on inputs that cannot be told apart."""
-        sentences = []
-        for told in self.told:
-            names = list(told.powers)
-            if len(names) > 1:
-                listed = f"{', '.join(names[:-1])} and {names[-1]}"
-                sentences.append(f"{listed} only as {told.name}")
-        return sentences
+        several = [(x.name, list(x.powers)) for x in self.determined if len(x.powers) > 1]
+        return [f"{', '.join(x[:-1])} and {x[-1]} only as {name}" for name, x in several]
 
     def failure(self) -> str:
         """Return why a fit has failed, with the name of the recording if it has one."""
@@ -189,12 +194,8 @@ class Outcome:
         """Return everything by key, flat."""
         solution, recording = self.fit.solution, self.recording
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
-        for name, value, deviation in self.found():
-            scale = self.scale(name)
-            record[self.unit(name)] = value * scale
-            record[f"{self.unit(name)}_std"] = deviation * scale
-        for told, deviation in self.products():
-            record[told.name], record[f"{told.name}_std"] = told.value, deviation
+        for key, value, deviation, _ in self.numbers():
+            record[key], record[f"{key}_std"] = value, deviation
         for name, value in self.known.items():
             record[self.unit(name)] = value * self.scale(name)
         for first, second, value in self.correlations():
@@ -215,22 +216,19 @@ class Outcome:
             record[f"{channel}_lag1"] = left.lag1
         return record | {
             "verdict": self.verdict,
-            "remark": "; ".join([*self.notes(), *self.untold(), *self.warnings()]) or None,
+            "remark": "; ".join([*self.notes(), *self.undetermined(), *self.warnings()]) or None,
         }
 
     def inputs(self) -> dict[str, float]:
         """Return inputs of `Top` that move so; what is not told is 1, or such that C = A."""
-        body = completed_body(self.seen, _of_body(self.known), self.told)
+        known = {name: x for name, x in self.known.items() if name in BODY_INPUTS}
+        body = completed_body(self.shown, known, self.determined)
         return {
             **body,
             "theta0_deg": math.degrees(self.values["theta0"]),
             "thetadot0": self.values["thetadot0"],
             "psidot0": self.values["psidot0"],
         }
-
-
-def _of_body(known: Mapping[str, float]) -> dict[str, float]:
-    return {name: x for name, x in known.items() if name in {"m", "A", "C", "s", "g", "r0"}}
 
 
 def outcomes(found: Fit, *, radians: bool = False) -> list[Outcome]:
@@ -249,14 +247,6 @@ def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
         "phi": phi + spin + values["phi_zero"],
         "psi": psi + values["psi_zero"],
     }
-
-
-_BEYOND = 0.00135
-"""Probability beyond each bound of chi^2: that of three standard deviations."""
-_DEVIATIONS = 3.0
-"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
-_ROUNDING = 1e-11
-"""Radians that are left of data without noise."""
 
 
 class Residual(NamedTuple):
@@ -281,7 +271,7 @@ def residual_of(values: Array) -> Residual:
     if not total:
         return Residual(known.size, 0.0, 0.0)
     return Residual(
-        known.size, math.sqrt(total / known.size), float(known[1:] @ known[:-1]) / total
+        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
@@ -12,11 +14,20 @@ from ..motion.record import KEYS
 from ..output.findings import Field, Findings, with_unit
 from ..output.terminal import one_line
 from ..output.uncertain_text import uncertain_text
-from .record import MEANINGS, Outcome, angles_at, chi2_bounds
+from .record import Outcome, angles_at, chi2_bounds
 
 if TYPE_CHECKING:
     from ..inputs.units import System
-import numpy as np
+_FIELDS = [
+    Field("name", "recording", is_text=True, names_the_row=True),
+    Field("key", "key", is_text=True),
+    Field("value", "value", is_text=True),
+    Field("meaning", "meaning", is_text=True),
+]
+_FINE = 1200
+"""Points of a curve."""
+Curve = tuple[str, Array, Array, Array, Array, Array]
+"""Name, times, data, fine times, motion at these, and data less motion."""
 
 
 class ReportRow(NamedTuple):
@@ -26,14 +37,6 @@ class ReportRow(NamedTuple):
     key: str
     value: str
     meaning: str
-
-
-_FIELDS = [
-    Field("name", "recording", is_text=True, names_the_row=True),
-    Field("key", "key", is_text=True),
-    Field("value", "value", is_text=True),
-    Field("meaning", "meaning", is_text=True),
-]
 
 
 def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
@@ -62,17 +65,9 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None =
 
 def _lines(outcome: Outcome, system: System | None) -> Iterator[ReportRow]:
     name, units = outcome.recording.name, outcome_units(outcome, system) if system else {}
-    for key, value, deviation in outcome.found():
-        scale = outcome.scale(key)
-        text = uncertain_text(value * scale, deviation * scale)
-        yield ReportRow(
-            name, with_unit(outcome.unit(key), units.get(outcome.unit(key))), text, MEANINGS[key]
-        )
-    for told, deviation in outcome.products():
-        single = len(told.powers) == 1
-        meaning = "" if single else "not to be told apart"
-        text = uncertain_text(told.value, deviation)
-        yield ReportRow(name, with_unit(told.name, units.get(told.name)), text, meaning)
+    for key, value, deviation, meaning in outcome.numbers():
+        text = uncertain_text(value, deviation)
+        yield ReportRow(name, with_unit(key, units.get(key)), text, meaning)
 
 
 def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None) -> dict[str, str]:
@@ -107,7 +102,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:
         yield f"{name}Correlation: {related}."
-    for text in [*outcome.notes(), *outcome.untold()]:
+    for text in [*outcome.notes(), *outcome.undetermined()]:
         yield f"{name}{text}."
     for text in outcome.warnings():
         yield f"{name}Warning: {text}."
@@ -118,7 +113,7 @@ def scene_text(outcome: Outcome, source: str) -> str:
     lines = [
         f"# Found by `lagtop fit` from {one_line(source)}: the start is its first row, at "
         f"t = {outcome.recording.t_start!r}.",
-        *(f"# {text}: one of them is put in." for text in outcome.untold()),
+        *(f"# {text}: one of them is put in." for text in outcome.undetermined()),
         *(f"# Warning: {text}." for text in outcome.warnings()),
     ]
     spread = {
@@ -131,13 +126,6 @@ def scene_text(outcome: Outcome, source: str) -> str:
         told = f"  # {uncertain_text(found * scale, deviation * scale)}" if deviation else ""
         lines.append(f"{name} = {value!r}{told}")
     return "".join(f"{line}\n" for line in lines)
-
-
-_FINE = 1200
-"""Points of a curve."""
-
-Curve = tuple[str, Array, Array, Array, Array, Array]
-"""Name, times, data, fine times, motion at these, and data less motion."""
 
 
 def curves_of(outcome: Outcome) -> Iterator[Curve]:

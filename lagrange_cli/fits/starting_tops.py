@@ -51,7 +51,7 @@ class StartingTop(NamedTuple):
     """r0 - b, where the spin is seen."""
     psi_zero: float
     phi_zero: float
-    left: float
+    misfit: float
     """Sum of the squares of the residuals, over the noise of each channel."""
 
 
@@ -71,7 +71,7 @@ def starting_tops(
     states[:, 2] = np.clip(states[:, 2], _LEAST_TILT, math.pi - _LEAST_TILT)
     angles = motion_angles(states, recording.t)
     made = [_start(recording, shown.noise, state, angles[:, i]) for i, state in enumerate(states)]
-    return sorted(made, key=lambda x: x.left)
+    return sorted(made, key=lambda x: x.misfit)
 
 
 def _states_shown(shown: Shown, *, wide: bool) -> Array:

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.bench.reference import units
+from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.eta import eta_constants, record
 from lagrange_cli.elliptic.eta_table import EtaTable
 from lagrange_cli.elliptic.quadrature import Quadrature
@@ -125,7 +125,7 @@ def test_eta(name: str) -> None:
             chi = integral.chi(abs(tau), guess)
             slope = mpmath.sign(tau) * (integral.upper - integral.lower) * mpmath.sin(chi) / 2
             slope /= integral.pace(chi)
-            assert units(eta, integral.eta(chi), slope, tau) <= 1.6
+            assert error_in_units(eta, integral.eta(chi), slope, tau) <= 1.6
             size = max(1, abs(slope)) * mpmath.sqrt(integral.g)
             assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
 
@@ -165,10 +165,10 @@ def test_chain(name: str) -> None:
             )
             within = mpmath.sign(tau) * 2 * half - mpmath.pi / 2
             pace = sigma1 * mpmath.sqrt(1 - m * mpmath.sin(within) ** 2)
-            assert units(theta, within + 2 * mpmath.pi * turns, pace, tau) <= 2
-            assert units(xi, mpmath.sin(within), pace * mpmath.cos(within), tau) <= 2
+            assert error_in_units(theta, within + 2 * mpmath.pi * turns, pace, tau) <= 2
+            assert error_in_units(xi, mpmath.sin(within), pace * mpmath.cos(within), tau) <= 2
             exact_h1 = sigma1 * time - mpmath.ellipk(m)
-            assert units(h1, exact_h1, sigma1, tau) <= 2
+            assert error_in_units(h1, exact_h1, sigma1, tau) <= 2
             assert abs(mpmath.ellipf(within, m) + 4 * turns * mpmath.ellipk(m) - exact_h1) < 1e-15
 
 
@@ -329,9 +329,9 @@ def test_complex_pairs_at_random() -> None:
             slope = mpmath.sqrt((end - exact) * (exact - start) * ((exact - p) ** 2 + far**2))
             theta = mpmath.atan2(sn, cn) - mpmath.pi / 2 + 2 * mpmath.pi * turns
             (row,) = array_rows(EtaTable(ListedPoints([time]), of, angle="rad"))
-            assert units(row["eta"], exact, slope, since) <= 2.5
-            assert units(row["theta_rad"], theta, rate * dn, since) <= 2
-            assert units(row["xi_prime"], -cn, rate * sn * dn, since) <= 2
+            assert error_in_units(row["eta"], exact, slope, since) <= 2.5
+            assert error_in_units(row["theta_rad"], theta, rate * dn, since) <= 2
+            assert error_in_units(row["xi_prime"], -cn, rate * sn * dn, since) <= 2
 
 
 def test_chain_of_the_command(lagtop: Lagtop) -> None:

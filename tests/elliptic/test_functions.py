@@ -17,7 +17,7 @@ from scenes import EPS
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.bench.reference import units
+from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import complete_k
 from lagrange_cli.elliptic.jacobi import jacobi
@@ -68,7 +68,7 @@ def errors(name: str, value: float, u: float) -> list[float]:
         exact = [am, sign * sn, sign * cn, dn]
         slopes = [dn, cn * dn, sn * dn, m * sn * cn]
         return [
-            units(float(x), true, slope, tau)
+            error_in_units(float(x), true, slope, tau)
             for x, true, slope in zip(ours, exact, slopes, strict=True)
         ]
 
@@ -139,13 +139,15 @@ def test_theta_and_zeta_on_arrays() -> None:
             v = float(2 * K * x)
             for ij, n in {"01": 4, "00": 3, "11": 1, "10": 2}.items():
                 exact = mpmath.jtheta(n, mpmath.pi * x, q)
-                assert units(float(theta(ARRAYS, ij, x, given)), exact, 0, 0) <= 3
+                assert error_in_units(float(theta(ARRAYS, ij, x, given)), exact, 0, 0) <= 3
                 angle = mpmath.pi * v / (2 * K)
                 value, slope, bend = (mpmath.jtheta(n, angle, q, i) for i in range(3))
                 scale = mpmath.pi / (2 * K)
                 ratio = slope / value
                 rate = scale**2 * (bend / value - ratio**2)
-                assert units(float(zeta(ARRAYS, ij, v, given)), scale * ratio, rate, v) <= 3
+                assert (
+                    error_in_units(float(zeta(ARRAYS, ij, v, given)), scale * ratio, rate, v) <= 3
+                )
 
 
 @pytest.mark.parametrize("k", [0.25, 0.5, 0.9])

@@ -45,7 +45,7 @@ def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
     found = fit(t, theta=theta, known=known)
     freedom = given.fit.solution.dof
     assert freedom == rows - len(given.fit.solution.parameters.names) < rows
-    left = given.fit.solution.left[0][0]
+    left = given.fit.solution.residuals[0][0]
     assert given.chi2_dof == pytest.approx(float(np.sum(left**2)) / 0.02**2 / freedom, rel=1e-6)
     for name in ("a", "b", "theta0"):
         if given.deviations[name]:
