@@ -146,7 +146,8 @@ def command(
             raise LagtopError(f"--{name} needs --animate FILE.gif")
     require_matplotlib()
     from ..plot.curves import checked_span
-    from ..plot.film import check_film, film_bytes, film_pace
+    from ..plot.page import Page, page_bytes, show_page
+    from ..plot.request import PlotRequest, parse_input_range
     from ..plot.page import Page, page_bytes, show_page
     from ..plot.request import PlotRequest, parse_input_range
 
@@ -171,6 +172,8 @@ def command(
     if output is not None:
         page.check_dpi(page_dpi, written)
     if animate is not None:
+        from ..plot.film import check_film, film_bytes, film_pace
+
         check_film(page, animate, film_dpi)
         paced = {name: None if x is None else float(x) for name, x in pacing.items()}
         pace = film_pace(motion, animate, t_max=request.t_max, **paced)

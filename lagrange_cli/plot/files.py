@@ -9,7 +9,7 @@ import io
 import os
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..errors import CannotWriteError, LagtopError, UnavailableError
 
@@ -54,13 +54,20 @@ class About(NamedTuple):
 
 
 def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
-    """Return the figure as `png`, `svg` or `pdf`: the same bytes for the same figure."""
+    """Return the figure as `png`, `svg` or `pdf`: the same bytes for the same figure.
+
+    It is printed by the canvas of its format: `savefig` would draw it twice.
+    """
     import matplotlib
+    from matplotlib.backend_bases import get_registered_canvas_class
 
     buffer = io.BytesIO()
     os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # or the fonts in a PDF would carry the day
+    figure.dpi = dpi
+    how: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if fmt == "png" else {}
     with matplotlib.rc_context(_FONTS):  # type: ignore[arg-type]  # the stub lists every key
-        figure.savefig(buffer, format=fmt, dpi=dpi, metadata=about.fields(fmt))
+        canvas = get_registered_canvas_class(fmt)(figure)
+        getattr(canvas, f"print_{fmt}")(buffer, metadata=about.fields(fmt), **how)
     return _described(buffer.getvalue(), about) if fmt == "svg" else buffer.getvalue()
 
 

@@ -55,11 +55,11 @@ def chosen_look(dark: bool) -> Look:
 @contextmanager
 def styled(look: Look, size: float = 1.0) -> Iterator[None]:
     """Set our settings and nobody else's, whatever the user's own matplotlibrc says."""
-    import matplotlib
+    from matplotlib import rc_context, rcParams, rcParamsDefault
 
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(cast(Any, settings(look, size)))  # the stub lists every key
+    usual = {key: value for key, value in rcParamsDefault.items() if key != "backend"}
+    changed = {key: value for key, value in usual.items() if rcParams[key] != value}
+    with rc_context(cast(Any, changed | settings(look, size))):  # the stub lists every key
         yield
 
 
@@ -70,7 +70,6 @@ def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
         "axes.edgecolor": look.quiet,
         "axes.facecolor": look.paper,
         "axes.formatter.limits": (-4, 5),
-        "axes.formatter.use_mathtext": True,
         "axes.formatter.useoffset": False,
         "axes.labelcolor": look.ink,
         "axes.spines.right": False,
