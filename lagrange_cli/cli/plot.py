@@ -148,8 +148,6 @@ def command(
     from ..plot.curves import checked_span
     from ..plot.page import Page, page_bytes, show_page
     from ..plot.request import PlotRequest, parse_input_range
-    from ..plot.page import Page, page_bytes, show_page
-    from ..plot.request import PlotRequest, parse_input_range
 
     options, times = in_seconds(options, t_max=t_max)
     found = inputs_of(scene, rad, options)
