@@ -160,7 +160,7 @@ def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:
 def _draw(comparison: Comparison, limit: float | None, path: str) -> None:
     from ..judge.judgement import LIMIT
     from ..output.write import write_bytes
-    from ..plot.error_curves import ErrorCurve, draw_errors
+    from ..plot.reports import ErrorCurve, draw_errors
 
     found = comparison.convergence
     compared = found.errors if found else [None] * len(comparison.judgements)

@@ -139,16 +139,15 @@ def command(
     scene, chosen = _scene_and_kinds(words)
     written = _format_of(fmt, output)
     inches = _inches(size)
-    eye, ends = _eye(view, rad), _ends(limits)
+    camera, ends = _camera(view, rad), _ends(limits)
     pacing = {"fps": fps, "duration": duration, "speed": speed}
     for name, value in pacing.items():
         if value is not None and animate is None:
             raise LagtopError(f"--{name} needs --animate FILE.gif")
     require_matplotlib()
     from ..plot.curves import checked_span
-    from ..plot.key_map import parse_input_range
     from ..plot.page import Page, page_bytes, show_page
-    from ..plot.request import PlotRequest
+    from ..plot.request import PlotRequest, parse_input_range
 
     options, times = in_seconds(options, t_max=t_max)
     found = inputs_of(scene, rad, options)
@@ -160,7 +159,7 @@ def command(
         key=key,
         x=parse_input_range("x", x) if x else None,
         y=parse_input_range("y", y) if y else None,
-        view=eye,
+        camera=camera,
         limits=ends,
         numbers=not no_numbers,
         progress=partial(with_progress, long=1000, label="tops"),
@@ -220,7 +219,7 @@ def _inches(size: str | None) -> tuple[float, float] | None:
     return width, height
 
 
-def _eye(text: str | None, radians: bool) -> tuple[float, float] | None:
+def _camera(text: str | None, radians: bool) -> tuple[float, float] | None:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
     if text is None:
         return None

@@ -45,7 +45,7 @@ def command(
     suffix = PurePath(output or "").suffix
     if suffix.lower() not in {"", ".html", ".htm"}:
         raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
-    from ..plot.browser.document import view
+    from ..plot.browser.document import open_page, view
 
     found = inputs_of(scene, rad, options)
     say_unused(found.stds)
@@ -55,6 +55,4 @@ def command(
 
         write_bytes(output, page.encode)
     if opens:
-        from ..plot.browser.window import open_page
-
         open_page(page, output)

@@ -4,88 +4,47 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from .curves import phase_times, refined, span
+from .curves import sampled, span
+from .kinds import Drawing
 from .motion_facts import nutation_period
 from .request import PlotRequest
-from .style import Look, head, number_text, points
+from .style import Look, points, short_text
 
 TITLE = "Tilt ϑ, spin φ, precession ψ; dashed: mean growth"
 
 
-class AngleCurves(NamedTuple):
-    """Tilt, spin and precession (radians) over time."""
+def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+    """Compute the angles; where the axis stays vertical there is no precession to draw."""
+    all_is_spin = motion.regime in (Regime.SLEEPING, Regime.HANGING)
+    t, *angles = sampled(motion, request.t_max or span(motion, 3), ["theta", "phi", "psi"]).values()
+    stds = [None] * 3 if request.stds is None else request.stds.at(t)
+    rates = None, motion.mean_spin_rate, motion.mean_precession_rate
+    rows = list(zip("ϑφψ", angles, rates, stds, strict=True))
 
-    t: Array
-    theta: Array
-    phi: Array
-    psi: Array
+    def draw(axes: Sequence[Axes], look: Look) -> None:
+        """Draw each angle, with its mean growth and its uncertainty."""
+        for ax, (symbol, angle, rate, std), colour in zip(axes, rows, look.lines, strict=False):
+            ax.set_ylabel(f"{symbol} ({request.angle_unit})")
+            ax.plot(t, angle * request.per_radian, color=colour)
+            if std is not None:
+                ends = [(angle + side * std) * request.per_radian for side in (-1, 1)]
+                ax.fill_between(t, *ends, color=colour, alpha=0.3, linewidth=0)
+            if rate is not None:
+                mean = _draw_mean(ax, t, angle, rate, request=request, look=look)
+                note = "; all is spin: there is no precession" * all_is_spin
+                ax.set_title(mean + note, fontsize="small", color=look.quiet)
+        finish_time_axes(axes, motion, t, request)
 
-
-def angle_curves(motion: Motion, t_max: float) -> AngleCurves:
-    """Return the three angles from 0 to t_max."""
-
-    def angles(t: Array) -> Array:
-        return np.stack(motion.angles(t), axis=1)
-
-    t = refined(phase_times(motion, t_max), angles)
-    return AngleCurves(t, *motion.angles(t))
-
-
-def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw tilt, spin and precession over time, and their mean growth."""
-    axes = panel.subplots(2 if _all_is_spin(motion) else 3, sharex=True)
-    head(panel, _title(request))
-    _draw_curves(axes, motion, request, look)
-    panel.align_ylabels(axes)
-
-
-def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw the picture on three axes, which share the time."""
-    places[0].set_title(_title(request))
-    last = 2 if _all_is_spin(motion) else 3
-    _draw_curves(places[:last], motion, request, look)
-    for empty in places[last:]:
-        empty.set_axis_off()
-
-
-def _title(request: PlotRequest) -> str:
-    return TITLE if request.stds is None else f"{TITLE}; bands: ±1σ"
-
-
-def _all_is_spin(motion: Motion) -> bool:
-    """Return whether the axis stays vertical, so that there is no precession."""
-    return motion.regime in (Regime.SLEEPING, Regime.HANGING)
-
-
-def _draw_curves(axes: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw an angle on each of the axes."""
-    course = angle_curves(motion, request.t_max or span(motion, 3))
-    stds = [None] * 3 if request.stds is None else request.stds.at(course.t)
-    rows = [
-        ("ϑ", course.theta, None, stds[0]),
-        ("φ", course.phi, motion.mean_spin_rate, stds[1]),
-        ("ψ", course.psi, motion.mean_precession_rate, stds[2]),
-    ]
-    for ax, (symbol, angle, rate, std), colour in zip(axes, rows, look.lines, strict=False):
-        ax.set_ylabel(f"{symbol} ({request.angle_unit})")
-        ax.plot(course.t, angle * request.per_radian, color=colour)
-        if std is not None:
-            ends = [(angle + side * std) * request.per_radian for side in (-1, 1)]
-            ax.fill_between(course.t, *ends, color=colour, alpha=0.3, linewidth=0)
-        if rate is not None:
-            mean = _draw_mean(ax, course.t, angle, rate, request=request, look=look)
-            note = "; all is spin: there is no precession" * _all_is_spin(motion)
-            ax.set_title(mean + note, fontsize="small", color=look.quiet)
-    finish_time_axes(axes, motion, course.t, request)
+    title = TITLE if request.stds is None else f"{TITLE}; bands: ±1σ"
+    return Drawing(title, draw, (1.0,) * (2 if all_is_spin else 3))
 
 
 def _draw_mean(
@@ -95,7 +54,7 @@ def _draw_mean(
     mean: dict[str, Any] = {"lw": points(0.9), "ls": (0, (4, 3)), "zorder": 3}
     ax.plot(t, rate * t * request.per_radian, color=look.ink, **mean)
     apart = float(np.abs(angle - rate * t).max()) * request.per_radian
-    text = f"mean {number_text(float(f'{rate:.4g}'))} {request.unit('rad/time')}"
+    text = f"mean {short_text(rate)} {request.unit('rad/time')}"
     if apart > 1e-9 * request.per_radian:
         text += f", from which it departs by {apart:.3g} {request.angle_unit} at most"
     return text

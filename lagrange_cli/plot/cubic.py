@@ -10,14 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import SubFigure
 from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .motion_facts import start_of
+from .kinds import Drawing
 from .request import PlotRequest
-from .style import Look, head, number_from_left_to_right, number_text, points
+from .style import Look, number_from_left_to_right, number_text, points
 
 NEAR = 1.5
 """The third root is shown where it is within so many widths of the band above it."""
@@ -73,29 +72,29 @@ def cubic_curve(motion: Motion) -> Cubic:
     u = np.linspace(u2 - 0.4 * width, right + 0.4 * width, 801)
     f = (u - u1) * (u - u2)
     if u3 is None:
-        start = start_of(motion)
-        f *= -(start.alpha + start.b**2)
+        f *= -(motion.energy_constant + float(motion.b) ** 2)
     else:
         f *= float(motion.a) * (u - u3)
     return Cubic(u, f, u1, u2, u3)
 
 
-def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw f(u), its roots, and the band in which the motion takes place."""
-    head(panel, TITLE)
-    _draw_cubic(panel.subplots(), motion, request, look)
-
-
-def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw the picture on one axes."""
-    places[0].set_title(TITLE, pad=points(18))  # above the names of the poles
-    _draw_cubic(places[0], motion, request, look)
-
-
-def _draw_cubic(axes: Axes, motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw f(u), the band, the poles and the roots."""
+def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+    """Compute the cubic."""
     cubic = cubic_curve(motion)
-    axes.set(ylabel=request.label("f(u) (1/time²)"))
+
+    def draw(axes: Sequence[Axes], look: Look) -> None:
+        """Draw f(u), its roots, and the band in which the motion takes place."""
+        axes[0].set_ylabel(request.label("f(u) (1/time²)"))
+        _draw_curve(axes[0], cubic, look)
+        _draw_poles(axes[0], cubic, look)
+        _draw_roots(axes[0], cubic, look)
+        number_from_left_to_right(axes[0])
+
+    return Drawing(TITLE, draw)
+
+
+def _draw_curve(axes: Axes, cubic: Cubic, look: Look) -> None:
+    """Draw f(u) and the band."""
     axes.set(xlim=(cubic.u[0], cubic.u[-1]), ylim=cubic.heights())
     axes.axhline(0.0, color=look.quiet, lw=points(0.9))
     if cubic.u2 < cubic.u1:
@@ -105,6 +104,10 @@ def _draw_cubic(axes: Axes, motion: Motion, request: PlotRequest, look: Look) ->
         cubic.u, 0.0, cubic.f, where=inside, color=look.lines[0], alpha=0.3, linewidth=0
     )
     axes.plot(cubic.u, cubic.f, color=look.lines[0])
+
+
+def _draw_poles(axes: Axes, cubic: Cubic, look: Look) -> None:
+    """Draw a line at each pole in sight, with its name above the picture."""
     for pole, name in POLES.items():
         if cubic.u[0] <= pole <= cubic.u[-1]:
             axes.axvline(pole, color=look.quiet, lw=points(1.0), ls=(0, (4, 3)), zorder=0.5)
@@ -117,8 +120,6 @@ def _draw_cubic(axes: Axes, motion: Motion, request: PlotRequest, look: Look) ->
                 size="small",
                 color=look.quiet,
             )
-    _draw_roots(axes, cubic, look)
-    number_from_left_to_right(axes)
 
 
 def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:

@@ -8,7 +8,7 @@ Equation numbers are Chrapan's.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -101,6 +101,18 @@ def highest_times(motion: Motion, t_max: float) -> Array:
     whole = np.arange(math.ceil(before - 1e-9), math.floor(t_max / T + before + 1e-9) + 1)
     times: Array = np.clip((whole - before) * T, 0.0, t_max)
     return times
+
+
+def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> dict[str, Array]:
+    """Return columns of `lagtop table` from 0 to t_max, in radians, by their headings.
+
+    The times, under `t`, are those at which the columns make a smooth curve.
+    """
+
+    def curve(t: Array) -> Array:
+        return np.stack([*motion.table(t, names).values()], axis=1)
+
+    return motion.table(refined(phase_times(motion, t_max), curve), ["t", *names])
 
 
 def phase_times(motion: Motion, t_max: float) -> Array:

@@ -18,8 +18,11 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from PIL import Image
 
+from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
+from ..inputs.rotations import rotated
 from ..motion.solve import Motion
+from .camera import Camera, camera_at, runs, side_camera
 from .curves import MOST_PERIODS, span, turn_span
 from .globe import Limits, draw_globe
 from .motion_facts import nutation_period
@@ -27,7 +30,6 @@ from .page import Page, check_pixels
 from .request import Progress, no_progress
 from .sphere import axis_path
 from .style import points, scale, styled
-from .view import runs, seen_top, side_view, view_from
 
 COLOURS = 64
 """Colours of a GIF; they are chosen for the frame at its middle, which has all."""
@@ -45,6 +47,10 @@ class SmallGifWriter(PillowWriter):
         """Keep a frame, a byte per pixel."""
         frame = self.fig.frame(self.dpi)
         self._frames.append(frame.quantize(palette=self.colours, dither=0))
+
+
+HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
+"""Height and radius (in radii of the sphere) and wedges of the cone that stands for the top."""
 
 
 WRITERS = {".gif": SmallGifWriter, ".mp4": FFMpegWriter}
@@ -212,6 +218,49 @@ class Frames(Figure):
         file.write(self.frame(dpi).convert("RGBA").tobytes())
 
 
+class Face(NamedTuple):
+    """A triangle of the cone on the page."""
+
+    corners: Array
+    """x and y of the corners, shape (3, 2)."""
+    on_lid: bool
+    light: bool
+    """True on every other sixth of a turn, so that one sees the spin."""
+
+
+class Cone(NamedTuple):
+    """The cone that stands for the top, on the page: the faces in sight, the lid last."""
+
+    faces: list[Face]
+    rim: tuple[Array, Array]
+    axle: tuple[Array, Array]
+    """Line from the middle of the lid to the sphere."""
+    lid_in_sight: bool
+
+
+def cone_at(quaternion: Array, camera: Camera) -> Cone:
+    """Return a cone that stands on its tip, turned from body to space by a quaternion."""
+    around = 2 * math.pi / WEDGES * np.arange(WEDGES + 1)
+    spokes = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    z = np.array([0.0, 0.0, 1.0])
+    outward = HEIGHT * (spokes[1:] + spokes[:-1]) / 2 - RADIUS * z
+    tip, middle, axis = rotated(quaternion, np.stack([0 * z, HEIGHT * z, z]))
+    rim = rotated(quaternion, RADIUS * spokes + HEIGHT * z)
+    lid_in_sight = bool(axis @ camera.toward > 0)
+
+    def face(j: int, apex: Array, on_lid: bool) -> Face:
+        """Return the triangle between an apex and wedge j of the rim."""
+        corners = np.stack(camera.project(np.stack([apex, rim[j], rim[j + 1]])), axis=1)
+        return Face(corners, on_lid, light=j * 6 // WEDGES % 2 == 0)
+
+    sides = np.flatnonzero(rotated(quaternion, outward) @ camera.toward > 0)
+    faces = [face(int(j), tip, False) for j in sides]
+    if lid_in_sight:
+        faces += [face(j, middle, True) for j in range(WEDGES)]
+    axle = camera.project(np.stack([middle, axis]))
+    return Cone(faces, camera.project(rim), axle, lid_in_sight)
+
+
 class Film:
     """The figure of a film and its moving parts."""
 
@@ -220,12 +269,14 @@ class Film:
         self.figure, self.look = Frames(figsize=page.size or USUAL_SIZE), look
         self.path = axis_path(motion, pace.t_max)
         self.times = np.linspace(0.0, pace.t_max, pace.frames)
-        self.angles = motion.angles(self.times)
-        self.view = view_from(*request.view) if request.view else side_view(self.path.axis)
-        self.trace = self.view.project(self.path.axis), self.view.faces(self.path.axis)
+        columns = motion.table(self.times, ["quaternion"])
+        self.attitude = np.stack([*columns.values()], axis=1)
+        self.turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
+        self.camera = camera_at(*request.camera) if request.camera else side_camera(self.path.axis)
+        self.trace = self.camera.project(self.path.axis), self.camera.faces(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
         limits = Limits(self.path.least, self.path.greatest)
-        draw_globe(self.axes, self.view, limits, request, look)
+        draw_globe(self.axes, self.camera, limits, request, look)
         low, high = self.axes.get_ylim()
         self.axes.set_ylim(low - FOOT, high)
         self.body = PolyCollection([], zorder=BODY, linewidths=0.3, edgecolors="face")
@@ -245,14 +296,11 @@ class Film:
     def _time_scale(self, pace: Pace) -> str:
         """Return how time and spin are shown, for the foot of the picture."""
         text = f"1 second shows {pace.speed:.3g} of time t"
-        turned = np.abs(np.diff(self.angles.phi))
-        fast = turned.max(initial=0.0) > ALIASED
-        return text + "; the spin is too fast for these frames" * bool(fast)
+        return text + "; the spin is too fast for these frames" * bool(self.turned > ALIASED)
 
     def show(self, i: int) -> None:
         """Bring the figure to frame i."""
-        theta, phi, psi = (float(angle[i]) for angle in self.angles)
-        top = seen_top(theta, phi, psi, self.view)
+        top = cone_at(self.attitude[i], self.camera)
         white, blue, red = self.look.paper, *self.look.lines[:2]
         colours = [white if face.light else blue if face.on_lid else red for face in top.faces]
         self.body.set(verts=[face.corners for face in top.faces], facecolors=colours)

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
 from ..arithmetic.types import Array
+from .camera import Camera, runs
 from .request import PlotRequest
-from .style import Look, number_text, points
-from .view import View, parallel, runs
+from .style import Look, points, short_text
 
 TIP, NAME = 1.24, 0.1
 """Length of the axes of space in radii of the globe, and the distance of their names from there."""
@@ -31,64 +31,73 @@ class Limits(NamedTuple):
     def text(self, radians: bool) -> tuple[str, str]:
         """Return both as texts with their unit."""
         one, other = (
-            f"{number_text(float(f'{tilt:.4g}'))} rad"
-            if radians
-            else f"{number_text(float(f'{math.degrees(tilt):.4g}'))}°"
+            f"{short_text(tilt)} rad" if radians else f"{short_text(math.degrees(tilt))}°"
             for tilt in self
         )
         return one, other
 
 
-def draw_globe(axes: Axes, view: View, limits: Limits, request: PlotRequest, look: Look) -> None:
+def draw_globe(
+    axes: Axes, camera: Camera, limits: Limits, request: PlotRequest, look: Look
+) -> None:
     """Draw outline, equator, axes of space and limiting circles; far sides dashed and paler."""
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.add_artist(Circle((0, 0), 1, facecolor=look.faint, edgecolor="none", alpha=0.55, zorder=0))
     axes.add_artist(Circle((0, 0), 1, fill=False, ec=look.quiet, lw=points(1.0), zorder=1))
-    _draw_circle(axes, view, math.pi / 2, color=look.quiet, lw=points(0.6))
-    _draw_frame(axes, view, look)
+    _draw_circle(axes, camera, math.pi / 2, color=look.quiet, lw=points(0.6))
+    _draw_frame(axes, camera, look)
     least, greatest = limits.text(request.radians)
     if limits.greatest == limits.least:
-        _draw_limit(axes, view, limits.least, look.lines[0], f"tilt ϑ = {least}")
+        _draw_limit(axes, camera, limits.least, look.lines[0], f"tilt ϑ = {least}")
     elif limits.greatest - limits.least < INSEPARABLE:
         _draw_limit(
-            axes, view, limits.greatest, look.lines[0], f"tilt ϑ from {least} to {greatest}"
+            axes, camera, limits.greatest, look.lines[0], f"tilt ϑ from {least} to {greatest}"
         )
     else:
-        _draw_limit(axes, view, limits.least, look.lines[0], f"ϑ min {least}")
-        _draw_limit(axes, view, limits.greatest, look.lines[1], f"ϑ max {greatest}")
+        _draw_limit(axes, camera, limits.least, look.lines[0], f"ϑ min {least}")
+        _draw_limit(axes, camera, limits.greatest, look.lines[1], f"ϑ max {greatest}")
 
 
-def _draw_limit(axes: Axes, view: View, tilt: float, colour: str, label: str) -> None:
+def _draw_limit(axes: Axes, camera: Camera, tilt: float, colour: str, label: str) -> None:
     """Draw the circle of a limiting tilt, or a dot where that circle is a pole."""
     if math.sin(tilt) > 1e-3:
-        _draw_circle(axes, view, tilt, color=colour, lw=points(1.2))
+        _draw_circle(axes, camera, tilt, color=colour, lw=points(1.2))
         axes.plot([], [], color=colour, lw=points(1.2), label=label)
         return
     pole = np.array([[0.0, 0.0, math.cos(tilt)]])
     dot: dict[str, Any] = {"color": colour, "ms": points(5), "ls": "none", "label": label}
-    axes.plot(*view.project(pole), "o", alpha=1.0 if view.faces(pole)[0] else 0.45, zorder=2, **dot)
+    axes.plot(
+        *camera.project(pole), "o", alpha=1.0 if camera.faces(pole)[0] else 0.45, zorder=2, **dot
+    )
 
 
-def _draw_circle(axes: Axes, view: View, tilt: float, **line: Any) -> None:
+def _draw_circle(axes: Axes, camera: Camera, tilt: float, **line: Any) -> None:
     """Draw the circle of a tilt, its far side dashed and paler."""
-    circle = parallel(tilt)
-    x, y = view.project(circle)
-    for part, near in runs(view.faces(circle)):
+    circle = _parallel(tilt)
+    x, y = camera.project(circle)
+    for part, near in runs(camera.faces(circle)):
         fade: dict[str, Any] = (
             {"zorder": 2} if near else {"alpha": 0.45, "ls": (0, (3, 3)), "zorder": 1}
         )
         axes.plot(x[part], y[part], **(line | fade))
 
 
-def _draw_frame(axes: Axes, view: View, look: Look) -> None:
+def _parallel(tilt: float) -> Array:
+    """Return the circle of a tilt (radians) on the unit sphere, in shape (n, 3)."""
+    around = np.linspace(0.0, 2 * math.pi, 241)
+    sine, cosine = math.sin(tilt), math.cos(tilt)
+    return np.stack([sine * np.cos(around), sine * np.sin(around), 0 * around + cosine], axis=1)
+
+
+def _draw_frame(axes: Axes, camera: Camera, look: Look) -> None:
     """Draw the axes of space from the sphere outwards, behind it dashed, and their names."""
     names: dict[tuple[float, float], str] = {}
-    in_front = {name for name, side in zip("xyz", view.toward, strict=True) if side >= 0}
+    in_front = {name for name, side in zip("xyz", camera.toward, strict=True) if side >= 0}
     for name, direction in zip("xyz", np.eye(3), strict=True):
-        x, y = (float(length[0]) for length in view.project(direction[None]))
+        x, y = (float(length[0]) for length in camera.project(direction[None]))
         length = math.hypot(x, y)
-        in_sight = 1.0 if direction @ view.toward >= 0 else 1.0 / max(length, 1.0 / TIP)
+        in_sight = 1.0 if direction @ camera.toward >= 0 else 1.0 / max(length, 1.0 / TIP)
         for first, last, fade in ((1.0, in_sight, True), (in_sight, TIP, False)):
             if last - first > 1e-9:
                 dashes: dict[str, Any] = {"alpha": 0.5, "ls": (0, (3, 3))} if fade else {}

@@ -1,8 +1,7 @@
 """The kinds of picture: one row per kind, from which the command, its help and the page are made.
 
-A new picture is one file of this room with the functions `draw(panel, motion, request, look)` and
-`draw_on(places, motion, request, look)`, which draws on axes that are there, and one row here; for
-axes of a user it has a function of its own in `on_axes`, whose name stands in `__init__`.
+A kind is one file of this subpackage, named like the kind.  Its function `drawing` computes the
+picture, and returns it ready to be drawn on axes, those of a page as well as those of a user.
 """
 
 from __future__ import annotations
@@ -13,22 +12,26 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import SubFigure
 
     from ..motion.solve import Motion
     from .request import PlotRequest
     from .style import Look
 
-    Draw = Callable[[SubFigure, Motion, PlotRequest, Look], None]
-    DrawOn = Callable[[Sequence[Axes], Motion, PlotRequest, Look], None]
+
+class Drawing(NamedTuple):
+    """A picture of a motion: computed, but not drawn yet."""
+
+    title: str
+    draw: Callable[[Sequence[Axes], Look], None]
+    """Draws everything but the title on axes, one below the other."""
+    heights: tuple[float, ...] = (1.0,)
+    """Heights of the axes of a page, in any unit."""
 
 
 class Kind(NamedTuple):
     """A kind of picture."""
 
     name: str
-    file: str
-    """Module of this room that computes and draws the picture."""
     help: str
     """One line for the help of the command."""
     size: tuple[float, float]
@@ -36,28 +39,24 @@ class Kind(NamedTuple):
     on_sheet: bool
     """Whether the picture is on the sheet, which the command draws by default."""
     axes: int = 1
-    """Number of axes that the picture takes, one below the other."""
+    """Number of axes of a user that the picture takes; several share the time."""
 
-    @property
-    def draw(self) -> Draw:
-        """The function that draws; its file, and with it matplotlib, is loaded only now."""
-        draw: Draw = import_module(f".{self.file}", __package__).draw
-        return draw
+    def drawing(self, motion: Motion, request: PlotRequest) -> Drawing:
+        """Compute the picture; its file, and with it matplotlib, is loaded only now.
 
-    @property
-    def draw_on(self) -> DrawOn:
-        """The function that draws on axes that are there."""
-        draw_on: DrawOn = import_module(f".{self.file}", __package__).draw_on
-        return draw_on
+        Raises LagtopError for a bad request, and NothingToDrawError.
+        """
+        drawing: Drawing = import_module(f".{self.name}", __package__).drawing(motion, request)
+        return drawing
 
 
 _ROWS = [
-    Kind("sphere", "sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
-    Kind("angles", "angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
-    Kind("remainders", "remainders", "spin and precession less their mean growth", (7, 5), True, 2),
-    Kind("cubic", "cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
-    Kind("phase", "phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
-    Kind("map", "map_picture", "a key of the record over two inputs", (6.8, 5.0), False),
+    Kind("sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
+    Kind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
+    Kind("remainders", "spin and precession less their mean growth", (7, 5), True, 2),
+    Kind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
+    Kind("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
+    Kind("map", "a key of the record over two inputs", (6.8, 5.0), False),
 ]
 
 KINDS = {kind.name: kind for kind in _ROWS}

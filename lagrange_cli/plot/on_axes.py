@@ -1,8 +1,8 @@
 """Pictures on axes of your own, in your own style: a function per kind of picture.
 
 Each takes an `Axes` of matplotlib, or a sequence of as many as its kind has, and makes a new figure
-where none is given.  `t_max` is the last time, `radians` the unit of angles, `dark` says that the
-paper is.  They raise LagtopError for a time out of range, and where there is nothing to draw.
+if none is given.  `t_max` is the last time, `radians` the unit of angles, `dark` selects colours
+for dark paper.  They raise LagtopError for a time out of range, and if there is nothing to draw.
 """
 
 from __future__ import annotations
@@ -15,16 +15,15 @@ from matplotlib.axes import Axes
 from ..errors import LagtopError
 from ..motion.solve import Motion
 from .curves import checked_span
-from .key_map import parse_input_range
 from .kinds import KINDS
-from .request import PlotRequest
-from .style import chosen_look
+from .request import MAP_KEY, PlotRequest, parse_input_range
+from .style import chosen_look, points
 
 Places: TypeAlias = Axes | Sequence[Axes] | None
 
 
 class OverTime(TypedDict, total=False):
-    """What can be asked of a picture over time."""
+    """Options of a picture over time."""
 
     t_max: float | None
     radians: bool
@@ -32,10 +31,7 @@ class OverTime(TypedDict, total=False):
 
 
 def draw_sphere(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw the path of the figure axis on the unit sphere, and return the axes.
-
-    A colour bar for the time takes the last of their collections.
-    """
+    """Draw the path of the figure axis on the unit sphere, and return the axes."""
     return _drawn("sphere", motion, ax, **shown)
 
 
@@ -65,7 +61,7 @@ def draw_map(
     motion: Motion,
     ax: Places = None,
     *,
-    key: str = "mean_precession_rate",
+    key: str = MAP_KEY,
     x: str | None = None,
     y: str | None = None,
     dark: bool = False,
@@ -89,12 +85,17 @@ def _drawn(
 ) -> list[Axes]:
     """Draw a kind of picture, and return the axes it is on."""
     kind, request = KINDS[name], PlotRequest(t_max=checked_span(motion, t_max), **wanted)
-    places = _places(ax, kind.axes)
-    kind.draw_on(places, motion, request, chosen_look(dark))
-    return places
+    axes = _axes_of(ax, kind.axes)
+    drawing = kind.drawing(motion, request)
+    used = len(drawing.heights)
+    drawing.draw(axes[:used], chosen_look(dark))
+    axes[0].set_title(drawing.title, pad=points(18))  # above names at the top of the axes
+    for empty in axes[used:]:
+        empty.set_axis_off()
+    return axes
 
 
-def _places(ax: Places, count: int) -> list[Axes]:
+def _axes_of(ax: Places, count: int) -> list[Axes]:
     """Return so many axes: those given, or new ones.  Raises LagtopError for another number."""
     if ax is None:
         from matplotlib import pyplot
@@ -102,7 +103,7 @@ def _places(ax: Places, count: int) -> list[Axes]:
         return list(
             pyplot.subplots(count, sharex=True, squeeze=False, layout="constrained")[1].flat
         )
-    places = [ax] if isinstance(ax, Axes) else list(ax)
-    if len(places) != count:
-        raise LagtopError(f"ax must be {count} axes, got {len(places)}", "ax")
-    return places
+    axes = [ax] if isinstance(ax, Axes) else list(ax)
+    if len(axes) != count:
+        raise LagtopError(f"ax must be {count} axes, got {len(axes)}", "ax")
+    return axes

@@ -16,7 +16,7 @@ from .files import About, figure_bytes
 from .kinds import KINDS
 from .motion_facts import motion_in_words
 from .request import PlotRequest
-from .style import DARK, POINTS, Look, number_text, styled
+from .style import DARK, POINTS, Look, head, number_text, styled
 
 NUMBERS_WIDTH, PANEL = 3.7, (5.8, 5.0)
 """Width of the column of numbers, and width and height of one panel among several (inches)."""
@@ -134,8 +134,19 @@ def draw_page(figure: Figure, page: Page) -> None:
             panel.text(0.5, 0.5, str(reason), ha="center", color=page.look.quiet, wrap=True)
 
 
-def _draw(kind: str, panel: SubFigure, page: Page) -> None:
-    KINDS[kind].draw(panel, page.motion, page.request, page.look)
+def _draw(name: str, panel: SubFigure, page: Page) -> None:
+    """Draw a kind of picture on axes of a panel, with its title above and its legend below."""
+    kind = KINDS[name]
+    drawing = kind.drawing(page.motion, page.request)
+    rows, together = len(drawing.heights), kind.axes > 1
+    places = panel.subplots(rows, sharex=together, squeeze=False, height_ratios=drawing.heights)
+    axes = list(places.flat)
+    head(panel, drawing.title)
+    drawing.draw(axes, page.look)
+    if together:
+        panel.align_ylabels(axes)
+    if axes[0].get_legend() is None and axes[0].get_legend_handles_labels()[0]:
+        panel.legend(loc="outside lower left", fontsize="small")
 
 
 def _write_numbers(panel: SubFigure, page: Page) -> None:

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .curves import PHASES, phase_times, refined, span
-from .motion_facts import columns_at, motion_in_words
+from .curves import PHASES, sampled, span
+from .kinds import Drawing
+from .motion_facts import motion_in_words
 from .request import PlotRequest
-from .style import Look, head, mark_start, number_from_left_to_right, points
+from .style import Look, mark_start, number_from_left_to_right, points
 
 SEPARATRIX = (
     "separatrix: the way of a top that starts upright with this spin\n"
@@ -40,11 +40,7 @@ class PhasePortrait(NamedTuple):
 
 def phase_portrait(motion: Motion) -> PhasePortrait:
     """Return the orbit and the separatrix in the plane of tilt and tilt rate."""
-
-    def orbit(t: Array) -> Array:
-        return np.stack(columns_at(motion, t, ["theta", "thetadot"]), axis=1)
-
-    theta, rate = orbit(refined(phase_times(motion, span(motion, 1)), orbit)).T
+    _, theta, rate = sampled(motion, span(motion, 1), ["theta", "thetadot"]).values()
     start = float(theta[0]), float(motion.top.thetadot0)
     a, b = float(motion.a), float(motion.b)
     if not b * b < 2 * a:
@@ -70,26 +66,20 @@ def separatrix(a: float, b: float) -> tuple[Array, Array]:
     return theta, rate
 
 
-def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw the nutation in the plane of tilt and tilt rate, and the separatrix."""
-    head(panel, _title(motion))
-    _draw_portrait(panel.subplots(), motion, request, look)
-    panel.legend(loc="outside lower left", fontsize="small")
+def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+    """Compute the orbit and the separatrix."""
+    portrait = phase_portrait(motion)
+
+    def draw(axes: Sequence[Axes], look: Look) -> None:
+        """Draw the nutation in the plane of tilt and tilt rate."""
+        _draw_portrait(axes[0], portrait, request, look)
+
+    return Drawing(f"Nutation in the phase plane: {motion_in_words(motion)}", draw)
 
 
-def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw the picture on one axes, without the legend."""
-    places[0].set_title(_title(motion))
-    _draw_portrait(places[0], motion, request, look)
-
-
-def _title(motion: Motion) -> str:
-    return f"Nutation in the phase plane: {motion_in_words(motion)}"
-
-
-def _draw_portrait(axes: Axes, motion: Motion, request: PlotRequest, look: Look) -> None:
+def _draw_portrait(axes: Axes, portrait: PhasePortrait, request: PlotRequest, look: Look) -> None:
     """Draw the orbit, its start and the separatrix."""
-    portrait, factor = phase_portrait(motion), request.per_radian
+    factor = request.per_radian
     axes.set(
         xlabel=f"tilt ϑ ({request.angle_unit})", ylabel=request.label("tilt rate ϑ̇ (rad/time)")
     )

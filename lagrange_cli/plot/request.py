@@ -7,6 +7,10 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from ..arithmetic.angles import per_radian
+from ..arithmetic.points import LogPoints
+from ..errors import LagtopError
+from ..inputs.input_keys import NINE, Input
+from ..inputs.ranges import parse_range
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -18,6 +22,9 @@ P = TypeVar("P")
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows where none is asked for."""
+
+MOST_VALUES = 2000
+"""Most values of an input along one axis of a map."""
 
 
 class Progress(Protocol):
@@ -48,6 +55,30 @@ class InputRange(NamedTuple):
         return f"{self.name}={steps}{first}:{last}:{self.values.size}"
 
 
+def parse_input_range(name: str, text: str) -> InputRange:
+    """Return the range that a text such as `r0=10:100:40` or `r0=log:1:100:40` stands for.
+
+    `name` is the argument that an error names.  Raises LagtopError where the input is unknown, and
+    where it is no range of 2 to 2000 increasing values.
+    """
+    known, _, grid = text.partition("=")
+    if known not in NINE:
+        wanted = f"one of {' '.join(NINE)} and ="
+        raise LagtopError(f"{name} must begin with {wanted}, got {text!r}", name)
+    try:
+        points = parse_range(grid)
+    except LagtopError as error:
+        raise LagtopError(f"{name} {error}", name) from None
+    if not 2 <= points.count <= MOST_VALUES:
+        raise LagtopError(
+            f"{name} must have a count in [2, {MOST_VALUES}], got {points.count}", name
+        )
+    values = next(points.blocks())
+    if not values[0] < values[-1]:
+        raise LagtopError(f"{name} must have start < stop, got {text!r}", name)
+    return InputRange(known, values, isinstance(points, LogPoints) and bool(values[0] > 0))
+
+
 class PlotRequest(NamedTuple):
     """What a picture of a motion should show."""
 
@@ -63,8 +94,8 @@ class PlotRequest(NamedTuple):
     """Vertical axis of a map; by default the tilt."""
     system: System | None = None
     """The units of the inputs, where these have units."""
-    view: tuple[float, float] | None = None
-    """Azimuth and elevation (radians) of the eye; by default the view that a path faces most."""
+    camera: tuple[float, float] | None = None
+    """Azimuth and elevation (radians) of the camera; by default where it sees most of a path."""
     limits: tuple[float, float] | None = None
     """Ends of the colours of a map; by default all but the outermost values are within."""
     numbers: bool = True
@@ -92,8 +123,8 @@ class PlotRequest(NamedTuple):
         unit = self.unit("time")
         return f"time t ({'unit of the inputs' if unit == 'time' else unit})"
 
-    def unit_of(self, key: Key) -> str:
-        """Return the unit of a key of the record, in the units in use."""
+    def unit_of(self, key: Key | Input) -> str:
+        """Return the unit of a key of the record or an input, in the units in use."""
         return self.angle_unit if key.unit == "angle" else self.unit(key.unit)
 
     @property
@@ -113,7 +144,7 @@ class PlotRequest(NamedTuple):
             "--key": self.key if self.key != MAP_KEY else None,
             "--x": self.x and self.x.text(),
             "--y": self.y and self.y.text(),
-            "--view": self.view and ",".join(f"{x * self.per_radian:.10g}" for x in self.view),
+            "--view": self.camera and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
             "--range": self.limits and ":".join(map(repr, self.limits)),
         }
         flags = ["--rad"] * self.radians + ["--no-numbers"] * (not self.numbers)

@@ -10,17 +10,16 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.figure import SubFigure
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .angles import angle_curves
-from .curves import highest_times, phase_times, refined, span, sphere_span
+from .camera import Camera, Near, best_camera, camera_at, runs
+from .curves import highest_times, sampled, span, sphere_span
 from .globe import Limits, draw_globe
+from .kinds import Drawing
 from .motion_facts import axis_at, motion_in_words, nutation_period
 from .request import PlotRequest
-from .style import Look, head, mark_start, points, scale
-from .view import Near, View, best_view, runs, view_from
+from .style import Look, mark_start, points, scale
 
 NARROW = math.radians(6.0)
 """A band of tilts that a circle on the globe hides: it is shown magnified as well."""
@@ -30,7 +29,6 @@ NODS_MAGNIFIED = 3
 
 PIECES = 160
 """Steps of the colour along a path."""
-
 
 ARROWS = 0.1, 0.28, 0.46, 0.64, 0.82
 """Parts of the length of a path at which an arrowhead shows which way it is run."""
@@ -62,65 +60,46 @@ class AxisPath(NamedTuple):
 
 def axis_path(motion: Motion, t_max: float) -> AxisPath:
     """Return the path from 0 to t_max."""
-
-    def axis(t: Array) -> Array:
-        return axis_at(motion, t)
-
-    t = refined(phase_times(motion, t_max), axis)
+    t, *axis = sampled(motion, t_max, ["axis"]).values()
     least, greatest = motion.theta_min_deg, motion.theta_max_deg
     assert least is not None
     assert greatest is not None
-    highest = axis(highest_times(motion, t_max))
-    return AxisPath(t, axis(t), math.radians(least), math.radians(greatest), motion.path, highest)
+    highest = axis_at(motion, highest_times(motion, t_max))
+    path = np.stack(axis, axis=1)
+    return AxisPath(t, path, math.radians(least), math.radians(greatest), motion.path, highest)
 
 
-def draw(panel: SubFigure, motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw the globe with the path on it, and under it a piece of a narrow path, magnified."""
+def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+    """Compute the path; a narrow one has two axes on a page, where a piece of it is magnified."""
     path = axis_path(motion, request.t_max or sphere_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
-    head(panel, _title(motion))
-    axes = panel.subplots(2, height_ratios=(3.4, 1)) if narrow else [panel.subplots()]
-    lines = _draw_sphere(axes[0], path, motion, request, look)
-    if narrow:
-        _draw_magnified(axes[1], motion, path, request, look)
-    if path.moves:
-        bar = panel.colorbar(lines, ax=axes, shrink=0.7, pad=0.02, aspect=28)
-        bar.outline.set_visible(False)
-        bar.set_label(request.time_label)
-    handles, labels = axes[0].get_legend_handles_labels()
-    panel.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small")
 
+    def draw(axes: Sequence[Axes], look: Look) -> None:
+        """Draw the globe with the path on it, and the bar that explains its colours."""
+        camera = camera_at(*request.camera) if request.camera else best_camera(path.axis)
+        draw_globe(axes[0], camera, Limits(path.least, path.greatest), request, look)
+        lines = _draw_path(axes[0], camera, path, motion, look)
+        axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize="small")
+        for below in axes[1:]:
+            _draw_magnified(below, motion, path, request, look)
+        if path.moves:
+            bar = axes[0].figure.colorbar(lines, ax=list(axes), shrink=0.7, pad=0.02, aspect=28)
+            bar.outline.set_visible(False)
+            bar.set_label(request.time_label)
 
-def draw_on(places: Sequence[Axes], motion: Motion, request: PlotRequest, look: Look) -> None:
-    """Draw the globe with the path on one axes, without a bar for the colours of time."""
-    path = axis_path(motion, request.t_max or sphere_span(motion))
-    places[0].set_title(_title(motion))
-    _draw_sphere(places[0], path, motion, request, look)
-    places[0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize="small")
-
-
-def _title(motion: Motion) -> str:
-    return f"Figure axis on the unit sphere: {motion_in_words(motion)}"
-
-
-def _draw_sphere(
-    axes: Axes, path: AxisPath, motion: Motion, request: PlotRequest, look: Look
-) -> LineCollection:
-    """Draw the globe with the path, and return the path on the near side, coloured by time."""
-    view = view_from(*request.view) if request.view else best_view(path.axis)
-    draw_globe(axes, view, Limits(path.least, path.greatest), request, look)
-    return _draw_path(axes, view, path, motion, look)
+    title = f"Figure axis on the unit sphere: {motion_in_words(motion)}"
+    return Drawing(title, draw, (3.4, 1.0) if narrow else (1.0,))
 
 
 def _draw_path(
-    axes: Axes, view: View, path: AxisPath, motion: Motion, look: Look
+    axes: Axes, camera: Camera, path: AxisPath, motion: Motion, look: Look
 ) -> LineCollection:
     """Draw the path, coloured by time, paler on the far side, with its start and direction.
 
     Returns the lines to which a bar of colours belongs.
     """
-    x, y = view.project(path.axis)
-    near = view.faces(path.axis)
+    x, y = camera.project(path.axis)
+    near = camera.faces(path.axis)
     for side, alpha, width in ((False, 0.35, 1.2), (True, 1.0, 2.2)):
         lines = _coloured(path.t, np.stack([x, y], axis=1), near, look, side=side)
         lines.set(
@@ -128,7 +107,7 @@ def _draw_path(
         )
         axes.add_collection(lines)
     mark_start(axes, x[0], y[0], look, "start" if path.moves else "the axis stays here")
-    _draw_direction(axes, view, path, motion, look)
+    _draw_direction(axes, camera, path, motion, look)
     lines.set_alpha(None)
     return lines
 
@@ -164,10 +143,10 @@ def _pieces(t: Array, places: Array, near: Near, side: bool) -> tuple[list[Array
     return pieces, np.array(times)
 
 
-def _draw_direction(axes: Axes, view: View, path: AxisPath, motion: Motion, look: Look) -> None:
+def _draw_direction(axes: Axes, camera: Camera, path: AxisPath, motion: Motion, look: Look) -> None:
     """Draw arrowheads along the near side of a path; beside a tiny one, an arc that it follows."""
     course = path.axis
-    shown = np.stack(view.project(course), axis=1)
+    shown = np.stack(camera.project(course), axis=1)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown, axis=0), axis=1))])
     whole, colour = float(along[-1]), scale(look)
     if whole < 0.3 and motion.mean_precession_rate:
@@ -175,11 +154,11 @@ def _draw_direction(axes: Axes, view: View, path: AxisPath, motion: Motion, look
         turn = start + math.copysign(1.0, motion.mean_precession_rate) * np.linspace(0.15, 0.8, 40)
         arc = [math.sin(tilt) * np.cos(turn), math.sin(tilt) * np.sin(turn)]
         course = np.stack([*arc, np.full(turn.size, math.cos(tilt))], axis=1)
-        x, y = view.project(course)
+        x, y = camera.project(course)
         axes.plot(x, y, color=look.ink, lw=points(1.6), zorder=3)
         _arrowhead(axes, (x[-2], y[-2]), (x[-1], y[-1]), look.ink)
     elif whole >= 0.3:
-        near = view.faces(course)
+        near = camera.faces(course)
         for part in ARROWS:
             last = int(np.searchsorted(along, part * whole))
             first = int(np.searchsorted(along, part * whole - 0.02))
@@ -202,15 +181,16 @@ def _draw_magnified(
 
     A degree of precession is as long as it is on the sphere.
     """
-    nods = angle_curves(motion, min(span(motion, NODS_MAGNIFIED), path.t[-1]))
-    x, y = nods.psi * request.per_radian, nods.theta * request.per_radian
+    until = min(span(motion, NODS_MAGNIFIED), float(path.t[-1]))
+    t, psi, theta = sampled(motion, until, ["psi", "theta"]).values()
+    x, y = psi * request.per_radian, theta * request.per_radian
     axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
-    lines = _coloured(nods.t, np.stack([x, y], axis=1), np.ones(x.size, bool), look, side=True)
+    lines = _coloured(t, np.stack([x, y], axis=1), np.ones(x.size, bool), look, side=True)
     lines.set(clim=(path.t[0], path.t[-1]), linewidths=points(2.0))
     axes.add_collection(lines)
     axes.autoscale_view()
     mark_start(axes, x[0], y[0], look)
-    whole = nods.t[-1] == path.t[-1]
+    whole = t[-1] == path.t[-1]
     axes.set_title("the same path, magnified" if whole else "its beginning, magnified")
     unit = request.angle_unit
     axes.set(xlabel=f"precession ψ ({unit})", ylabel=f"tilt ϑ ({unit})")

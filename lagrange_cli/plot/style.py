@@ -138,6 +138,11 @@ def number_text(value: float) -> str:
     return shown.replace("-", "−")
 
 
+def short_text(value: float) -> str:
+    """Return a number to four digits."""
+    return number_text(float(f"{value:.4g}"))
+
+
 def scale(look: Look) -> Colormap:
     """Return the colours that stand for the size of a quantity."""
     import numpy as np

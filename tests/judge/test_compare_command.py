@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
 from lagrange_cli.judge.judgement import JUDGEMENT_KEYS
-from lagrange_cli.plot.error_curves import ErrorCurve, draw_errors
+from lagrange_cli.plot.reports import ErrorCurve, draw_errors
 
 TOP = Top(psidot0=3)
 OPTIONS = ["--psidot0", 3]

@@ -19,7 +19,7 @@ from scenes import NAMED, SAMPLES, UNIT, random_scene
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Motion, Top, solve, view
-from lagrange_cli.plot.browser.document import page_scene
+from lagrange_cli.plot.browser.data import page_scene
 
 pytestmark = pytest.mark.slow
 
@@ -189,10 +189,12 @@ def test_every_slider_and_field_changes_the_motion(browser: Browser) -> None:
 BAD_INPUTS = [
     ("r0", "fast", "r0 must be a number, got fast"),
     ("m", "", "m must be a number, got"),
-    ("m", "-1", "m must be at least 1e-30, got -1"),
-    ("s", "-1", "s must be at least 0, got -1"),
+    ("m", "-1", "m must be from 1e-30 to 1e30, got -1"),
+    ("s", "-1", "s must be 0, or from 1e-30 to 1e30, got -1"),
     ("C", "1e6", "C must be at most 2A = 78064, got 1000000"),
-    ("g", "1e40", "g must be at most 1e30 in size, got 1e+40"),
+    ("g", "1e40", "g must be 0, or from 1e-30 to 1e30, got 1e+40"),
+    ("g", "1e-300", "g must be 0, or from 1e-30 to 1e30, got 1e-300"),
+    ("r0", "-1e-31", "r0 must be 0, or from 1e-30 to 1e30 in size, got -1e-31"),
     ("theta0_deg", "181", "theta0_deg must be 0, 180, or 1e-12 to 180 - 1e-12, got 181"),
 ]
 

@@ -13,9 +13,11 @@ from conftest import Lagtop
 from matplotlib.figure import Figure
 from pictures import sample_motion
 from scenes import SAMPLES
+from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
-from lagrange_cli.plot import film, view
+from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.plot import camera, film
 from lagrange_cli.plot.curves import turn_span
 from lagrange_cli.plot.page import Page
 from lagrange_cli.plot.request import PlotRequest
@@ -27,27 +29,33 @@ def test_the_view_is_a_rotation_and_the_start_is_in_sight() -> None:
     for path in SAMPLES:
         scene = sample_motion(path)
         axis = axis_path(scene, turn_span(scene)).axis
-        seen = view.best_view(axis)
+        seen = camera.best_camera(axis)
         assert np.stack(seen) @ np.stack(seen).T == pytest.approx(np.eye(3), abs=1e-15)
         assert np.cross(seen.right, seen.up) == pytest.approx(seen.toward, abs=1e-15)
         assert seen.up[2] > 0
         assert seen.faces(axis)[0]
 
 
+def attitude(theta: float, phi: float, psi: float) -> Array:
+    """Return the quaternion of a top, by scipy."""
+    turn = Rotation.from_euler("ZXZ", [psi, theta, phi])
+    return np.asarray(turn.as_quat(scalar_first=True))
+
+
 def test_the_top_of_the_film_stands_on_its_axis() -> None:
-    seen = view.view_from(0.3, 0.4)
-    top = view.seen_top(0.5, 1.0, 2.0, seen)
+    seen = camera.camera_at(0.3, 0.4)
+    top = film.cone_at(attitude(0.5, 1.0, 2.0), seen)
     axis = np.array([math.sin(0.5) * math.sin(2), -math.sin(0.5) * math.cos(2), math.cos(0.5)])
     assert np.stack(top.axle, axis=1)[1] == pytest.approx(np.stack(seen.project(axis)))
     assert top.lid_in_sight
-    assert sum(face.on_lid for face in top.faces) == view.WEDGES
-    away = view.seen_top(math.pi - 0.5, 1.0, 2.0, view.view_from(0.3, 1.4))
+    assert sum(face.on_lid for face in top.faces) == film.WEDGES
+    away = film.cone_at(attitude(math.pi - 0.5, 1.0, 2.0), camera.camera_at(0.3, 1.4))
     assert not away.lid_in_sight
 
 
 def _lid(phi: float) -> list[tuple[float, ...]]:
     """Return the corners of the light wedges of the lid at an angle of spin."""
-    top = view.seen_top(0.5, phi, 2.0, view.view_from(0.3, 0.4))
+    top = film.cone_at(attitude(0.5, phi, 2.0), camera.camera_at(0.3, 0.4))
     light = [face.corners for face in top.faces if face.on_lid and face.light]
     return sorted(tuple(np.round(corners, 12).ravel().tolist()) for corners in light)
 
@@ -57,7 +65,7 @@ def test_the_spin_is_seen_on_the_lid() -> None:
     assert _lid(1.0) != _lid(1.0 + math.pi / 3)
     assert set(_lid(1.0)).isdisjoint(_lid(1.0 + math.pi / 3))
     assert np.array(_lid(1.0)) == pytest.approx(np.array(_lid(1.0 + 2 * math.pi / 3)), abs=1e-11)
-    assert len(_lid(1.0)) == view.WEDGES / 2
+    assert len(_lid(1.0)) == film.WEDGES / 2
 
 
 def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
@@ -71,7 +79,7 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
                 [np.sin(theta) * np.sin(psi), -np.sin(theta) * np.cos(psi), np.cos(theta)]
             )
             tip = [float(np.asarray(x)[1]) for x in moving.axle.get_data()]
-            assert tip == pytest.approx([float(x) for x in moving.view.project(axis)], abs=1e-12)
+            assert tip == pytest.approx([float(x) for x in moving.camera.project(axis)], abs=1e-12)
             drawn = [np.isfinite(np.asarray(x.get_xdata())) for x in (moving.near, moving.far)]
             passed = moving.path.t <= moving.times[i]
             assert (drawn[0] | drawn[1]).sum() == passed.sum()
@@ -160,7 +168,7 @@ def test_the_film_sees_the_cone_from_the_side(inputs: dict[str, float]) -> None:
     """The axis is long on the page in the mean, and the start is not straight at the eye."""
     motion = solve(Top(**inputs))
     axis = axis_path(motion, film.film_span(motion)).axis
-    length = np.hypot(*view.side_view(axis).project(axis))
+    length = np.hypot(*camera.side_camera(axis).project(axis))
     assert length.mean() > 0.75
 
 

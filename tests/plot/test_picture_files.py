@@ -11,9 +11,8 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.plot.key_map import parse_input_range
 from lagrange_cli.plot.page import Page, page_bytes
-from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.request import PlotRequest, parse_input_range
 from lagrange_cli.plot.style import DARK, LIGHT
 
 
@@ -62,7 +61,7 @@ def test_the_command_in_a_file_draws_the_same_file(lagtop: Lagtop) -> None:
         key="theta_max_rad",
         x=parse_input_range("x", "r0=log:10:90:3"),
         y=parse_input_range("y", "theta0=0.25:1.5:3"),
-        view=(0.5, -0.25),
+        camera=(0.5, -0.25),
         limits=(0.5, 2.5),
         numbers=False,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,32 +18,32 @@ from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
+from lagrange_cli.plot.camera import best_camera
 from lagrange_cli.plot.cubic import cubic_curve
-from lagrange_cli.plot.curves import span, sphere_span, turn_span
-from lagrange_cli.plot.key_map import key_map, parse_input_range
+from lagrange_cli.plot.curves import sampled, span, sphere_span, turn_span
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, help_lines
-from lagrange_cli.plot.map_picture import colour_limits
+from lagrange_cli.plot.map import colour_limits, key_map
 from lagrange_cli.plot.motion_facts import nutation_period
 from lagrange_cli.plot.phase import phase_portrait, separatrix
-from lagrange_cli.plot.remainders import remainder_curves
-from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.request import PlotRequest, parse_input_range
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
-from lagrange_cli.plot.view import best_view
+
+TILTS = parse_input_range("y", "theta0=10:90:2")
 
 # The registry.
 
 
-def test_every_kind_is_a_file_with_a_function_draw() -> None:
+def test_every_kind_is_a_file_that_computes_a_drawing() -> None:
+    files = (ROOT / "lagrange_cli" / "plot").glob("*.py")
+    assert {path.stem for path in files if "\ndef drawing(" in path.read_text()} == set(KINDS)
     for name, kind in KINDS.items():
         assert kind.name == name
-        assert list(inspect.signature(kind.draw).parameters) == [
-            *("panel", "motion", "request", "look")
-        ]
         assert kind.help
-    files = (ROOT / "lagrange_cli" / "plot").glob("*.py")
-    drawing = {path.stem for path in files if "\ndef draw(" in path.read_text()}
-    assert drawing == {kind.file for kind in KINDS.values()}
+        request = PlotRequest(x=parse_input_range("x", "r0=20:80:2"), y=TILTS)
+        drawing = kind.drawing(solve(Top()), request)
+        assert drawing.title
+        assert len(drawing.heights) == kind.axes
 
 
 def test_the_sheet_is_what_the_rows_say() -> None:
@@ -89,18 +88,18 @@ def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
     """Compared with (6,4) and (7,4) in 50 digits, and with what is drawn."""
     r0, tilt = scene
     top = solve(Top(r0=r0, theta0_deg=tilt))
-    course = remainder_curves(top, span(top, 2))
+    course = sampled(top, span(top, 2), ["dphi", "dpsi"])
     judge = oracle.Scene(r0=r0, theta0_deg=tilt)
     constants = oracle.constants(judge)
-    for i in range(0, course.t.size, 37):
-        t = float(course.t[i])
+    for i in range(0, course["t"].size, 37):
+        t = float(course["t"][i])
         _, phi, psi = oracle.angles(judge, t)
         spin = float(phi - constants["mean_spin_rate"] * t)
-        assert course.spin[i] == pytest.approx(spin, abs=1e-13)
+        assert course["dphi"][i] == pytest.approx(spin, abs=1e-13)
         exact = float(psi - constants["mean_precession_rate"] * t)
-        assert course.precession[i] == pytest.approx(exact, abs=1e-13)
+        assert course["dpsi"][i] == pytest.approx(exact, abs=1e-13)
     figure = drawn(top, ["remainders"])
-    for axes, curve in zip(figure.axes, (course.spin, course.precession), strict=False):
+    for axes, curve in zip(figure.axes, (course["dphi"], course["dpsi"]), strict=False):
         shown = next(line for line in axes.lines if line.get_linewidth() == 1.8)
         assert shown.get_ydata() == pytest.approx(np.degrees(curve), rel=1e-15)
 
@@ -109,12 +108,12 @@ def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
 def test_remainders_need_a_period(name: str) -> None:
     scene = regime_motion(name)
     if nutation_period(scene):
-        assert np.ptp(remainder_curves(scene, span(scene, 1)).spin) < 2 * math.pi
+        assert np.ptp(sampled(scene, span(scene, 1), ["dphi"])["dphi"]) < 2 * math.pi
         return
     with pytest.raises(
         NothingToDrawError, match=r"^no remainders: the tilt (stays as it is|never comes back) \("
     ):
-        remainder_curves(scene, 1.0)
+        KINDS["remainders"].drawing(scene, PlotRequest(t_max=1.0))
 
 
 # The cubic.
@@ -295,11 +294,11 @@ def test_the_drawn_path_is_the_path() -> None:
     """Every piece lies on the page where the axis is; the far side is drawn paler."""
     scene = solve(Top())
     path = axis_path(scene, turn_span(scene))
-    view = best_view(path.axis)
+    camera = best_camera(path.axis)
     lines = drawn(scene, ["sphere"]).axes[0].collections
     far, near = (x for x in lines if isinstance(x, LineCollection))
     assert far.get_alpha() == 0.35
-    points = np.stack(view.project(path.axis), axis=1)
+    points = np.stack(camera.project(path.axis), axis=1)
     shown = np.concatenate(
         [np.asarray(x.get_segments()[i]) for x in (far, near) for i in range(len(x.get_segments()))]
     )
@@ -325,7 +324,7 @@ def test_a_narrow_path_is_magnified() -> None:
 
 def test_the_eye_is_where_it_was_asked_to_be() -> None:
     """From above, x points down the page and y to the right, and z at the eye."""
-    figure = drawn(solve(Top()), ["sphere"], PlotRequest(view=(0.0, math.pi / 2)))
+    figure = drawn(solve(Top()), ["sphere"], PlotRequest(camera=(0.0, math.pi / 2)))
     texts = [text for text in figure.axes[0].texts if text.get_text()]
     names = {text.get_text(): text.get_position() for text in texts}
     assert names["x"] == pytest.approx((0, -1.34), abs=1e-12)
@@ -338,7 +337,7 @@ def test_the_eye_is_where_it_was_asked_to_be() -> None:
 def test_arrows_run_with_the_motion(sign: int, r0: float) -> None:
     """Each points the way the axis turns about the vertical, which is that of the spin."""
     motion = solve(Top(r0=sign * r0))
-    above = PlotRequest(view=(0.0, math.pi / 2))
+    above = PlotRequest(camera=(0.0, math.pi / 2))
     axes = drawn(motion, ["sphere"], above).axes[0]
     arrows = [x for x in axes.texts if isinstance(x, Annotation) and x.arrow_patch is not None]
     assert arrows
@@ -398,4 +397,7 @@ def test_a_map_in_radians_with_its_own_colours() -> None:
     exact = np.radians(solve(Top(r0=20.0, theta0_rad=0.2)).theta_max_deg or 0)
     assert np.asarray(mesh.get_array()).reshape(3, 4)[0, 0] == pytest.approx(exact, rel=1e-14)
     assert mesh.get_clim() == (0.5, 2.0)
-    assert (axes.get_ylabel(), bar.get_ylabel()) == ("tilt ϑ₀ (rad)", "theta_max_rad (rad)")
+    assert (axes.get_ylabel(), bar.get_ylabel()) == (
+        "tilt at the start ϑ0 (rad)",
+        "theta_max_rad (rad)",
+    )

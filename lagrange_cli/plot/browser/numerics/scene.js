@@ -1,45 +1,29 @@
-// What is given: the nine inputs of lagtop, their ranges, and the exact start they describe.
+// The start of a scene of nine inputs, and which scenes the page computes.
 
+import { INPUTS, LIMITS } from "../data.js";
 import { pair, sineOfDegrees } from "./pair.js";
 
-/** The inputs by key: symbol, meaning and whether each must be positive, or not negative. */
-export const INPUTS = {
-  m: { symbol: "m", meaning: "mass", least: "positive" },
-  A: { symbol: "A", meaning: "equatorial moment (pivot)", least: "positive" },
-  C: { symbol: "C", meaning: "polar moment, at most 2A", least: "positive" },
-  s: { symbol: "s", meaning: "pivot to centre of mass", least: "zero" },
-  g: { symbol: "g", meaning: "gravity", least: "zero" },
-  r0: { symbol: "r₀", meaning: "total rate about the axis" },
-  theta0_deg: { symbol: "ϑ₀", meaning: "tilt at the start (°)" },
-  thetadot0: { symbol: "ϑ̇₀", meaning: "nutation rate at start" },
-  psidot0: { symbol: "ψ̇₀", meaning: "precession rate at start" },
+const RANGES = {
+  positive: "from 1e-30 to 1e30",
+  "not negative": "0, or from 1e-30 to 1e30",
+  any: "0, or from 1e-30 to 1e30 in size",
 };
 
-/** Sizes that the page computes with: others would leave the range of doubles on the way. */
-const LARGEST = 1e30;
-const LEAST_TILT = 1e-12;
-
-/** Raise an error that names the input, its range and what was given. */
+/** Raise an error that names the input, its range and the value that is out of range. */
 export function checkScene(scene) {
-  for (const [name, input] of Object.entries(INPUTS)) {
+  for (const [name, { sign }] of Object.entries(INPUTS)) {
     const x = scene[name];
-    const must = (fine, range) => {
-      if (!fine) throw new RangeError(`${name} must be ${range}, got ${x}`);
-    };
-    must(Number.isFinite(x), "a number");
-    must(Math.abs(x) <= LARGEST, "at most 1e30 in size");
-    must(input.least !== "positive" || x >= 1 / LARGEST, "at least 1e-30");
-    must(input.least !== "zero" || x >= 0, "at least 0");
+    const size = sign === "any" ? Math.abs(x) : x;
+    const inside = LIMITS.least <= size && size <= LIMITS.largest;
+    const known = name === "theta0_deg" || inside || (x === 0 && sign !== "positive");
+    if (!known) throw new RangeError(`${name} must be ${RANGES[sign]}, got ${x}`);
   }
-  checkStart(scene);
-}
-
-function checkStart({ A, C, theta0_deg: tilt, psidot0 }) {
+  const { A, C, theta0_deg: tilt, psidot0 } = scene;
   if (C > 2 * A) {
     throw new RangeError(`C must be at most 2A = ${2 * A}, got ${C}`);
   }
   const near = Math.min(tilt, 180 - tilt);
-  if (!(near === 0 || near >= LEAST_TILT)) {
+  if (!(near === 0 || near >= LIMITS.tilt)) {
     throw new RangeError(`theta0_deg must be 0, 180, or 1e-12 to 180 - 1e-12, got ${tilt}`);
   }
   if (near === 0 && psidot0 !== 0) {

@@ -1,6 +1,6 @@
 // The inputs: a slider and a number field for each.
 
-import { INPUTS } from "../numerics/scene.js";
+import { INPUTS } from "../data.js";
 
 /** The range of a slider about a value. */
 function rangeOf(name, scene) {
@@ -35,12 +35,12 @@ export class Inputs {
       row.className = "input";
       const label = document.createElement("label");
       label.htmlFor = `field-${name}`;
-      label.innerHTML = `<b>${input.symbol}</b> <span>${input.meaning}</span>`;
+      label.innerHTML = `<b>${input.symbol}</b> <span>${input.name}</span>`;
       const field = document.createElement("input");
       Object.assign(field, { id: `field-${name}`, type: "text", inputMode: "decimal" });
       const slider = document.createElement("input");
       Object.assign(slider, { id: `slider-${name}`, type: "range", step: "any" });
-      slider.setAttribute("aria-label", `${name}: ${input.meaning}`);
+      slider.setAttribute("aria-label", `${name}: ${input.name}`);
       row.append(label, field, slider);
       list.append(row);
       field.addEventListener("change", () => changed(name, numberOf(field.value), field.value));

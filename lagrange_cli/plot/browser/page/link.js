@@ -1,6 +1,6 @@
 // The scene in the address of the page, after the #: m=1587&A=39032 ... &t=0.5.
 
-import { INPUTS } from "../numerics/scene.js";
+import { INPUTS } from "../data.js";
 
 /** The inputs, and the time, that an address carries.  Raises RangeError for what is no number. */
 export function readLink(fragment) {

@@ -1,5 +1,6 @@
 // The page: one scene, its motion, and all that shows it.
 
+import { EXAMPLES, SCENE, UNITS } from "../data.js";
 import { onLid } from "../drawing/body.js";
 import { Camera, frameOf } from "../drawing/camera.js";
 import { curvesAt, windowOf } from "../drawing/curves.js";
@@ -9,7 +10,6 @@ import { drawPlots } from "../drawing/plots.js";
 import { drawSpace } from "../drawing/space.js";
 import { motionOf } from "../numerics/motion.js";
 import { Clock } from "./clock.js";
-import { EXAMPLES } from "./examples.js";
 import { followHands } from "./gestures.js";
 import { Inputs } from "./inputs.js";
 import { linkOf, readLink, showLink } from "./link.js";
@@ -22,7 +22,7 @@ const FAST = 0.8;      // radians of spin per frame that the eye cannot follow
 class Page {
   constructor(elements) {
     this.at = elements;
-    this.given = JSON.parse(elements.given.textContent);
+    this.units = UNITS;
     this.camera = new Camera();
     this.shown = {};
     this.look = readLook();
@@ -46,27 +46,28 @@ class Page {
     let complaint = "";
     try {
       linked = readLink(location.hash);
-      motionOf({ ...this.given, ...linked });
+      motionOf({ ...SCENE, ...linked });
     } catch (error) {
       linked = {};
       complaint = `The link was not understood: ${error.message}`;
     }
     const { t = 0, ...inputs } = linked;
-    this.show({ ...this.given, ...inputs }, true);
+    this.show({ ...SCENE, ...inputs }, true);
     const near = this.clock.reaches(t);
     this.clock.set(near ? t : 0);
     this.complain(near ? complaint : `The link was not understood: t = ${t} is too far away`);
   }
 
   offerExamples() {
-    const all = { "This scene": this.given, ...EXAMPLES };
+    const all = { "This scene": SCENE, ...EXAMPLES };
     this.at.examples.append(...Object.keys(all).map((name) => new Option(name)));
-    const units = this.at.units.textContent;  // of the scene that was given
+    const words = this.at.units.textContent;  // the units of the scene of the file
     this.at.examples.addEventListener("change", () => {
-      const given = all[this.at.examples.value] === this.given;
-      this.at.units.textContent = given ? units : "in any consistent units";
+      const scene = all[this.at.examples.value];
+      this.units = scene === SCENE ? UNITS : {};
+      this.at.units.textContent = scene === SCENE ? words : "in any consistent units";
       this.camera.reset();
-      this.show(all[this.at.examples.value], true);
+      this.show(scene, true);
       this.clock.set(0);
     });
   }
@@ -131,7 +132,7 @@ class Page {
     if (this.at.title.textContent !== title) this.at.title.textContent = title;
     this.at.words.textContent = text;
     document.title = `${title} · lagtop`;
-    showRecord(this.at.record, this.motion.record);
+    showRecord(this.at.record, this.motion.record, this.units);
     this.recurve();
     this.clock.adapt(windowOf(this.motion, 1), freshSpeed);
     this.complain("");

@@ -1,40 +1,34 @@
-// The record of the scene: its numbers, under the keys of `lagtop solve`.
+// The record of the scene: its numbers under the keys of `lagtop solve`, in groups.
 
-const ROWS = [
-  ["a", "a", "2mgs/A"],
-  ["b", "b", "C r₀/A"],
-  ["u1", "u₁", "cos ϑ, highest"],
-  ["u2", "u₂", "cos ϑ, lowest"],
-  ["u3", "u₃", "third root"],
-  ["k", "k", "modulus"],
-  ["k_prime", "k′", "its complement"],
-  ["nome", "q", "nome"],
-  ["K", "K", "quarter period"],
-  ["K_prime", "K′", "of the complement"],
-  ["T_nutation", "T", "period of the nutation"],
-  ["T_spin", "Tφ", "of the mean spin"],
-  ["T_precession", "Tψ", "of the mean precession"],
-  ["theta_min_deg", "ϑ min", "least tilt, °"],
-  ["theta_max_deg", "ϑ max", "greatest tilt, °"],
-  ["mean_spin_rate", "φ̇ mean", "spin"],
-  ["mean_precession_rate", "ψ̇ mean", "precession"],
-];
+import { KEYS } from "../data.js";
 
-/** Fill the table; numbers to ten digits, keys as titles. */
-export function showRecord(table, record) {
-  const rows = ROWS.filter(([key]) => record[key] !== null);
-  table.replaceChildren(...rows.map(([key, symbol, meaning]) => {
-    const row = document.createElement("tr");
-    row.title = key;
-    const cells = [["th", symbol], ["td", meaning], ["td", textOf(record[key])]];
-    row.append(...cells.map(([kind, text]) => {
-      const cell = document.createElement(kind);
-      cell.textContent = text;
-      return cell;
-    }));
-    row.firstChild.scope = "row";
-    return row;
+/** Fill the table; numbers to ten digits, units by their names in `units`. */
+export function showRecord(table, record, units) {
+  const rows = [];
+  let last = "";
+  for (const [name, { group, symbol, meaning, unit, equation }] of Object.entries(KEYS)) {
+    const value = record[name];
+    if (typeof value !== "number") continue;
+    if (group !== last) rows.push(rowOf([["th", group]]));
+    last = group;
+    const named = unit === "angle" ? "°" : unit.replace(/[a-z]+/g, (word) => units[word] ?? word);
+    const cells = [["th", symbol], ["td", meaning], ["td", `${textOf(value)} ${named}`]];
+    rows.push(rowOf(cells, `${name} ${equation}`));
+  }
+  table.replaceChildren(...rows);
+}
+
+function rowOf(cells, title = "") {
+  const row = document.createElement("tr");
+  row.title = title;
+  row.append(...cells.map(([kind, text]) => {
+    const cell = document.createElement(kind);
+    cell.textContent = text;
+    return cell;
   }));
+  row.firstChild.scope = title ? "row" : "rowgroup";
+  if (!title) row.firstChild.colSpan = 3;
+  return row;
 }
 
 /** A number to ten digits. */

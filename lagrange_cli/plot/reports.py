@@ -1,9 +1,9 @@
-"""The picture of trajectories that were judged: error over time, and over the step."""
+"""The pictures of reports: errors of trajectories that were compared, and the data of a fit."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -20,13 +20,29 @@ _DASHES = ("-", "--", "-.", ":")
 _MARKS = "os^Dv<>pP*X"
 
 
+def _report(
+    path: str, size: tuple[float, float], about: About, draw: Callable[[Figure], None]
+) -> bytes:
+    """Return a picture of this size (inches) in the format of the name of its file."""
+    from matplotlib.figure import Figure
+
+    with styled(LIGHT, 0.9):
+        figure = Figure(figsize=size, layout="constrained")
+        draw(figure)
+        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
+
+
+def _names(curves: Sequence[ErrorCurve] | Sequence[FittedCurve]) -> str:
+    return ", ".join(curve.name for curve in curves)
+
+
 class ErrorCurve(NamedTuple):
     """Errors of one trajectory."""
 
     name: str
     t: Array
     error: Array
-    """Errors in radians at the times t; NaN where it is lost."""
+    """Errors in radians at the times t; NaN where the trajectory is lost."""
     step: float | None = None
     compared: float | None = None
     """Error that goes with the step."""
@@ -46,15 +62,9 @@ class ErrorCurve(NamedTuple):
 
 def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
     """Return the picture in the format of the name of its file."""
-    from matplotlib.figure import Figure
-
-    with_steps = any(curve.has_step for curve in curves)
-    with styled(LIGHT, 0.9):
-        figure = Figure(figsize=(10 if with_steps else 7.5, 4.6), layout="constrained")
-        draw_error_panels(figure, curves, limit)
-        names = ", ".join(curve.name for curve in curves)
-        about = About("lagtop compare: error over time", f"Errors of {names} in radians.")
-        return figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about)
+    size = 10 if any(curve.has_step for curve in curves) else 7.5, 4.6
+    about = About("lagtop compare: error over time", f"Errors of {_names(curves)} in radians.")
+    return _report(path, size, about, lambda figure: draw_error_panels(figure, curves, limit))
 
 
 def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float) -> None:
@@ -101,3 +111,42 @@ def _draw_convergence(
     axes.set_xticks(steps, [f"{step:g}" for step in steps], rotation=30)
     axes.set_xticks([], minor=True)
     axes.set_title("Convergence")
+
+
+class FittedCurve(NamedTuple):
+    """One channel of a recording and the fitted motion, in the unit of the labels."""
+
+    name: str
+    t: Array
+    data: Array
+    """Measured values; NaN where one is missing."""
+    fine_t: Array
+    curve: Array
+    """The motion at the fine times."""
+    residual: Array
+    """Data less motion at the times t."""
+
+
+def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
+    """Return the picture in the format of the name of its file."""
+    size = 7.5, 1.0 + 3.0 * len(curves)
+    about = About("lagtop fit", f"Data, fitted motion and residuals: {_names(curves)}")
+    return _report(path, size, about, lambda figure: draw_fit_panels(figure, curves, unit))
+
+
+def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) -> None:
+    """Draw two panels for each channel: data on the curve, and below it the residuals."""
+    panels = figure.subplots(
+        2 * len(curves), 1, squeeze=False, sharex=True, height_ratios=[3, 1] * len(curves)
+    )[:, 0]
+    for i, curve in enumerate(curves):
+        above, below = panels[2 * i], panels[2 * i + 1]
+        colour = LIGHT.lines[i % len(LIGHT.lines)]
+        above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit")
+        above.plot(curve.t, curve.data, ".", ms=3, color=LIGHT.ink, label="data")
+        above.set(ylabel=f"{curve.name} ({unit})")
+        below.axhline(0, lw=0.8, color=LIGHT.quiet)
+        below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
+        below.set(ylabel="residual")
+    panels[0].legend(fontsize=8, ncols=2)
+    panels[-1].set(xlabel="time")

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from lagrange_cli.plot.error_curves import ErrorCurve, draw_error_panels
+from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels
 from lagrange_cli.plot.style import LIGHT, styled
 
 T = np.linspace(0, 1, 11)

@@ -1,0 +1,151 @@
+"""The data of the page that its scripts receive as JSON: inputs, keys, words, examples, limits.
+
+The scripts of the page repeat none of them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from ...errors import LagtopError
+from ...inputs.input_keys import DECLARED, EXAMPLE, NINE, TILT, Input
+from ...inputs.top import Top
+from ...motion.record import KEYS
+from ...motion.solve import Motion, solve
+
+LEAST, LARGEST = 1e-30, 1e30
+"""Sizes of inputs that the page computes with: others would leave the range of doubles."""
+LEAST_TILT = 9e-13
+"""Least tilt (degrees) from the vertical, so that the double next to 180 - 1e-12 is allowed."""
+
+Scene = dict[str, float]
+
+UNIT = dict.fromkeys(EXAMPLE, 0.0) | dict.fromkeys(("m", "A", "C", "s", "g", "r0"), 1.0)
+LEVEL = UNIT | {"theta0_deg": 90.0}
+GYROSCOPE = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81, "r0": 1256.6370614359172}
+
+EXAMPLES: dict[str, Scene] = {
+    "Cusps: let go at rest (Chrapan 1952)": EXAMPLE,
+    "Loops: started against its precession": EXAMPLE | {"psidot0": -4.0},
+    "Waves: started along its precession": EXAMPLE | {"psidot0": 4.0},
+    "Steady precession": LEVEL | {"psidot0": 1.0},
+    "Fast gyroscope": EXAMPLE | GYROSCOPE | {"theta0_deg": 60.0},
+    "Slow top: falls nearly to the bottom": EXAMPLE | {"r0": 5.0, "theta0_deg": 20.0},
+    "Sleeping": EXAMPLE | {"r0": 60.0, "theta0_deg": 0.0},
+    "Too slow to sleep: waits, and falls": EXAMPLE | {"theta0_deg": 1e-3},
+    "Separatrix: rises for ever": LEVEL | {"A": 2.0, "r0": 0.0, "thetadot0": -1.0},
+    "Hanging and swinging": EXAMPLE | {"r0": 10.0, "theta0_deg": 150.0},
+    "Hanging straight down": EXAMPLE | {"r0": 10.0, "theta0_deg": 180.0},
+    "Spherical pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0, "psidot0": 9.0},
+    "Plane pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0},
+    "Without torque": EXAMPLE | {"g": 0.0, "psidot0": 8.0},
+}
+"""Scenes to begin with."""
+
+WORDS = {
+    "sleeping, stable": (
+        "Sleeping, stable",
+        "The top stands upright and stays: λ = b²/2a = {lambda} is at least 1.",
+    ),
+    "sleeping, unstable": (
+        "Sleeping, unstable",
+        "The top stands upright, but any push fells it: λ = b²/2a = {lambda} is less than 1.",
+    ),
+    "hanging": (
+        "Hanging",
+        "The axis hangs straight down and turns about itself, whatever the spin.",
+    ),
+    "torque-free, steady": (
+        "Without torque",
+        "Nothing pulls at the top: its axis stands still, or goes round evenly.",
+    ),
+    "torque-free": (
+        "Without torque",
+        "Nothing pulls at the top: its axis goes round a tilted circle at a constant rate.",
+    ),
+    "separatrix": (
+        "Separatrix",
+        "The axis rises to the vertical, slower and slower, and never arrives.",
+    ),
+    "steady precession": (
+        "Steady precession",
+        "The tilt does not change, and the axis goes round evenly.",
+    ),
+    "no spin, plane": (
+        "Plane pendulum",
+        "Without spin the top is a pendulum, here one that swings in a plane.",
+    ),
+    "no spin": (
+        "Spherical pendulum",
+        "Without spin the top is a pendulum, here one that goes round.",
+    ),
+    "regular, fast": (
+        "Pseudo-regular precession",
+        "Let go at rest, and so fast that the tilt nutates by {nutation}° only."
+        " λ = b²/2a = {lambda}.",
+    ),
+    "regular, cusped": (
+        "Regular motion with cusps",
+        "At its highest points the axis stands still for a moment, and falls again: cusps."
+        " λ = b²/2a = {lambda}.",
+    ),
+    "regular, looping": (
+        "Regular motion with loops",
+        "Near its highest points the precession runs backwards: the axis draws loops."
+        " λ = b²/2a = {lambda}.",
+    ),
+    "regular, wavy": (
+        "Regular motion in waves",
+        "The precession never turns back: the axis draws waves. λ = b²/2a = {lambda}.",
+    ),
+}
+"""A title and one or two sentences for each kind of motion."""
+
+
+def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
+    """Return the data of the page of a motion as JSON that may stand in a script.
+
+    `unit` names mass, len and time in the units of the inputs.  Raises LagtopError as `page_scene`.
+    """
+    data = {
+        "SCENE": page_scene(motion),
+        "UNITS": {name: unit(name) for name in ("mass", "len", "time")},
+        "EXAMPLES": EXAMPLES,
+        "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
+        "KEYS": {name: key.as_dict() for name, key in KEYS.items()},
+        "WORDS": WORDS,
+        "LIMITS": {"least": LEAST, "largest": LARGEST, "tilt": LEAST_TILT},
+    }
+    return json.dumps(data, ensure_ascii=False).replace("</", "<\\/")
+
+
+def page_scene(motion: Motion) -> Scene:
+    """Return the inputs of the page as doubles, the tilt in degrees.
+
+    Raises LagtopError for inputs that are beyond what the page computes with.
+    """
+    scene = {name: float(value) for name, value in motion.top.inputs().items()}
+    tilt = scene[_key(TILT)]
+    if 0 < min(tilt, 180 - tilt) < LEAST_TILT:
+        raise LagtopError(
+            f"theta0_deg must be 0, 180 or 1e-12 from both for a page, got {tilt}", "theta0_deg"
+        )
+    for name, value in scene.items():
+        if name != _key(TILT) and value and not LEAST <= abs(value) <= LARGEST:
+            raise LagtopError(f"{name} must be from 1e-30 to 1e30 for a page, got {value}", name)
+    solve(Top(**scene))  # a tilt in radians may round to the vertical, where nothing precesses
+    return scene
+
+
+def _key(name: str) -> str:
+    """Return the key of an input in a scene of the page."""
+    return f"{name}_deg" if name == TILT else name
+
+
+def _input(declared: Input) -> dict[str, str]:
+    """Return symbol and name of an input, and whether it may be 0 or negative."""
+    signs = {"positive": "positive", "0 or more": "not negative"}
+    sign = next((sign for bound, sign in signs.items() if declared.bound.startswith(bound)), "any")
+    name = declared.name + " (°)" * (declared.unit == "angle")
+    return {"symbol": declared.symbol, "name": name, "sign": sign}

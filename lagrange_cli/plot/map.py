@@ -1,0 +1,233 @@
+"""The picture `map`: a key of the record over a grid of two inputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.ticker import LogLocator, NullLocator
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.input_keys import DECLARED
+from ..inputs.names import check_names
+from ..inputs.top import Top
+from ..motion.quantity import Key, unit_name
+from ..motion.record import KEYS, NUMBER_KEYS
+from ..motion.solve import Motion
+from ..sweeps.records import sweep
+from .kinds import Drawing
+from .request import InputRange, PlotRequest, Progress, no_progress
+from .style import Look, mark_start, points, scale
+
+MOST_CELLS = 1_000_000
+DEFAULT_COUNTS = 128, 90
+
+OUTERMOST = 1.0
+"""Percentage of the values on either side that does not stretch the range of the colours."""
+
+
+class KeyMap(NamedTuple):
+    """A key of the record at each pair of values of two inputs."""
+
+    key: str
+    x: InputRange
+    y: InputRange
+    values: Array
+    """values[i, j] belongs to y[i] and x[j]; not a number where the motion has none."""
+    sleeping: Array
+    """C |r0| / sqrt(4Amgs), 1 on the sleeping threshold; infinite without torque."""
+
+
+def default_ranges(top: Top, *, radians: bool = False) -> tuple[InputRange, InputRange]:
+    """Return spins up to twice the sleeping threshold or beyond the top's own, and tilts."""
+    columns, rows = DEFAULT_COUNTS
+    threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
+    most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
+    spins = np.linspace(most / columns, most, columns)
+    tilts = np.linspace(2.0, 178.0, rows)
+    return InputRange("r0", spins), InputRange("theta0", np.radians(tilts) if radians else tilts)
+
+
+def key_map(
+    motion: Motion,
+    key: str,
+    x: InputRange,
+    y: InputRange,
+    progress: Progress = no_progress,
+    *,
+    radians: bool = False,
+) -> KeyMap:
+    """Return the key over the grid, the other inputs as in the motion.
+
+    Raises LagtopError for a key that is no number, for one input on both axes, for too many cells,
+    and where a top of the grid cannot be.
+    """
+    check_names("key", [key], [unit_name(name, radians=radians) for name in NUMBER_KEYS])
+    if x.name == y.name:
+        raise LagtopError(f"x must be another input than y, got {x.name} twice", "x")
+    cells = x.values.size * y.values.size
+    if cells > MOST_CELLS:
+        raise LagtopError(f"x must have at most 1e6 cells together with y, got {cells}", "x")
+    tilt = unit_name("theta0_deg", radians=radians)
+    x_input, y_input = (tilt if axis.name == "theta0" else axis.name for axis in (x, y))
+
+    def over(x_values: Array, y_values: Array | float) -> dict[str, Any]:
+        return motion.top.inputs(radians=radians) | {x_input: x_values, y_input: y_values}
+
+    rows = (_values(over(x.values, value), key, radians) for value in y.values.tolist())
+    values = np.stack(list(progress(rows, cells)))
+    return KeyMap(key, x, y, values, _sleeping(over(*np.meshgrid(x.values, y.values)), values))
+
+
+def _values(inputs: dict[str, Any], key: str, radians: bool) -> Array:
+    """Return the key at each top of one row.  Raises LagtopError where one cannot be."""
+    records = sweep(keys=[key, "error"], radians=radians, **inputs)
+    for error in filter(None, records["error"]):
+        raise LagtopError(error)
+    return np.asarray(records[key], dtype=np.float64)
+
+
+def _sleeping(inputs: dict[str, Any], like: Array) -> Array:
+    """Return C |r0| / sqrt(4Amgs) in the shape of `like`."""
+    m, A, C, s, g, r0 = (
+        inputs[name] + np.zeros_like(like) for name in ("m", "A", "C", "s", "g", "r0")
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = abs(C * r0) / np.sqrt(4 * A * m * g * s)
+    return np.where(m * g * s > 0, ratio, np.inf)
+
+
+def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+    """Compute the key over two inputs."""
+    usual = default_ranges(motion.top, radians=request.radians)
+    x, y = request.x or usual[0], request.y or usual[1]
+    chart = key_map(motion, request.key, x, y, request.progress, radians=request.radians)
+    key = _key(chart.key)
+    unit = request.unit_of(key)
+
+    def draw(axes: Sequence[Axes], look: Look) -> None:
+        """Draw cells, contours, the sleeping threshold and the scene."""
+        ax = axes[0]
+        ax.set(xlabel=_label(x.name, request), ylabel=_label(y.name, request))
+        ax.set(xscale=_scale_name(x), yscale=_scale_name(y))
+        bar = _draw_cells(ax, chart, request.limits, look)
+        bar.set_label(f"{chart.key} ({unit})" if unit else chart.key)
+        _draw_contours(ax, chart, bar, look)
+        _draw_threshold(ax, chart, look)
+        _mark_own(ax, motion, chart, request.radians, look)
+
+    return Drawing(f"{key.group}: {key.meaning}, {key.symbol} {key.equation}", draw)
+
+
+def _key(name: str) -> Key:
+    """Return how a number of the record is shown, by its name in either unit."""
+    return KEYS[name.replace("_rad", "_deg")]
+
+
+def colour_limits(values: Array) -> tuple[float, float]:
+    """Return the ends of the colours: all values but the outermost ones, which may be peaks."""
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return 0.0, 1.0
+    low, high = (float(x) for x in np.percentile(known, [OUTERMOST, 100 - OUTERMOST]))
+    if not low < high:
+        low, high = float(known.min()), float(known.max())
+    return (low, high) if low < high else (low - 0.5 * (abs(low) or 1), low + 0.5 * (abs(low) or 1))
+
+
+def _draw_cells(
+    axes: Axes, chart: KeyMap, limits: tuple[float, float] | None, look: Look
+) -> Colorbar:
+    """Draw the values as coloured cells, with the bar that explains the colours."""
+    axes.set_facecolor(look.faint)  # where there is no such number
+    if not np.isfinite(chart.values).all():
+        axes.fill([], [], color=look.faint, label="has no such number")
+    low, high = limits or colour_limits(chart.values)
+    logarithmic = low > 0 and high > 30 * low
+    mesh = axes.pcolormesh(
+        _edges(chart.x),
+        _edges(chart.y),
+        np.ma.masked_invalid(chart.values),
+        cmap=scale(look),
+        norm=LogNorm(low, high) if logarithmic else Normalize(low, high),
+        rasterized=True,
+    )
+    known = chart.values[np.isfinite(chart.values)]
+    below, above = bool((known < low).any()), bool((known > high).any())
+    ends = {(False, False): "neither", (True, False): "min", (False, True): "max"}
+    bar = axes.figure.colorbar(mesh, ax=axes, aspect=28, extend=ends.get((below, above), "both"))
+    bar.outline.set_visible(False)
+    if logarithmic:
+        bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        bar.ax.yaxis.set_major_formatter("{x:g}")
+        bar.ax.yaxis.set_minor_locator(NullLocator())
+    return bar
+
+
+def _draw_contours(axes: Axes, chart: KeyMap, bar: Colorbar, look: Look) -> None:
+    """Draw lines of equal value at the numbers of the bar, light on dark and dark on light."""
+    known = chart.values[np.isfinite(chart.values)]
+    if not known.size:
+        return
+    ends = bar.norm.vmin or 0.0, bar.norm.vmax or 0.0
+    low, high = max(float(known.min()), ends[0]), min(float(known.max()), ends[1])
+    levels = [float(level) for level in bar.get_ticks() if low < level < high]
+    if not levels:
+        return
+    colours = np.asarray(scale(look)(np.asarray(bar.norm(levels))))
+    brightness = colours[:, :3] @ np.array([0.299, 0.587, 0.114])
+    inks = ["#ffffff" if light < 0.5 else "#1a1a1a" for light in brightness]
+    values = np.ma.masked_invalid(chart.values)
+    lines = axes.contour(
+        chart.x.values, chart.y.values, values, levels, colors=inks, linewidths=points(0.8)
+    )
+    axes.clabel(lines, fontsize="small", fmt="%g")
+
+
+def _draw_threshold(axes: Axes, chart: KeyMap, look: Look) -> None:
+    """Draw the line at which an upright top begins to be stable, if it crosses the map."""
+    if not chart.sleeping.min() < 1.0 < chart.sleeping.max():
+        return
+    for colour, width in ((look.paper, 3.2), (look.ink, 1.6)):
+        how: dict[str, Any] = {"colors": colour, "linewidths": points(width)}
+        axes.contour(chart.x.values, chart.y.values, chart.sleeping, [1.0], **how)
+    label = "sleeping threshold, C²r₀² = 4Amgs: faster, an upright top is stable"
+    axes.plot([], [], color=look.ink, lw=points(1.6), label=label)
+
+
+def _label(name: str, request: PlotRequest) -> str:
+    """Return the name of an input, with its unit if it has one."""
+    declared = DECLARED[name]
+    unit, text = request.unit_of(declared), f"{declared.name} {declared.symbol}"
+    known = unit != declared.unit or ("len" not in unit and "mass" not in unit)
+    return f"{text} ({unit})" if known else text
+
+
+def _scale_name(axis: InputRange) -> str:
+    return "log" if axis.logarithmic else "linear"
+
+
+def _edges(axis: InputRange) -> Array:
+    """Return the borders of the cells, half way between their values."""
+    values = np.log(axis.values) if axis.logarithmic else axis.values
+    middle = (values[1:] + values[:-1]) / 2
+    ends = [values[0] - (middle[0] - values[0])], [values[-1] + (values[-1] - middle[-1])]
+    edges: Array = np.concatenate([ends[0], middle, ends[1]])
+    return np.exp(edges) if axis.logarithmic else edges
+
+
+def _mark_own(axes: Axes, motion: Motion, chart: KeyMap, radians: bool, look: Look) -> None:
+    """Mark the scene itself where it is on the map."""
+    inputs = {
+        name.partition("_")[0]: value for name, value in motion.top.inputs(radians=radians).items()
+    }
+    own = [float(inputs[axis.name]) for axis in (chart.x, chart.y)]
+    pairs = zip(own, (chart.x, chart.y), strict=True)
+    if all(axis.values[0] <= value <= axis.values[-1] for value, axis in pairs):
+        mark_start(axes, own[0], own[1], look, "this scene")
