@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..arithmetic.ball_functions import BallFunctions
+from ..arithmetic.exact_cosine import below_quarters
 from ..arithmetic.points import MAX_PERIODS, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .incomplete import e_of, f_of, in_degrees, in_radians
@@ -62,7 +63,8 @@ class AmplitudeTable(RealTable):
         """Return 0 at 0, and where F is infinite."""
         names = () if x else ("phi_rad", "phi_deg", "F", "E")
         known: dict[str, float] = dict.fromkeys(names, 0)
-        if "k_prime" in self.modulus.zeros() and abs(x) >= (math.pi / 2 if self.radians else 90):
+        beyond = below_quarters(1, abs(x)) < 0 if self.radians else abs(x) >= 90
+        if "k_prime" in self.modulus.zeros() and beyond:
             known["F"] = math.inf
         return known
 

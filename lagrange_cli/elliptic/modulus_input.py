@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.exact_cosine import Cosine
+from ..arithmetic.exact_cosine import Cosine, below_quarters
 from ..arithmetic.rounding import decided
 from ..arithmetic.sums_of_doubles import pair
 from ..errors import LagtopError
@@ -30,9 +29,10 @@ class ModulusInput(NamedTuple):
         most, end = {"modular_angle": (90.0, "90]"), "nome": (1.0, "1)")}.get(
             self.name, (1.0, "1]")
         )
+        is_high = self.value > most or (self.name == "nome" and self.value == 1)
         if self.name == "modular_angle" and self.radians:
-            most, end = math.pi / 2, "pi/2]"
-        if not 0 <= self.value <= most or (self.name == "nome" and self.value == 1):
+            is_high, end = below_quarters(1, self.value) < 0, "pi/2]"
+        if self.value < 0 or is_high:
             value = float(self.value)
             raise LagtopError(f"{self.name} must be in [0, {end}, got {value}", self.name)
 

@@ -215,7 +215,8 @@ def _finite(name: str, value: Any) -> Number:
 def _check_ranges(top: Top) -> None:
     for name in ("m", "A", "C"):
         _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
-        _require(getattr(top, name) >= 1 / _LARGEST, name, ">= 1e-100", getattr(top, name), _UNITS)
+        large = float(getattr(top, name)) >= 1 / _LARGEST  # of decimals as of doubles
+        _require(large, name, ">= 1e-100", getattr(top, name), _UNITS)
     for name in ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"):
         size = abs(getattr(top, name))
         _require(size <= _LARGEST, name, "within 1e100 in size", getattr(top, name), _UNITS)
@@ -227,7 +228,8 @@ def _check_ranges(top: Top) -> None:
         tilt = getattr(top, name)
         if tilt is not None:
             _require(0 <= tilt and _is_at_most(tilt, most), name, f"in [0, {most}]", tilt)
-            _require(tilt == 0 or tilt >= _LEAST_TILT, name, f"0 or at least {_LEAST_TILT}", tilt)
+            large = tilt == 0 or float(tilt) >= _LEAST_TILT
+            _require(large, name, f"0 or at least {_LEAST_TILT}", tilt)
 
 
 def _is_at_most(tilt: Number, most: str) -> bool:

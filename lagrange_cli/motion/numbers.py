@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 S = TypeVar("S")
 
+_ROOTS = ("u1", "u2", "u3")
 SAMPLER_DIGITS = 40
 """Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
 
@@ -74,21 +75,36 @@ class Numbers:
             lambda working: self.enclosure(name, working, radians=in_radians),
             rounding_of(name, digits),
             digits=digits or 0,
-            exactly=lambda: self.fraction(name, radians=in_radians),
+            exactly=lambda: self.fraction(name, digits or 0, radians=in_radians),
         )
         if is_usual:
             self._doubles[name] = found
         return found
 
-    def fraction(self, name: str, *, radians: bool = False) -> Fraction | None:
-        """Return a number if it is known as a fraction."""
+    def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
+        """Return a number if it is known as a fraction; a root, if it may be midway in `digits`."""
         if name in NUMBER_KEYS:
             from .exact.rational_keys import known_fraction  # start-up: for few tops only
 
-            return known_fraction(self.exact, name, radians=radians)
+            known = known_fraction(self.exact, name, radians=radians)
+            return self._rational_root(name, digits) if known is None and name in _ROOTS else known
         from .paper.requested import requested_fractions  # start-up: not for a record
 
         return requested_fractions(self.exact).get(name)
+
+    def _rational_root(self, name: str, digits: int) -> Fraction | None:
+        """Return a root of the cubic if it is a fraction, such as one midway between doubles.
+
+        Only this root is in its enclosure, so that a fraction in there that is a root is this one.
+        """
+        from .exact.rational_keys import rational_root  # start-up: for few tops only
+
+        roots = {root: self.enclosure(root, 2 * digits + 80) for root in _ROOTS}
+        ball = roots.pop(name)
+        others = [other for other in roots.values() if other is not None]
+        if ball is None or any((ball - other).least == 0 for other in others):
+            return None
+        return rational_root(self.exact, *ball.ends())
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that holds a number, by its key; None if the motion has none.

@@ -7,6 +7,8 @@ such a tie, is told here from the inputs.
 
 from __future__ import annotations
 
+import math
+from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 
@@ -105,6 +107,26 @@ def _fall(exact: Exact) -> int:
     """Return the sign of u'' for a start without nutation rate: that of c1/sin^2 theta0."""
     psi = exact.psi_rate
     return exact.cosine.sign(Polynomial(2 * exact.b * psi - exact.a, -2 * psi * psi))
+
+
+def rational_root(exact: Exact, low: Decimal, high: Decimal) -> Fraction | None:
+    """Return the simplest fraction between two numbers if it is a root of the cubic (4,9)."""
+    u = _simplest(Fraction(low), Fraction(high))
+    alpha, beta = exact.energy + exact.a * U, exact.momentum + exact.b * U
+    around = beta - exact.b * u
+    return (
+        u if exact.cosine.vanishes((1 - u * u) * (alpha - exact.a * u) - around * around) else None
+    )
+
+
+def _simplest(low: Fraction, high: Fraction) -> Fraction:
+    """Return the fraction with the smallest denominator between two numbers."""
+    if high < 0:
+        return -_simplest(-high, -low)
+    whole = Fraction(max(math.ceil(low), 0))
+    if whole <= high:
+        return whole
+    return whole - 1 + 1 / _simplest(1 / (high - whole + 1), 1 / (low - whole + 1))
 
 
 def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:

@@ -31,11 +31,13 @@ from ...arithmetic.order import order_by_parity, placed, taken
 from ...arithmetic.types import Array
 from .attitude import Attitude, Growths, Spinor, Times
 from .columns import NOTHING, TILT, TURN, Needs
-from .theta_series import Frame
+from .theta_series import Component, Frame
 from .times import check_times, times_of
 
 _GREATEST = 340.0
 """The square of its hyperbolic sine leaves room for what is multiplied with it."""
+_LEAST = 5e-324
+"""An argument of the functions that is next to 0, but not 0."""
 ARGUMENTS = ("arg_x", "arg_y")
 
 
@@ -126,6 +128,8 @@ class ThetaSampler(Sampler):
         argument *= self.speed
         if self.first:
             argument += self.first
+        elif self.over_a_pole:  # on a pole at t = 0, and on one side of it however soon after
+            np.copyto(argument, np.copysign(_LEAST, t), where=(argument == 0.0) & (t != 0.0))
         even, order = order_by_parity(step)
         if order is not None:
             argument = taken(argument, order, step)
@@ -150,8 +154,10 @@ class ThetaSampler(Sampler):
             self._write_parts(frame, functions[:, rows], parts[:, rows])
         if needs.arguments:
             arguments = arguments_of(parts, space[7:9])
-            if self.over_a_pole:  # on the pole the imaginary part is 0, too
-                arguments[np.isnan(arguments)] = 0.0
+            if self.over_a_pole:
+                for rows, frame in pieces:
+                    for side, part in zip(arguments[:, rows], frame[:2], strict=True):
+                        _settle_on_the_pole(side, part, argument[rows])
             found |= zip(
                 ARGUMENTS, unwound(arguments, self.slopes, argument, space[10]), strict=True
             )
@@ -197,6 +203,16 @@ class ThetaSampler(Sampler):
         parts[1::2] *= S
         if self.hyperbolic:
             parts[slice(1, 3) if even else slice(0, 4, 3)] *= C
+
+
+def _settle_on_the_pole(arguments: Array, part: Component, x: Array) -> None:
+    """Write the argument of X or Y where real and imaginary part are 0, or too small for doubles.
+
+    It is 0 on the pole, and next to it a quarter turn to the side of x, because the real part goes
+    with s = S^2 and the imaginary part with S.
+    """
+    vanish = np.isnan(arguments)
+    arguments[vanish] = np.sign(part.imag[0]) * np.sign(x[vanish]) * (np.pi / 2)
 
 
 def arguments_of(parts: Array, out: Array | None = None) -> Array:
