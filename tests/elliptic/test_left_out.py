@@ -39,7 +39,7 @@ SERIES_STOPS = STOPS[2:]
 """Where series are cut short: their steepness has to be known."""
 
 FULL = BallFunctions(DIGITS)
-"""Constants of series have all digits, so that the bounds of the series are not hidden by others."""
+"""Constants of series have all digits: their bounds would hide those of the series."""
 
 
 class Unwidened(BallFunctions):
