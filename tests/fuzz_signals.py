@@ -39,9 +39,11 @@ LINES = {
     "more jobs": "sweep --r0 1:100:200000 --psidot0 1 --keys r0,K --jobs 3 -o out",
     "jobs to stdout": "sweep --r0 1:100:200000 --jobs 2",
     "tables by jobs": "table --tops few.csv --n 20000 --jobs 2 -o out",
-    "stability by jobs": "stability --samples 20 --strata fast,slow --jobs 2 -o out",
+    "stability by jobs": "stability --samples 6 --strata fast,slow --jobs 2 -o out",
 }
 OLD = b"old\n"
+PATIENCE = 300
+"""Seconds after which a command hangs."""
 PARTS = "sweep tops.csv --keys r0,T_nutation --parts parts"
 
 
@@ -78,7 +80,7 @@ def start(line: str, folder: Path) -> subprocess.Popen[bytes]:
 def end_of(running: subprocess.Popen[bytes]) -> Ended:
     """Wait for a process and for the rest of its group; kill what is still there after a while."""
     try:
-        said = running.communicate(timeout=60)[1]
+        said = running.communicate(timeout=PATIENCE)[1]
     except subprocess.TimeoutExpired:
         os.killpg(running.pid, signal.SIGKILL)
         return Ended(99, running.communicate()[1] + b"(hangs)")
@@ -133,7 +135,7 @@ def disturbed(
 
 def signals(rng: random.Random, count: int, folder: Path) -> Iterator[str]:
     """Yield the faults of so many signals."""
-    seconds = {name: duration(line, folder) for name, line in LINES.items()}
+    seconds = {name: duration(line, folder) for name, line in LINES.items() if count}
     seen: Counter[str] = Counter()
     for i in range(count):
         name = [*LINES][i % len(LINES)]
