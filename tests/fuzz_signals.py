@@ -31,7 +31,7 @@ LINES = {
     "table to json": "table --n 1e5 --format json -o out",
     "sweep": "sweep --r0 1:100:60000 -o out",
     "sweep to stdout": "sweep --r0 1:100:60000",
-    "find": "find --r0 10:200 --theta0 20:60 T_precession=2 T_nutation=0.4 -o out",
+    "find": "find --r0 10:200 --theta0 20:60 T_precession=1.66 T_nutation=0.1595 -o out",
     "digits": "table --n 100 --digits 40 -o out",
     "compare": "compare run.csv -o out",
     "plot": "plot -o out.png",
