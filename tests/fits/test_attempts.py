@@ -240,6 +240,6 @@ def test_no_wrong_fit_of_a_random_recording_is_called_anything_but_failed() -> N
 
 
 def test_an_impossible_body_that_leaves_more_than_noise_is_a_failure() -> None:
-    """It was doubtful: the harmonics fit this recording of spin and precession no better."""
+    """Plain harmonics fit this recording of spin and precession no better, so it was doubtful."""
     one = fuzz_fits.judged(50161)
     assert (one.is_right, one.word) == (False, FAILED)

@@ -340,7 +340,7 @@ def test_a_pipe_of_tops_is_read_once(tmp_path: Path) -> None:
 
 
 def test_a_file_without_end_has_no_digest(tmp_path: Path) -> None:
-    """It was read for ever."""
+    """The digest of such a file was computed for ever."""
     line = [*LAGTOP, "sweep", "--parts", "out", "/dev/zero"]
     done = subprocess.run(line, cwd=tmp_path, capture_output=True, check=False, timeout=300)
     said = b"Error: /dev/zero, line 1: a line must have less than 1048576 bytes\n"
