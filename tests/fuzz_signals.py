@@ -31,7 +31,7 @@ LINES = {
     "table to json": "table --n 1e5 --format json -o out",
     "sweep": "sweep --r0 1:100:60000 -o out",
     "sweep to stdout": "sweep --r0 1:100:60000",
-    "find": "find --r0 10:200 --theta0 20:60 T_precession=2 T_nutation=0.4 -o out",
+    "find": "find --r0 10:200 --theta0 20:60 T_precession=1.66 T_nutation=0.1595 -o out",
     "digits": "table --n 100 --digits 40 -o out",
     "compare": "compare run.csv -o out",
     "plot": "plot -o out.png",
@@ -39,9 +39,11 @@ LINES = {
     "more jobs": "sweep --r0 1:100:200000 --psidot0 1 --keys r0,K --jobs 3 -o out",
     "jobs to stdout": "sweep --r0 1:100:200000 --jobs 2",
     "tables by jobs": "table --tops few.csv --n 20000 --jobs 2 -o out",
-    "stability by jobs": "stability --samples 20 --strata fast,slow --jobs 2 -o out",
+    "stability by jobs": "stability --samples 6 --strata fast,slow --jobs 2 -o out",
 }
 OLD = b"old\n"
+PATIENCE = 300
+"""Seconds after which a command hangs."""
 PARTS = "sweep tops.csv --keys r0,T_nutation --parts parts"
 
 
@@ -78,7 +80,7 @@ def start(line: str, folder: Path) -> subprocess.Popen[bytes]:
 def end_of(running: subprocess.Popen[bytes]) -> Ended:
     """Wait for a process and for the rest of its group; kill what is still there after a while."""
     try:
-        said = running.communicate(timeout=60)[1]
+        said = running.communicate(timeout=PATIENCE)[1]
     except subprocess.TimeoutExpired:
         os.killpg(running.pid, signal.SIGKILL)
         return Ended(99, running.communicate()[1] + b"(hangs)")
@@ -93,16 +95,22 @@ def end_of(running: subprocess.Popen[bytes]) -> Ended:
     return Ended(98, said + b"(leaves a process)")
 
 
-def duration(line: str, folder: Path) -> float:
-    """Return how long a command takes undisturbed."""
-    begun = time.perf_counter()
+def undisturbed(line: str, folder: Path) -> tuple[float, bytes]:
+    """Return how long a command takes, and what it has written to its file."""
+    begun, path = time.perf_counter(), folder / line.rsplit(maxsplit=1)[-1]
     ended = end_of(start(line, folder))
     assert ended.code in {0, 1}, (line, ended)
-    return time.perf_counter() - begun
+    return time.perf_counter() - begun, path.read_bytes() if path.is_file() else b""
 
 
 def disturbed(
-    line: str, number: signal.Signals, whole_group: bool, after: float, folder: Path
+    line: str,
+    number: signal.Signals,
+    whole_group: bool,
+    after: float,
+    *,
+    folder: Path,
+    written: bytes,
 ) -> Iterator[str]:
     """Send a signal after some seconds; yield what is wrong with the end."""
     name = line.rsplit(maxsplit=1)[-1]
@@ -120,7 +128,7 @@ def disturbed(
         yield f"exit code {ended.code}: {ended.stderr[-300:]!r}"
     if b"Traceback" in ended.stderr or b".py" in ended.stderr:
         yield f"says {ended.stderr[-300:]!r}"
-    if to_file and not usual and (folder / name).read_bytes() != OLD:
+    if to_file and not usual and (folder / name).read_bytes() not in {OLD, written}:
         yield "has changed the file"
     if to_file and usual and (folder / name).read_bytes() == OLD:
         yield f"ended with {ended.code} and has not written"
@@ -133,14 +141,15 @@ def disturbed(
 
 def signals(rng: random.Random, count: int, folder: Path) -> Iterator[str]:
     """Yield the faults of so many signals."""
-    seconds = {name: duration(line, folder) for name, line in LINES.items()}
+    alone = {name: undisturbed(line, folder) for name, line in LINES.items() if count}
     seen: Counter[str] = Counter()
     for i in range(count):
         name = [*LINES][i % len(LINES)]
         number, whole = rng.choice(SIGNALS), rng.random() < 0.5
-        after = rng.uniform(0, 1.05) * seconds[name]
+        seconds, written = alone[name]
+        after = rng.uniform(0, 1.05) * seconds
         what = f"{number.name} to the {'group' if whole else 'process'} after {after:.2f} s"
-        for wrong in disturbed(LINES[name], number, whole, after, folder):
+        for wrong in disturbed(LINES[name], number, whole, after, folder=folder, written=written):
             yield f"{name}, {what}: {wrong}"
         seen[name] += 1
     print(f"{count} signals: {dict(seen)}")

@@ -94,6 +94,10 @@ class Outcome:
                     f"no motion that was found is like the recording: {channel} is "
                     f"{rms * scale:.3g} {unit} off, plain harmonics {noise * scale:.3g}"
                 )
+        if not self._leaves_noise:
+            found += [
+                f"no motion that was found is like the recording: {x}" for x in self._impossible()
+            ]
         return found
 
     def unit(self, name: str) -> str:
@@ -176,11 +180,18 @@ class Outcome:
                     f"what is left of {channel} is no noise: neighbours correlate by "
                     f"{left.lag1:.2f}, noise by {3 / math.sqrt(left.rows):.2f} at most"
                 )
+        return [*found, *self._impossible()] if self._leaves_noise else found
+
+    @property
+    def _leaves_noise(self) -> bool:
+        return all(left.is_noise for left in self.remainders.values())
+
+    def _impossible(self) -> Iterator[str]:
+        """Yield what no rigid body has, unless the spin is too small to tell."""
         ratio = self.values["b"] / self.values["r0"] if self.values["r0"] else 1.0
         spins = abs(self.values["b"]) > _SURE * self.deviations["b"]
         if spins and not 0 < ratio <= 2:
-            found.append(f"C/A = {ratio:.3g} is that of no rigid body, 0 to 2")
-        return found
+            yield f"C/A = {ratio:.3g} is that of no rigid body, 0 to 2"
 
     def notes(self) -> list[str]:
         """Return how the recording was understood."""

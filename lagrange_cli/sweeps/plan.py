@@ -11,10 +11,11 @@ from typing import Any, NamedTuple, cast
 from .. import __version__
 from ..arithmetic.points import Points
 from ..errors import LagtopError
-from ..inputs.files import opened, temporary_copy
+from ..inputs.files import opened, shown_path, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
 from ..inputs.ranges import Product
+from ..inputs.text_tables import NumberedLines
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value
@@ -155,6 +156,7 @@ def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
     """Return the digest of a file, and a copy of it on disk if it can be read only once."""
     with opened(path) as file:
         if file.seekable():
+            next(iter(NumberedLines(file, shown_path(path))), None)  # /dev/zero has no digest
             return None, _digest(file)
         with temporary_copy(file) as copy:
             return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(cast(BufferedIOBase, copy))

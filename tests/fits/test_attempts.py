@@ -237,3 +237,9 @@ def test_no_wrong_fit_of_a_random_recording_is_called_anything_but_failed() -> N
     fates = Counter((one.is_right, one.word) for one in found)
     assert {word for is_right, word in fates if not is_right} <= {FAILED}
     assert fates[True, "good"] >= 36
+
+
+def test_an_impossible_body_that_leaves_more_than_noise_is_a_failure() -> None:
+    """Plain harmonics fit this recording of spin and precession no better, so it was doubtful."""
+    one = fuzz_fits.judged(50161)
+    assert (one.is_right, one.word) == (False, FAILED)

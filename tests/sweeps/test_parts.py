@@ -339,6 +339,15 @@ def test_a_pipe_of_tops_is_read_once(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "part-000000.csv").read_text() == "r0,error\n1.0,\n2.0,\n"
 
 
+def test_a_file_without_end_has_no_digest(tmp_path: Path) -> None:
+    """The digest of such a file was computed for ever."""
+    line = [*LAGTOP, "sweep", "--parts", "out", "/dev/zero"]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, check=False, timeout=300)
+    said = b"Error: /dev/zero, line 1: a line must have less than 1048576 bytes\n"
+    assert (done.returncode, done.stdout, done.stderr) == (65, b"", said)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_no_space_for_a_copy_of_standard_input(tmp_path: Path) -> None:
     line = (
         f"ulimit -f 8; trap '' XFSZ; seq 100000 | sed '1s/.*/r0/' | "
