@@ -9,17 +9,9 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_report
-from .given import solved
-from .options import (
-    COUNT,
-    FILE,
-    METHOD_NAMES,
-    NUMBER,
-    exclude,
-    output_options,
-    scene_options,
-)
+from .options import COUNT, FILE, METHOD_NAMES, NUMBER, exclude, output_options
 from .progress import with_steps
+from .top_options import scene_options, solved
 
 if TYPE_CHECKING:
     from ..output.findings import Findings
@@ -30,22 +22,20 @@ PERIODS = 20.3
 MOST_SAMPLES = 10_000_000
 
 
-class _ListingMethods(ExamplesFirst):
-    """A command whose help ends with the names of the methods."""
+def _write_methods(formatter: click.HelpFormatter) -> None:
+    """Write the names of the methods and of their groups."""
+    from ..bench.work_precision import all_methods, groups
 
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the names, which are imported only here."""
-        from ..bench.work_precision import all_methods, groups
-
-        with formatter.section("Methods"):
-            formatter.write_text(", ".join(all_methods(1.0)))
-        with formatter.section("Groups of methods"):
-            formatter.write_text(", ".join(groups()))
+    with formatter.section("Methods"):
+        formatter.write_text(", ".join(all_methods(1.0)))
+    with formatter.section("Groups of methods"):
+        formatter.write_text(", ".join(groups()))
 
 
 @click.command(
     "bench",
-    cls=_ListingMethods,
+    cls=ExamplesFirst,
+    shows=_write_methods,
     examples="""
         lagtop bench
         lagtop bench sample_inputs/stiff-top.toml --plot work-precision.svg

@@ -13,19 +13,10 @@ from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, fail_for, write_report
-from .given import solved
-from .options import (
-    FILE,
-    INPUT,
-    NAMES,
-    NUMBER,
-    Parsed,
-    exclude,
-    input_options,
-    output_options,
-)
+from .options import FILE, NAMES, NUMBER, Parsed, exclude, output_options
 from .progress import with_progress
-from .reading_options import reading_options
+from .row_options import reading_options
+from .top_options import INPUT, input_options, solved
 
 if TYPE_CHECKING:
     from ..inputs.seen import Quantities

@@ -9,30 +9,13 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, complain, write_keys
-from .given import is_scene, say_unused
-from .options import (
-    COUNT,
-    KEY_NAMES,
-    Parsed,
-    by_key,
-    exclude,
-    input_options,
-    output_options,
-    say_missing,
-)
+from .options import COUNT, KEY_NAMES, exclude, output_options
 from .progress import with_progress
+from .top_options import by_key, input_options, is_scene, say_missing, say_unused, value_type
 
 if TYPE_CHECKING:
     from ..inputs.units import System
-    from ..inputs.value import Value
     from ..motion.solve import Motion
-
-
-def _parse_input(text: str) -> Value:
-    from ..inputs.ranges import parse_number_or_span
-    from ..inputs.value import parse_value
-
-    return parse_value(text, parse_number_or_span)
 
 
 @click.command(
@@ -48,7 +31,7 @@ def _parse_input(text: str) -> Value:
     """,
 )
 @click.argument("words", nargs=-1, metavar="[SCENE.toml|-] CONDITION...")
-@input_options(Parsed("number or from:to", _parse_input), units=False)
+@input_options(value_type("number or from:to", "parse_number_or_span"), units=False)
 @click.option(
     "--scan",
     type=COUNT,

@@ -12,20 +12,10 @@ from ..arithmetic.angles import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain, fail_for, write_report
-from .given import say_unused
-from .options import (
-    FILE,
-    INPUT,
-    NAMES,
-    Parsed,
-    by_key,
-    exclude,
-    extension,
-    input_options,
-    output_options,
-)
+from .options import FILE, NAMES, Parsed, exclude, extension, output_options
 from .progress import with_steps
-from .reading_options import reading_options
+from .row_options import reading_options
+from .top_options import INPUT, by_key, input_options, say_unused
 
 if TYPE_CHECKING:
     from ..fits.record import Outcome
