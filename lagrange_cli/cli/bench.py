@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SAMPLES, LONG_SAMPLES = 10_000, 1000
 PERIODS = 20.3
 """No end at a turning point, where approximations are at their best."""
-MOST_SAMPLES = 10_000_000
+MOST_TIMES = 10_000_000
 
 
 def _write_methods(formatter: click.HelpFormatter) -> None:
@@ -109,7 +109,7 @@ def command(
 def _check(t_max: Fraction | None, count: int | None, limit: Fraction) -> None:
     if t_max == 0:
         raise LagtopError("--t-max must be other than 0: nothing has moved by then")
-    if count is not None and not 1 <= count <= MOST_SAMPLES:
-        raise LagtopError(f"--n must be in [1, {MOST_SAMPLES}], got {count}")
+    if count is not None and not 1 <= count <= MOST_TIMES:
+        raise LagtopError(f"--n must be in [1, {MOST_TIMES}], got {count}")
     if not limit > 0:
         raise LagtopError(f"--limit must be > 0, got {float(limit)}")

@@ -22,17 +22,16 @@ if TYPE_CHECKING:
 DELAY = 1.0
 """Seconds of work that nobody needs to be told about."""
 
-P = TypeVar("P")
-T = TypeVar("T")
+Item = TypeVar("Item")
 
 
 def with_progress(
-    parts: Iterable[P],
+    parts: Iterable[Item],
     count: int,
     long: int,
     size: Callable[[Any], int] = len,
     label: str = "rows",
-) -> Iterator[P]:
+) -> Iterator[Item]:
     """Yield the parts as they come, and show how many of `count` rows are done.
 
     `size` gives the rows of a part; a count of 0 stands for an unknown one.  From `long` rows on,
@@ -41,19 +40,19 @@ def with_progress(
     return _watched(parts, label, count or None, size, 0.0 if count >= long else DELAY)
 
 
-def with_count(parts: Iterable[P], label: str) -> Iterator[P]:
+def with_count(parts: Iterable[Item], label: str) -> Iterator[Item]:
     """Yield the parts when their number is unknown, and show how many are done."""
     return _watched(parts, label, None, lambda _: 1, DELAY)
 
 
-def with_steps(items: Sequence[T], label: str) -> Iterator[T]:
+def with_steps(items: Sequence[Item], label: str) -> Iterator[Item]:
     """Yield the items one by one, and show how many are done."""
     return _watched(items, label, len(items), lambda _: 1, DELAY)
 
 
 def _watched(
-    parts: Iterable[P], label: str, total: int | None, size: Callable[[Any], int], delay: float
-) -> Iterator[P]:
+    parts: Iterable[Item], label: str, total: int | None, size: Callable[[Any], int], delay: float
+) -> Iterator[Item]:
     if not sys.stderr.isatty():
         yield from parts
         return

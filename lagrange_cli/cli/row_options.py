@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.tables import TableOfFunctions
 
-
 RANGE = Parsed("range", late("inputs.ranges", "parse_range"))
 
 

@@ -15,7 +15,7 @@ from .row_options import jobs_option
 if TYPE_CHECKING:
     from ..output.findings import Findings
 
-SAMPLES, THOROUGH, MOST_SAMPLES = 4, 200, 100_000
+SAMPLES, THOROUGH, MOST_SCENES = 4, 200, 100_000
 SEED = 1952
 
 
@@ -69,8 +69,8 @@ def command(
     The exit code is 1 where a promise is exceeded.
     """
     exclude({"--samples": samples, "--thorough": thorough or None})
-    if samples is not None and not 1 <= samples <= MOST_SAMPLES:
-        raise LagtopError(f"--samples must be in [1, {MOST_SAMPLES}], got {samples}")
+    if samples is not None and not 1 <= samples <= MOST_SCENES:
+        raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {samples}")
     from ..bench import stability
     from ..bench.pictures import draw_stability
     from ..plot.files import check_plot

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import DataError, LagtopError
-from ..inputs.files import shown_path
 from .command import complain
 from .options import FILE, F, Parsed, late
 
@@ -142,6 +141,8 @@ def blaming(times: str | None) -> Iterator[None]:
     except LagtopError as error:
         if times is None or error.key != "t":
             raise
+        from ..inputs.files import shown_path
+
         raise DataError(f"{shown_path(times)}: {error}") from None
 
 
@@ -159,6 +160,8 @@ def is_scene(word: str) -> bool:
 
 def say_no_tops(path: str) -> None:
     """Say that a file of tops holds none, only its header."""
+    from ..inputs.files import shown_path
+
     complain(f"Warning: {shown_path(path)} holds no tops")
 
 

@@ -15,7 +15,7 @@ from ..errors import CannotWriteError, DataError
 
 
 @contextmanager
-def opened(path: str) -> Iterator[BufferedIOBase]:
+def reading(path: str) -> Iterator[BufferedIOBase]:
     """Open a file for reading bytes, or standard input for `-`.
 
     Raises DataError where it cannot be opened, and where it cannot be read inside.

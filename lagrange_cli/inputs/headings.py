@@ -48,7 +48,7 @@ def check_header(columns: Sequence[str], known: Collection[str], name: str) -> N
         )
 
 
-def units_of(
+def heading_units(
     headings: Sequence[tuple[str, str]], known: Collection[str], name: str
 ) -> dict[str, Value]:
     """Return 1 in each column of an input, in the unit of its heading.

@@ -37,7 +37,7 @@ def moment(inputs: Mapping[str, Number]) -> Number:
     if A_cm < 0:
         raise LagtopError(f"A_cm must be >= 0, got {float(A_cm)}", "A_cm")
     exact = Fraction(A_cm) + Fraction(m) * Fraction(s) ** 2
-    return exact if is_exact(A_cm, m, s) else nearest(exact)
+    return exact if is_exact(A_cm, m, s) else _nearest(exact)
 
 
 def spin(inputs: Mapping[str, Number]) -> Number:
@@ -54,7 +54,7 @@ def spin(inputs: Mapping[str, Number]) -> Number:
     rational = cosine.rational if psi_rate else Fraction(0)
     if rational is not None:
         exact = phi_rate + psi_rate * rational
-        return exact if keeps else nearest(exact)
+        return exact if keeps else _nearest(exact)
 
     def enclosure(digits: int) -> Ball:
         ar = balls(digits)
@@ -74,7 +74,7 @@ def is_exact(*inputs: Number) -> bool:
     return any(isinstance(x, Fraction) for x in inputs)
 
 
-def nearest(exact: Fraction) -> float:
+def _nearest(exact: Fraction) -> float:
     """Return the double nearest to a fraction, infinite beyond all doubles."""
     try:
         return float(exact)

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError, SceneError
-from .files import opened, shown_path
+from .files import reading, shown_path
 from .input_keys import TILT
 from .names import suggestion
 from .top import INPUTS
@@ -17,7 +17,7 @@ from .value import Value, parse_value
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
 """Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
-KEYS = (*INPUTS, TILT)
+SCENE_KEYS = (*INPUTS, TILT)
 
 
 class SceneFile:
@@ -27,7 +27,7 @@ class SceneFile:
         """Read a file, or standard input for `-`.  Raises SceneError."""
         self.name, self.text = shown_path(path), ""
         try:
-            with opened(path) as file:
+            with reading(path) as file:
                 raw = file.read(_MOST_BYTES + 1)
         except DataError as error:
             raise SceneError(str(error)) from None
@@ -43,8 +43,9 @@ class SceneFile:
         self.inputs = {key: self._value(key, value) for key, value in table.items()}
 
     def _value(self, key: str, value: object) -> Value:
-        if key not in KEYS:
-            wrong = f"unknown key {quoted(key)}{suggestion(key, KEYS)} (known: {', '.join(KEYS)})"
+        if key not in SCENE_KEYS:
+            meant, known = suggestion(key, SCENE_KEYS), ", ".join(SCENE_KEYS)
+            wrong = f"unknown key {quoted(key)}{meant} (known: {known})"
             raise self.error(LagtopError(wrong, key))
         if isinstance(value, str) and not isinstance(value, _NoNumber):
             return self._value_of_text(key, value)

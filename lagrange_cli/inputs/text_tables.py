@@ -60,7 +60,7 @@ def has_row(line: bytes) -> bool:
     return bool(bare) and not bare.startswith(b"#")
 
 
-def text_of(line: bytes, what: str = "a row") -> str:
+def decoded_row(line: bytes, what: str = "a row") -> str:
     """Return the text of a line.  Raises LagtopError for a line that is not UTF-8."""
     try:
         return line.decode().rstrip("\r\n")

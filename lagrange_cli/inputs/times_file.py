@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
 from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
-from .text_tables import NumberedLines, has_row, text_of
+from .files import reading, shown_path
+from .text_tables import NumberedLines, decoded_row, has_row
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -64,11 +64,11 @@ class TimesFile(Points):
 
 def _read(path: str) -> Iterator[Fraction]:
     name = shown_path(path)
-    with opened(path) as file:
+    with reading(path) as file:
         rows = ((number, line) for number, line in NumberedLines(file, name) if has_row(line))
         for i, (number, line) in enumerate(rows):
             try:
-                text = text_of(line, "a time").strip()
+                text = decoded_row(line, "a time").strip()
                 if i or text not in HEADERS:
                     yield parse_number(text)
             except LagtopError as error:

@@ -17,19 +17,19 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path
+from .files import reading, shown_path
 from .given import Given, checked_double, gather
-from .headings import check_header, check_spelling, heading, units_of
+from .headings import check_header, check_spelling, heading, heading_units
 from .input_keys import from_example, one_of_each, overridden
 from .ranges import InputArrays
 from .text_tables import (
     NumberedLines,
+    decoded_row,
     delimiter_of,
     has_row,
     json_object,
     shown_json,
     split_cells,
-    text_of,
 )
 from .top import INPUTS
 from .value import Value
@@ -154,7 +154,7 @@ class TopsFile(NamedTuple):
 
     def _read_csv(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         assert self.columns is not None
-        cells = split_cells(text_of(raw), self.delimiter)
+        cells = split_cells(decoded_row(raw), self.delimiter)
         texts = dict(zip(self.columns, cells, strict=False))
         carried.update((name, texts[name]) for name in self.carried if name in texts)
         if len(cells) != len(self.columns):
@@ -213,7 +213,7 @@ def open_tops(
         file = TopsFile(name, None, carried, frozenset(computed), _named(raw for _, raw in head))
         return file, _blocks(file, chain(head, lines), size)
     try:
-        header = text_of(first)
+        header = decoded_row(first)
         delimiter = delimiter_of(header)
         headings = [heading(cell.strip()) for cell in split_cells(header, delimiter or ",")]
     except LagtopError as error:
@@ -223,7 +223,7 @@ def open_tops(
     carried = [x for x in columns if x not in known and x not in computed]
     check_spelling(carried, name)
     check_header(columns, known, name)
-    units = units_of(headings, known, name)
+    units = heading_units(headings, known, name)
     file = TopsFile(
         name,
         columns,
@@ -237,7 +237,7 @@ def open_tops(
 
 
 def _lines(path: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
-    with stream or opened(path) as file:
+    with stream or reading(path) as file:
         yield from NumberedLines(file, shown_path(path))
 
 

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from .files import opened, shown_path, temporary_copy
+from .files import reading, shown_path, temporary_copy
 from .trajectory_columns import QUANTITIES, Found, expanded, named_twice, quantities_in
-from .trajectory_rows import Table
-from .words import Words
+from .trajectory_rows import Table, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -136,7 +135,7 @@ def open_trajectory(path: str, columns: Sequence[str] | None = None) -> Iterator
     `columns` name all columns from the left, whatever the file says.  Raises DataError for a file
     that cannot be read or holds no trajectory.
     """
-    with opened(path) as stream:
+    with reading(path) as stream:
         peeked = BufferedReader(cast(Any, stream))
         try:
             kind = _MAGIC.get(peeked.peek(4)[:4])

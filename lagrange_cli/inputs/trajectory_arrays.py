@@ -20,9 +20,8 @@ from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError, UnavailableError
 from .names import repeated
 from .trajectory_columns import quantities_in
-from .trajectory_rows import Block
+from .trajectory_rows import Block, PlainNumbers, Words
 from .trajectory_text import parts
-from .words import PlainNumbers, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from .words import Words
-
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
@@ -18,6 +16,33 @@ class Block(NamedTuple):
     """A row for each row, a column for each one that was asked for; NaN for an empty cell."""
     places: Sequence[int]
     """The number of the line, or of the row where there are no lines, from 1."""
+
+
+class Words:
+    """The words of a column, each with a number in the order in which they come."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[str, float] = {}
+
+    def number(self, word: str) -> float:
+        """Return the number that stands for a word, whose quotes and blanks do not count."""
+        return self._numbers.setdefault(word.strip().strip('"'), float(len(self._numbers)))
+
+    def word(self, number: float) -> str:
+        """Return the word that a number stands for."""
+        return list(self._numbers)[int(number)]
+
+
+class PlainNumbers(Words):
+    """The words of a column that holds numbers only: their texts."""
+
+    def number(self, word: str) -> float:
+        """Return the number itself."""
+        return float(word)
+
+    def word(self, number: float) -> str:
+        """Return the number as text, without a fraction where it has none."""
+        return f"{number:.17g}"
 
 
 class Table(Protocol):

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
-from .text_tables import NumberedLines, delimiter_of, json_object, text_of
+from .text_tables import NumberedLines, decoded_row, delimiter_of, json_object
 from .trajectory_columns import names_in_comments
-from .trajectory_rows import Block, Table
-from .words import PlainNumbers, Words
+from .trajectory_rows import Block, PlainNumbers, Table, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -49,7 +48,7 @@ def read_text(stream: BinaryIO, name: str) -> Table:
 
 def _decoded(line: bytes, name: str, number: int) -> str:
     try:
-        text = text_of(line)
+        text = decoded_row(line)
     except LagtopError as error:
         raise DataError(f"{name}, line {number}: {error}") from None
     if "\0" in text:

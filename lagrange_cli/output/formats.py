@@ -245,7 +245,7 @@ class DrawnTable(Format):
         stream.write(rows_table(names, (map(value_text, row) for row in rows), view))
 
 
-FORMATS: dict[str, Format] = {
+FORMAT_BY_NAME: dict[str, Format] = {
     fmt.name: fmt for fmt in (Csv(), Ndjson(), Json(), Parquet(), Npy(), DrawnTable())
 }
 """The formats by name."""

@@ -33,11 +33,11 @@ _TEXT_WIDTH = 100
 _CODES = re.compile("\x1b\\[[0-9;]*m")
 _HEADING, _GIVEN, _FOUND, _WARNING = "bold", "cyan", "green", "yellow"
 """How a terminal shows headings, inputs, results and warnings."""
-INPUTS = "Inputs"
+INPUT_GROUP = "Inputs"
 """The group of a record that holds what is given."""
 
 
-class Column(NamedTuple):
+class DrawnColumn(NamedTuple):
     """A column of a table: its heading, its cells, and whether they are numbers."""
 
     heading: str
@@ -49,14 +49,14 @@ class Column(NamedTuple):
         lines = (line for cell in (self.heading, *self.cells) for line in cell.split("\n"))
         return max(map(cell_len, lines))
 
-    def flush_right(self) -> Column:
+    def flush_right(self) -> DrawnColumn:
         """Return the column with heading and cells that end at the same place, if it is numeric."""
         if not self.numeric:
             return self
         heading, *cells = _flush_right([self.heading, *self.cells])
         return self._replace(heading=heading, cells=cells)
 
-    def cut_into_lines(self, width: int) -> Column:
+    def cut_into_lines(self, width: int) -> DrawnColumn:
         """Return the column with every cell in lines of at most `width` characters."""
         return self._replace(cells=["\n".join(_chunks(cell, width)) for cell in self.cells])
 
@@ -106,7 +106,7 @@ def _record(groups: Mapping[str, list[list[str]]]) -> Table:
 def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
     """Return four columns, each value in lines of its own below the name."""
     every = [line for lines in groups.values() for line in lines]
-    beside = [Column("", [line[i] for line in every]).width() for i in (0, 3, 4)]
+    beside = [DrawnColumn("", [line[i] for line in every]).width() for i in (0, 3, 4)]
     room = max(width - sum(max(used, len("Equation")) for used in beside) - 3 * _GAP, 12)
     table = _empty(["Symbol", "Name, value", "Unit", "Equation"])
     for group, lines in groups.items():
@@ -119,14 +119,14 @@ def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
 
 def _style(group: str) -> str:
     """Return how the values of a group of a record are shown."""
-    return _GIVEN if group == INPUTS else _FOUND
+    return _GIVEN if group == INPUT_GROUP else _FOUND
 
 
 def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) -> bytes:
     """Return a column per name and a line per row."""
     cells = list(zip(*rows, strict=True)) or [()] * len(names)
     headings = [spelt(name, view) for name in names]
-    columns = [Column(name, column) for name, column in zip(headings, cells, strict=True)]
+    columns = [DrawnColumn(name, column) for name, column in zip(headings, cells, strict=True)]
     return _encoded(_folded(columns[:1], columns[1:], view), view)
 
 
@@ -134,7 +134,7 @@ def findings_table(findings: Findings, view: View) -> bytes:
     """Return the conditions as lines, the rows as a table of short numbers, and the conclusions."""
     shown = [field for field in findings.fields if field.heading]
     columns = [
-        Column(
+        DrawnColumn(
             spelt(field.heading, view),
             [spelt(field.cell(row), view) for row in findings.rows],
             not field.is_text,
@@ -153,15 +153,15 @@ def findings_table(findings: Findings, view: View) -> bytes:
     )
 
 
-def _folded(keys: Sequence[Column], columns: Sequence[Column], view: View) -> str:
+def _folded(keys: Sequence[DrawnColumn], columns: Sequence[DrawnColumn], view: View) -> str:
     """Return the table in blocks of columns that fit; the keys are the first ones of each."""
     blocks = _blocks(keys, columns, view.width) if view.width else [[*keys, *columns]]
     return "\n".join(_drawn(_filled_table(block), view) for block in blocks)
 
 
 def _blocks(
-    keys: Sequence[Column], columns: Sequence[Column], width: int
-) -> Iterator[list[Column]]:
+    keys: Sequence[DrawnColumn], columns: Sequence[DrawnColumn], width: int
+) -> Iterator[list[DrawnColumn]]:
     used = sum(column.width() + _GAP for column in keys)
     if any(used + column.width() > width for column in columns):  # keys too wide to be repeated
         keys, columns, used = [], [*keys, *columns], 0
@@ -176,7 +176,7 @@ def _blocks(
     yield block
 
 
-def _filled_table(columns: Sequence[Column]) -> Table:
+def _filled_table(columns: Sequence[DrawnColumn]) -> Table:
     columns = [column.flush_right() for column in columns]
     table = _empty([column.heading for column in columns])
     for row in zip(*(column.cells for column in columns), strict=True):

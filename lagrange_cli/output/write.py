@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import value_text
 from .destination import opened
-from .formats import FORMATS, Texts
+from .formats import FORMAT_BY_NAME, Texts
 from .terminal import view_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def write_record(
     record: Mapping[str, Any], fmt: str, path: str, layout: Callable[[], Layout]
 ) -> None:
     """Write one record as a `table` of this layout, `csv` or `json`."""
-    text = FORMATS[fmt].record(record, layout, view_of(path))
+    text = FORMAT_BY_NAME[fmt].record(record, layout, view_of(path))
     with opened(path) as stream:
         stream.write(text)
 
@@ -52,18 +52,18 @@ def write_table(
     Where nobody knows the count it is 0.
     """
     with opened(path) as stream:
-        FORMATS[fmt].write_table(stream, names, blocks, view_of(path), count)
+        FORMAT_BY_NAME[fmt].write_table(stream, names, blocks, view_of(path), count)
 
 
 def write_text_blocks(fmt: str, names: Sequence[str], blocks: Iterable[bytes], path: str) -> None:
     """Write blocks made by `block_text`, with what stands before, between and after them."""
     with opened(path) as stream:
-        FORMATS[fmt].write_blocks(stream, names, blocks)
+        FORMAT_BY_NAME[fmt].write_blocks(stream, names, blocks)
 
 
 def block_text(columns: Columns, names: Sequence[str], fmt: str) -> bytes:
     """Return a block of rows in a format, for `write_text_blocks`."""
-    return FORMATS[fmt].block(columns, names)
+    return FORMAT_BY_NAME[fmt].block(columns, names)
 
 
 def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes:
@@ -72,7 +72,7 @@ def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes
     One after the other the files are what `write_text_blocks` writes; but for Parquet, where each
     is whole.
     """
-    return FORMATS[fmt].part(names, number, text)
+    return FORMAT_BY_NAME[fmt].part(names, number, text)
 
 
 def write_findings(find: Callable[[], Findings], fmt: str, path: str) -> Findings:
@@ -82,5 +82,5 @@ def write_findings(find: Callable[[], Findings], fmt: str, path: str) -> Finding
     """
     with opened(path) as stream:
         findings = find()
-        stream.write(FORMATS[fmt].findings(findings, view_of(path)))
+        stream.write(FORMAT_BY_NAME[fmt].findings(findings, view_of(path)))
     return findings

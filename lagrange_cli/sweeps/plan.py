@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, cast
 from .. import __version__
 from ..arithmetic.points import Points
 from ..errors import LagtopError
-from ..inputs.files import opened, shown_path, temporary_copy
+from ..inputs.files import reading, shown_path, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
 from ..inputs.ranges import Product
@@ -154,7 +154,7 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
 
 def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
     """Return the digest of a file, and a copy of it on disk if it can be read only once."""
-    with opened(path) as file:
+    with reading(path) as file:
         if file.seekable():
             next(iter(NumberedLines(file, shown_path(path))), None)  # /dev/zero has no digest
             return None, _digest(file)

@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import ROOT, Lagtop
+from conftest import ROOT, Lagtop, assert_one_line
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, errors, solve, sweep
 from lagrange_cli.cli.command import top_layout
 from lagrange_cli.cli.group import COMMANDS
+from lagrange_cli.cli.top_options import is_scene
 from lagrange_cli.motion.record import NUMBER_KEYS
 
 Solved = Callable[..., dict[str, Any]]
@@ -257,47 +258,8 @@ BAD_TIMES = {
 )
 def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:
     result = lagtop(*line.split())
-    assert result.exit_code == 2
-    assert result.stdout == ""
+    assert_one_line(result, 2, "")
     assert message in result.stderr
-    assert result.stderr.startswith("Error: ")
-    assert result.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("m = 1\nmass = 2\n", "line 2: unknown key 'mass'"),
-        ("m = 1\n[top]\nr0 = 3\n", "line 2: unknown key 'top'"),
-        ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
-        ("m = nan\n", "line 1: m must be a finite number, got 'nan'"),
-        ("m = 1e400\n", "line 1: m must be a finite number, got '1e400'"),
-        ("\nr0 = 'fast'\n", "line 2: r0 must be a finite decimal number, got 'fast'"),
-        ("r0 = true\n", "line 1: r0 must be a finite number, got True"),
-        ("A = 1\nC = 3\n", "line 2: C must be <= 2 A = 2.0, got 3.0"),
-        ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_rad and theta0_deg are both given"),
-    ],
-)
-def test_bad_scene_file(text: str, message: str, lagtop: Lagtop, tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    path.write_text(text)
-    result = lagtop("solve", path)
-    assert result.exit_code == 65
-    assert result.stdout == ""
-    assert message in result.stderr
-    assert result.stderr.startswith(f"Error: {path}")
-    assert result.stderr.count("\n") == 1
-
-
-def test_missing_and_unreadable_scene_files(lagtop: Lagtop, tmp_path: Path) -> None:
-    missing = lagtop("solve", tmp_path / "none.toml")
-    assert (missing.exit_code, missing.stdout) == (65, "")
-    assert "none.toml: No such file or directory" in missing.stderr
-    assert lagtop("solve", tmp_path).exit_code == 65
-    (tmp_path / "binary").write_bytes(b"\xff\xfe\x00")
-    assert lagtop("solve", tmp_path / "binary").exit_code == 65
-    (tmp_path / "huge").write_bytes(b"#" * (1 << 21))
-    assert "more than 64 KiB" in lagtop("solve", tmp_path / "huge").stderr
 
 
 def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
@@ -330,6 +292,16 @@ def test_edges_are_legal_scenes(options: str, lagtop: Lagtop) -> None:
         assert result.exit_code == 0
         assert "nan" not in result.stdout.lower()
         assert "inf" not in result.stdout.lower()
+
+
+@pytest.mark.parametrize("word", ["-", "top.toml", "folder/scene", "./scene", "x.txt", "a.b/c"])
+def test_words_that_name_a_scene(word: str) -> None:
+    assert is_scene(word)
+
+
+@pytest.mark.parametrize("word", ["sphere", "T_nutation=0.5", "r0<1.5", "K>./2", "", "map"])
+def test_words_that_do_not(word: str) -> None:
+    assert not is_scene(word)
 
 
 # help

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import orjson
 import pytest
-from conftest import ROOT, Lagtop
+from conftest import ROOT, Lagtop, assert_one_line
 from pyarrow import parquet
 
 from lagrange_cli.arithmetic.text import csv_text
@@ -104,10 +104,7 @@ def test_parquet_holds_the_tables_of_tops(tmp_path: Path, lagtop: Lagtop) -> Non
     ],
 )
 def test_what_files_of_numbers_cannot_hold(options: str, error: str, lagtop: Lagtop) -> None:
-    result = lagtop("table", *options.split(), input="0\n1\n")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr.startswith(f"Error: {error}")
-    assert result.stderr.count("\n") == 1
+    assert_one_line(lagtop("table", *options.split(), input="0\n1\n"), 2, error)
 
 
 ENDED = ["solve", "table --n 2", "sweep --keys T_nutation", "jacobi --k 0.8", "find --r0 9:99 b=20"]

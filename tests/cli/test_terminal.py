@@ -18,7 +18,7 @@ import pytest
 from lagrange_cli import Top, solve
 from lagrange_cli.cli.command import top_layout
 from lagrange_cli.output.findings import Field, Findings
-from lagrange_cli.output.formats import FORMATS
+from lagrange_cli.output.formats import FORMAT_BY_NAME
 from lagrange_cli.output.terminal import View, view_of
 
 ESCAPE = re.compile("\x1b\\[[?]?([0-9;]*)([A-Za-z])|([\r\n])|([^\x1b\r\n]+)")
@@ -153,7 +153,9 @@ def test_colours_mean_something_and_can_be_left_out(
         view = view_of("-")
     record = solve(Top(theta0_deg=0)).record()
     for width in (view.width, 40):
-        text = FORMATS["table"].record(record, top_layout, view.replace(width=width)).decode()
+        text = (
+            FORMAT_BY_NAME["table"].record(record, top_layout, view.replace(width=width)).decode()
+        )
         if setting:
             assert "\x1b" not in text
             continue
@@ -185,10 +187,10 @@ def test_reports_fold_with_the_names_of_their_rows(monkeypatch: pytest.MonkeyPat
     ]
     rows = [SimpleNamespace(method=name, **dict.fromkeys("abcdef", 1.5)) for name in ("x", "y")]
     findings = Findings({"machine": "word " * 30}, fields, rows, ["word " * 30])
-    text = FORMATS["table"].findings(findings, View(40, True)).decode()
+    text = FORMAT_BY_NAME["table"].findings(findings, View(40, True)).decode()
     plain = re.sub("\x1b\\[[0-9;]*m", "", text)
     assert max(map(len, plain.splitlines())) <= 40
     assert plain.count("method") == 2
     assert plain.count("1.5") == 12
-    wide = FORMATS["table"].findings(findings, View()).decode()
+    wide = FORMAT_BY_NAME["table"].findings(findings, View()).decode()
     assert wide.count("method") == 1

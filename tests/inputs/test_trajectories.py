@@ -306,10 +306,3 @@ def test_bad_names_of_columns(columns: list[str], message: str, tmp_path: Path) 
     (tmp_path / "a.txt").write_text("0 1\n")
     with pytest.raises(LagtopError, match=message):
         read(tmp_path / "a.txt", columns)
-
-
-def test_files_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(LagtopError, match="nowhere: No such file"):
-        read("nowhere")
-    with pytest.raises(LagtopError, match="Is a directory"):
-        read(tmp_path)
