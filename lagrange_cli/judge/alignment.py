@@ -31,7 +31,7 @@ _NEAR_POLE = 1e-9
 
 
 class Alignment(NamedTuple):
-    """What is done to a trajectory before it is judged."""
+    """Changes of a trajectory before it is judged."""
 
     axis: str = "z"
     up: str = "z"
