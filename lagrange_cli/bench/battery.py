@@ -36,7 +36,7 @@ DIGITS, MORE_DIGITS = 80, 110
 """Digits of the reference, and of the one that it is checked against."""
 
 CONSERVED = ("energy", "Lz")
-"""The columns whose changes are told."""
+"""The columns whose changes are reported."""
 
 INTEGRATOR = "DOP853-quaternion"
 INTEGRATED_PERIODS, INTEGRATOR_SECONDS = (0.7, 2.3, 4.9), 2.0

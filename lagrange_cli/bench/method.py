@@ -1,4 +1,4 @@
-"""What `bench` compares: ways to compute the angles of a top, and the rows that they become."""
+"""Methods that `bench` compares: ways to compute the angles of a top, and their rows."""
 
 from __future__ import annotations
 

@@ -187,7 +187,7 @@ def _save(figure: Figure, path: str, title: str, findings: Findings) -> None:
 
 
 class MethodLook(NamedTuple):
-    """How the line of a method is drawn."""
+    """The look of the line of a method."""
 
     family: str
     mark: str

@@ -1,1 +1,1 @@
-"""Backwards: inputs that make a top do what is wanted, and the top behind a recording."""
+"""Inverse problems: inputs for target values, and the top behind a recording."""

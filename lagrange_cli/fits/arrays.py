@@ -32,12 +32,12 @@ def fit(
     sigma: Mapping[str, float] | float | None = None,
     known: Mapping[str, float] | None = None,
 ) -> Outcome:
-    """Return the top whose motion leaves least of a recording; its numbers are in `record()`.
+    """Return the top that fits a recording best; its numbers are in `record()`.
 
     Times have the shape (n,), angles too (radians, within whole turns, NaN where missing); instead
     of them the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to space, shape
     (n, 4).  `sigma` are standard deviations in radians, one or by channel; without it they are
-    those of what is left.  `known` are inputs by key: nothing else is taken for known.  Raises
+    those of the residuals.  `known` are inputs by key: nothing else is taken for known.  Raises
     LagtopError, DataError for a recording that cannot be fitted.
     """
     check_type("known", known, Mapping, NoneType)

@@ -1,4 +1,4 @@
-"""What is wanted of a top: `T_precession=2`, `regime=regular`, `theta_max_deg<60`."""
+"""Conditions of a search: `T_precession=2`, `regime=regular`, `theta_max_deg<60`."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ class Inequality(NamedTuple):
 
 
 class Conditions(NamedTuple):
-    """What is wanted of the record of a top."""
+    """Conditions on the record of a top."""
 
     numbers: Mapping[str, float]
-    """What some keys shall be."""
+    """Target values by key."""
     words: Mapping[str, str]
     bounds: list[Inequality]
 

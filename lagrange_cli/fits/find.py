@@ -1,4 +1,4 @@
-"""`find`: the tops of which some numbers of the record have wanted values."""
+"""`find`: tops whose records have target values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .roots import roots
 from .search import Scan, Search, Watch, scan_of, search_of
 
 _SWEPT = 2.0**-48
-"""What a number of a sweep may be off, over its size, and a little more."""
+"""The relative error of a number of a sweep is less."""
 
 
 class FoundTops(NamedTuple):
@@ -41,9 +41,9 @@ def find(
     An input is a number, or a text `[log:]from:to` where it is unknown; there are up to three
     unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER leave out
     what does not keep them.  Found is what a `scan` of so many values of each unknown brackets.
-    One unknown is the double whose number comes nearest to the wanted one: where that number hardly
+    One unknown is the double whose number comes nearest to the target: where that number hardly
     changes, other doubles do as well.  The list may be empty.  Raises LagtopError, also where the
-    number is the wanted one in a whole range.
+    number has its target value in a whole range.
     """
     check_type("scan", scan, Integral, NoneType)
     check_names("inputs", list(inputs) or ["m"], INPUTS)
@@ -90,7 +90,7 @@ def find_tops(search: Search, count: int | None = None, watch: Watch = iter) -> 
 
 
 def _roots(search: Search, grid: Scan) -> list[float]:
-    target, x = float(search.wanted[0]), grid.values[:, 0]
+    target, x = float(search.targets[0]), grid.values[:, 0]
 
     def off(at: float) -> float:
         return float(search.numbers([at])[0]) - target
@@ -101,14 +101,14 @@ def _roots(search: Search, grid: Scan) -> list[float]:
 
 
 def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], float]) -> None:
-    """Raise LagtopError where neighbouring values of the scan all have the wanted number."""
-    near = np.abs(y) <= _SWEPT * np.abs(search.wanted[0])
+    """Raise LagtopError if neighbouring values of the scan all have the target value."""
+    near = np.abs(y) <= _SWEPT * np.abs(search.targets[0])
     for i in np.flatnonzero(near[:-2] & near[1:-1] & near[2:]).tolist():
         if not any(map(off, x[i : i + 3].tolist())):
             last = i + int(np.argmin([*near[i:], False])) - 1
             name = next(iter(search.spans))
             raise LagtopError(
-                f"every {name} from {x[i]:g} to {x[last]:g} has {search.wanted_text()}, which does "
+                f"every {name} from {x[i]:g} to {x[last]:g} has {search.target_text()}, which does "
                 f"not tell {name}: take another condition, or another unknown"
             )
 
@@ -126,12 +126,12 @@ def _looked(search: Search, grid: Scan) -> str:
 def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
     """Return why nothing was found: what is nearest, or what is broken by all solutions."""
     if broken is not None:
-        return f"of {count} with {search.wanted_text()} none has {broken}"
+        return f"of {count} with {search.target_text()} none has {broken}"
     known = np.isfinite(grid.numbers).all(axis=1)
     if not known.any():
-        return f"no top of the scan has {search.wanted_text()}{_error(search, grid)}"
-    size = np.maximum(np.abs(search.wanted), np.ptp(grid.numbers[known], axis=0))
-    off = np.abs(grid.numbers - search.wanted) / np.where(size > 0, size, 1.0)
+        return f"no top of the scan has {search.target_text()}{_error(search, grid)}"
+    size = np.maximum(np.abs(search.targets), np.ptp(grid.numbers[known], axis=0))
+    off = np.abs(grid.numbers - search.targets) / np.where(size > 0, size, 1.0)
     nearest = int(np.nanargmin(np.where(known, np.linalg.norm(off, axis=1), np.nan)))
     reached = ", ".join(
         f"{key} = {_short(value, wanted)}"
@@ -143,7 +143,7 @@ def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
         f"{name} = {value:.6g}"
         for name, value in zip(search.spans, grid.values[nearest], strict=True)
     )
-    return f"nearest to {search.wanted_text()} is {reached} at {where}"
+    return f"nearest to {search.target_text()} is {reached} at {where}"
 
 
 def _error(search: Search, grid: Scan) -> str:
@@ -156,6 +156,6 @@ def _error(search: Search, grid: Scan) -> str:
 
 
 def _short(value: float, wanted: float) -> str:
-    """Return a number in six digits, or in all where six do not tell it from the wanted one."""
+    """Return a number in six digits, or in all if six are those of the target."""
     text = f"{value:.6g}"
     return double_text(value) if text == f"{wanted:.6g}" else text

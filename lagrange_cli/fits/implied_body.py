@@ -1,4 +1,4 @@
-"""What a motion tells of the body: its inputs, and those that cannot be told apart.
+"""The body that a motion implies: its inputs, and products of those not determined separately.
 
 A motion shows a = 2mgs/A (4,4) and b = C r0/A (4,5), and r0 where the spin is seen.  Their
 logarithms are linear in those of the six inputs; what is not known by itself is left as a product
@@ -23,7 +23,7 @@ _EXPONENTS: Mapping[str, Mapping[str, int]] = {
 
 
 class DeterminedProduct(NamedTuple):
-    """A product of powers of inputs that the numbers and the known inputs tell."""
+    """A product of powers of inputs that the numbers and the known inputs determine."""
 
     powers: Mapping[str, Fraction]
     value: float
@@ -45,7 +45,7 @@ def _power(name: str, exponent: Fraction) -> str:
 def determined_products(
     seen: Mapping[str, float], known: Mapping[str, float]
 ) -> list[DeterminedProduct]:
-    """Return what is told of the inputs that are not known: single ones, and products.
+    """Return the unknown inputs that are determined: single ones, and products.
 
     `seen` are a, b and, where it is seen, r0; none of them is 0.
     """
@@ -61,13 +61,13 @@ def determined_products(
             if name in known
         )
         rows.append((powers, shares, logarithm))
-    told = []
+    products = []
     for powers, shares, logarithm in _reduced(rows, len(unknown)):
         named = {name: n for name, n in zip(unknown, powers, strict=True) if n}
         sign = math.copysign(1.0, seen["b"]) if named.get("r0") else 1.0
         parts = {number: n for number, n in zip(seen, shares, strict=True) if n}
-        told.append(DeterminedProduct(named, sign * math.exp(logarithm), parts))
-    return told
+        products.append(DeterminedProduct(named, sign * math.exp(logarithm), parts))
+    return products
 
 
 Row = tuple[list[Fraction], list[Fraction], float]
@@ -103,16 +103,16 @@ def _less(row: Row, other: Row, times: Fraction) -> Row:
 
 
 def completed_body(
-    seen: Mapping[str, float], known: Mapping[str, float], told: list[DeterminedProduct]
+    seen: Mapping[str, float], known: Mapping[str, float], products: list[DeterminedProduct]
 ) -> dict[str, float]:
-    """Return all six inputs of a body that moves so; what is not told is 1, or such that C = A.
+    """Return all six inputs of a body that moves so; one that is not determined is 1, or C = A.
 
-    A product that is told stands in its first input; m and s that are told as a product are shared
+    A determined product stands in its first input; m and s that are known as a product are shared
     out so that m s^2 = A/10, as of a body that can be built.
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
     inputs = {name: others.get(name, 1.0) for name in BODY_INPUTS} | dict(known)
-    for x in told:
+    for x in products:
         (name, power), *rest = x.powers.items()
         assert power == 1
         inputs[name] = x.value / math.prod(inputs[other] ** float(n) for other, n in rest)

@@ -25,7 +25,7 @@ def invert(
 
     `seen` are KEY=NUMBER of theta_min, theta_max, T_nutation and mean_precession_rate, and may be
     mean_spin_rate; `known` are inputs of the body.  They tell a and b in closed form but for one
-    root, and with the spin C/A; what is not told of the body is 1, or such that C = A.  Raises
+    root, and with the spin C/A; what they do not determine is 1, or such that C = A.  Raises
     LagtopError, AbsentError where no top moves so.
     """
     numbers = _numbers(seen, radians)

@@ -1,4 +1,4 @@
-"""The least squares of some recordings: parameters, their covariance, and what is left."""
+"""The least squares of some recordings: parameters, their covariance, and residuals."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _N = len(STATE)
 
 
 class FittedParameters(NamedTuple):
-    """Parameters that leave least."""
+    """Parameters with the least sum of squares."""
 
     parameters: Parameters
     values: Array
@@ -167,7 +167,7 @@ class Problem:
         return np.array(low), np.array(high)
 
     def _at(self, values: Array) -> tuple[Array, Array, list[Array]]:
-        """Return residuals over their standard deviations, derivatives, and what is left."""
+        """Return weighted residuals, their derivatives, and the residuals in radians."""
         if self._last is None or not np.array_equal(self._last[0], values):
             self._last = (values.copy(), *self._computed(values))
         return self._last[1:]
@@ -193,7 +193,7 @@ class Problem:
 def _left(
     recording: Recording, quantities: Array, by_parameter: Array
 ) -> tuple[Residuals, Array] | None:
-    """Return what is left and its derivatives by the parameters; None where there is no top."""
+    """Return residuals and their derivatives by the parameters; None if there is no such top."""
     try:
         angles, by_state = angles_and_slopes(quantities[:_N], recording.t)
     except LagtopError:
@@ -255,7 +255,7 @@ class _Inverse:
 
 
 def sigma_left(solution: FittedParameters, recordings: Sequence[Recording]) -> list[dict[str, Any]]:
-    """Return standard deviations from what is left: one for each channel of all recordings."""
+    """Return standard deviations from residuals: one for each channel of all recordings."""
     channels: dict[str, list[Array]] = {}
     for recording, left in zip(recordings, solution.residuals, strict=True):
         for channel, values in zip(recording.channels, left, strict=True):

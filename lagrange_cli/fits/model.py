@@ -25,7 +25,7 @@ from ..sweeps.angles import sweep_angles
 from .recording import Recording
 
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
-"""What tells a motion: constants (4,4) and (4,5), and the start in radians."""
+"""The state of a motion: the constants (4,4) and (4,5), and the start in radians."""
 
 
 def motion_angles(states: Array, t: Array) -> Array:
@@ -70,7 +70,7 @@ class Residuals(NamedTuple):
 
 
 def residuals(recording: Recording, angles: Array) -> Residuals:
-    """Return what is left when angles of a motion, shape (3, times), are taken from a recording."""
+    """Return a recording less the angles of a motion, shape (3, times)."""
     if recording.kind == "angles":
         return _of_angles(recording, angles)
     theta, phi, psi = angles
@@ -98,7 +98,7 @@ def residuals(recording: Recording, angles: Array) -> Residuals:
 
 
 def _of_angles(recording: Recording, angles: Array) -> Residuals:
-    """Return what is left of angles that have columns of their own."""
+    """Return the residuals of angles that have columns of their own."""
     values, slopes = [], []
     for channel in recording.channels:
         i = ANGLES.index(channel)

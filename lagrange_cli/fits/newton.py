@@ -1,6 +1,6 @@
-"""Several numbers of the record that shall have wanted values, by several inputs.
+"""Values of several inputs at which several numbers of the record have target values.
 
-Newton's method, within the ranges, from the best points of the scan; found is what these lead to.
+Newton's method, within the ranges, starts from the best points of the scan.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _STEP = 1e-5
 
 
 def solutions(search: Search, grid: Scan) -> list[list[float]]:
-    """Return the values of the unknowns where all numbers are as wanted.
+    """Return the values of the unknowns at which all numbers have their target values.
 
     Raises LagtopError where these are not single points: where the numbers stay as they are along
     some direction at as many of them as a plateau takes.
@@ -48,7 +48,7 @@ def solutions(search: Search, grid: Scan) -> list[list[float]]:
             if len(loose) == _PLATEAU:
                 raise LagtopError(
                     f"the conditions leave {' and '.join(loose[0])} open: many have "
-                    f"{search.wanted_text()}; take another condition, or another unknown"
+                    f"{search.target_text()}; take another condition, or another unknown"
                 )
     return sorted(point.tolist() for point in found)
 
@@ -68,12 +68,12 @@ def _loose(search: Search, grid: Scan, point: Array) -> list[str]:
 def _sizes(search: Search, grid: Scan) -> Array:
     """Return what each number is measured by: how much it varies in the scan."""
     spread = np.nanstd(np.where(np.isfinite(grid.numbers), grid.numbers, np.nan), axis=0)
-    return np.where(spread > 0, spread, np.maximum(np.abs(search.wanted), 1e-300))
+    return np.where(spread > 0, spread, np.maximum(np.abs(search.targets), 1e-300))
 
 
 def _starts(search: Search, grid: Scan) -> list[Array]:
     """Return the points of the grid that are nearer than all their neighbours, the best first."""
-    off = (grid.numbers - search.wanted) / _sizes(search, grid)
+    off = (grid.numbers - search.targets) / _sizes(search, grid)
     size = np.linalg.norm(off, axis=1)
     size = np.where(np.isfinite(size), size, np.inf).reshape(grid.shape)
     best = np.isfinite(size)
@@ -97,7 +97,7 @@ def _descended(search: Search, grid: Scan, start: Array) -> Array:
     width = high - low
 
     def missing(x: Array) -> Array:
-        off = (search.swept(low + width * x[np.newaxis])[0] - search.wanted) / sizes
+        off = (search.swept(low + width * x[np.newaxis])[0] - search.targets) / sizes
         return np.where(np.isfinite(off), off, 1e6)
 
     def slopes(x: Array) -> Array:
@@ -118,10 +118,10 @@ def _settled(search: Search, point: Array) -> Array | None:
     best, least = None, np.inf
     for _ in range(_NEWTON_STEPS):
         slopes = number_slopes(search, point)
-        off = search.numbers(point.tolist()) - search.wanted
+        off = search.numbers(point.tolist()) - search.targets
         if not (np.isfinite(off).all() and np.isfinite(slopes).all()):
             break
-        rounding = np.abs(slopes) @ np.spacing(np.abs(point)) + np.spacing(np.abs(search.wanted))
+        rounding = np.abs(slopes) @ np.spacing(np.abs(point)) + np.spacing(np.abs(search.targets))
         size = float(np.max(np.abs(off) / rounding))
         if size < least:
             best, least = point, size

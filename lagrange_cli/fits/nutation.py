@@ -37,7 +37,7 @@ _PHASES = np.linspace(0, 1, 721)[:-1]
 
 
 class Shown(NamedTuple):
-    """What a recording shows of a nutation."""
+    """The nutation in a recording."""
 
     nutation: TurningPoints
     seen: tuple[float, float]

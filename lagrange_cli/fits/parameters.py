@@ -37,7 +37,7 @@ from .model import STATE
 from .recording import Recording
 
 FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero")
-"""What a recording depends on, the state first."""
+"""The quantities that a recording depends on, the state first."""
 _START = ("theta0", "thetadot0", "psidot0")
 _A, _B, _R0 = (FIT_QUANTITIES.index(name) for name in ("a", "b", "r0"))
 
@@ -45,7 +45,7 @@ Name = tuple[str, int]
 """A parameter, and the number of its recording; -1 for one of the body."""
 _INSTEAD = ("A_cm", "phidot0")
 _NOT_ZERO = ("s", "g", "r0")
-"""Inputs that stand in a product, of which nothing else could be told."""
+"""Inputs that are factors of a product: if one is 0, nothing else of it is determined."""
 _NEEDED = {"a", "b", "theta0", "psidot0"}
 _REACH = 3.0
 """Standard deviations at which uncertainties hold."""
@@ -61,7 +61,7 @@ class Parameters(NamedTuple):
     names: Sequence[Name]
 
     def quantities(self, values: Array, i: int) -> tuple[Array, Array]:
-        """Return what recording i depends on, and its derivatives by the parameters.
+        """Return the quantities of recording i, and their derivatives by the parameters.
 
         They are of shape (8,) and (8, parameters), in the order of QUANTITIES.
         """

@@ -1,4 +1,4 @@
-"""What a fit has found, by key: numbers with their standard deviations, and how good they are."""
+"""The results of a fit by key: numbers, their standard deviations, and the verdict."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _ROUNDING = 1e-11
 
 
 class Outcome:
-    """What was found of one recording."""
+    """The results of a fit for one recording."""
 
     def __init__(self, found: Fit, index: int, *, radians: bool = False) -> None:
         self.fit, self.index, self.radians = found, index, radians
@@ -122,7 +122,7 @@ class Outcome:
                 yield name, self.values[name], self.deviations[name]
 
     def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
-        """Yield what is told of the body, beside r0, and its standard deviation."""
+        """Yield the determined products of the body, but for r0, and their standard deviations."""
         rows = [FIT_QUANTITIES.index(name) for name in self.shown]
         covariance = self.covariance[np.ix_(rows, rows)]
         for product in self.determined:
@@ -155,7 +155,7 @@ class Outcome:
                 )
 
     def undetermined(self) -> list[str]:
-        """Return sentences on inputs that cannot be told apart."""
+        """Return sentences on inputs that are not determined separately."""
         several = [(x.name, list(x.powers)) for x in self.determined if len(x.powers) > 1]
         return [f"{', '.join(x[:-1])} and {x[-1]} only as {name}" for name, x in several]
 
@@ -231,7 +231,7 @@ class Outcome:
         }
 
     def inputs(self) -> dict[str, float]:
-        """Return inputs of `Top` that move so; what is not told is 1, or such that C = A."""
+        """Return inputs of `Top` that move so; what is not determined is 1, or such that C = A."""
         known = {name: x for name, x in self.known.items() if name in BODY_INPUTS}
         body = completed_body(self.shown, known, self.determined)
         return {
@@ -261,13 +261,13 @@ def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
 
 
 class Residual(NamedTuple):
-    """What is left of one channel."""
+    """The residuals of one channel."""
 
     rows: int
     rms: float
     """Root of the mean square, in radians."""
     lag1: float
-    """Correlation of what is left with itself a row later."""
+    """Correlation of the residuals with those a row later."""
 
     @property
     def is_noise(self) -> bool:

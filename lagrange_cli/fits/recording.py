@@ -24,8 +24,8 @@ CHANNELS = {
     "axis": ("theta", "across"),
     "attitude": ("theta", "across", "along"),
 }
-"""What is compared, by what is given: angles of their own columns; the direction of the axis, along
-the meridian and across it; or the attitude, with the turn about the axis too.
+"""Channels that are compared, by kind: angles of their own columns; the direction of the axis,
+along the meridian and across it; or the attitude, with the turn about the axis too.
 """
 LEAST_ROWS = 12
 _LEAST_NUMBERS = 4
@@ -40,7 +40,7 @@ class Recording:
     """The motion of one top as it was measured; what is missing is NaN."""
 
     name: str
-    """What a column says of the rows, or nothing."""
+    """The word of the rows in a column, or nothing."""
     t: Array
     """Times since the first row, in ascending order."""
     t_start: float
@@ -54,14 +54,14 @@ class Recording:
 
     @property
     def channels(self) -> list[str]:
-        """What is compared with a motion."""
+        """The channels that are compared with a motion."""
         if self.kind == "angles":
             return [name for name in ANGLES if name in self.angles]
         return list(CHANNELS[self.kind])
 
     @property
     def known(self) -> Mask:
-        """Where there is a number, shape (channels, times)."""
+        """Whether there is a number, shape (channels, times)."""
         sources = self.channels
         if self.kind != "angles":  # of an axis or an attitude all is there, or nothing
             sources = ["theta"] * len(self.channels)
@@ -75,7 +75,7 @@ class Recording:
 
 
 class Reading(NamedTuple):
-    """How a file of recordings is read."""
+    """Options of reading a file of recordings."""
 
     columns: Sequence[str] | None = None
     conventions: Conventions = Conventions()
@@ -147,7 +147,7 @@ def _joined(blocks: Iterable[Quantities]) -> dict[str, Array]:
 
 
 class Source(NamedTuple):
-    """Where rows come from, and how they are read."""
+    """The origin of rows, and options of reading them."""
 
     where: str
     reading: Reading

@@ -42,8 +42,8 @@ class ReportRow(NamedTuple):
 def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     """Return the units of the keys of the record of an outcome, with the names of a system."""
     units = {"t_start": system.named("time")}
-    for told, _ in outcome.products():
-        units[told.name] = system.unit_of(told.powers)
+    for product, _ in outcome.products():
+        units[product.name] = system.unit_of(product.powers)
     for key in outcome.record():
         if key.endswith(("_deg", "_rad")):
             units[key] = key[-3:]
@@ -118,7 +118,7 @@ def scene_text(outcome: Outcome, source: str) -> str:
     ]
     spread = {
         **{"theta0_deg" if x == "theta0" else x: (y, z) for x, y, z in outcome.found()},
-        **{told.name: (told.value, deviation) for told, deviation in outcome.products()},
+        **{product.name: (product.value, deviation) for product, deviation in outcome.products()},
     }
     for name, value in outcome.inputs().items():
         found, deviation = spread.get(name, (0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Where one number of the record, as a function of one input, has a target value.
+"""Roots: values of one input at which one number of the record has its target value.
 
 Each evaluation is by `solve`, whose numbers are correctly rounded: of neighbouring doubles the one
 is taken whose number comes nearest.  Where the number hardly changes with the input, many doubles

@@ -1,4 +1,4 @@
-"""What a search is over: the unknown inputs and their ranges, and what is asked of the record."""
+"""The unknown inputs of a search, their ranges, and a scan over them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Watch = Callable[[Iterable[Any]], Iterable[Any]]
 
 
 class Search(NamedTuple):
-    """Unknown inputs, the inputs that are known, and what is wanted."""
+    """Unknown inputs, known inputs, and the conditions."""
 
     fixed: Mapping[str, float]
     spans: Mapping[str, Span]
@@ -36,11 +36,11 @@ class Search(NamedTuple):
     radians: bool = False
 
     @property
-    def wanted(self) -> Array:
+    def targets(self) -> Array:
         """The numbers that the record shall have."""
         return np.array(list(self.conditions.numbers.values()))
 
-    def wanted_text(self) -> str:
+    def target_text(self) -> str:
         """Return the conditions that name numbers, as they are written."""
         numbers = self.conditions.numbers.items()
         return ", ".join(f"{key}={double_text(x).removesuffix('.0')}" for key, x in numbers)
@@ -60,7 +60,7 @@ class Search(NamedTuple):
         return Top(**{key: float(value) for key, value in self.inputs(values).items()})
 
     def numbers(self, values: Sequence[float]) -> Array:
-        """Return the numbers that have a wanted value, each the nearest double; NaN for none."""
+        """Return the numbers that have a target value, each the nearest double; NaN for none."""
         try:
             motion = solve(self.top(values))
             record = motion.record(radians=self.radians, keys=list(self.conditions.numbers))
@@ -118,7 +118,7 @@ class Scan(NamedTuple):
     values: Array
     """The unknowns of each top, shape (tops, unknowns); the last unknown varies fastest."""
     numbers: Array
-    """What the numbers that are wanted are there, in the same shape; NaN for none."""
+    """The numbers that have a target value there, in the same shape; NaN for none."""
 
 
 def scan_of(search: Search, count: int | None, watch: Watch = iter) -> Scan:

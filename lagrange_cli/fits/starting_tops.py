@@ -1,4 +1,4 @@
-"""Where a fit starts: tops in closed form from what a recording shows, the nearest first.
+"""Starts of a fit: tops in closed form from the nutation in a recording, the nearest first.
 
 If the tilt is not recorded, turning points are tried on a grid.  Each pair of them, with the period
 and the mean precession, gives tops in closed form.  Their precession and spin over a period are

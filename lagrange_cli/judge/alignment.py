@@ -31,7 +31,7 @@ _NEAR_POLE = 1e-9
 
 
 class Alignment(NamedTuple):
-    """What is done to a trajectory before it is judged."""
+    """Changes of a trajectory before it is judged."""
 
     axis: str = "z"
     up: str = "z"
@@ -65,7 +65,7 @@ def alignment(words: Sequence[str]) -> Alignment:
     return chosen
 
 
-class Frames(NamedTuple):
+class FrameChange(NamedTuple):
     """Constant rotations and shifts that bring a trajectory to our frames."""
 
     space: Array
@@ -82,14 +82,14 @@ class Frames(NamedTuple):
         return replace(turned, t=seen.t - self.time, angles=angles)
 
 
-def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> Frames:
+def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> FrameChange:
     """Return the frames of a trajectory from its first row.
 
     Raises LagtopError where what is given of the attitude does not have the frames.
     """
     if first.quaternion is None:
         _check(alignment, first)
-    frames = Frames(
+    frames = FrameChange(
         rotations.to_z(alignment.up),
         rotations.to_z(alignment.axis),
         float(first.t[0]) if alignment.time else 0.0,
@@ -116,7 +116,7 @@ def _check(alignment: Alignment, first: Seen) -> None:
         raise LagtopError("align needs the whole attitude for axis, up, body and space", "align")
 
 
-def _counted_from(frames: Frames, seen: Seen, exact: dict[str, float]) -> Frames:
+def _counted_from(frames: FrameChange, seen: Seen, exact: dict[str, float]) -> FrameChange:
     """Return the frames turned about the vertical and about the figure axis to fit a row."""
     if seen.quaternion is not None:
         angles = {key: float(x[0]) for key, x in rotations.angles_of(seen.quaternion).items()}

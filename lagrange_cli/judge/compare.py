@@ -184,7 +184,7 @@ def _verdict(judgement: Judgement, limit: float, found: Convergence | None) -> s
 
 
 class ComparisonRequest(NamedTuple):
-    """What is asked of trajectories in files."""
+    """Options of comparing trajectories in files."""
 
     columns: Sequence[str] | None = None
     """The names of all columns from the left; None for those that the files give."""

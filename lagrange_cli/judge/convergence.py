@@ -21,7 +21,7 @@ LEAST_ORDER = 0.5
 
 
 class Convergence(NamedTuple):
-    """How the error depends on the step."""
+    """The dependence of the error on the step."""
 
     order: float | None
     """Fitted exponent; None where there are less than two errors to fit."""

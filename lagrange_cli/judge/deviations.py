@@ -34,7 +34,7 @@ class Deviations:
         self._first: dict[str, float] = {}
 
     def of(self, seen: Seen) -> dict[str, Array]:
-        """Return the deviations by name; what cannot be told is left out.
+        """Return the deviations by name; unknown ones are missing.
 
         `error` is that of the attitude, or else of the axis, of the angles given, or of the angular
         velocity over the size of the rates.  A row with anything that is not finite is NaN there.

@@ -20,7 +20,7 @@ from .deviations import Deviations
 from .tally import Extremes, Kept, LineFit, Passages
 
 LIMIT = 1e-3
-"""The error in radians (rad) up to which a trajectory is fine, unless told otherwise."""
+"""The error in radians (rad) up to which a trajectory is fine by default."""
 PASSED = {"t_past_1e_6": 1e-6, "t_past_1e_3": 1e-3, "t_past_0_1": 0.1, "t_past_1": 1.0}
 _JUDGED = {
     "attitude": "attitude",
@@ -30,7 +30,7 @@ _JUDGED = {
     "psi": "angles",
     "rate": "rates",
 }
-"""What the error is of, by the first deviation that there is."""
+"""Quantities that the error is of, by the first deviation that there is."""
 PROVED, DISPROVED = 1e-6, 1e-3
 """Errors at the first row by which one order of a quaternion is right and the other is wrong."""
 
@@ -42,7 +42,7 @@ def _field(meaning: str, default: Any = None) -> Any:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Judgement:
-    """What is said of one trajectory; angles are in radians, and what cannot be told is None."""
+    """The judgement of one trajectory; angles are in radians, and an unknown number is None."""
 
     file: str | None = _field("the file, `-` for standard input")
     step: float | None = _field("its step, by --steps")
@@ -130,7 +130,7 @@ class ReadTrajectory(NamedTuple):
     conventions: Conventions
     alignment: Alignment
     change: Callable[[Seen], Seen] | None = None
-    """What is done to it before it is brought to our frames."""
+    """Change of the trajectory before it is brought to our frames."""
 
     def see(self, block: Quantities) -> Seen:
         """Return what a block shows, in the frames of its maker."""
@@ -172,7 +172,7 @@ def _first_row(block: Quantities) -> dict[str, Array]:
 
 
 class _Tally:
-    """What is known of a trajectory so far."""
+    """The summary of a trajectory so far."""
 
     def __init__(self, motion: Motion, given: ReadTrajectory, first: Mapping[str, Array]) -> None:
         self.motion, self.proved = motion, None

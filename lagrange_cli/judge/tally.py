@@ -1,4 +1,4 @@
-"""What is kept of the deviations of a trajectory while its rows pass by, in flat memory."""
+"""Summaries of the deviations of a trajectory while its rows pass by, in flat memory."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class FittedLine(NamedTuple):
     slope: float
     """Growth per unit of time."""
     rest: float
-    """Root mean square of what is left."""
+    """Root mean square of the residuals."""
 
 
 class LineFit:

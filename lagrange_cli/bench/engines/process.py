@@ -25,7 +25,7 @@ from .scaled_body import Body, scaled_body
 from .serve import serve
 
 SECONDS_TO_START = 60.0
-"""How long the import of an engine may take."""
+"""Seconds that the import of an engine may take."""
 LONGEST_ERROR = 80
 """Letters of the error of an engine that are shown."""
 STEPS = [50, 200, 800, 3200]

@@ -30,7 +30,7 @@ class Body(NamedTuple):
     """Nutation period."""
 
     def steps(self, gap: float, per_period: float) -> int:
-        """Return how many equal steps go into a gap, none longer than the wanted part of a period.
+        """Return how many equal steps go into a gap, none longer than the given part of a period.
 
         Such a gap, of a whole number of steps, may be off by rounding.
         """

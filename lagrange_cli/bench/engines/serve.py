@@ -1,4 +1,4 @@
-"""What runs inside the process of an engine: builds the model once, then simulates on request."""
+"""The server inside the process of an engine: it builds the model once and simulates on request."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Random command lines, most of them wrong: each must end as documented; not collected by pytest.
 
-    python tests/fuzz_lines.py --lines 40000 --seed 1
+    python tests/tools/fuzz_lines.py --lines 40000 --seed 1
 
 Options and their values are drawn from what each command declares, and then spoilt in places.  A
 line is a fault if it ends with a traceback, a warning of a library or an undocumented exit code, if

@@ -1,6 +1,6 @@
 """Dirty rows in files of tops, times and trajectories: none lost, none misjudged; not collected.
 
-    python tests/fuzz_rows.py --rows 100000 --seed 1
+    python tests/tools/fuzz_rows.py --rows 100000 --seed 1
 
 A row of tops is good if each of its cells is a number that a top can have, by a plain rule of this
 script.  A sweep must keep every row in its place: a good one with its numbers, another one with an

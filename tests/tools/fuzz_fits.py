@@ -1,7 +1,7 @@
 """Random recordings for `fit`, made by an integrator and judged by the truth; not collected.
 
-    python tests/fuzz_fits.py --recordings 500 --seed 1
-    python tests/fuzz_fits.py --recordings 1 --seed 317 --show
+    python tests/tools/fuzz_fits.py --recordings 500 --seed 1
+    python tests/tools/fuzz_fits.py --recordings 1 --seed 317 --show
 
 A recording has theta, phi and psi, or two of them, at 80 to 400 frames over 1.5 to 8 periods of a
 random top that nutates by at least three times the noise of 0.05 to 1 degree.  Frames may be
@@ -23,9 +23,13 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+
+sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
+
 from engines import Array, Body, dop853
 from scipy.spatial.transform import Rotation
 

@@ -1,8 +1,8 @@
 """Fresh random scenes of the worst kinds, judged in ball arithmetic; not collected by pytest.
 
-    python tests/fuzz.py --scenes 20000 --seed 1
-    python tests/fuzz.py --scenes 2000 --kinds 'over a pole,cusp' --sweep
-    python tests/fuzz.py --scenes 100000 --numbers
+    python tests/tools/fuzz.py --scenes 20000 --seed 1
+    python tests/tools/fuzz.py --scenes 2000 --kinds 'over a pole,cusp' --sweep
+    python tests/tools/fuzz.py --scenes 100000 --numbers
 
 Each scene is judged at twenty times: fifteen next to a whole, half or quarter number of periods
 (the double and both its neighbours), five anywhere, from 1 to 1e14 periods on both sides of the
@@ -27,9 +27,13 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
+
 from arb_balls import arb_bits as precision
 from ball_judge import Judge
 from balls.requested import Requested

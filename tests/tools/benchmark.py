@@ -1,4 +1,4 @@
-"""`python tests/benchmark.py`: costs as ratios, all in one run; `... sweeps text`: some sections.
+"""Costs as ratios in one run: `python tests/tools/benchmark.py`; `... sweeps text`: some sections.
 
 Peers: the floor sin + cos + 3 arctan2, scipy.special's ellipj + 2 elliprj, heyoka's dense output.
 """
@@ -40,7 +40,7 @@ from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, records
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
 COUNT = 1_000_000
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 TOP = {name: np.nan if x is None else float(x) for name, x in Top().as_dict().items()}
 STARTS: dict[str, dict[str, float]] = {
     "worked example": {},

@@ -1,6 +1,6 @@
 """Signals and kills at any moment: nothing is left half written; not collected by pytest.
 
-    python tests/fuzz_signals.py --signals 200 --kills 60 --seed 1
+    python tests/tools/fuzz_signals.py --signals 200 --kills 60 --seed 1
 
 A command gets a signal, or its whole process group does, at a random moment from its start to its
 end.  It must die by that signal or have ended as ever, without a traceback, must leave an old file
