@@ -23,47 +23,33 @@ from lagrange_cli.elliptic.eta import eta_constants, record
 from lagrange_cli.elliptic.eta_table import EtaTable
 from lagrange_cli.elliptic.quadrature import Quadrature
 
+
+def quadrature(
+    lower: str, upper: str, outer: str = "", g: str = "1", height: str = "0"
+) -> Quadrature:
+    """Return the quadrature of roots that are written as decimals, the outer ones in one text."""
+    roots = tuple(map(Fraction, outer.split()))
+    return Quadrature(Fraction(lower), Fraction(upper), roots, Fraction(g), Fraction(height))
+
+
 ORBITS = {
-    "generic": Quadrature(Fraction("-0.5"), Fraction("0.6"), (Fraction("-1.3"), Fraction("1.5"))),
-    "Earth-like": Quadrature(Fraction("-0.9"), Fraction("0.9"), (Fraction(-33), Fraction("33.1"))),
-    "narrow band": Quadrature(
-        Fraction("0.3"), Fraction("0.3") + Fraction("1e-12"), (Fraction(-1), Fraction("1.2"))
-    ),
-    "outer root close above": Quadrature(
-        Fraction("-0.2"), Fraction("0.7"), (Fraction("-1.5"), Fraction("0.7") + Fraction("1e-12"))
-    ),
-    "outer root close below": Quadrature(
-        Fraction("-0.2"), Fraction("0.7"), (Fraction("-0.2") - Fraction("1e-12"), Fraction(2))
-    ),
-    "1 - k1 = 1e-12": Quadrature(
-        Fraction(-1),
-        Fraction(1),
-        (-1 - Fraction("2.5e-13"), 1 + Fraction("2.5e-13")),
-        Fraction("0.7"),
-    ),
-    "both above": Quadrature(Fraction("-0.5"), Fraction("0.5"), (Fraction("0.8"), Fraction(3))),
-    "both below": Quadrature(Fraction("0.1"), Fraction("0.5"), (Fraction(-4), Fraction("0.05"))),
-    "cubic, root above": Quadrature(
-        Fraction("0.277"), Fraction("0.866"), (Fraction("1.29"),), Fraction("319.09")
-    ),
-    "cubic, root below": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction("-0.4"),)),
-    "complex pair inside": Quadrature(
-        Fraction("-0.5"), Fraction("0.6"), (Fraction("0.1"),) * 2, Fraction(2), Fraction("0.7")
-    ),
-    "complex pair above": Quadrature(
-        Fraction("-0.5"), Fraction("0.6"), (Fraction(3),) * 2, Fraction(1), Fraction("0.01")
-    ),
-    "complex pair below": Quadrature(
-        Fraction("0.5"), Fraction("0.6"), (Fraction("-2"),) * 2, Fraction(1), Fraction("9")
-    ),
-    "complex pair close to the band": Quadrature(
-        Fraction("-0.5"), Fraction("0.6"), (Fraction("0.2"),) * 2, Fraction(1), Fraction("1e-6")
-    ),
-    "complex pair close to an end": Quadrature(
-        Fraction("-0.5"), Fraction("0.6"), (Fraction("0.6"),) * 2, Fraction(1), Fraction("1e-9")
-    ),
-    "quadratic": Quadrature(Fraction("-0.5"), Fraction("0.7"), (), Fraction("0.3")),
-    "equal outer roots": Quadrature(Fraction("-0.1"), Fraction("0.8"), (Fraction(2), Fraction(2))),
+    "generic": quadrature("-0.5", "0.6", "-1.3 1.5"),
+    "Earth-like": quadrature("-0.9", "0.9", "-33 33.1"),
+    "narrow band": quadrature("0.3", "0.300000000001", "-1 1.2"),
+    "outer root close above": quadrature("-0.2", "0.7", "-1.5 0.700000000001"),
+    "outer root close below": quadrature("-0.2", "0.7", "-0.200000000001 2"),
+    "1 - k1 = 1e-12": quadrature("-1", "1", "-1.00000000000025 1.00000000000025", "0.7"),
+    "both above": quadrature("-0.5", "0.5", "0.8 3"),
+    "both below": quadrature("0.1", "0.5", "-4 0.05"),
+    "cubic, root above": quadrature("0.277", "0.866", "1.29", "319.09"),
+    "cubic, root below": quadrature("-0.1", "0.8", "-0.4"),
+    "complex pair inside": quadrature("-0.5", "0.6", "0.1 0.1", "2", "0.7"),
+    "complex pair above": quadrature("-0.5", "0.6", "3 3", "1", "0.01"),
+    "complex pair below": quadrature("0.5", "0.6", "-2 -2", "1", "9"),
+    "complex pair close to the band": quadrature("-0.5", "0.6", "0.2 0.2", "1", "1e-6"),
+    "complex pair close to an end": quadrature("-0.5", "0.6", "0.6 0.6", "1", "1e-9"),
+    "quadratic": quadrature("-0.5", "0.7", g="0.3"),
+    "equal outer roots": quadrature("-0.1", "0.8", "2 2"),
 }
 TOP_KEYS = ["a", "u1", "u2", "u3", "T_nutation"]
 PARTS = [1e-6, 0.21, 0.4999, 0.62, 3.3, -7.7]
@@ -232,18 +218,15 @@ def test_far_times(lagtop: Lagtop) -> None:
 
 def test_digits_close_to_the_ends() -> None:
     """Next to a turning point eta is reckoned from there."""
-    of = Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2)))
+    of = quadrature("0", "1", "-1 2")
     (row,) = array_rows(EtaTable(ListedPoints([Fraction("1e-9")]), of))
     assert row["eta"] == pytest.approx(0.5e-18, rel=1e-12, abs=0)
 
 
 def test_the_order_of_the_outer_roots_is_free() -> None:
-    one, other = Quadrature(LOW, HIGH, (OUT, IN)), Quadrature(LOW, HIGH, (IN, OUT))
+    one, other = quadrature("-0.5", "0.6", "-1.3 1.5"), quadrature("-0.5", "0.6", "1.5 -1.3")
     assert record(one) == record(other)
     assert record(one)["q"] == 1.4
-
-
-LOW, HIGH, OUT, IN = (Fraction(x) for x in ("-0.5", "0.6", "-1.3", "1.5"))
 
 
 def test_digits_agree_with_doubles() -> None:
@@ -287,8 +270,7 @@ def test_complex_pair_with_digits() -> None:
         ("0.6", "0.6000000000000000000000000000000000000001", "0.6", "1e-50"),
     ]
     for lower, upper, p, height in cases:
-        band, roots = (Fraction(lower), Fraction(upper)), (Fraction(p),) * 2
-        of = Quadrature(*band, roots, height=Fraction(height))
+        of = quadrature(lower, upper, f"{p} {p}", height=height)
         shown = record(of, 30, Fraction("0.3"))
         with mpmath.workdps(300):
             low, high, middle, far = map(mpmath.mpf, (lower, upper, p, height))
@@ -351,7 +333,7 @@ def test_chain_of_the_command(lagtop: Lagtop) -> None:
 
 def test_check_names_the_root() -> None:
     with pytest.raises(LagtopError, match="outer roots must lie outside"):
-        record(Quadrature(Fraction(0), Fraction(1), (Fraction(1, 2),)))
+        record(quadrature("0", "1", "0.5"))
 
 
 @pytest.mark.parametrize(
@@ -374,25 +356,25 @@ def test_sizes_that_doubles_cannot_hold_are_refused(lagtop: Lagtop, line: str) -
 
 
 @pytest.mark.parametrize(
-    ("quadrature", "zeros"),
+    ("of", "zeros"),
     [
-        (Quadrature(Fraction(-1), Fraction(1), (Fraction(-2), Fraction(2))), "p d gamma"),
-        (Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2))), "delta_star d"),
-        (Quadrature(Fraction(0), Fraction(1), (Fraction(2), Fraction(2))), "delta_star q k k1"),
-        (Quadrature(Fraction(1), Fraction(1), (Fraction(2),)), "k k1 s d"),
-        (Quadrature(Fraction(-1), Fraction(1), (Fraction(2),)), ""),
+        (quadrature("-1", "1", "-2 2"), "p d gamma"),
+        (quadrature("0", "1", "-1 2"), "delta_star d"),
+        (quadrature("0", "1", "2 2"), "delta_star q k k1"),
+        (quadrature("1", "1", "2"), "k k1 s d"),
+        (quadrature("-1", "1", "2"), ""),
         # m'^2 = 4 m''^2, so that m'' delta = m' delta*
-        (Quadrature(Fraction(1), Fraction(2), (Fraction(2, 3),)), "s"),
+        (quadrature("1", "2", "2/3"), "s"),
         # m'^2 = 4 m''^2, so that m'' delta = -m' delta*
-        (Quadrature(Fraction(-1), Fraction(2), (Fraction(-2),)), "gamma"),
+        (quadrature("-1", "2", "-2"), "gamma"),
     ],
 )
-def test_zeros_of_the_constants_are_exact(quadrature: Quadrature, zeros: str) -> None:
+def test_zeros_of_the_constants_are_exact(of: Quadrature, zeros: str) -> None:
     """A constant is printed as 0 just where it is 0, in doubles and in digits.
 
     The judge is (3.2.3) and (3.2.12) in fractions, m' and m'' by their squares.
     """
-    in_digits, in_doubles = record(quadrature, 20), record(quadrature)
+    in_digits, in_doubles = record(of, 20), record(of)
     assert {key for key, text in in_digits.items() if text == "0.0"} == set(zeros.split())
     assert {key for key, x in in_doubles.items() if x == 0} == set(zeros.split())
 
@@ -400,8 +382,8 @@ def test_zeros_of_the_constants_are_exact(quadrature: Quadrature, zeros: str) ->
 def test_constants_that_nearly_vanish_have_their_digits() -> None:
     """d = (m''^2 - m'^2)/(m' + m'')^2 with m'^2 = 1 + x and m''^2 = 1 exactly: about -x/4."""
     x = Fraction("1e-80")
-    quadrature = Quadrature(Fraction(0), x, (Fraction(-1), 1 + 2 * x))
-    lower, upper, outer = quadrature.lower, quadrature.upper, quadrature.outer
+    of = Quadrature(Fraction(0), x, (Fraction(-1), 1 + 2 * x))
+    lower, upper, outer = of.lower, of.upper, of.outer
     square1 = abs((upper - outer[0]) * (upper - outer[1]))
     square2 = abs((lower - outer[0]) * (lower - outer[1]))
     with mpmath.workdps(200):
@@ -409,4 +391,4 @@ def test_constants_that_nearly_vanish_have_their_digits() -> None:
             mpmath.mpf(y.numerator) / y.denominator for y in (square1, square2, square2 - square1)
         )
         exact = difference / (mpmath.sqrt(first) + mpmath.sqrt(second)) ** 2
-        assert abs(mpmath.mpf(record(quadrature, 20)["d"]) / exact - 1) < 1e-19
+        assert abs(mpmath.mpf(record(of, 20)["d"]) / exact - 1) < 1e-19
