@@ -21,7 +21,7 @@ from ..motion.solve import Motion
 from .camera import Camera, camera_at, runs, side_camera
 from .curves import MOST_PERIODS, span, turn_span
 from .globe import Limits, draw_globe
-from .motion_facts import nutation_period
+from .motion_facts import tilt_period
 from .page import Page, check_pixels
 from .request import Progress, no_progress
 from .sphere import axis_path
@@ -115,7 +115,7 @@ def film_pace(
 
 def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
     """Return the time that a film shows.  Raises LagtopError where its path would be a blot."""
-    nutation = nutation_period(motion)
+    nutation = tilt_period(motion)
     if nutation and speed * duration > MOST_PERIODS * nutation:
         most = f"{MOST_PERIODS * nutation / duration:.6g} ({MOST_PERIODS} nutation periods)"
         raise LagtopError(f"speed must be at most {most}, got {speed:g}", "speed")
@@ -159,7 +159,7 @@ def film_bytes(
 
 
 def film_span(motion: Motion) -> float:
-    """Return the time of a turn of the precession, but of six nods at most: more would flicker."""
+    """Return the time of a turn of the precession, at most six nutations: more would flicker."""
     return min(turn_span(motion), span(motion, 6))
 
 

@@ -1,4 +1,4 @@
-// From a motion to its angles at any time: the mean growth in 32 digits, and a short series.  A
+// From a motion to its angles at any time: the mean rates in 32 digits, and a short series.  A
 // time far away costs what a near one costs, and is as exact.
 
 import { PI, pair } from "./pair.js";
