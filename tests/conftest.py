@@ -7,12 +7,13 @@ import json
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from click.testing import CliRunner, Result
+from hypothesis import HealthCheck, settings
 
 from lagrange_cli.cli.group import main
 
@@ -26,6 +27,11 @@ def pytest_configure(config: pytest.Config) -> None:
     """Write the bytecode of the package, as pip does: else each tested command makes it again."""
     if not hasattr(config, "workerinput"):  # once, not in each worker of pytest-xdist
         compileall.compile_dir(ROOT / "lagrange_cli", quiet=1)
+
+
+# No test may fail because the machine is busy.
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -66,3 +72,50 @@ def assert_one_line(result: Result, code: int, message: str) -> None:
 def process(*args: str, check: bool = True, **extra: Any) -> subprocess.CompletedProcess[bytes]:
     """Run the command as a process of its own."""
     return subprocess.run([*LAGTOP, *args], capture_output=True, check=check, **extra)
+
+
+FORKED = """if True:
+    import os, sys
+    before, each, *lines = sys.argv[1:]
+    exec(before)
+    for i, line in enumerate(lines):
+        child = os.fork()
+        if not child:
+            for number, name in ((1, "out"), (2, "err")):
+                os.dup2(os.open(f"{i}.{name}", os.O_CREAT | os.O_WRONLY), number)
+            exec(each)
+            sys.argv = ["lagtop", *line.split()]
+            from lagrange_cli.__main__ import main
+            main()
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        with open(f"{i}.code", "w") as file:
+            file.write(str(code))
+"""
+
+
+class Ended(NamedTuple):
+    """The end of a command that ran in a process."""
+
+    code: int
+    stdout: bytes
+    stderr: bytes
+
+
+def forked(lines: Iterable[str], folder: Path, *, before: str = "", each: str = "") -> list[Ended]:
+    """Run command lines in a folder, each in a fork of one process that starts only once.
+
+    The process runs the code `before` at its start, and each fork runs the code `each`.
+    """
+    listed = list(lines)
+    place = folder / "forked"
+    place.mkdir()
+    subprocess.run(
+        [sys.executable, "-c", FORKED, before, each, *listed], check=True, cwd=place, timeout=300
+    )
+    return [
+        Ended(
+            int((place / f"{i}.code").read_text()),
+            *((place / f"{i}.{name}").read_bytes() for name in ("out", "err")),
+        )
+        for i in range(len(listed))
+    ]

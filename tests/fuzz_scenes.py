@@ -1,7 +1,8 @@
 """Random scenes of the worst kinds, for `fuzz.py`; each kind is one function and one entry.
 
 Numbers are doubles, so that what is to be exact (a cusp, a pass over a pole, a steady precession)
-uses tilts whose cosine is rational and numbers with few bits.
+uses tilts whose cosine is rational and numbers with few bits.  Kinds of `lagtop stability` stand
+in `bench/hard_scenes.py`, with what both share.
 """
 
 from __future__ import annotations
@@ -13,19 +14,18 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
+from lagrange_cli.bench.hard_scenes import (
+    STRATA,
+    any_body,
+    log_uniform,
+    signed,
+    threshold_spin,
+    to_pole,
+)
+
 Scene = dict[str, Any]
 TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
 """Degrees whose cosine is rational."""
-
-
-def power(rng: random.Random, low: float, high: float) -> float:
-    """Return a number between 10^low and 10^high, its logarithm uniform."""
-    return 10 ** rng.uniform(low, high)
-
-
-def signed(rng: random.Random, size: float) -> float:
-    """Return the size with a random sign."""
-    return rng.choice([-1, 1]) * size
 
 
 def near(rng: random.Random, value: float) -> float:
@@ -34,35 +34,26 @@ def near(rng: random.Random, value: float) -> float:
         for _ in range(rng.randrange(3)):
             value = math.nextafter(value, signed(rng, math.inf))
         return value
-    return value * (1 + signed(rng, power(rng, -16, -2)))
+    return value * (1 + signed(rng, log_uniform(rng, -16, -2)))
 
 
 def body(rng: random.Random) -> Scene:
-    """Return a top with m = s = g = 1."""
-    A = rng.uniform(0.5, 2)
-    C = A * rng.choice([rng.uniform(0.01, 2), 1, 2, power(rng, -8, -2)])
-    return {"m": 1, "A": A, "C": C, "s": 1, "g": 1}
-
-
-def start(rng: random.Random) -> Scene:
-    """Return generic rates and a generic tilt."""
-    return {
-        "r0": rng.uniform(-6, 6),
-        "theta0_deg": rng.uniform(1, 179),
-        "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
-        "psidot0": rng.choice([0, rng.uniform(-4, 4), rng.uniform(-4, 4)]),
-    }
+    """Return a top with m = s = g = 1, which may be a sphere, a disc or a needle."""
+    scene: Scene = dict(any_body(rng))
+    ratio = rng.choice([rng.uniform(0.01, 2), 1, 2, log_uniform(rng, -8, -2)])
+    return scene | {"C": scene["A"] * ratio}
 
 
 def generic(rng: random.Random) -> Scene:
-    """Return a scene with nothing special."""
-    return body(rng) | start(rng)
+    """Return a scene with nothing special, which may have no precession rate."""
+    scene = STRATA["generic"](rng) | body(rng)
+    return scene | {"psidot0": rng.choice([0, scene["psidot0"], scene["psidot0"]])}
 
 
 def from_rest(rng: random.Random) -> Scene:
     """Return a release from rest, slow to fast."""
     scene = body(rng) | {"theta0_deg": rng.uniform(0.1, 179.9)}
-    return scene | {"r0": signed(rng, rng.choice([power(rng, -3, 3), rng.uniform(0, 9)]))}
+    return scene | {"r0": signed(rng, rng.choice([log_uniform(rng, -3, 3), rng.uniform(0, 9)]))}
 
 
 def in_radians(rng: random.Random) -> Scene:
@@ -74,12 +65,12 @@ def in_radians(rng: random.Random) -> Scene:
 
 def extreme(rng: random.Random) -> Scene:
     """Return sizes from 1e-30 to 1e30, in units of their own and in the rates."""
-    scene, (mass, length, second) = generic(rng), (power(rng, -20, 20) for _ in range(3))
+    scene, (mass, length, second) = generic(rng), (log_uniform(rng, -20, 20) for _ in range(3))
     scene |= {"m": mass, "s": length, "g": length / second**2}
     scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
     wild = rng.random() < 0.5
     for key in ("r0", "thetadot0", "psidot0"):
-        scene[key] *= power(rng, -12, 12) / second if wild else 1 / second
+        scene[key] *= log_uniform(rng, -12, 12) / second if wild else 1 / second
     return scene
 
 
@@ -87,7 +78,7 @@ def fast(rng: random.Random) -> Scene:
     """Return large rates, one or all of them."""
     scene = generic(rng)
     for key in rng.sample(["r0", "thetadot0", "psidot0"], rng.choice([1, 1, 2, 3])):
-        scene[key] = signed(rng, power(rng, 1, 15))
+        scene[key] = signed(rng, log_uniform(rng, 1, 15))
     return scene
 
 
@@ -95,27 +86,17 @@ def slow(rng: random.Random) -> Scene:
     """Return tiny rates, one or all of them."""
     scene = generic(rng)
     for key in rng.sample(["r0", "thetadot0", "psidot0"], rng.choice([1, 2, 3])):
-        scene[key] = signed(rng, power(rng, -30, -1))
+        scene[key] = signed(rng, log_uniform(rng, -30, -1))
     return scene
-
-
-def over(scene: Scene, pole: int, speed2: float) -> Scene:
-    """Return the rates that lead from cos(theta0) = u over a pole, theta'^2 + .. = speed2."""
-    u = math.cos(math.radians(scene["theta0_deg"]))
-    rate = pole * scene["C"] * scene["r0"] / scene["A"] / (1 + pole * u)
-    rest = max(speed2 - rate * rate * (1 - u * u), 0)
-    return scene | {"psidot0": rate, "thetadot0": math.sqrt(rest)}
 
 
 def near_separatrix(rng: random.Random) -> Scene:
     """Return a swing that nearly ends upright."""
     scene = generic(rng)
-    threshold = 2 * math.sqrt(scene["A"]) / scene["C"]
     part = rng.uniform(0.05, 0.9)
-    scene["r0"] = signed(rng, threshold * math.sqrt(part))
+    scene["r0"] = signed(rng, threshold_spin(scene) * math.sqrt(part))
     u = rng.uniform(2 * part - 1, 1)
-    scene["theta0_deg"] = math.degrees(math.acos(u))
-    scene = over(scene, 1, 2 / scene["A"] * (1 - u))
+    scene |= to_pole(scene, u, 1, 2 / scene["A"] * (1 - u))
     scene["thetadot0"] = signed(rng, near(rng, scene["thetadot0"]))
     return scene | {"psidot0": near(rng, scene["psidot0"])}
 
@@ -136,8 +117,8 @@ def separatrix(rng: random.Random) -> Scene:
 
 def near_steady(rng: random.Random) -> Scene:
     """Return a steady precession, a little disturbed."""
-    scene = generic(rng) | {"thetadot0": rng.choice([0, signed(rng, power(rng, -16, -3))])}
-    scene["r0"] = signed(rng, 2 * math.sqrt(scene["A"]) / scene["C"] * rng.uniform(1, 5))
+    scene = generic(rng) | {"thetadot0": rng.choice([0, signed(rng, log_uniform(rng, -16, -3))])}
+    scene["r0"] = signed(rng, threshold_spin(scene) * rng.uniform(1, 5))
     u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
     root = math.copysign(math.sqrt(max(b * b - 4 * scene["A"] * u, 0)), b)
     return scene | {"psidot0": near(rng, 2 / (b + root))}
@@ -156,7 +137,7 @@ def cusp(rng: random.Random) -> Scene:
     """Return a scene at a cusp: just off rest, or b N^2 + P (b P - a) sin^2 nearly 0."""
     scene = generic(rng)
     if rng.random() < 0.4:
-        tiny = {key: signed(rng, power(rng, -18, -3)) for key in ("thetadot0", "psidot0")}
+        tiny = {key: signed(rng, log_uniform(rng, -18, -3)) for key in ("thetadot0", "psidot0")}
         tiny[rng.choice(["thetadot0", "psidot0"])] *= rng.choice([0, 1])
         return scene | tiny
     b, a = scene["C"] * scene["r0"] / scene["A"], 2 / scene["A"]
@@ -179,20 +160,21 @@ def over_a_pole(rng: random.Random) -> Scene:
 def from_a_pole(rng: random.Random) -> Scene:
     """Return a start on the vertical that leaves it."""
     scene = generic(rng) | {"theta0_deg": rng.choice([0, 180]), "psidot0": 0}
-    scene["thetadot0"] = signed(rng, rng.choice([rng.uniform(0.01, 6), power(rng, -9, 1)]))
+    scene["thetadot0"] = signed(rng, rng.choice([rng.uniform(0.01, 6), log_uniform(rng, -9, 1)]))
     return scene | {"r0": rng.choice([0, scene["r0"], scene["r0"]])}
 
 
 def near_a_pole(rng: random.Random) -> Scene:
     """Return a start whose axis passes within 1e-16 to 1e-2 of a pole."""
     scene = generic(rng) | {"r0": rng.uniform(-3, 3)}
-    scene = over(scene, rng.choice([-1, 1]), rng.uniform(0, 40))
+    u = math.cos(math.radians(scene["theta0_deg"]))
+    scene |= to_pole(scene, u, rng.choice([-1, 1]), rng.uniform(0, 40))
     return scene | {"psidot0": near(rng, scene["psidot0"])}
 
 
 def no_torque(rng: random.Random) -> Scene:
     """Return a free top, or nearly."""
-    scene = generic(rng) | {rng.choice(["g", "s"]): rng.choice([0, 0, power(rng, -18, -3)])}
+    scene = generic(rng) | {rng.choice(["g", "s"]): rng.choice([0, 0, log_uniform(rng, -18, -3)])}
     scene["r0"] *= rng.choice([0, 1, 1, 1])
     scene["theta0_deg"] = rng.choice([60, 90, 0, scene["theta0_deg"]])
     return scene | ({} if scene["theta0_deg"] else {"psidot0": 0})
@@ -200,21 +182,23 @@ def no_torque(rng: random.Random) -> Scene:
 
 def no_spin(rng: random.Random) -> Scene:
     """Return a pendulum, plane or spherical, or nearly."""
-    scene = generic(rng) | {"r0": rng.choice([0, 0, signed(rng, power(rng, -60, -6))])}
+    scene = generic(rng) | {"r0": rng.choice([0, 0, signed(rng, log_uniform(rng, -60, -6))])}
     scene["psidot0"] *= rng.choice([0, 1])
     return scene | {"theta0_deg": rng.choice([60, 90, 120, scene["theta0_deg"]])}
 
 
 def tiny_tilt(rng: random.Random) -> Scene:
     """Return a start within 1e-30 to 1 degree of the vertical."""
-    tilt = rng.choice([power(rng, -12, 0), power(rng, -30, 0)])
+    tilt = rng.choice([log_uniform(rng, -12, 0), log_uniform(rng, -30, 0)])
     scene = generic(rng) | {"theta0_deg": tilt}
     if rng.random() < 0.4:
-        scene["theta0_deg"] = 180 - power(rng, -12, 0)
-    threshold = 2 * math.sqrt(scene["A"]) / scene["C"]
+        scene["theta0_deg"] = 180 - log_uniform(rng, -12, 0)
     factor = rng.choice([rng.uniform(0.1, 3), near(rng, 1), near(rng, 1)])
-    scene["thetadot0"] = rng.choice([0, signed(rng, power(rng, -20, -1))])
-    return scene | {"r0": signed(rng, threshold * factor), "psidot0": rng.choice([0, 1, -2.5])}
+    scene["thetadot0"] = rng.choice([0, signed(rng, log_uniform(rng, -20, -1))])
+    return scene | {
+        "r0": signed(rng, threshold_spin(scene) * factor),
+        "psidot0": rng.choice([0, 1, -2.5]),
+    }
 
 
 def nice_numbers(rng: random.Random) -> Scene:
@@ -245,13 +229,13 @@ def tiny_tilt_with_rates(rng: random.Random) -> Scene:
 
     Smaller tilts are refused; the latter are decimals.
     """
-    scene = body(rng) | {"r0": signed(rng, power(rng, -3, 3))}
-    tilt: float | Fraction = power(rng, -150, -1)
+    scene = body(rng) | {"r0": signed(rng, log_uniform(rng, -3, 3))}
+    tilt: float | Fraction = log_uniform(rng, -150, -1)
     if rng.random() < 0.4:
         tilt = 180 - Fraction(f"{rng.uniform(1, 9):.3f}e{rng.randrange(-300, -1)}")
     rates = {
-        "thetadot0": rng.choice([0, signed(rng, power(rng, -25, 1)), 1]),
-        "psidot0": rng.choice([0, signed(rng, power(rng, -25, 1)), 1]),
+        "thetadot0": rng.choice([0, signed(rng, log_uniform(rng, -25, 1)), 1]),
+        "psidot0": rng.choice([0, signed(rng, log_uniform(rng, -25, 1)), 1]),
     }
     return scene | {"theta0_deg": tilt} | rates
 
@@ -262,7 +246,7 @@ def special_radians(rng: random.Random) -> Scene:
     del scene["theta0_deg"]
     quarters = rng.randrange(3)
     exact = Decimal(quarters) * _HALF_PI
-    away = Decimal(power(rng, -30, -1))
+    away = Decimal(log_uniform(rng, -30, -1))
     inwards = 1 if quarters == 0 else -1 if quarters == 2 else rng.choice([-1, 1])
     near_pole = exact + inwards * away
     tilt: float | Fraction = Fraction(f"{near_pole:.{digits}f}")
@@ -278,10 +262,10 @@ _HALF_PI = Decimal("1.5707963267948966192313216916397514420985846996875529104874
 
 def any_spin(rng: random.Random) -> Scene:
     """Return |r0| from 1e-300 to 1e100 with both rates."""
-    scene = generic(rng) | {"r0": signed(rng, power(rng, -300, 100))}
+    scene = generic(rng) | {"r0": signed(rng, log_uniform(rng, -300, 100))}
     return scene | {
         "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
-        "psidot0": signed(rng, rng.choice([1, 3, power(rng, -6, 6)])),
+        "psidot0": signed(rng, rng.choice([1, 3, log_uniform(rng, -6, 6)])),
     }
 
 

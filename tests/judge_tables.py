@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES
 from lagrange_cli.judge.alignment import WORDS
-from lagrange_cli.judge.judgement import KEYS
-from lagrange_cli.judge.slips import SLIPS
-from lagrange_cli.judge.verdict import VERDICTS
+from lagrange_cli.judge.compare import VERDICTS
+from lagrange_cli.judge.judgement import JUDGEMENT_KEYS
+from lagrange_cli.judge.mistakes import MISTAKES
 
 
 def _table(first: str, second: str, rows: Iterable[tuple[str, str]]) -> list[str]:
@@ -23,7 +23,7 @@ def columns_table() -> list[str]:
 
 def keys_table() -> list[str]:
     """Return the table of the keys of a record."""
-    return _table("key", "meaning", ((f"`{key}`", text) for key, text in KEYS.items()))
+    return _table("key", "meaning", ((f"`{key}`", text) for key, text in JUDGEMENT_KEYS.items()))
 
 
 def verdicts_table() -> list[str]:
@@ -38,7 +38,7 @@ def alignments_table() -> list[str]:
 
 def slips_table() -> list[str]:
     """Return the table of the slips."""
-    names = dict.fromkeys(slip.name for slip in SLIPS)
+    names = dict.fromkeys(slip.name for slip in MISTAKES)
     return ["| slip |", "|---|", *(f"| {name} |" for name in names)]
 
 

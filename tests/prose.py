@@ -19,21 +19,21 @@ LEANING = re.compile(
 
 VERBS = frozenset(
     """
-    Abort Accept Add Advance Align Allow Answer Append Apply Arrange Ask Assert Attach Await Bind
-    Bound Break Bring Build Call Cancel Carry Catch Change Check Choose Clean Clear Close Collect
-    Combine Compare Compute Connect Continue Convert Copy Correct Count Cover Create Cut Decide
-    Define Describe Determine Differentiate Divide Do Draw Drop Echo Empty End Ensure Enter Estimate
-    Evaluate Exit Expand Explain Export Fail Feed Fill Find Finish Fit Flush Fold Follow Format
-    Forward Gather Generate Get Give Group Guard Hand Hide Hold Ignore Import Include Insert
-    Install Integrate Interpolate Invert Iterate Join Judge Keep Kill Label Lay Leave Let List Load
-    Look Lose Make Map Mark Mask Match Measure Merge Move Multiply Name Normalize Note Offer Open
-    Order Pair Parse Pass Pause Pick Place Plot Poll Prepare Print Prove Pull Push Put Raise Read
-    Rebuild Receive Reduce Refine Refuse Register Reject Release Remember Remove Rename Render
-    Repeat Replace Report Require Reset Resolve Restore Resume Return Round Run Sample Save Say
-    Scale Scan Search Select Send Serve Set Settle Shape Shift Show Shut Sign Simulate Skip Solve
-    Sort Space Spare Split Spoil Start State Stop Store Stream Strip Subtract Sum Swap Take Tell
-    Test Time Track Transform Translate Try Turn Unwrap Update Use Verify Wait Walk Warn Watch
-    Work Wrap Write Yield
+    Abort Accept Add Advance Align Allow Answer Append Apply Arrange Ask Assert Attach Await
+    Bind Bound Break Bring Build Call Cancel Carry Catch Change Check Choose Clean Clear Close
+    Collect Combine Compare Compute Connect Continue Convert Copy Correct Count Cover Create Cut
+    Decide Define Describe Determine Differentiate Divide Do Draw Drop Echo Empty End Ensure
+    Enter Estimate Evaluate Exchange Exit Expand Explain Export Fail Feed Fill Find Finish Fit
+    Flush Fold Follow Format Forward Gather Generate Get Give Group Guard Hand Hide Hold Ignore
+    Import Include Insert Install Integrate Interpolate Invert Iterate Join Judge Keep Kill
+    Label Lay Leave Let List Load Look Lose Make Map Mark Mask Match Measure Merge Move Multiply
+    Name Normalize Note Offer Open Order Pair Parse Pass Pause Pick Place Plot Poll Prepare
+    Print Prove Pull Push Put Raise Read Rebuild Receive Reduce Refine Refuse Register Reject
+    Release Remember Remove Rename Render Repeat Replace Report Require Reset Resolve Restore
+    Resume Return Round Run Sample Save Say Scale Scan Search Select Send Serve Set Settle Shape
+    Shift Show Shut Sign Simulate Skip Solve Sort Space Spare Split Spoil Start State Stop Store
+    Stream Strip Subtract Sum Swap Take Tell Test Time Track Transform Translate Try Turn Unwrap
+    Update Use Verify Wait Walk Warn Watch Work Wrap Write Yield
     """.split()
 )
 """Imperatives that a function's docstring may begin with; further plain ones are welcome."""

@@ -1,4 +1,4 @@
-"""Arithmetics of arrays: doubles, and pairs of doubles.
+"""Arrays of real numbers, given in Python; arithmetics of arrays: doubles, and pairs of doubles.
 
 `ARRAYS` is what the functions of `elliptic` take for NumPy arrays; it says nothing of overflow and
 0/0, whatever the host's `numpy.errstate` is.
@@ -6,19 +6,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..errors import LagtopError
 from .double_double import DoubleDouble
+from .scalars import Unenclosed
 from .sums_of_doubles import pair
+from .text import quoted
 from .types import Array
 
 
-class Arrays:
+class Arrays(Unenclosed):
     """The arithmetic of float64 arrays, as far as both kinds of arrays share it."""
 
     is_array = True
@@ -70,27 +73,6 @@ class Arrays:
     def everywhere(condition: Any) -> bool:
         """Return whether a condition holds for every element."""
         return bool(np.all(condition))
-
-    @staticmethod
-    def widened(
-        x: Any,
-        small: Callable[[], tuple[Any, ...]],
-        bound: Callable[..., Any],
-        *,
-        values_only: bool = False,
-    ) -> Any:
-        """Return x: what an iteration leaves out is below the last bit."""
-        return x
-
-    @staticmethod
-    def either(condition: Any) -> Any:
-        """Return a condition on which only the way to the result depends."""
-        return condition
-
-    @staticmethod
-    def fixed(x: Any) -> Any:
-        """Return x as a constant."""
-        return x
 
 
 class ArrayFunctions(Arrays):
@@ -153,3 +135,20 @@ class Pairs(Arrays):
 
 
 ARRAYS, PAIRS = ArrayFunctions(), Pairs()
+
+
+def doubles_of(name: str, values: ArrayLike) -> Array:
+    """Return the argument `name` as an array of doubles, infinite if a number is beyond them.
+
+    Raises LagtopError for anything but an array of real numbers, and for masked elements.
+    """
+    if np.ma.isMaskedArray(values) and np.ma.getmaskarray(values).any():
+        raise LagtopError(f"{name} must not be masked: fill it or leave the elements out", name)
+    try:
+        array = np.asarray(values)
+        if array.size and array.dtype.kind not in "iufO":
+            raise TypeError(array.dtype)
+        with np.errstate(over="ignore"):  # of long doubles
+            return array.astype(np.float64, copy=False)
+    except (TypeError, ValueError, OverflowError):
+        raise LagtopError(f"{name} must be real numbers, got {quoted(values)}", name) from None

@@ -7,18 +7,30 @@ digits.  A ball of radius 0 is exact, and stays so through sums and products tha
 
 from __future__ import annotations
 
-from decimal import Decimal, DecimalException
-from typing import TYPE_CHECKING, Any
+import decimal
+from decimal import Decimal, DecimalException, Inexact
+from functools import cached_property
+from typing import Any
 
-from .radii import CEILING, DOWN, FLOOR, add_up, divide_up, fma_up, multiply_up
-
-if TYPE_CHECKING:
-    from .balls import Balls
+from .decimals import TRAPS, own_context
 
 Truth = Any
 """True, False or OPEN."""
 
 ZERO, INFINITE = Decimal(0), Decimal("Infinity")
+SHORT = 6
+"""Digits of a radius."""
+
+
+def _rounded(rounding: str) -> decimal.Context:
+    context = own_context(SHORT, TRAPS)
+    context.rounding = rounding
+    return context
+
+
+UP, DOWN = _rounded(decimal.ROUND_UP), _rounded(decimal.ROUND_DOWN)
+FLOOR, CEILING = _rounded(decimal.ROUND_FLOOR), _rounded(decimal.ROUND_CEILING)
+add_up, multiply_up, fma_up, divide_up = UP.add, UP.multiply, UP.fma, UP.divide
 
 
 class TooFewDigitsError(Exception):
@@ -47,14 +59,15 @@ class Ball:
 
     __slots__ = ("ar", "middle", "radius")
 
-    def __init__(self, ar: Balls, middle: Decimal, radius: Decimal) -> None:
-        self.ar, self.middle, self.radius = ar, middle, radius
+    def __init__(self, ar: Ring, middle: Decimal, radius: Decimal) -> None:
+        self.ar: Any = ar  # a Balls
+        self.middle, self.radius = middle, radius
 
     def __repr__(self) -> str:
         return f"Ball({self.middle} +- {self.radius})"
 
     def __add__(self, other: Ball | float) -> Ball:
-        ar = self.ar
+        ar: Ring = self.ar
         if isinstance(other, Ball):
             term, radius = other.middle, add_up(self.radius, other.radius)
         else:
@@ -65,7 +78,7 @@ class Ball:
         return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
 
     def __sub__(self, other: Ball | float) -> Ball:
-        ar = self.ar
+        ar: Ring = self.ar
         if isinstance(other, Ball):
             term, radius = other.middle, add_up(self.radius, other.radius)
         else:
@@ -79,7 +92,8 @@ class Ball:
         return -self + other
 
     def __mul__(self, other: Ball | float) -> Ball:
-        ar, x, r = self.ar, self.middle, self.radius
+        ar: Ring = self.ar
+        x, r = self.middle, self.radius
         try:
             if not isinstance(other, Ball):
                 y = Decimal(other)
@@ -101,7 +115,8 @@ class Ball:
     __radd__, __rmul__ = __add__, __mul__
 
     def __truediv__(self, other: Ball | float) -> Ball:
-        ar, x, r = self.ar, self.middle, self.radius
+        ar: Ring = self.ar
+        x, r = self.middle, self.radius
         y, s = (other.middle, other.radius) if isinstance(other, Ball) else (Decimal(other), ZERO)
         try:
             if not s:
@@ -227,3 +242,42 @@ class Ball:
             raise TooFewDigitsError
         floor, ceiling = self.ar.outwards
         return floor.subtract(self.middle, self.radius), ceiling.add(self.middle, self.radius)
+
+
+class Ring:
+    """Sums, products and quotients of balls whose middles have `digits` digits."""
+
+    def __init__(self, digits: int) -> None:
+        self.digits = digits
+        context = own_context(digits, TRAPS)
+        self.add, self.subtract = context.add, context.subtract
+        self.multiply, self.divide = context.multiply, context.divide
+        self._context, self._tight = context, own_context(digits, [*TRAPS, Inexact])
+        self.unit = Decimal((0, (5,), -digits))
+        """Half a unit in the last digit, beside the largest number with this exponent."""
+        self.unbounded = Ball(self, ZERO, INFINITE)
+        self.nan = Ball(self, Decimal("NaN"), Decimal("NaN"))
+
+    @cached_property
+    def outwards(self) -> tuple[decimal.Context, decimal.Context]:
+        """Contexts that round down and up, with digits for both ends of a ball."""
+        floor, ceiling = (own_context(self.digits + SHORT, []) for _ in range(2))
+        floor.rounding, ceiling.rounding = decimal.ROUND_FLOOR, decimal.ROUND_CEILING
+        return floor, ceiling
+
+    def exactly(self, operation: str, x: Decimal, y: Decimal | int) -> Ball:
+        """Return the result of an operation on exact numbers, exact if it has few enough digits."""
+        try:
+            return Ball(self, getattr(self._tight, operation)(x, y), ZERO)
+        except Inexact:
+            return self.about(getattr(self._context, operation)(x, y))
+        except DecimalException:  # a division by 0
+            return self.unbounded
+
+    def about(self, middle: Decimal, units: int = 1) -> Ball:
+        """Return a ball about a number that was rounded, by so many units at most."""
+        return Ball(self, middle, multiply_up(middle.copy_abs(), multiply_up(units, self.unit)))
+
+    def exact(self, value: Decimal | float) -> Ball:
+        """Return the ball of radius 0 about a decimal, which may have more digits."""
+        return Ball(self, Decimal(value), ZERO)

@@ -9,73 +9,49 @@ from __future__ import annotations
 
 import decimal
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from decimal import Decimal, DecimalException, Inexact
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from .ball import INFINITE, OPEN, ZERO, Ball, TooFewDigitsError, Truth
-from .decimals import TRAPS, Decimals, decimals, own_context, pi_to
-from .radii import CEILING, DOWN, SHORT, UP, add_up, divide_up, fma_up, multiply_up
+from .ball import (
+    CEILING,
+    DOWN,
+    INFINITE,
+    OPEN,
+    UP,
+    ZERO,
+    Ball,
+    Ring,
+    TooFewDigitsError,
+    Truth,
+    add_up,
+    divide_up,
+    fma_up,
+    multiply_up,
+)
+from .decimals import Decimals, decimals, pi_to
+from .scalars import Scalars
 
 _MARGIN = 6
 """Digits of elementary functions beyond those of the balls, besides the digits of that number."""
 
 
-class Balls:
+class Balls(Ring, Scalars):
     """The arithmetic of balls whose middles have `digits` digits.
 
     Iterations stop where they leave out less than 10^-`stop`, by default the last digit.  Wherever
     they stop, their ball holds the exact value: only its radius depends on it.
     """
 
-    is_array = False
-
     def __init__(self, digits: int, stop: int | None = None) -> None:
-        self.digits, self.magnitude = digits, 1 - (stop or digits)
-        context = own_context(digits, TRAPS)
-        self.add, self.subtract = context.add, context.subtract
-        self.multiply, self.divide = context.multiply, context.divide
-        self._context, self._tight = context, own_context(digits, [*TRAPS, Inexact])
-        self.unit = Decimal((0, (5,), -digits))
-        """Half a unit in the last digit, beside the largest number with this exponent."""
+        super().__init__(digits)
+        self.magnitude = 1 - (stop or digits)
         self.eps = self.exact(Decimal((0, (1,), self.magnitude)))
-        self.unbounded = Ball(self, ZERO, INFINITE)
-        self.nan = Ball(self, Decimal("NaN"), Decimal("NaN"))
 
     @property
     def middles(self) -> Decimals:
         """The arithmetic of the middles alone."""
         return decimals(self.digits)
-
-    @cached_property
-    def outwards(self) -> tuple[decimal.Context, decimal.Context]:
-        """Contexts that round down and up, with digits for both ends of a ball."""
-        floor, ceiling = (own_context(self.digits + SHORT, []) for _ in range(2))
-        floor.rounding, ceiling.rounding = decimal.ROUND_FLOOR, decimal.ROUND_CEILING
-        return floor, ceiling
-
-    @staticmethod
-    def working() -> AbstractContextManager[object]:
-        """Return a context manager that has nothing to do: the balls know their contexts."""
-        return nullcontext()
-
-    def exactly(self, operation: str, x: Decimal, y: Decimal | int) -> Ball:
-        """Return the result of an operation on exact numbers, exact if it has few enough digits."""
-        try:
-            return Ball(self, getattr(self._tight, operation)(x, y), ZERO)
-        except Inexact:
-            return self._about(getattr(self._context, operation)(x, y))
-        except DecimalException:  # a division by 0
-            return self.unbounded
-
-    def _about(self, middle: Decimal, units: int = 1) -> Ball:
-        """Return a ball about a number that was rounded, by so many units at most."""
-        return Ball(self, middle, multiply_up(middle.copy_abs(), multiply_up(units, self.unit)))
-
-    def exact(self, value: Decimal | float) -> Ball:
-        """Return the ball of radius 0 about a decimal, which may have more digits."""
-        return Ball(self, Decimal(value), ZERO)
 
     def within(self, size: Decimal) -> Ball:
         """Return the ball of all numbers up to a size."""
@@ -84,7 +60,7 @@ class Balls:
     @cached_property
     def pi(self) -> Ball:
         """The number pi."""
-        return self._about(self._context.plus(pi_to(self.digits + 2)), 2)
+        return self.about(self._context.plus(pi_to(self.digits + 2)), 2)
 
     def convert(self, value: float | Fraction) -> Ball:
         """Return a ball that holds an exact value."""
@@ -113,7 +89,7 @@ class Balls:
         try:
             return Ball(self, self._tight.sqrt(x), ZERO)
         except Inexact:
-            return self._about(self._context.sqrt(x))
+            return self.about(self._context.sqrt(x))
 
     def _root_from_0(self, x: Ball) -> Ball:
         """Return a ball about all roots from 0 to that of the upper end."""
@@ -133,7 +109,7 @@ class Balls:
         try:
             with self.plain.working():
                 value = function(*at)
-            return self._about(self._context.plus(value), 2)
+            return self.about(self._context.plus(value), 2)
         except DecimalException:  # beyond all exponents
             return self.unbounded
 
@@ -241,13 +217,6 @@ class Balls:
         middle = self.divide(self.add(a, b), 2)
         reach = (add_up(UP.subtract(x, middle).copy_abs(), y) for x, y in ((a, r), (b, s)))
         return Ball(self, middle, max(reach))
-
-    @staticmethod
-    def anywhere(condition: Truth) -> bool:
-        """Return whether a condition holds.  Raises TooFewDigitsError if it is open."""
-        return bool(condition)
-
-    everywhere = anywhere
 
     @staticmethod
     def either(condition: Truth) -> bool:

@@ -7,11 +7,12 @@ A record computed in them and rounded once is right to the last bit, and nothing
 from __future__ import annotations
 
 import decimal
-from collections.abc import Callable
 from contextlib import AbstractContextManager
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property, lru_cache
+
+from .scalars import Scalars, Unenclosed
 
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
 TRAPS: list[type[decimal.DecimalException]] = [
@@ -38,7 +39,7 @@ def own_context(digits: int, traps: list[type[decimal.DecimalException]]) -> dec
     )
 
 
-class Decimals:
+class Decimals(Scalars, Unenclosed):
     """The arithmetic of decimals with so many digits; its exponents have no bounds in practice.
 
     Every function adds numbers that cancel at most half of each other, so that its relative error
@@ -46,7 +47,6 @@ class Decimals:
     of pi).  A series to N digits has fewer than N terms.
     """
 
-    is_array = False
     nan, inf = Decimal("NaN"), Decimal("Infinity")
 
     def __init__(self, digits: int = 40) -> None:
@@ -149,34 +149,6 @@ class Decimals:
     def where(condition: bool, yes: Decimal | int, no: Decimal | int) -> Decimal:
         """Return one of two numbers."""
         return Decimal(yes) if condition else Decimal(no)
-
-    @staticmethod
-    def anywhere(condition: bool) -> bool:
-        """Return whether the condition holds."""
-        return bool(condition)
-
-    everywhere = anywhere
-
-    @staticmethod
-    def widened(
-        x: Decimal,
-        small: Callable[[], tuple[Decimal, ...]],
-        bound: Callable[..., Decimal],
-        *,
-        values_only: bool = False,
-    ) -> Decimal:
-        """Return x: what an iteration leaves out is below the last digit."""
-        return x
-
-    @staticmethod
-    def either(condition: bool) -> bool:
-        """Return a condition on which only the way to the result depends."""
-        return condition
-
-    @staticmethod
-    def fixed(x: Decimal) -> Decimal:
-        """Return x as a constant."""
-        return x
 
     def _alternating(self, term: Decimal, ratio: Decimal, n: int) -> Decimal:
         """Return a sum of terms, each ratio/((n + 1)(n + 2)) times the one before."""

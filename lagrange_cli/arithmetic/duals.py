@@ -15,6 +15,7 @@ from typing import Any
 from .ball import OPEN, Ball
 from .balls import Balls
 from .decimals import Decimals
+from .scalars import Scalars
 
 Plain = Any
 """A number of the arithmetic that duals are over."""
@@ -131,14 +132,12 @@ def is_zero(x: Plain) -> bool:
     return not x
 
 
-class Duals:
+class Duals(Scalars):
     """The arithmetic of dual numbers over that of balls or decimals.
 
     If a root is taken of a 0 that is no constant its derivatives do not exist: they are NaN, and so
     is whatever depends on them.
     """
-
-    is_array = False
 
     def __init__(self, plain: Balls | Decimals) -> None:
         self.plain: Any = plain
@@ -248,13 +247,6 @@ class Duals:
         """Return one of two numbers."""
         chosen = yes if condition else no
         return self.convert(chosen) if isinstance(chosen, int) else chosen
-
-    @staticmethod
-    def anywhere(condition: Any) -> bool:
-        """Return whether the condition holds."""
-        return bool(condition)
-
-    everywhere: Callable[[Any], bool] = anywhere
 
 
 def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:

@@ -1,4 +1,4 @@
-"""Numbers of any arithmetic: what formulas need of them at run time.
+"""Numbers of any arithmetic: what formulas need of them, and how formulas are evaluated.
 
 What their arithmetic offers is said in `protocol`, which a record is computed without.
 """
@@ -6,13 +6,33 @@ What their arithmetic offers is said in `protocol`, which a record is computed w
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, wraps
 from operator import index
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 if TYPE_CHECKING:
-    from .protocol import Real
+    from typing import Protocol, Self
+
+    class Real(Protocol):
+        """A number of some arithmetic, or an array of such numbers."""
+
+        def __add__(self, other: Self | int, /) -> Self: ...
+        def __radd__(self, other: int, /) -> Self: ...
+        def __sub__(self, other: Self | int, /) -> Self: ...
+        def __rsub__(self, other: int, /) -> Self: ...
+        def __mul__(self, other: Self | int, /) -> Self: ...
+        def __rmul__(self, other: int, /) -> Self: ...
+        def __truediv__(self, other: Self | int, /) -> Self: ...
+        def __rtruediv__(self, other: int, /) -> Self: ...
+        def __neg__(self, /) -> Self: ...
+        def __abs__(self, /) -> Self: ...
+        def __lt__(self, other: Self | int, /) -> Any: ...
+        def __le__(self, other: Self | int, /) -> Any: ...
+        def __gt__(self, other: Self | int, /) -> Any: ...
+        def __ge__(self, other: Self | int, /) -> Any: ...
+
 
 Number = float | Fraction
 """An input: a double, or the exact value of a decimal."""
@@ -21,6 +41,8 @@ _NOT_REAL = (bool, str, bytes, bytearray, complex)
 
 R = TypeVar("R", bound="Real")
 """The numbers of the arithmetic in use."""
+F = TypeVar("F", bound=Callable[..., Any])
+"""A formula f(ar, ...)."""
 
 
 def is_real(value: object) -> bool:
@@ -64,3 +86,27 @@ def root_of_epsilon(ar: Any, over: int, degree: int) -> Any:
     """
     exponent, part = divmod((ar.magnitude - math.log10(over)) / degree, 1)
     return ar.convert(Fraction(10) ** int(exponent) * Fraction(10.0**part))
+
+
+def polynomial(coefficients: Sequence[Any], x: Any) -> Any:
+    """Return the value at an array x of two coefficients at least, the lowest power first."""
+    value = coefficients[-1] * x
+    for coefficient in coefficients[-2:0:-1]:
+        value += coefficient
+        value *= x
+    value += coefficients[0]
+    return value
+
+
+def in_arithmetic(function: F) -> F:
+    """Return a formula f(ar, ...) that is evaluated inside `ar.working()`.
+
+    So nothing depends on the decimal context or the `numpy.errstate` of the caller.
+    """
+
+    @wraps(function)
+    def evaluate(ar: Any, *arguments: Any, **named: Any) -> Any:
+        with ar.working():
+            return function(ar, *arguments, **named)
+
+    return cast(F, evaluate)

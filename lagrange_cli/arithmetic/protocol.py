@@ -9,28 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from fractions import Fraction
-from typing import Any, Protocol, Self
+from typing import Any, Protocol
 
 from .numbers import R
-
-
-class Real(Protocol):
-    """A number of some arithmetic, or an array of such numbers."""
-
-    def __add__(self, other: Self | int, /) -> Self: ...
-    def __radd__(self, other: int, /) -> Self: ...
-    def __sub__(self, other: Self | int, /) -> Self: ...
-    def __rsub__(self, other: int, /) -> Self: ...
-    def __mul__(self, other: Self | int, /) -> Self: ...
-    def __rmul__(self, other: int, /) -> Self: ...
-    def __truediv__(self, other: Self | int, /) -> Self: ...
-    def __rtruediv__(self, other: int, /) -> Self: ...
-    def __neg__(self, /) -> Self: ...
-    def __abs__(self, /) -> Self: ...
-    def __lt__(self, other: Self | int, /) -> Any: ...
-    def __le__(self, other: Self | int, /) -> Any: ...
-    def __gt__(self, other: Self | int, /) -> Any: ...
-    def __ge__(self, other: Self | int, /) -> Any: ...
 
 
 class Arithmetic(Protocol[R]):
@@ -135,55 +116,12 @@ Value = Any
 """A real or complex number, or an array of them, of a `FunctionArithmetic`: mpmath has no types."""
 
 
-class FunctionArithmetic(SeriesArithmetic[Any], Protocol):
-    """What Jacobi's, the theta and Omega functions need: balls, arrays of doubles, or mpmath.
+FunctionArithmetic = Any
+"""The arithmetic of Jacobi's, the theta and Omega functions: balls, arrays of doubles, or mpmath.
 
-    Their numbers may be complex and mix with floats, so they have no narrower type than Any.
-    """
+It is a `SeriesArithmetic` with inf, expm1, log, log1p, tanh, atan, atanh, sign, re and im.  Its
+numbers may be complex and mix with floats, and mpmath has no types, so that it has none either.
+"""
 
-    @property
-    def inf(self) -> Any:
-        """Infinity."""
-
-    def convert(self, value: Any, /) -> Any:
-        """Return a number or an array as one of this arithmetic."""
-
-    def expm1(self, x: Any, /) -> Any:
-        """Return e to the power x, less 1."""
-
-    def log(self, x: Any, /) -> Any:
-        """Return the natural logarithm of x."""
-
-    def log1p(self, x: Any, /) -> Any:
-        """Return the natural logarithm of 1 + x."""
-
-    def tanh(self, x: Any, /) -> Any:
-        """Return the hyperbolic tangent of x."""
-
-    def atan(self, x: Any, /) -> Any:
-        """Return the arc whose tangent is x."""
-
-    def atanh(self, x: Any, /) -> Any:
-        """Return the number whose hyperbolic tangent is x."""
-
-    def sign(self, x: Any, /) -> Any:
-        """Return 1, 0 or -1 with the sign of x."""
-
-    def nint(self, x: Any, /) -> Any:
-        """Return the integer nearest to x."""
-
-    def re(self, x: Any, /) -> Any:
-        """Return the real part of x."""
-
-    def im(self, x: Any, /) -> Any:
-        """Return the imaginary part of x."""
-
-
-class ComplexArithmetic(FunctionArithmetic, Protocol):
-    """What functions of complex numbers need besides."""
-
-    def conj(self, x: Any, /) -> Any:
-        """Return the complex conjugate of x."""
-
-    def mpc(self, real: Any, imag: Any, /) -> Any:
-        """Return the complex number with these parts."""
+ComplexArithmetic = Any
+"""A `FunctionArithmetic` with conj, and with mpc, which makes a number of two parts."""

@@ -24,14 +24,14 @@ _OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])
 _OUTWARDS.rounding = _SHORT.rounding = ROUND_UP
 _A_HAIR_MORE = Decimal("1.000000000001")
 
-Real = Decimal | Fraction
+DecimalOrFraction = Decimal | Fraction
 
 
 class Settled(NamedTuple):
     """A number as it is printed, with the ends of an interval that holds its exact value."""
 
     value: Any
-    ends: tuple[Real, ...]
+    ends: tuple[DecimalOrFraction, ...]
 
     @property
     def radius(self) -> NumberText:
@@ -70,7 +70,7 @@ def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int =
 def settled(
     what: str,
     enclosure: Callable[[int], Ball | None],
-    rounding: Callable[[Real], Any],
+    rounding: Callable[[DecimalOrFraction], Any],
     *,
     digits: int = 0,
     more: int = 0,
@@ -98,7 +98,7 @@ def settled(
     return decided(what, attempt, digits, more)
 
 
-def alike(ball: Ball, rounding: Callable[[Real], Any]) -> Settled:
+def alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
     """Return the number to which both ends of a ball are rounded.
 
     It is 0 only if the ball is.  Raises TooFewDigitsError if the ends are rounded differently, or
@@ -131,13 +131,13 @@ def rounded(what: str, enclosure: Callable[[int], Ball]) -> float:
     return decided(what, nearest)
 
 
-def nearest_double(name: str) -> Callable[[Real], float]:
+def nearest_double(name: str) -> Callable[[DecimalOrFraction], float]:
     """Return the rounding of a number to doubles.
 
     It raises OutOfRangeError for a number that is beyond them, or smaller than all but 0.
     """
 
-    def rounding(value: Real) -> float:
+    def rounding(value: DecimalOrFraction) -> float:
         nearest = float(value)
         if not abs(nearest) < _INFINITE:
             raise OutOfRangeError(
@@ -152,12 +152,12 @@ def nearest_double(name: str) -> Callable[[Real], float]:
     return rounding
 
 
-def rounding_of(name: str, digits: int | None) -> Callable[[Real], Any]:
+def rounding_of(name: str, digits: int | None) -> Callable[[DecimalOrFraction], Any]:
     """Return the rounding of a number to doubles, or to so many significant digits."""
     return nearest_double(name) if digits is None else lambda value: text_of(value, digits)
 
 
-def text_of(value: Real, digits: int) -> NumberText:
+def text_of(value: DecimalOrFraction, digits: int) -> NumberText:
     """Return a number with so many significant digits, in full if its size is usual."""
     context = own_context(digits, [])
     if isinstance(value, Fraction):
@@ -180,7 +180,7 @@ def text_of(value: Real, digits: int) -> NumberText:
     return NumberText("-" * sign + body)
 
 
-def _distance(end: Real, value: float | NumberText) -> Decimal:
+def _distance(end: DecimalOrFraction, value: float | NumberText) -> Decimal:
     """Return the distance of two numbers in 20 digits, rounded up."""
     if isinstance(end, Decimal):
         return _OUTWARDS.subtract(end, Decimal(value)).copy_abs()

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.points import ListedPoints
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 from ..motion.over_time.table import rows
@@ -25,7 +25,7 @@ from .closed_forms import CLOSED_FORMS
 from .hard_scenes import HardScene
 from .integrators import integrators
 from .method import FailedError, Method, NotApplicableError
-from .reference import EPS, Exact, Reference, angle_units, key_ulps, quaternion_units
+from .reference import EPS, ExactAngles, Reference, angle_units, key_ulps, quaternion_units
 
 CONTRACT = 4.0
 """Units of an angle and of the quaternion that are promised."""
@@ -137,7 +137,7 @@ def case_of(
     )
 
 
-def judge(scene: HardScene, *, peers: bool = True) -> Case:
+def judged_case(scene: HardScene, *, peers: bool = True) -> Case:
     """Return what one scene shows, with the errors of other methods or without."""
     top = Top(**scene.inputs)
     motion, reference = solve(top), Reference(top, DIGITS)
@@ -202,7 +202,9 @@ def conserved_changes(top: Top, values: Array) -> tuple[float, float]:
     return energy, Lz
 
 
-def peer_units(method: Method, top: Top, times: Array, exact: Sequence[Exact]) -> float | None:
+def peer_units(
+    method: Method, top: Top, times: Array, exact: Sequence[ExactAngles]
+) -> float | None:
     """Return the worst error of another method at its tightest setting.
 
     Infinite where it fails, None where its package is missing.
@@ -226,7 +228,7 @@ def _integrated(top: Top, reference: Reference) -> float | None:
 
 
 def _angle_errors(
-    computed: Sequence[Sequence[Any]], exact: Sequence[Exact], whole_turns: bool = True
+    computed: Sequence[Sequence[Any]], exact: Sequence[ExactAngles], whole_turns: bool = True
 ) -> list[tuple[float, float, float]]:
     pairs = zip(computed, exact, strict=True)
     return [angle_units(angles, true, whole_turns=whole_turns) for angles, true in pairs]

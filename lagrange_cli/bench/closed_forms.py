@@ -13,25 +13,25 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.solve import solve
-from .method import Method, NotApplicableError, Sample, Sampled
+from .method import AngleFunction, Method, NotApplicableError, SampledAngles
 
 
-def _ours(top: Top, _: str) -> Sample:
+def _ours(top: Top, _: str) -> AngleFunction:
     return solve(top).sampler().angles
 
 
-def _ours_in_digits(top: Top, digits: int) -> Sample:
+def _ours_in_digits(top: Top, digits: int) -> AngleFunction:
     import mpmath
 
     from ..motion.over_time.proved_table import ProvedTable
 
-    def sample(t: Array) -> Sampled:
+    def sample(t: Array) -> SampledAngles:
         table = ProvedTable(solve(top), ANGLES, digits, radians=True)
         rows = [table.row(Fraction(time)) for time in t.tolist()]
         with mpmath.workdps(digits + 10):
@@ -43,7 +43,7 @@ def _ours_in_digits(top: Top, digits: int) -> Sample:
     return sample
 
 
-def _legendre(top: Top, _: str) -> Sample:
+def _legendre(top: Top, _: str) -> AngleFunction:
     """Return sn^2 by ellipj, and Legendre's third integral by Carlson's R_F and R_J.
 
     With sn^2 counted from u1, 1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2)
@@ -80,7 +80,7 @@ def _legendre(top: Top, _: str) -> Sample:
         start = math.copysign(start, top.thetadot0)
     first = halves(np.array(start))
 
-    def sample(t: Array) -> Sampled:
+    def sample(t: Array) -> SampledAngles:
         w = start + speed * t
         plus, minus = (now - then for now, then in zip(halves(w), first, strict=True))
         sn, _, dn, _ = special.ellipj(w - np.rint(w / (2 * K)) * 2 * K, m)
@@ -148,18 +148,18 @@ def _tilt(p: _Paper, x: Array, terms: int) -> Array:
     return np.arccos(p.u3 - (p.u3 - p.u1) * (theta4 / theta3) ** 2 / p.k_prime)
 
 
-def _mean_rates(top: Top, _: str) -> Sample:
+def _mean_rates(top: Top, _: str) -> AngleFunction:
     """Return (6,3) and (7,3) without the periodic remainders."""
     p = _paper(top)
     return lambda t: (_tilt(p, _phase(p, t), 3), p.mean_spin * t, p.mean_precession * t)
 
 
-def _theta_series(top: Top, terms: int) -> Sample:
+def _theta_series(top: Top, terms: int) -> AngleFunction:
     """Return (6,1) and (7,1) in their form for all times, the sums over h cut after `terms`."""
     p = _paper(top)
     z = math.exp(-2 * p.y)
 
-    def sample(t: Array) -> Sampled:
+    def sample(t: Array) -> SampledAngles:
         x = _phase(p, t)
         sin, cos = np.sin(2 * x), np.cos(2 * x)
         front = np.arctan2(z * sin, 1 - z * cos)

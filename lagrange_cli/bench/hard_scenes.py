@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 Scene = dict[str, float]
 
 
-def power(rng: random.Random, low: float, high: float) -> float:
+def log_uniform(rng: random.Random, low: float, high: float) -> float:
     """Return a number between 10^low and 10^high, its logarithm uniform."""
     return 10 ** rng.uniform(low, high)
 
 
-def body(rng: random.Random) -> Scene:
+def any_body(rng: random.Random) -> Scene:
     """Return a top with m = s = g = 1."""
     A = rng.uniform(0.5, 2)
     return {"m": 1, "s": 1, "g": 1, "A": A, "C": A * rng.uniform(0.05, 2)}
@@ -30,9 +30,9 @@ def signed(rng: random.Random, size: float) -> float:
     return rng.choice([-1, 1]) * size
 
 
-def generic(rng: random.Random) -> Scene:
+def _generic(rng: random.Random) -> Scene:
     """Return a scene with any tilt and moderate rates."""
-    return body(rng) | {
+    return any_body(rng) | {
         "r0": rng.uniform(-6, 6),
         "theta0_deg": rng.uniform(1, 179),
         "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
@@ -40,21 +40,21 @@ def generic(rng: random.Random) -> Scene:
     }
 
 
-def from_rest(rng: random.Random) -> Scene:
+def _from_rest(rng: random.Random) -> Scene:
     """Return the paper's case: a release from rest, slow to fast."""
-    scene = body(rng) | {"theta0_deg": rng.uniform(1, 179)}
-    return scene | {"r0": signed(rng, rng.choice([power(rng, -3, 3), rng.uniform(0.1, 6)]))}
+    scene = any_body(rng) | {"theta0_deg": rng.uniform(1, 179)}
+    return scene | {"r0": signed(rng, rng.choice([log_uniform(rng, -3, 3), rng.uniform(0.1, 6)]))}
 
 
-def fast(rng: random.Random) -> Scene:
+def _fast(rng: random.Random) -> Scene:
     """Return a scene with a spin of 10^2 to 10^12."""
-    return generic(rng) | {"r0": signed(rng, power(rng, 2, 12))}
+    return _generic(rng) | {"r0": signed(rng, log_uniform(rng, 2, 12))}
 
 
-def slow(rng: random.Random) -> Scene:
+def _slow(rng: random.Random) -> Scene:
     """Return a scene with a spin of 10^-12 to 0.1."""
-    scene = generic(rng) | {"r0": signed(rng, power(rng, -12, -1))}
-    return scene | {"psidot0": signed(rng, power(rng, -6, 0))}
+    scene = _generic(rng) | {"r0": signed(rng, log_uniform(rng, -12, -1))}
+    return scene | {"psidot0": signed(rng, log_uniform(rng, -6, 0))}
 
 
 def threshold_spin(scene: Scene) -> float:
@@ -62,41 +62,41 @@ def threshold_spin(scene: Scene) -> float:
     return 2 * math.sqrt(scene["A"]) / scene["C"]
 
 
-def upright(rng: random.Random, factor: float) -> Scene:
+def _upright(rng: random.Random, factor: float) -> Scene:
     """Return a start next to the upright position; `factor` is the spin over its threshold."""
-    scene = generic(rng)
+    scene = _generic(rng)
     scene["r0"] = signed(rng, threshold_spin(scene) * factor)
-    scene["theta0_deg"] = power(rng, -12, 0)
-    scene["thetadot0"] = rng.choice([0, signed(rng, power(rng, -12, -1))])
+    scene["theta0_deg"] = log_uniform(rng, -12, 0)
+    scene["thetadot0"] = rng.choice([0, signed(rng, log_uniform(rng, -12, -1))])
     return scene
 
 
-def upright_below(rng: random.Random) -> Scene:
+def _upright_below(rng: random.Random) -> Scene:
     """Return an upright start too slow to sleep, some within 10^-12 of the threshold."""
-    return upright(rng, rng.choice([rng.uniform(0.1, 0.99), 1 - power(rng, -12, -2)]))
+    return _upright(rng, rng.choice([rng.uniform(0.1, 0.99), 1 - log_uniform(rng, -12, -2)]))
 
 
-def upright_above(rng: random.Random) -> Scene:
+def _upright_above(rng: random.Random) -> Scene:
     """Return an upright start fast enough to sleep, some within 10^-12 of the threshold."""
-    return upright(rng, rng.choice([rng.uniform(1.01, 5), 1 + power(rng, -12, -2)]))
+    return _upright(rng, rng.choice([rng.uniform(1.01, 5), 1 + log_uniform(rng, -12, -2)]))
 
 
-def hanging(rng: random.Random) -> Scene:
+def _hanging(rng: random.Random) -> Scene:
     """Return a start next to the lowest position."""
-    scene = generic(rng) | {"theta0_deg": 180 - power(rng, -12, 0)}
-    return scene | {"thetadot0": rng.choice([0, signed(rng, power(rng, -12, -1))])}
+    scene = _generic(rng) | {"theta0_deg": 180 - log_uniform(rng, -12, 0)}
+    return scene | {"thetadot0": rng.choice([0, signed(rng, log_uniform(rng, -12, -1))])}
 
 
-def separatrix(rng: random.Random) -> Scene:
+def _separatrix(rng: random.Random) -> Scene:
     """Return a start with beta = b and alpha = a but for a small factor."""
-    scene = generic(rng)
+    scene = _generic(rng)
     lam = rng.uniform(0.01, 0.9)
     scene["r0"] = signed(rng, threshold_spin(scene) * math.sqrt(lam))
     u = rng.uniform(2 * lam - 1, 1)
-    return scene | to_pole(scene, u, 1, 2 / scene["A"] * (1 - u), power(rng, -15, -6))
+    return scene | to_pole(scene, u, 1, 2 / scene["A"] * (1 - u), log_uniform(rng, -15, -6))
 
 
-def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float) -> Scene:
+def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float = 0) -> Scene:
     """Return rates at cos(theta0) = u whose angular momentum leads almost over a pole."""
     b = scene["C"] * scene["r0"] / scene["A"]
     rate = pole * b / (1 + pole * u) * (1 + miss)
@@ -104,121 +104,121 @@ def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float) -> Sc
     return {"theta0_deg": math.degrees(math.acos(u)), "psidot0": rate, "thetadot0": theta_rate}
 
 
-def bottom_pass(rng: random.Random) -> Scene:
+def _bottom_pass(rng: random.Random) -> Scene:
     """Return a start that passes the lower pole within 10^-9 to 10^-6."""
-    scene, u = generic(rng), rng.uniform(-0.9, 0.9)
+    scene, u = _generic(rng), rng.uniform(-0.9, 0.9)
     scene["r0"] = rng.uniform(-2, 2)
-    return scene | to_pole(scene, u, -1, rng.uniform(0, 30), power(rng, -9, -6))
+    return scene | to_pole(scene, u, -1, rng.uniform(0, 30), log_uniform(rng, -9, -6))
 
 
-def top_pass(rng: random.Random) -> Scene:
+def _top_pass(rng: random.Random) -> Scene:
     """Return a start that passes the upper pole within 10^-9 to 10^-6."""
-    scene, u = generic(rng), rng.uniform(-0.9, 0.9)
+    scene, u = _generic(rng), rng.uniform(-0.9, 0.9)
     scene["r0"] = rng.uniform(-2, 2)
-    return scene | to_pole(scene, u, 1, rng.uniform(10, 40), power(rng, -9, -6))
+    return scene | to_pole(scene, u, 1, rng.uniform(10, 40), log_uniform(rng, -9, -6))
 
 
-def tiny_nutation(rng: random.Random) -> Scene:
+def _tiny_nutation(rng: random.Random) -> Scene:
     """Return a steady precession, A u psi'^2 - C r0 psi' + m g s = 0, a little disturbed."""
-    scene = generic(rng) | {"thetadot0": 0.0}
+    scene = _generic(rng) | {"thetadot0": 0.0}
     scene["r0"] = signed(rng, threshold_spin(scene) * rng.uniform(1, 5))
     u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
     root = math.copysign(math.sqrt(b * b - 4 * scene["A"] * u), b)
-    scene["psidot0"] = 2 / (b + root) * (1 + signed(rng, power(rng, -12, -4)))
+    scene["psidot0"] = 2 / (b + root) * (1 + signed(rng, log_uniform(rng, -12, -4)))
     return scene
 
 
-def sphere(rng: random.Random) -> Scene:
+def _sphere(rng: random.Random) -> Scene:
     """Return a scene with A = C."""
-    scene = generic(rng)
+    scene = _generic(rng)
     return scene | {"C": scene["A"]}
 
 
-def disc(rng: random.Random) -> Scene:
+def _disc(rng: random.Random) -> Scene:
     """Return a scene with C = 2A, the most a rigid body can have."""
-    scene = generic(rng)
+    scene = _generic(rng)
     return scene | {"C": 2 * scene["A"]}
 
 
-def sphere_limit(rng: random.Random) -> Scene:
+def _sphere_limit(rng: random.Random) -> Scene:
     """Return a scene with C within 10^-15 to 10^-6 of A."""
-    scene = generic(rng)
-    return scene | {"C": scene["A"] * (1 + signed(rng, power(rng, -15, -6)))}
+    scene = _generic(rng)
+    return scene | {"C": scene["A"] * (1 + signed(rng, log_uniform(rng, -15, -6)))}
 
 
-def disc_limit(rng: random.Random) -> Scene:
+def _disc_limit(rng: random.Random) -> Scene:
     """Return C less than 2A by 10^-15 to 10^-6 of it, or a needle, C = 10^-6 to 10^-2 of A."""
-    scene = generic(rng)
-    part = rng.choice([2 * (1 - power(rng, -15, -6)), power(rng, -6, -2)])
+    scene = _generic(rng)
+    part = rng.choice([2 * (1 - log_uniform(rng, -15, -6)), log_uniform(rng, -6, -2)])
     return scene | {"C": scene["A"] * part}
 
 
-def units(rng: random.Random) -> Scene:
+def _units(rng: random.Random) -> Scene:
     """Return a generic scene in units of mass, length and time of 10^-30 to 10^30."""
-    scene, (mass, length, time) = generic(rng), (power(rng, -30, 30) for _ in range(3))
+    scene, (mass, length, time) = _generic(rng), (log_uniform(rng, -30, 30) for _ in range(3))
     scene |= {"m": mass, "s": length, "g": length / time**2}
     scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
     return scene | {key: scene[key] / time for key in ("r0", "thetadot0", "psidot0")}
 
 
-def far_times(rng: random.Random) -> Scene:
+def _far_times(rng: random.Random) -> Scene:
     """Return a scene of another stratum, for 10^11 to 10^14 periods (see `hard_scene`)."""
-    return rng.choice([generic, fast, slow, upright_below, hanging, bottom_pass, tiny_nutation])(
-        rng
-    )
+    return rng.choice(
+        [_generic, _fast, _slow, _upright_below, _hanging, _bottom_pass, _tiny_nutation]
+    )(rng)
 
 
-def thresholds(rng: random.Random) -> Scene:
+def _thresholds(rng: random.Random) -> Scene:
     """Return a scene next to where the program or the motion changes its kind, within 10^-15."""
     return rng.choice([_series_change, _sleeping_threshold, _hardly_torque, _hardly_start])(rng)
 
 
 def _series_change(rng: random.Random) -> Scene:
     """Return a release at k = k' (lambda = cos(theta0)), where the series change their nome."""
-    scene = body(rng) | {"theta0_deg": rng.uniform(1, 85)}
-    lam = math.cos(math.radians(scene["theta0_deg"])) * (1 + signed(rng, power(rng, -15, -3)))
+    scene = any_body(rng) | {"theta0_deg": rng.uniform(1, 85)}
+    lam = math.cos(math.radians(scene["theta0_deg"])) * (1 + signed(rng, log_uniform(rng, -15, -3)))
     return scene | {"r0": signed(rng, threshold_spin(scene) * math.sqrt(lam))}
 
 
 def _sleeping_threshold(rng: random.Random) -> Scene:
     """Return a release next to the vertical, at the spin that just makes it sleep."""
-    scene = body(rng) | {"theta0_deg": power(rng, -9, 0)}
-    miss = 1 + signed(rng, power(rng, -15, -3))
+    scene = any_body(rng) | {"theta0_deg": log_uniform(rng, -9, 0)}
+    miss = 1 + signed(rng, log_uniform(rng, -15, -3))
     return scene | {"r0": signed(rng, threshold_spin(scene) * miss)}
 
 
 def _hardly_torque(rng: random.Random) -> Scene:
     """Return a scene that is nearly torque-free."""
-    return generic(rng) | {"g": power(rng, -15, -6)}
+    return _generic(rng) | {"g": log_uniform(rng, -15, -6)}
 
 
 def _hardly_start(rng: random.Random) -> Scene:
     """Return a scene next to a release from rest, and next to no spin."""
-    scene = generic(rng) | {"r0": signed(rng, power(rng, -15, -12))}
-    return scene | {key: signed(rng, power(rng, -15, -6)) for key in ("thetadot0", "psidot0")}
+    scene = _generic(rng) | {"r0": signed(rng, log_uniform(rng, -15, -12))}
+    return scene | {key: signed(rng, log_uniform(rng, -15, -6)) for key in ("thetadot0", "psidot0")}
 
 
 STRATA: dict[str, Callable[[random.Random], Scene]] = {
-    function.__name__.replace("_", " "): function
+    function.__name__[1:].replace("_", " "): function
     for function in (
-        generic,
-        from_rest,
-        fast,
-        slow,
-        upright_below,
-        upright_above,
-        hanging,
-        separatrix,
-        bottom_pass,
-        top_pass,
-        tiny_nutation,
-        sphere,
-        disc,
-        sphere_limit,
-        disc_limit,
-        units,
-        thresholds,
-        far_times,
+        _generic,
+        _from_rest,
+        _fast,
+        _slow,
+        _upright_below,
+        _upright_above,
+        _hanging,
+        _separatrix,
+        _bottom_pass,
+        _top_pass,
+        _tiny_nutation,
+        _sphere,
+        _disc,
+        _sphere_limit,
+        _disc_limit,
+        _units,
+        _thresholds,
+        _far_times,
     )
 }
 
@@ -250,7 +250,7 @@ def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
     rng = random.Random(f"{seed} {stratum} {i}")
     scene = STRATA[stratum](rng)
     least, nearest = (11, 11) if stratum == "far times" else (-9, 0)
-    periods = [signed(rng, power(rng, least, 14)) for _ in range(count)]
+    periods = [signed(rng, log_uniform(rng, least, 14)) for _ in range(count)]
     sides = rng.sample([-1, 1], 2)
-    halves = [4 * int(power(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
+    halves = [4 * int(log_uniform(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
     return HardScene(scene, periods, [side * n for side, n in zip(sides, halves, strict=True)])

@@ -15,10 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.doubles import DOUBLES
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
+from ..inputs.rotations import angles_of
 from ..inputs.top import Top
-from .method import FailedError, Method, NotApplicableError, Sample, Sampled
+from .method import AngleFunction, FailedError, Method, NotApplicableError, SampledAngles
 
 TIGHTEST = 3e-14
 """Least relative tolerance that scipy takes."""
@@ -29,7 +30,7 @@ STEPS_PER_SECOND = 100_000
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 
 
-class Problem(NamedTuple):
+class ScaledTop(NamedTuple):
     """A top in units of time in which its rates are of the size of 1."""
 
     a: float
@@ -42,13 +43,13 @@ class Problem(NamedTuple):
     """Rate that has become 1."""
 
 
-def problem(top: Top) -> Problem:
+def scaled_top(top: Top) -> ScaledTop:
     """Return the problem of a top."""
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
     b, theta0 = float(top.C) * float(top.r0) / float(top.A), top.tilt(DOUBLES)
     theta_rate, psi_rate = float(top.thetadot0), float(top.psidot0)
     clock = math.sqrt(a) + abs(b) + abs(theta_rate) + abs(psi_rate)
-    return Problem(
+    return ScaledTop(
         a=a / clock / clock,
         b=b / clock,
         r0=float(top.r0) / clock,
@@ -62,21 +63,21 @@ def problem(top: Top) -> Problem:
 class Form(NamedTuple):
     """Variables to integrate in: their start, their slope, and the angles from them."""
 
-    start: Callable[[Problem], Sequence[float]]
-    slope: Callable[[Problem, Any], Slope]
+    start: Callable[[ScaledTop], Sequence[float]]
+    slope: Callable[[ScaledTop, Any], Slope]
     """Right-hand side in an arithmetic with sin and cos: `math`, or heyoka's expressions."""
-    angles: Callable[[Array], Sampled]
+    angles: Callable[[Array], SampledAngles]
     """Angles from an array with a row for each variable."""
     whole_turns: bool
 
 
-def _euler_start(p: Problem) -> Sequence[float]:
+def _euler_start(p: ScaledTop) -> Sequence[float]:
     if not math.sin(p.theta0):
         raise NotApplicableError("Euler angles are singular on the vertical")
     return p.theta0, p.theta_rate, 0.0, 0.0
 
 
-def _euler_slope(p: Problem, ar: Any) -> Slope:
+def _euler_slope(p: ScaledTop, ar: Any) -> Slope:
     """Return the slope of theta, its rate, phi and psi, by the constant momenta of (4,7), (4,8)."""
     beta = p.psi_rate * math.sin(p.theta0) ** 2 + p.b * math.cos(p.theta0)
 
@@ -89,12 +90,12 @@ def _euler_slope(p: Problem, ar: Any) -> Slope:
     return slope
 
 
-def _quaternion_start(p: Problem) -> Sequence[float]:
+def _quaternion_start(p: ScaledTop) -> Sequence[float]:
     q = p.psi_rate * math.sin(p.theta0)
     return p.theta_rate, q, math.cos(p.theta0 / 2), math.sin(p.theta0 / 2), 0.0, 0.0
 
 
-def _quaternion_slope(p: Problem, _: Any) -> Slope:
+def _quaternion_slope(p: ScaledTop, _: Any) -> Slope:
     """Return the slope of p, q (body) and the quaternion (body to space): nothing is singular."""
     twist = p.r0 - p.b
 
@@ -112,17 +113,15 @@ def _quaternion_slope(p: Problem, _: Any) -> Slope:
     return slope
 
 
-def quaternion_angles(parts: Array) -> Sampled:
-    """Return the angles, turns aside, from rows of the parts w, x, y, z of quaternions."""
-    upper, lower = parts[0] + 1j * parts[3], parts[1] + 1j * parts[2]
-    mean, half = np.angle(upper), np.angle(lower)
-    return 2 * np.arctan2(np.abs(lower), np.abs(upper)), mean - half, mean + half
+def quaternion_angles(rows: Array) -> SampledAngles:
+    """Return the angles, turns aside, of quaternions w, x, y, z, a row for each."""
+    return [*angles_of(rows).values()]
 
 
 FORMS = {
     "euler": Form(_euler_start, _euler_slope, lambda rows: (rows[0], rows[2], rows[3]), True),
     "quaternion": Form(
-        _quaternion_start, _quaternion_slope, lambda rows: quaternion_angles(rows[2:]), False
+        _quaternion_start, _quaternion_slope, lambda rows: quaternion_angles(rows[2:].T), False
     ),
 }
 
@@ -143,14 +142,14 @@ class Limit:
         return FailedError(f"took more than {self.seconds:g} s")
 
 
-def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.0) -> Sample:
+def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.0) -> AngleFunction:
     """Return a method of scipy's solve_ivp, with its own interpolation between the steps."""
     from scipy.integrate import solve_ivp
 
-    scene = problem(top)
+    scene = scaled_top(top)
     start, formula = form.start(scene), form.slope(scene, math)
 
-    def sample(t: Array) -> Sampled:
+    def sample(t: Array) -> SampledAngles:
         watch, times = Limit(limit), t * scene.clock
 
         def slope(now: float, state: Array) -> Sequence[float]:
@@ -179,18 +178,18 @@ def _forget_compiled_code(state: Any) -> None:
         state.set_diskcache_enabled(False)
 
 
-def heyoka_method(form: Form, top: Top, tol: float, limit: float = 5.0) -> Sample:
+def heyoka_method(form: Form, top: Top, tol: float, limit: float = 5.0) -> AngleFunction:
     """Return Taylor's method, compiled for this top; the set-up includes the compilation."""
     import heyoka
 
     _forget_compiled_code(heyoka.llvm_state)
-    scene = problem(top)
+    scene = scaled_top(top)
     start = np.array(form.start(scene))
     variables = heyoka.make_vars(*(f"x{i}" for i in range(start.size)))
     system = list(zip(variables, form.slope(scene, heyoka)(0.0, variables), strict=True))
     integrator = heyoka.taylor_adaptive(system, start, tol=tol)
 
-    def sample(t: Array) -> Sampled:
+    def sample(t: Array) -> SampledAngles:
         integrator.time, integrator.state[:] = 0.0, start
         grid = np.concatenate(([0.0], t[t != 0] * scene.clock))
         steps = int(limit * STEPS_PER_SECOND)

@@ -1,4 +1,4 @@
-"""What the reports compare: ways to compute the angles of a top, all behind one small interface."""
+"""What `bench` compares: ways to compute the angles of a top, and the rows that they become."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ from typing import Any, NamedTuple
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 
-Sampled = Sequence[Any]
+OURS = "lagtop"
+NOT_APPLICABLE = "not applicable"
+
+SampledAngles = Sequence[Any]
 """Tilt, spin and precession (radians), each an array or a list in the length of the times."""
 
-Sample = Callable[[Array], Sampled]
+AngleFunction = Callable[[Array], SampledAngles]
 """Computes the angles at times that run away from 0."""
 
 
-Steps = Callable[[Sequence[Any], str], Iterable[Any]]
+StepsThrough = Callable[[Sequence[Any], str], Iterable[Any]]
 """Goes through a sequence, and may show how far it is, under a label."""
 
 
@@ -38,7 +41,7 @@ class Method(NamedTuple):
     """A way to compute the angles, with the settings that it is tried at."""
 
     settings: Sequence[Any]
-    prepare: Callable[[Top, Any], Sample]
+    prepare: Callable[[Top, Any], AngleFunction]
     """Set-up: from a top and a setting to what samples.
 
     It may raise NotApplicableError; what it returns may raise FailedError.
@@ -65,3 +68,40 @@ class Method(NamedTuple):
     def mark(self) -> str | None:
         """Return the engine and its version, which mark its rows; None for other methods."""
         return f"{self.engine} {version(self.engine)}" if self.engine else None
+
+
+class MethodRow(NamedTuple):
+    """The errors and the times of one method at one setting."""
+
+    method: str
+    setting: float | str
+    periods: float
+    theta_max: float | None = None
+    """Greatest error of theta over the judged times (rad); then those of phi and psi."""
+    phi_max: float | None = None
+    psi_max: float | None = None
+    theta_end: float | None = None
+    phi_end: float | None = None
+    psi_end: float | None = None
+    error_max: float | None = None
+    """Greatest error of the three angles (rad)."""
+    error_end: float | None = None
+    units_max: float | None = None
+    setup_s: float | None = None
+    ns_min: float | None = None
+    """Nanoseconds per sample: the least and the median of the runs."""
+    ns_median: float | None = None
+    runs: int | None = None
+    front: bool = False
+    """Whether no other is both faster and more accurate."""
+    remark: str | None = None
+
+
+def is_done(row: MethodRow) -> bool:
+    """Return whether a row has an error and a time."""
+    return row.error_max is not None and row.ns_min is not None
+
+
+def is_out(row: MethodRow) -> bool:
+    """Return whether the method cannot do the scene, at any setting."""
+    return (row.remark or "").startswith(NOT_APPLICABLE)

@@ -25,7 +25,7 @@ from .battery import CONSERVED, Case, case_of, conserved_changes, tabulated
 from .hard_scenes import HardScene
 from .reference import Many
 
-COLUMNS = ("theta", "phi", "psi", "quaternion")
+_COLUMNS = ("theta", "phi", "psi", "quaternion")
 _NARROW = 2**10
 """One over the radius of a ball, in units, that tells an error to three digits."""
 _DIGITS = 40
@@ -36,16 +36,16 @@ def prove(scene: HardScene) -> Case:
     """Return what is proved of a scene: upper bounds of its errors."""
     top = Top(**scene.inputs)
     motion = solve(top)
-    proofs = ProvedTable(motion, COLUMNS)
+    proofs = ProvedTable(motion, _COLUMNS)
     with mpmath.workdps(_DIGITS):
         times = scene.times(_period(motion))
-    values = tabulated(motion, times, (*COLUMNS, *CONSERVED))
+    values = tabulated(motion, times, (*_COLUMNS, *CONSERVED))
     units = []
     for t, row in zip(times, values[1:].tolist(), strict=True):
         *angles, w, x, y, z = bounds_at(proofs, t, row[:7])
         units.append((*angles, max(w, x, y, z)))
     changes = conserved_changes(top, values[:, -2:])
-    return case_of(top, times, units, worst_key(motion), changes)
+    return case_of(top, times, units, worst_bound(motion), changes)
 
 
 def _period(motion: Motion) -> Many:
@@ -55,7 +55,7 @@ def _period(motion: Motion) -> Many:
     return mpmath.mpf(found.value)
 
 
-def worst_key(motion: Motion) -> tuple[float, str]:
+def worst_bound(motion: Motion) -> tuple[float, str]:
     """Return the worst bound of a key, in gaps between doubles, and the key.
 
     One where the motion has none, or the other way round, is infinitely wrong.

@@ -26,7 +26,7 @@ Many = Any
 """An mpf with many digits."""
 
 
-class Exact(NamedTuple):
+class ExactAngles(NamedTuple):
     """The exact tilt, spin and precession at one time (radians, unwrapped), with their rates."""
 
     theta: Many
@@ -51,7 +51,7 @@ def unit(exact: Many, rate: Many, tau: Many) -> float:
     return EPS * float(max(1, abs(exact)) + abs(tau * rate))
 
 
-def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
+def error_in_units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
     """Return the error of one value in units; not a number counts as infinite."""
     if not math.isfinite(computed):
         return math.inf
@@ -59,7 +59,7 @@ def units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
 
 
 def angle_differences(
-    angles: Sequence[Any], exact: Exact, *, whole_turns: bool = True
+    angles: Sequence[Any], exact: ExactAngles, *, whole_turns: bool = True
 ) -> tuple[float, float, float]:
     """Return |computed - exact| of tilt, spin and precession, in radians.
 
@@ -81,7 +81,7 @@ def _less_turns(angle: Many) -> Many:
 
 
 def angle_units(
-    angles: Sequence[Any], exact: Exact, *, whole_turns: bool = True
+    angles: Sequence[Any], exact: ExactAngles, *, whole_turns: bool = True
 ) -> tuple[float, float, float]:
     """Return the errors of tilt, spin and precession in units (see `angle_differences`)."""
     differences = angle_differences(angles, exact, whole_turns=whole_turns)
@@ -92,10 +92,10 @@ def angle_units(
     return theta, phi, psi
 
 
-def quaternion_units(parts: Sequence[float], exact: Exact) -> float:
+def quaternion_units(parts: Sequence[float], exact: ExactAngles) -> float:
     """Return the worst error of the parts w, x, y, z in units; a wrong sign is an error."""
     return max(
-        units(part, true, exact.turning_rate, exact.tau)
+        error_in_units(part, true, exact.turning_rate, exact.tau)
         for part, true in zip(parts, exact.quaternion, strict=True)
     )
 
@@ -207,7 +207,7 @@ class Reference:
         part = mpmath.elliprf(cn2, dn2, 1) + n / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, 1 - n * sn2)
         return (2 * now.turns * whole + now.sn * part) / (gap * self.speed)
 
-    def at(self, t: float) -> Exact:
+    def at(self, t: float) -> ExactAngles:
         """Return the exact angles and rates at a time."""
         with mpmath.workdps(self.digits):
             time = mpmath.mpf(t)
@@ -222,7 +222,7 @@ class Reference:
             psi_rate = (self.beta - self.b * u) / sine2
             theta_rate = -2 * band * sn * cn * dn * self.speed / mpmath.sqrt(sine2)
             x, y = mpmath.sqrt(below / 2), mpmath.sqrt(above / 2)
-            return Exact(
+            return ExactAngles(
                 theta=theta,
                 phi=plus - minus,
                 psi=plus + minus,

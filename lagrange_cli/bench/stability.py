@@ -20,13 +20,13 @@ from .battery import (
     MORE_DIGITS,
     Case,
     Errors,
-    judge,
+    judged_case,
 )
 from .closed_forms import CLOSED_FORMS
 from .hard_scenes import STRATA, hard_scene
 from .integrators import TIGHTEST
 from .machine import common_conditions
-from .method import NotApplicableError, Steps
+from .method import NotApplicableError, StepsThrough
 
 TIMES = 2
 """Times anywhere per scene; six more stand next to half, quarter and whole periods."""
@@ -60,7 +60,7 @@ PROVED = (
     "enclosures in balls (Arb): every error is an upper bound that is proved; `proved` is the "
     "worst of the angles and the quaternion"
 )
-FIELDS = [
+STRATUM_FIELDS = [
     Field("stratum", "stratum", is_text=True, names_the_row=True),
     Field("scenes", "scenes"),
     *(Field(f"{angle}_units", angle, _hundredths) for angle in ANGLES),
@@ -89,7 +89,7 @@ def run_battery(
     strata: Sequence[str],
     samples: int,
     seed: int,
-    steps: Steps,
+    steps: StepsThrough,
     jobs: int = 1,
     *,
     certify: bool = False,
@@ -111,15 +111,15 @@ def run_battery(
     ]
     agreement = max(case.agreement for of_stratum in cases.values() for case in of_stratum)
     conditions = _conditions(samples, seed, None if certify else agreement)
-    fields_shown = FIELDS
+    fields_shown = STRATUM_FIELDS
     if certify:
-        fields_shown = [PROVED_FIELD if x.key == PROVED_FIELD.key else x for x in FIELDS]
+        fields_shown = [PROVED_FIELD if x.key == PROVED_FIELD.key else x for x in STRATUM_FIELDS]
     return Findings(conditions, fields_shown, stratum_rows, _conclusions(stratum_rows))
 
 
 def judged(scene: tuple[str, int, int]) -> Case:
     """Return what became of a scene: stratum, seed and number."""
-    return judge(hard_scene(*scene, TIMES))
+    return judged_case(hard_scene(*scene, TIMES))
 
 
 def proved(scene: tuple[str, int, int]) -> Case:

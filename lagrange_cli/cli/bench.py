@@ -9,17 +9,9 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_report
-from .given import solved
-from .options import (
-    COUNT,
-    FILE,
-    METHOD_NAMES,
-    NUMBER,
-    exclude,
-    output_options,
-    scene_options,
-)
+from .options import COUNT, FILE, METHOD_NAMES, NUMBER, exclude, output_options
 from .progress import with_steps
+from .top_options import scene_options, solved
 
 if TYPE_CHECKING:
     from ..output.findings import Findings
@@ -30,22 +22,20 @@ PERIODS = 20.3
 MOST_SAMPLES = 10_000_000
 
 
-class _ListingMethods(ExamplesFirst):
-    """A command whose help ends with the names of the methods."""
+def _write_methods(formatter: click.HelpFormatter) -> None:
+    """Write the names of the methods and of their groups."""
+    from ..bench.measure import all_methods, groups
 
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the names, which are imported only here."""
-        from ..bench.work_precision import all_methods, groups
-
-        with formatter.section("Methods"):
-            formatter.write_text(", ".join(all_methods(1.0)))
-        with formatter.section("Groups of methods"):
-            formatter.write_text(", ".join(groups()))
+    with formatter.section("Methods"):
+        formatter.write_text(", ".join(all_methods(1.0)))
+    with formatter.section("Groups of methods"):
+        formatter.write_text(", ".join(groups()))
 
 
 @click.command(
     "bench",
-    cls=_ListingMethods,
+    cls=ExamplesFirst,
+    shows=_write_methods,
     examples="""
         lagtop bench
         lagtop bench sample_inputs/stiff-top.toml --plot work-precision.svg
@@ -90,25 +80,25 @@ def command(
     from ..bench.machine import use_one_thread
 
     use_one_thread()
-    from ..bench import work_precision as bench
-    from ..bench.diagrams import draw_long_spans, draw_work_precision
-    from ..bench.long_spans import compare_spans
+    from ..bench.compare_methods import compare_methods, compare_spans
+    from ..bench.measure import check_scene, chosen_methods, reference_period
+    from ..bench.pictures import draw_long_spans, draw_work_precision
     from ..plot.files import check_plot
 
     exclude({"--long": is_long or None, "--t-max": t_max})
     _check(t_max, count, limit)
     check_plot(plot, output)
-    chosen = bench.chosen_methods(methods, float(limit))
+    chosen = chosen_methods(methods, float(limit))
     motion = solved(scene, rad, False, options)
-    bench.check_scene(motion)
+    check_scene(motion)
     how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
-    end = float(PERIODS * bench.nutation_period(motion) if t_max is None else t_max)
+    end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
 
     def find() -> Findings:
         if is_long:
             findings = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
         else:
-            findings = bench.compare_methods(motion, end, count or SAMPLES, chosen, **how)
+            findings = compare_methods(motion, end, count or SAMPLES, chosen, **how)
         if plot:
             (draw_long_spans if is_long else draw_work_precision)(findings, plot)
         return findings

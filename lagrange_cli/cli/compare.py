@@ -13,23 +13,14 @@ from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, fail_for, write_report
-from .given import solved
-from .options import (
-    FILE,
-    INPUT,
-    NAMES,
-    NUMBER,
-    Parsed,
-    exclude,
-    input_options,
-    output_options,
-)
+from .options import FILE, NAMES, NUMBER, Parsed, exclude, output_options
 from .progress import with_progress
-from .reading_options import reading_options
+from .row_options import reading_options
+from .top_options import INPUT, input_options, solved
 
 if TYPE_CHECKING:
     from ..inputs.seen import Quantities
-    from ..judge.files import Comparison
+    from ..judge.compare import Comparison
     from ..output.findings import Findings
 
 LONG = 1_000_000
@@ -133,7 +124,7 @@ def command(
     """
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
-    from ..judge.files import Request, compare_files
+    from ..judge.compare import ComparisonRequest, compare_files
     from ..judge.report import comparison_report, failures
     from ..plot.files import check_plot
 
@@ -143,7 +134,7 @@ def command(
     exclude({"--scene -": scene == "-" or None, "the trajectory -": "-" in trajectories or None})
     limit = None if max_error is None else float(max_error)
     conventions = Conventions(quaternion, euler, rates, rad).checked()
-    request = Request(columns, conventions, alignment(align or []), limit, steps)
+    request = ComparisonRequest(columns, conventions, alignment(align or []), limit, steps)
     motion = solved(scene, rad, False, options)
 
     def find() -> Findings:

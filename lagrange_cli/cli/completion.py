@@ -33,7 +33,7 @@ def _columns() -> list[str]:
 
 
 def _methods() -> Iterable[str]:
-    from ..bench.work_precision import all_methods, groups
+    from ..bench.measure import all_methods, groups
 
     return dict.fromkeys([*all_methods(1.0), *groups()])
 

@@ -10,11 +10,10 @@ import click
 from ..arithmetic.exact_complex import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import ETA
-from ..output.write import write_record, write_table
+from ..output.write import write_record
 from .command import ExamplesFirst
 from .options import MOST_TABLE_DIGITS, NUMBER, Parsed, digits_option, exclude, output_options
-from .progress import with_progress
-from .row_options import RANGE, listed
+from .row_options import RANGE, listed, write_functions
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -115,16 +114,11 @@ def command(
                 raise LagtopError(f"{name} needs --tau or --tau-range")
         write_record(record(quadrature, digits, c3), fmt, output, lambda: ETA)
         return
-    from ..elliptic.eta_table import Wanted, digit_rows, header, rows
+    from ..elliptic.eta_table import EtaTable
 
-    wanted = Wanted(rate, ("rad" if rad else "deg") if chain else "")
-    if digits is None:
-        parts = with_progress(rows(quadrature, times, c3, wanted), times.count, 3_000_000)
-        write_table(header(wanted), parts, fmt, output)
-    else:
-        lines = digit_rows(quadrature, times, c3, wanted, digits)
-        texts = with_progress(([line] for line in lines), times.count, 1000)
-        write_table(header(wanted), texts, fmt, output)
+    angle = ("rad" if rad else "deg") if chain else ""
+    table = EtaTable(times, quadrature, c3, rate=rate, angle=angle)
+    write_functions(table, digits, fmt, output)
 
 
 def _quadrature(

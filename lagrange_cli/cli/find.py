@@ -9,30 +9,13 @@ import click
 
 from ..errors import LagtopError
 from .command import ExamplesFirst, complain, write_keys
-from .given import is_scene, say_unused
-from .options import (
-    COUNT,
-    KEY_NAMES,
-    Parsed,
-    by_key,
-    exclude,
-    input_options,
-    output_options,
-    say_missing,
-)
+from .options import COUNT, KEY_NAMES, exclude, output_options
 from .progress import with_progress
+from .top_options import by_key, input_options, is_scene, say_missing, say_unused, value_type
 
 if TYPE_CHECKING:
     from ..inputs.units import System
-    from ..inputs.value import Value
     from ..motion.solve import Motion
-
-
-def _parse_input(text: str) -> Value:
-    from ..inputs.ranges import parse_number_or_span
-    from ..inputs.value import parse_value
-
-    return parse_value(text, parse_number_or_span)
 
 
 @click.command(
@@ -48,7 +31,7 @@ def _parse_input(text: str) -> Value:
     """,
 )
 @click.argument("words", nargs=-1, metavar="[SCENE.toml|-] CONDITION...")
-@input_options(Parsed("number or from:to", _parse_input), units=False)
+@input_options(value_type("number or from:to", "parse_number_or_span"), units=False)
 @click.option(
     "--scan",
     type=COUNT,
@@ -114,12 +97,12 @@ def _found(
     count: int | None,
     radians: bool,
 ) -> tuple[list[Motion], System | None]:
-    from ..fits.find import look
+    from ..fits.find import find_tops
     from ..fits.search import search_of
 
     scene = scenes[0] if scenes else None
     search, given = search_of(inputs, conditions, scene=scene, radians=radians)
-    found = look(search, count, _watched)
+    found = find_tops(search, count, _watched)
     say_missing(given)
     say_unused(given.stds)
     complain(f"{len(found.motions)} found; {found.looked}")
@@ -135,17 +118,19 @@ def _watched(blocks: Iterable[Any]) -> Iterator[Any]:
 def _inverted(
     scenes: list[str], conditions: list[str], inputs: dict[str, Any], radians: bool
 ) -> tuple[list[Motion], System | None]:
-    from ..fits.body import INPUTS
+    from ..fits.implied_body import BODY_INPUTS
     from ..fits.invert import invert
     from ..inputs.given import gather
     from ..inputs.ranges import Span
 
     for name, x in inputs.items():
-        if name not in INPUTS or isinstance(x.number, Span):
+        if name not in BODY_INPUTS or isinstance(x.number, Span):
             option = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
-            raise LagtopError(f"--from goes with numbers for {' '.join(INPUTS)}, got --{option}")
+            raise LagtopError(
+                f"--from goes with numbers for {' '.join(BODY_INPUTS)}, got --{option}"
+            )
     found = gather(inputs, scenes[0] if scenes else None)
-    given = {name: float(x) for name, x in found.inputs.items() if name in INPUTS}
+    given = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
     say_unused(name for name in found.stds if name in given)
     return invert(conditions, radians=radians, known=given), found.system
 

@@ -12,20 +12,10 @@ from ..arithmetic.angles import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain, fail_for, write_report
-from .given import say_unused
-from .options import (
-    FILE,
-    INPUT,
-    NAMES,
-    Parsed,
-    by_key,
-    exclude,
-    extension,
-    input_options,
-    output_options,
-)
+from .options import FILE, NAMES, Parsed, exclude, extension, output_options
 from .progress import with_steps
-from .reading_options import reading_options
+from .row_options import reading_options
+from .top_options import INPUT, by_key, input_options, say_unused
 
 if TYPE_CHECKING:
     from ..fits.record import Outcome
@@ -175,7 +165,7 @@ def _known(
 
     Raises LagtopError.
     """
-    from ..fits.known import known_inputs
+    from ..fits.parameters import known_inputs
     from ..inputs.given import gather
     from ..inputs.measured import moment
     from ..inputs.names import check_names
@@ -207,7 +197,7 @@ def _in_radians(
 
 def _write(found: list[Outcome], source: str, system: System | None, fmt: str, output: str) -> None:
     """Write a report, or one record for each recording, with units where known inputs have any."""
-    from ..fits.report import fit_report, units_of
+    from ..fits.report import fit_report, outcome_units
 
     if fmt == "table":
         from ..inputs.files import shown_path
@@ -218,7 +208,7 @@ def _write(found: list[Outcome], source: str, system: System | None, fmt: str, o
 
     records = [outcome.record() for outcome in found]
     if system is not None and fmt == "json":
-        units = [{"units": units_of(outcome, system)} for outcome in found]
+        units = [{"units": outcome_units(outcome, system)} for outcome in found]
         records = [record | unit for record, unit in zip(records, units, strict=True)]
     if len(records) == 1 and fmt == "json":
         write_record(records[0], fmt, output, dict)
@@ -228,21 +218,21 @@ def _write(found: list[Outcome], source: str, system: System | None, fmt: str, o
         write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)
     for outcome in found:
         name = f"{outcome.recording.name}: " if outcome.recording.name else ""
-        notes = [*outcome.notes(), *outcome.untold()]
+        notes = [*outcome.notes(), *outcome.undetermined()]
         for word, texts in (("Note", notes), ("Warning", outcome.warnings())):
             if texts:
                 complain(f"{word}: {name}{'; '.join(texts)}")
 
 
 def _write_scene(outcome: Outcome, source: str, path: str) -> None:
-    from ..fits.scene import scene_text
+    from ..fits.report import scene_text
     from ..output.write import write_bytes
 
     write_bytes(path, lambda: scene_text(outcome, source).encode())
 
 
 def _draw(found: list[Outcome], path: str, radians: bool) -> None:
-    from ..fits.curves import curves_of
+    from ..fits.report import curves_of
     from ..output.write import write_bytes
     from ..plot.reports import FittedCurve, draw_fit
 

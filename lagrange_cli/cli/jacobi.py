@@ -10,9 +10,8 @@ import click
 from ..arithmetic.exact_complex import ExactComplex, looks_complex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import JACOBI
-from ..output.write import write_record, write_table
+from ..output.write import write_record
 from .command import ExamplesFirst, complain
-from .jacobi_complex import all_real, complex_points, write_complex
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
@@ -22,13 +21,13 @@ from .options import (
     exclude,
     output_options,
 )
-from .progress import with_progress
-from .row_options import RANGE, listed
+from .row_options import RANGE, listed, write_functions
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.modulus_input import ModulusInput
-    from ..elliptic.request import Request
+    from ..elliptic.request import Arguments, FunctionRequest
+    from ..elliptic.tables import TableOfFunctions
     from ..inputs.multiples import Multiple, Multiples
 
 MOST_TERMS = 10_000
@@ -149,25 +148,24 @@ def command(
     asked = tuple(name for name, wanted in flags.items() if wanted)
     families = asked or ("am",)
     parameter, imaginary = _parameter(param, families)
-    if beyond or not all_real(single, parameter):
+    real = not (
+        beyond
+        or any(isinstance(u, ExactComplex) for u in single)
+        or (parameter.real and parameter.imag)
+    )
+    if not real:
         for name, wanted in (("--phi", amplitudes or fan), ("--series", terms)):
             if wanted:
                 raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
-        points = complex_points(single, grid)
-        if points is None and asked:
-            raise LagtopError(f"--{asked[0]} needs --u or --u-range")
-        given = k if beyond and k is not None else modulus
-        write_complex(points, (given, families, parameter, rad), digits, (fmt, output))
-        return
-    arguments, in_quarters = _arguments(
-        [u for u in single if not isinstance(u, ExactComplex)], grid
-    )
+    arguments, in_quarters = _arguments(single, grid, real=real)
     angles = listed("phi", amplitudes, fan)
     if angles:
         others = {"--u": arguments, "--series": terms, f"--{(*asked, '')[0]}": asked or None}
         for name, value in {**others, "--param": param}.items():
             exclude({"--phi": angles, name: value})
-        _write_integrals(modulus, angles, digits, fmt, output)
+        from ..elliptic.amplitude_table import AmplitudeTable
+
+        write_functions(AmplitudeTable(angles, modulus), digits, fmt, output)
         return
     if terms is not None:
         exclude({"--series": terms, "--digits": digits})
@@ -177,23 +175,45 @@ def command(
     if arguments is None:
         if asked:
             raise LagtopError(f"--{asked[0]} needs --u or --u-range")
-        write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
+        if k is None or not beyond:
+            write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
+            return
+        from ..elliptic.complex_table import any_constants_record
+        from ..output.layouts import in_parts
+
+        record = any_constants_record(k, digits)
+        write_record(record, fmt, output, lambda: in_parts(JACOBI, record))
         return
-    from ..elliptic.request import Request
+    from ..elliptic.request import FunctionRequest
 
-    part = parameter.imag if imaginary else parameter.real
-    request = Request(modulus, families, part, imaginary, rad, in_quarters)
-    _write_rows(arguments, request, digits, fmt, output)
+    given = k if k is not None and beyond else modulus
+    request = FunctionRequest(given, families, parameter, imaginary, rad, in_quarters)
+    write_functions(_table(arguments, request, real=real), digits, fmt, output)
 
 
-def _arguments(single: list[Multiple], grid: Multiples | None) -> tuple[Points | None, bool]:
-    """Return the arguments, if any, and whether they are factors of K."""
+def _arguments(
+    single: tuple[Multiple | ExactComplex, ...], grid: Multiples | None, *, real: bool
+) -> tuple[Arguments | None, bool]:
+    """Return the arguments, if any, and whether they are factors of K.
+
+    Raises LagtopError for factors of K unless all is real.
+    """
     exclude({"--u": single or None, "--u-range": grid})
     if not (single or grid):
         return None, False
-    from ..inputs.multiples import listed_multiples
+    from ..arithmetic.points import ListedPoints
+    from ..elliptic.request import Arguments
+    from ..inputs.multiples import Multiple, listed_multiples
 
-    return grid or listed_multiples(tuple(single))
+    reals = [Multiple(u.real, False) if isinstance(u, ExactComplex) else u for u in single]
+    units = [grid.in_quarters] if grid else [u.in_quarters for u in reals]
+    if not real and any(units):
+        raise LagtopError(
+            "--u must be without K beside complex numbers, and where --k is not in [0, 1]"
+        )
+    points, in_quarters = grid if grid else listed_multiples(tuple(reals))
+    imag = [u.imag if isinstance(u, ExactComplex) else Fraction(0) for u in single]
+    return Arguments(points, ListedPoints(imag) if any(imag) else None), in_quarters
 
 
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactComplex, bool]:
@@ -211,55 +231,35 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactCompl
     return value, not value.real and param.strip().endswith("i")
 
 
-def _write_rows(
-    arguments: Points, request: Request, digits: int | None, fmt: str, output: str
-) -> None:
-    from ..elliptic.function_table import blocks, digit_rows
+def _table(arguments: Arguments, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
+    """Return the table of real functions, or that of complex ones."""
+    if real:
+        from ..elliptic.function_table import FunctionTable
 
-    if digits is None:
-        header, found = blocks(arguments, request)
-        parts = with_progress(found, arguments.count, 3_000_000)
-        write_table(header, parts, fmt, output)
-    else:
-        header, lines = digit_rows(arguments, request, digits)
-        texts = with_progress(([line] for line in lines), arguments.count, 1000)
-        write_table(header, texts, fmt, output)
+        return FunctionTable(arguments.real, request)
+    from ..elliptic.complex_table import ComplexTable
 
-
-def _write_integrals(
-    modulus: ModulusInput, amplitudes: Points, digits: int | None, fmt: str, output: str
-) -> None:
-    from ..elliptic.amplitude_table import blocks, digit_rows, header
-
-    if digits is None:
-        parts = with_progress(blocks(amplitudes, modulus), amplitudes.count, 3_000_000)
-        write_table(header(modulus), parts, fmt, output)
-    else:
-        lines = digit_rows(amplitudes, modulus, digits)
-        texts = with_progress(([line] for line in lines), amplitudes.count, 1000)
-        write_table(header(modulus), texts, fmt, output)
+    return ComplexTable(arguments, request)
 
 
 def _write_series(
     modulus: ModulusInput,
-    arguments: Points | None,
+    arguments: Arguments | None,
     in_quarters: bool,
     terms: int,
     destination: tuple[str, str],
 ) -> None:
     """Write the sums, and on standard error how many terms are enough."""
-    from ..elliptic.series_table import TOLERANCE, series_table
+    from ..elliptic.series_table import TOLERANCE, SeriesTable
 
     if not 1 <= terms <= MOST_TERMS:
         raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")
-    if arguments is not None and arguments.count != 1:
-        raise LagtopError(f"--series takes one --u, got {arguments.count}")
-    u = None if arguments is None else next(arguments.decimals())
-    table = series_table(modulus, u, terms, in_quarters=in_quarters)
-    write_table(
-        table.header, with_progress(([row] for row in table.rows), terms, 1000), *destination
-    )
-    needed = ", ".join(f"{name} {_count_text(n)}" for name, n in table.needed.items())
+    if arguments is not None and arguments.real.count != 1:
+        raise LagtopError(f"--series takes one --u, got {arguments.real.count}")
+    u = None if arguments is None else next(arguments.real.decimals())
+    table = SeriesTable(modulus, u, terms, in_quarters=in_quarters)
+    write_functions(table, None, *destination)
+    needed = ", ".join(f"{name} {_count_text(n)}" for name, n in table.needed().items())
     complain(f"Terms whose error is proved to be below {TOLERANCE}: {needed}")
 
 

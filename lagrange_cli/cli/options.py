@@ -1,9 +1,9 @@
-"""What the commands share: parameter types, options, help, and the way to a motion."""
+"""Options that the commands share, and the types of their parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from functools import partial
+from collections.abc import Callable, Collection
+from importlib import import_module
 from os.path import splitext
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -11,15 +11,9 @@ import click
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
-from .command import complain
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
-
-    from ..inputs.given import Given
-    from ..inputs.input_keys import Input
-    from ..inputs.value import Value
-    from ..motion.solve import Motion
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 
@@ -53,6 +47,15 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         return completed(self.words, incomplete)
 
 
+def late(module: str, function: str, **how: Any) -> Callable[[str], Any]:
+    """Return a function of the package that is imported when it is called, not at start-up."""
+
+    def parse(text: str) -> Any:
+        return getattr(import_module(f"...{module}", __name__), function)(text, **how)
+
+    return parse
+
+
 class FileName(click.ParamType):  # type: ignore[type-arg]
     """A name of a file, which a shell may complete; that of click would look for translations."""
 
@@ -75,63 +78,6 @@ def _parse_count(text: str) -> int:
     return int(exact)
 
 
-def _parse_input(text: str, *, uncertain: bool = False) -> Value:
-    from ..inputs.value import parse_value  # not for commands without a top
-
-    return parse_value(text, uncertain=uncertain)
-
-
-def _split_names(text: str) -> list[str]:
-    from ..inputs.names import split_names
-
-    return split_names(text)
-
-
-def inputs_of(scene: str | None, rad: bool, options: Mapping[str, Any]) -> Given:
-    """Return the inputs of a scene file, if any, and of the options, which win."""
-    from ..inputs.given import gather  # not for commands without a top
-
-    given = by_key(options, radians=rad)
-    return gather(given, scene, system=given.pop("units", None))
-
-
-def motion_of(found: Given, exact: bool) -> Motion:
-    """Return the motion of the top of some inputs.
-
-    A line each names inputs of the worked example among others, and a body that cannot be built.
-    """
-    from ..motion.solve import solve
-
-    motion = solve(found.top(exact=exact))
-    say_missing(found)
-    if caveat := motion.top.caveat():
-        complain(f"Warning: {caveat}")
-    return motion
-
-
-def say_missing(found: Given) -> None:
-    """Name the inputs of the body that are those of the worked example, and a scene without any."""
-    if found.empty is not None:
-        complain(
-            f"Warning: {found.empty} has no inputs: what is not given is as in the worked example"
-        )
-    if found.missing:
-        from ..inputs.input_keys import example_options, remark_on
-
-        words = example_options(found.missing, units=found.system is not None)
-        complain(f"Warning: {remark_on(found.missing, words)}")
-
-
-def by_key(options: Mapping[str, Any], *, radians: bool) -> dict[str, Any]:
-    """Return the options on the command line by the keys of the inputs."""
-    tilt = "theta0_rad" if radians else "theta0_deg"
-    return {
-        tilt if name == "theta0" and not x.unit else name: x
-        for name, x in options.items()
-        if x is not None
-    }
-
-
 def exclude(options: dict[str, Any]) -> None:
     """Raise LagtopError where more than one of these options was given."""
     given = [name for name, value in options.items() if value is not None]
@@ -148,56 +94,12 @@ def on_command_line(name: str) -> bool:
 
 FILE = FileName()
 NUMBER = Parsed("number", parse_number)
-INPUT = TIME = Parsed("number", _parse_input)
-UNCERTAIN = Parsed("number", partial(_parse_input, uncertain=True))
 COUNT = Parsed("integer", _parse_count)
 NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
-    Parsed("names", _split_names, words) for words in ("", "keys", "columns", "methods", "strata")
+    Parsed("names", late("inputs.names", "split_names"), words)
+    for words in ("", "keys", "columns", "methods", "strata")
 )
 PICTURES = Parsed("text", str, "pictures")
-
-
-def input_options(
-    kind: click.ParamType,  # type: ignore[type-arg]
-    *,
-    units: bool = True,
-    whole: bool = True,
-) -> Callable[[F], F]:
-    """Add options for the inputs of a top, or of one not known in whole, --units and --rad."""
-    from ..inputs.input_keys import DECLARED  # not for commands without a top
-
-    def decorate(command: F) -> F:
-        if units:
-            text = "Units of the output, where inputs have units.  [default: si]"
-            command = click.option("--units", type=click.Choice(["si", "cgs"]), help=text)(command)
-        command = click.option("--rad", is_flag=True, help="Angles in radians, in and out.")(
-            command
-        )
-        for name in reversed(DECLARED):
-            if whole or name != "phidot0":  # which needs a whole start
-                option = f"--{name.replace('_', '-')}"
-                text = _help_of(DECLARED[name], shows_default=whole)
-                command = click.option(option, name, type=kind, help=text)(command)
-        return command
-
-    return decorate
-
-
-def _help_of(declared: Input, *, shows_default: bool) -> str:
-    """Return the help of an input, with its bounds and its default."""
-    text = ", ".join(filter(None, (declared.meaning, declared.bound)))
-    ending = f"  [default: {declared.default:g}]" if declared.default is not None else ""
-    return f"{text[0].upper()}{text[1:]}.{ending if shows_default else ''}"
-
-
-def scene_options(command: F) -> F:
-    """Add the argument for a scene file and the options that override it."""
-    return scene_argument(input_options(INPUT)(command))
-
-
-def scene_argument(command: F) -> F:
-    """Add the argument for a scene file."""
-    return click.argument("scene", required=False, type=FILE, metavar="[SCENE.toml|-]")(command)
 
 
 def digits_option(most: int) -> Callable[[F], F]:

@@ -22,18 +22,18 @@ from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
 from ..plot.style import chosen_look
 from .command import ExamplesFirst
-from .given import angle_stds, in_seconds, is_scene
-from .options import (
-    FILE,
-    NUMBER,
-    PICTURES,
+from .options import FILE, NUMBER, PICTURES
+from .progress import with_progress
+from .top_options import (
     TIME,
     UNCERTAIN,
+    angle_stds,
+    in_seconds,
     input_options,
     inputs_of,
+    is_scene,
     motion_of,
 )
-from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..inputs.value import Value

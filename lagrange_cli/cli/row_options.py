@@ -1,28 +1,21 @@
-"""Options of the commands that make many rows: ranges and lists of numbers, and processes."""
+"""Options of the commands that make or read many rows: ranges, processes, meanings of columns."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
-from .options import Parsed, exclude
+from .options import NAMES, F, Parsed, exclude, late
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def _parse_range(text: str) -> Points:
-    from ..inputs.ranges import parse_range
-
-    return parse_range(text)
+    from ..elliptic.tables import TableOfFunctions
 
 
-RANGE = Parsed("range", _parse_range)
+RANGE = Parsed("range", late("inputs.ranges", "parse_range"))
 
 
 def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Points | None:
@@ -33,17 +26,54 @@ def listed(name: str, single: tuple[Fraction, ...], grid: Points | None) -> Poin
     return grid or (ListedPoints(list(single)) if single else None)
 
 
-def _parse_jobs(text: str) -> int:
-    from ..sweeps.jobs import parse_jobs
+def write_functions(table: TableOfFunctions, digits: int | None, fmt: str, output: str) -> None:
+    """Write a table of functions, with its progress."""
+    from ..output.write import write_table
+    from .progress import with_progress
 
-    return parse_jobs(text)
+    header, blocks = table.rows(digits)
+    long = table.long[digits is not None]
+    write_table(header, with_progress(blocks, table.count, long), fmt, output)
 
 
 def jobs_option(command: F) -> F:
     """Add the option --jobs."""
     return click.option(
         "--jobs",
-        type=Parsed("N|auto", _parse_jobs),
+        type=Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
         metavar="N|auto",
         help="Processes that share the work; auto: one per core.  [default: 1]",
     )(command)
+
+
+def reading_options(quaternion: str | None) -> Callable[[F], F]:
+    """Add --columns, --quaternion and --euler, with the order of a quaternion unless it is told.
+
+    None is the order that the first row proves.
+    """
+    order = quaternion or "what the first row proves"
+
+    def decorate(command: F) -> F:
+        command = click.option(
+            "--euler",
+            type=Parsed("sequence", late("inputs.seen", "euler_sequence")),
+            default="xyz",
+            show_default=True,
+            metavar="SEQUENCE",
+            help="Axes of `euler`, as scipy writes them: xyz about those of space, XYZ of the "
+            "body.",
+        )(command)
+        command = click.option(
+            "--quaternion",
+            type=click.Choice(["wxyz", "xyzw"]),
+            default=quaternion,
+            help=f"Order of a quaternion whose names do not tell.  [default: {order}]",
+        )(command)
+        return click.option(
+            "--columns",
+            type=NAMES,
+            help="Names of all columns from the left, whatever the file says; quaternion, matrix, "
+            "axis and the like stand for all of their parts, and _ leaves a column out.",
+        )(command)
+
+    return decorate

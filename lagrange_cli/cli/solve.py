@@ -24,17 +24,13 @@ from .options import (
     COUNT,
     KEY_NAMES,
     MOST_RECORD_DIGITS,
-    UNCERTAIN,
     certify_option,
     digits_option,
     exclude,
-    input_options,
-    inputs_of,
-    motion_of,
     on_command_line,
     output_options,
-    scene_argument,
 )
+from .top_options import UNCERTAIN, input_options, inputs_of, motion_of, scene_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable

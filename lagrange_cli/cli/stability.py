@@ -19,20 +19,18 @@ SAMPLES, THOROUGH, MOST_SAMPLES = 4, 200, 100_000
 SEED = 1952
 
 
-class _ListingStrata(ExamplesFirst):
-    """A command whose help ends with the names of the strata."""
+def _write_strata(formatter: click.HelpFormatter) -> None:
+    """Write the names of the strata."""
+    from ..bench.hard_scenes import STRATA
 
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the names, which are imported only here."""
-        from ..bench.hard_scenes import STRATA
-
-        with formatter.section("Strata"):
-            formatter.write_text(", ".join(STRATA))
+    with formatter.section("Strata"):
+        formatter.write_text(", ".join(STRATA))
 
 
 @click.command(
     "stability",
-    cls=_ListingStrata,
+    cls=ExamplesFirst,
+    shows=_write_strata,
     examples="""
         lagtop stability
         lagtop stability --strata separatrix,thresholds --samples 50
@@ -74,7 +72,7 @@ def command(
     if samples is not None and not 1 <= samples <= MOST_SAMPLES:
         raise LagtopError(f"--samples must be in [1, {MOST_SAMPLES}], got {samples}")
     from ..bench import stability
-    from ..bench.diagrams import draw_stability
+    from ..bench.pictures import draw_stability
     from ..plot.files import check_plot
 
     check_plot(plot, output)

@@ -12,30 +12,14 @@ from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
-from .given import say_no_tops
-from .options import (
-    FILE,
-    KEY_NAMES,
-    Parsed,
-    by_key,
-    exclude,
-    input_options,
-    output_options,
-    say_missing,
-)
+from .options import FILE, KEY_NAMES, Parsed, exclude, output_options
 from .progress import with_count, with_progress
 from .row_options import jobs_option
+from .top_options import by_key, input_options, say_missing, say_no_tops, value_type
 
 if TYPE_CHECKING:
     from ..inputs.value import Value
     from ..sweeps.parts import Make
-
-
-def _parse_values(text: str) -> Value:
-    from ..inputs.ranges import parse_values
-    from ..inputs.value import parse_value
-
-    return parse_value(text, parse_values, uncertain=True)
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -63,7 +47,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
     """,
 )
 @click.argument("files", nargs=-1, type=FILE, metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
-@input_options(Parsed("range", _parse_values))
+@input_options(value_type("range", "parse_values", uncertain=True))
 @click.option(
     "--keys", type=KEY_NAMES, help="Compute and print only these keys, with commas between."
 )

@@ -12,27 +12,32 @@ from ..errors import LagtopError
 from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
-from .given import angle_stds, blaming, in_seconds, say_no_tops
 from .options import (
     COLUMN_NAMES,
     COUNT,
     FILE,
     MOST_TABLE_DIGITS,
-    TIME,
-    UNCERTAIN,
-    by_key,
     certify_option,
     digits_option,
     exclude,
-    input_options,
-    inputs_of,
-    motion_of,
     output_options,
-    say_missing,
-    scene_argument,
 )
 from .progress import with_count, with_progress
 from .row_options import jobs_option
+from .top_options import (
+    TIME,
+    UNCERTAIN,
+    angle_stds,
+    blaming,
+    by_key,
+    in_seconds,
+    input_options,
+    inputs_of,
+    motion_of,
+    say_missing,
+    say_no_tops,
+    scene_argument,
+)
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points

@@ -11,8 +11,8 @@ import click
 from ..errors import LagtopError
 from ..output.terminal import is_terminal
 from .command import ExamplesFirst
-from .given import say_unused
-from .options import FILE, inputs_of, motion_of, scene_options
+from .options import FILE
+from .top_options import inputs_of, motion_of, say_unused, scene_options
 
 
 @click.command(

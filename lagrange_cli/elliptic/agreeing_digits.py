@@ -20,7 +20,7 @@ _GUARD = 8
 """Digits that must agree beyond those that are printed."""
 
 
-class Settled:
+class AgreeingNumbers:
     """Numbers of a table with so many significant digits, on which two precisions agree.
 
     The contexts are kept, since making one takes longer than most numbers.
@@ -62,14 +62,14 @@ class Settled:
         raise LagtopError(f"{self.digits} digits did not settle with {most} to work with")
 
 
-def settled_or_rounded(
+def agreed_or_rounded(
     compute: Callable[[ManyDigits], Mapping[str, Any]],
     digits: int | None,
     known: Collection[str] = (),
 ) -> dict[str, Any]:
-    """Return numbers as `Settled.texts` does or, without `digits`, each the nearest double."""
+    """Return numbers as `AgreeingNumbers.texts` does; without `digits`, the nearest doubles."""
     if digits is not None:
-        return Settled(digits).texts(compute, known)
+        return AgreeingNumbers(digits).texts(compute, known)
     exact = compute(ManyDigits())
     return {name: x if x is None or isinstance(x, str) else float(x) for name, x in exact.items()}
 

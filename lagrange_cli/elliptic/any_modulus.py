@@ -12,17 +12,19 @@ from __future__ import annotations
 import math
 from enum import Enum
 from fractions import Fraction
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.exact_complex import ExactComplex
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
 from .modulus import Modulus, constants, exact_modulus
 
+if TYPE_CHECKING:  # mpmath is loaded for complex numbers only
+    from ..arithmetic.many_digits import ManyDigits
 
-class Kind(Enum):
+
+class ModulusKind(Enum):
     """Where a modulus lies."""
 
     UNIT = "in [0, 1]"
@@ -33,7 +35,7 @@ class Kind(Enum):
 class AnyModulus(NamedTuple):
     """A modulus in [0, 1], and how the functions of any modulus follow from those of this one."""
 
-    kind: Kind
+    kind: ModulusKind
     modulus: Modulus
     stretch: Value = 1
     """What the argument is multiplied by."""
@@ -59,11 +61,11 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
     real, imag = ar.convert(k.real), ar.convert(k.imag)
     if imag:
         root = ar.sqrt(1 + imag * imag)
-        return AnyModulus(Kind.IMAGINARY, Modulus(imag / root, 1 / root), root)
+        return AnyModulus(ModulusKind.IMAGINARY, Modulus(imag / root, 1 / root), root)
     if real > 1:
         complement = ar.sqrt(ar.convert(Fraction(k.real) ** 2 - 1)) / real
-        return AnyModulus(Kind.LARGE, Modulus(1 / real, complement), real)
-    return AnyModulus(Kind.UNIT, exact_modulus(ar, Fraction(k.real)))
+        return AnyModulus(ModulusKind.LARGE, Modulus(1 / real, complement), real)
+    return AnyModulus(ModulusKind.UNIT, exact_modulus(ar, Fraction(k.real)))
 
 
 def check_any_modulus(k: ExactComplex | complex) -> None:
@@ -81,10 +83,10 @@ def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:
     """
     (k, k_prime, _), s = given.modulus, given.stretch
     K, K_prime, E, E_prime, q = constants(ar, given.modulus)
-    if given.kind is Kind.IMAGINARY:
+    if given.kind is ModulusKind.IMAGINARY:
         both = ar.mpc(K_prime, -K) / s
         return AnyConstants(s, K / s, both, s * E, _e_beyond(ar, k_prime, k), -q)
-    if given.kind is Kind.LARGE:
+    if given.kind is ModulusKind.LARGE:
         K_here, K_prime_here = ar.mpc(K, -K_prime) / s, K_prime / s
         q = ar.exp(-ar.pi * K_prime_here / K_here)
         E_here = _e_beyond(ar, k, k_prime)

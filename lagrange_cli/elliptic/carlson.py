@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import reduce
+from functools import reduce, wraps
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
-from ..arithmetic.formulas import blockwise, in_arithmetic
-from ..arithmetic.numbers import R, absolute, power, root_of_epsilon
+from ..arithmetic.numbers import F, R, absolute, in_arithmetic, power, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Value
@@ -29,6 +28,35 @@ _FAR_APART = 1e6
 
 _NEAR_ONE, _TINY = 0.01, 1e-17
 """Where R_C(1, 1 - e) = sum e^n/(2n + 1) is used, and what it may leave out."""
+
+
+def blockwise(function: F) -> F:
+    """Return a formula f(ar, *arguments) that is evaluated block by block over long arrays."""
+
+    @in_arithmetic
+    @wraps(function)
+    def evaluate(ar: Any, *arguments: Any) -> Any:
+        if not ar.is_array:
+            return function(ar, *arguments)
+        return _in_blocks(function, ar, arguments)
+
+    return cast(F, evaluate)
+
+
+def _in_blocks(function: Callable[..., Any], ar: Any, arguments: tuple[Any, ...]) -> Any:
+    import numpy as np
+
+    from ..arithmetic.blocks import BLOCK, blocks
+    from ..arithmetic.double_double import DoubleDouble
+
+    if any(isinstance(x, DoubleDouble) for x in arguments):
+        return function(ar, *arguments)
+    arrays = np.broadcast_arrays(*arguments)
+    if arrays[0].size <= BLOCK:
+        return function(ar, *arrays)
+    flat = [array.ravel() for array in arrays]
+    parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
+    return np.concatenate(parts).reshape(arrays[0].shape)
 
 
 @blockwise

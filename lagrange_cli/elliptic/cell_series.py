@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from .lattice import Fine, coarse
-from .periods import Complex
-from .theta import negligible
+from .periods import Complex, negligible
 
 
 class Base(NamedTuple):

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.numbers import R, power, root_of_epsilon
+from ..arithmetic.numbers import R, in_arithmetic, power, root_of_epsilon
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic

@@ -12,10 +12,10 @@ from typing import NamedTuple
 from ..arithmetic.exact_complex import ExactComplex
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import Value
-from .any_modulus import Kind
+from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
-from .complex_request import ComplexRequest
 from .modulus_input import ModulusInput
+from .request import FunctionRequest
 
 _RIGHT = ModulusInput("modular_angle", Fraction(45))
 """The modulus sin 45 degrees, of which K' = K."""
@@ -41,23 +41,22 @@ class Known(NamedTuple):
         return {name: 0 * part if name in none else part for name, part in parts.items()}
 
 
-def known_parts(u: ExactComplex, request: ComplexRequest, kind: Kind) -> Known:
+def known_parts(u: ExactComplex, request: FunctionRequest, given: AnyModulus) -> Known:
     """Return the parts that are exactly 0 at u, and the poles."""
-    v, zeros = request.parameter, "u_re u_im"
-    large, along, upright = kind is Kind.LARGE, not u.imag, not u.real
-    am = "am_rad" if request.radians else "am_deg"
+    v, am, kind, zeros = request.parameter, request.am, given.kind, "u_re u_im"
+    large, along, upright = kind is ModulusKind.LARGE, not u.imag, not u.real
     if along:
         zeros += f" {am}_im sn_im cn_im dn_im"
         zeros += "" if large else " zeta01_im zeta00_im zeta11_im zeta10_im theta01_im theta00_im"
-        zeros += " theta11_im theta10_im" if kind is Kind.UNIT else ""
+        zeros += " theta11_im theta10_im" if kind is ModulusKind.UNIT else ""
     if upright:
         zeros += f" {am}_re sn_re cn_im dn_im"
         zeros += "" if large else " zeta01_re zeta00_re zeta11_re zeta10_re theta01_im theta00_im"
-        zeros += " theta11_re theta10_im" if kind is Kind.UNIT else ""
+        zeros += " theta11_re theta10_im" if kind is ModulusKind.UNIT else ""
     if along and upright:
         zeros += f" u {am} sn zeta01_re zeta01_im zeta00_re zeta00_im zeta10_re zeta10_im"
         zeros += " theta11_re theta11_im"
-    if not request.modulus_in(ManyDigits()).modulus.k:
+    if not given.modulus.k:
         zeros += " dn_im"
     zeros += _third("pi", u, v) + ("" if large and any(u) and any(v) else _third("omega", u, v))
     poles = {"zeta11"} if along and upright else set()
@@ -65,7 +64,7 @@ def known_parts(u: ExactComplex, request: ComplexRequest, kind: Kind) -> Known:
         poles.add("pi11")
     if v in (u, ExactComplex(-u.real, -u.imag)):
         poles |= {"omega11", "pi11"}
-    if _beyond(u, request):
+    if _beyond(u, given):
         poles.add(am)
     turns = frozenset() if large else _turns(u, v, request.modulus)
     return Known(frozenset(zeros.split()), frozenset(poles), turns)
@@ -106,10 +105,10 @@ def _turns(
     return frozenset(turns)
 
 
-def _beyond(u: ExactComplex, request: ComplexRequest) -> bool:
+def _beyond(u: ExactComplex, given: AnyModulus) -> bool:
     """Return whether u is beyond the branch points of am."""
-    ar = ManyDigits()
-    given = request.modulus_in(ar)
-    if not given.modulus.k:
+    k = given.modulus.k
+    if not k:
         return False
-    return bool(abs(ar.convert(u.imag)) * given.stretch > complete_k(ar, given.modulus.k))
+    ar = k.context
+    return bool(abs(ar.convert(u.imag)) * given.stretch > complete_k(ar, k))

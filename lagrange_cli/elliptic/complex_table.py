@@ -1,4 +1,4 @@
-"""Tables of functions of complex numbers and of any modulus, in doubles or to so many digits."""
+"""Tables of functions of complex numbers and of any modulus."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
-from .agreeing_digits import Settled, settled_or_rounded
-from .any_modulus import AnyModulus, Kind, any_constants, any_modulus
-from .complex_jacobi import complex_jacobi
+from .agreeing_digits import AgreeingNumbers, agreed_or_rounded
+from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
 from .complex_known import known_parts
-from .complex_request import ComplexPoints, ComplexRequest
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
-from .lattice import Lattice, Place, lattice, place
-from .request import THETA, THIRD
+from .jacobi import complex_jacobi
+from .lattice import Lattice, Place, lattice, place_of
+from .modulus_input import ModulusInput
+from .request import THETA, THIRD, Arguments, FunctionRequest
+from .tables import TableOfFunctions
 
 if TYPE_CHECKING:
     from ..arithmetic.text import NumberText
-    from ..arithmetic.types import Array
+    from .tables import ArrayColumns, DigitRows
 
 _LEAST = 1e-150
 """Least k and k' in doubles, of the modulus that another one is reduced to."""
@@ -32,78 +33,141 @@ _MOST = 1e20
 """Greatest k above 1 in doubles."""
 
 
-class _Functions(NamedTuple):
+class _ComplexConstants(NamedTuple):
     """What follows from the modulus and the parameter alone."""
 
     modulus: AnyModulus
     periods: Lattice | None
-    """None where am, sn, cn, dn alone are asked for."""
+    """None if only am, sn, cn, dn are due."""
     third: dict[str, Parameter]
 
-    def rounded(self) -> _Functions:
+    def rounded(self) -> _ComplexConstants:
         """Return them for arrays."""
         third = {ij: kind.rounded(ARRAYS) for ij, kind in self.third.items()}
-        return _Functions(self.modulus, self.periods and self.periods.rounded(ARRAYS), third)
+        return _ComplexConstants(self.modulus, self.periods and self.periods.rounded(ARRAYS), third)
 
 
-def complex_rows(
-    arguments: ComplexPoints, request: ComplexRequest
-) -> tuple[list[str], Iterator[Array]]:
-    """Return the header, and blocks of rows in doubles; a pole is not a number.
+class ComplexTable(TableOfFunctions):
+    """Functions by their real and imaginary parts; u, am, sn, cn, dn of real arguments are real.
 
-    Raises LagtopError, before any row, for a modulus, arguments or a parameter out of range.
+    Raises LagtopError for a modulus out of range and, in doubles, for a tiny modulus, and for
+    arguments or a parameter beyond 2^50 periods.
     """
-    import numpy as np
 
-    request = request._replace(parameter=request.parameter.nearest())
-    functions = _functions(ManyDigits(), request)
-    _check_doubles(functions, arguments, request)
-    ready, real = functions.rounded(), arguments.imag is None
+    long = (100_000, 300)
 
-    def parts(u: Value) -> dict[str, Value]:
-        with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
-            return _parts(ARRAYS, _columns(ARRAYS, u, ready, request), real=real)
+    def __init__(self, arguments: Arguments, request: FunctionRequest) -> None:
+        self.arguments, self.request, self.count = arguments, request, arguments.real.count
 
-    def block(u: Value) -> Array:
-        found = parts(u)
-        table = np.stack(list(found.values()), axis=1)
-        for i, name in enumerate(found):
-            if name.endswith("_re"):
-                pair = table[:, i : i + 2]
-                pair[~np.isfinite(pair).all(axis=1)] = np.nan
-        return np.where(np.isfinite(table), table, np.nan) + 0.0  # no -0
+    def modulus_in(self, ar: ManyDigits) -> AnyModulus:
+        """Return the modulus in a context.  Raises LagtopError if it is out of range."""
+        modulus = self.request.modulus
+        if isinstance(modulus, ModulusInput):
+            return AnyModulus(ModulusKind.UNIT, modulus.in_digits(ar))
+        return any_modulus(ar, modulus)
 
-    return list(parts(next(arguments.blocks())[:1])), map(block, arguments.blocks())
+    def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
+        """Yield rows of numbers with N digits on which two precisions agree."""
+        assert digits is not None
+        given, settled = self.modulus_in(ManyDigits()), AgreeingNumbers(digits)
+        constants = cache(self._constants)
 
+        def row(u: ExactComplex) -> dict[str, NumberText]:
+            known = known_parts(u, self.request, given)
 
-def complex_digit_rows(
-    arguments: ComplexPoints, request: ComplexRequest, digits: int
-) -> tuple[list[str], Iterator[list[NumberText]]]:
-    """Return the header, and rows to so many significant digits; a pole is an empty text.
+            def compute(ar: ManyDigits) -> dict[str, Value]:
+                for far in (*u, *self.request.parameter):
+                    settled.require(ar, abs(ar.convert(far)) * given.stretch)
+                z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
+                return known.cleared(ar, self._parts(ar, z, constants(ar), known.poles))
 
-    Raises LagtopError for a modulus out of range, before any row.
-    """
-    kind, _, stretch = request.modulus_in(ManyDigits())
-    settled = Settled(digits)
+            return settled.texts(compute, known.names())
 
-    @cache
-    def constants(ar: ManyDigits) -> _Functions:
-        return _functions(ar, request)
+        return map(row, self.arguments.exactly())
 
-    def at(u: ExactComplex) -> dict[str, NumberText]:
-        known = known_parts(u, request, kind)
+    def array_columns(self) -> ArrayColumns:
+        """Return the columns of a block of arguments in doubles, and the blocks."""
+        table = ComplexTable(self.arguments, self.request.in_doubles())
+        exact = table._constants(ManyDigits())
+        table._check_doubles(exact)
+        ready = exact.rounded()
+        return lambda u: table._parts(ARRAYS, u, ready), self.arguments.blocks()
 
-        def compute(ar: ManyDigits) -> dict[str, Value]:
-            for far in (*u, *request.parameter):
-                settled.require(ar, abs(ar.convert(far)) * stretch)
-            z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
-            columns = _columns(ar, z, constants(ar), request, known.poles)
-            return known.cleared(ar, _parts(ar, columns, real=arguments.imag is None))
+    def _constants(self, ar: ManyDigits) -> _ComplexConstants:
+        """Return the constants in an mpmath context."""
+        request, given = self.request, self.modulus_in(ar)
+        periods = lattice(ar, given) if request.families != ("am",) else None
+        third: dict[str, Parameter] = {}
+        if periods and request.has_parameter:
+            v = ar.mpc(ar.convert(request.parameter.real), ar.convert(request.parameter.imag))
+            third = {ij: parameter(ar, ij, v, periods) for ij in THIRD}
+        return _ComplexConstants(given, periods, third)
 
-        return settled.texts(compute, known.names())
+    def _check_doubles(self, functions: _ComplexConstants) -> None:
+        """Raise LagtopError for what doubles cannot name: tiny moduli, arguments too far away."""
+        k, k_prime, _ = functions.modulus.modulus
+        if functions.modulus.kind is ModulusKind.LARGE and functions.modulus.stretch > _MOST:
+            raise LagtopError(f"k must be at most {_MOST:g} (or give --digits)", "k")
+        if 0 < k < _LEAST or 0 < k_prime < _LEAST:
+            raise LagtopError(
+                f"k must be farther than {_LEAST:g} from 0 and so that k' is not smaller "
+                "(or give --digits)",
+                "k",
+            )
+        periods = functions.periods
+        if periods is None and not (k and k_prime):
+            limits = MAX_TIME, MAX_TIME
+        else:
+            periods = periods or lattice(ManyDigits(), functions.modulus)
+            limits = float(MAX_PERIODS / periods.scale), float(MAX_PERIODS / periods.across)
+        check_reach("u", self.arguments.real, limits[0])
+        if self.arguments.imag is not None:
+            check_reach("the imaginary part of u", self.arguments.imag, limits[1])
+        for part, limit in zip(self.request.parameter, limits, strict=True):
+            if abs(part) > limit:
+                raise LagtopError(
+                    f"param must have parts within 2^50 periods = {limit:.3g} of 0, "
+                    f"got {self.request.parameter} (or give --digits)",
+                    "param",
+                )
 
-    header = list(at(next(arguments.exactly())))
-    return header, (list(at(u).values()) for u in arguments.exactly())
+    def _parts(
+        self,
+        ar: ComplexArithmetic,
+        u: Value,
+        constants: _ComplexConstants,
+        poles: Collection[str] = (),
+    ) -> dict[str, Value]:
+        """Return the parts of the functions at u by their names; `poles` are not numbers."""
+        parts, both = {"u": u}, {}
+        if "am" in self.request.families:
+            am, sn, cn, dn = complex_jacobi(ar, u, constants.modulus)
+            am = am * (1 if self.request.radians else 180 / ar.pi)
+            parts |= {self.request.am: am, "sn": sn, "cn": cn, "dn": dn}
+        if self.arguments.imag is None:
+            parts = {name: ar.re(z) for name, z in parts.items()}
+        else:
+            parts, both = {}, parts
+        if constants.periods is not None:
+            at = place_of(ar, u, constants.periods)
+            for name, compute in self._families(ar, at, constants, constants.periods):
+                both[name] = ar.mpc(ar.nan, ar.nan) if name in poles else compute()
+        return parts | _both(ar, both)
+
+    def _families(
+        self, ar: ComplexArithmetic, at: Place, functions: _ComplexConstants, periods: Lattice
+    ) -> Iterator[tuple[str, Callable[[], Value]]]:
+        """Yield the columns of the families by name, and how to compute each."""
+        functions_of_u = {"theta": theta_at_place, "zeta": zeta_at_place}
+        functions_of_both = {"omega": omega_at, "pi": pi_at}
+        for family in self.request.families:
+            if function := functions_of_u.get(family):
+                yield from (
+                    (f"{family}{ij}", partial(function, ar, ij, at, periods)) for ij in THETA
+                )
+            elif third := functions_of_both.get(family):
+                for ij, kind in functions.third.items():
+                    yield f"{family}{ij}", partial(third, ar, at, kind)
 
 
 def any_constants_record(modulus: ExactComplex, digits: int | None = None) -> dict[str, Value]:
@@ -117,101 +181,9 @@ def any_constants_record(modulus: ExactComplex, digits: int | None = None) -> di
         return _both(ar, columns | {"E": E, "E_prime": E_prime})
 
     real = "k_re k_prime_im nome_im K_im E_im" if modulus.imag else "k_im k_prime_re"
-    return settled_or_rounded(
+    return agreed_or_rounded(
         compute, digits, f"{real} {'' if modulus.imag else 'K_prime_im E_prime_im'}".split()
     )
-
-
-def _functions(ar: ManyDigits, request: ComplexRequest) -> _Functions:
-    """Return the constants of a request in an mpmath context."""
-    given = request.modulus_in(ar)
-    periods = lattice(ar, given) if request.families != ("am",) else None
-    third: dict[str, Parameter] = {}
-    if periods and {"omega", "pi"} & set(request.families):
-        v = ar.mpc(ar.convert(request.parameter.real), ar.convert(request.parameter.imag))
-        third = {ij: parameter(ar, ij, v, periods) for ij in THIRD}
-    return _Functions(given, periods, third)
-
-
-def _check_doubles(
-    functions: _Functions, arguments: ComplexPoints, request: ComplexRequest
-) -> None:
-    """Raise LagtopError for what doubles cannot name: tiny moduli, and arguments too far away."""
-    k, k_prime, _ = functions.modulus.modulus
-    if functions.modulus.kind is Kind.LARGE and functions.modulus.stretch > _MOST:
-        raise LagtopError(f"k must be at most {_MOST:g} (or give --digits)", "k")
-    if 0 < k < _LEAST or 0 < k_prime < _LEAST:
-        raise LagtopError(
-            f"k must be farther than {_LEAST:g} from 0 and so that k' is not smaller "
-            "(or give --digits)",
-            "k",
-        )
-    periods = functions.periods
-    if periods is None and not (k and k_prime):
-        limits = MAX_TIME, MAX_TIME
-    else:
-        periods = periods or lattice(ManyDigits(), functions.modulus)
-        limits = float(MAX_PERIODS / periods.scale), float(MAX_PERIODS / periods.across)
-    check_reach("u", arguments.real, limits[0])
-    if arguments.imag is not None:
-        check_reach("the imaginary part of u", arguments.imag, limits[1])
-    for part, limit in zip(request.parameter, limits, strict=True):
-        if abs(part) > limit:
-            raise LagtopError(
-                f"param must have parts within 2^50 periods = {limit:.3g} of 0, "
-                f"got {request.parameter} (or give --digits)",
-                "param",
-            )
-
-
-def _columns(
-    ar: ComplexArithmetic,
-    u: Value,
-    functions: _Functions,
-    request: ComplexRequest,
-    without: Collection[str] = (),
-) -> dict[str, Value]:
-    """Return the functions at u by their names; those `without` a value are not numbers."""
-    columns, periods = {"u": u}, functions.periods
-    if "am" in request.families:
-        unit, turn = ("rad", 1) if request.radians else ("deg", 180 / ar.pi)
-        am, sn, cn, dn = complex_jacobi(ar, u, functions.modulus)
-        columns |= {f"am_{unit}": am * turn, "sn": sn, "cn": cn, "dn": dn}
-    if periods is None:
-        return columns
-    for name, compute in _families(ar, place(ar, u, periods), functions, periods, request):
-        columns[name] = ar.mpc(ar.nan, ar.nan) if name in without else compute()
-    return columns
-
-
-def _families(
-    ar: ComplexArithmetic,
-    at: Place,
-    functions: _Functions,
-    periods: Lattice,
-    request: ComplexRequest,
-) -> Iterator[tuple[str, Callable[[], Value]]]:
-    """Yield the columns of the families by name, and how to compute each."""
-    for family in request.families:
-        if family == "am":
-            continue
-        if family in {"theta", "zeta"}:
-            function = theta_at_place if family == "theta" else zeta_at_place
-            for ij in THETA:
-                yield f"{family}{ij}", partial(function, ar, ij, at, periods)
-        else:
-            for ij, kind in functions.third.items():
-                yield (
-                    f"{family}{ij}",
-                    partial(omega_at if family == "omega" else pi_at, ar, at, kind),
-                )
-
-
-def _parts(ar: ComplexArithmetic, columns: dict[str, Value], *, real: bool) -> dict[str, Value]:
-    """Return the parts of the columns; u, am, sn, cn, dn are real at real arguments."""
-    single = columns.keys() & {"u", "am_deg", "am_rad", "sn", "cn", "dn"} if real else set()
-    parts = {name: ar.re(z) for name, z in columns.items() if name in single}
-    return parts | _both(ar, {name: z for name, z in columns.items() if name not in parts})
 
 
 def _both(ar: ComplexArithmetic, columns: dict[str, Value]) -> dict[str, Value]:

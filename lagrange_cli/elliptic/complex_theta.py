@@ -10,24 +10,25 @@ from cell to cell are exponentials of polynomials, which are written out.
 from __future__ import annotations
 
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic
 from ..errors import LagtopError
-from .any_modulus import Kind
+from .any_modulus import AnyModulus, ModulusKind
 from .cell_series import Base, cell_series
-from .lattice import Fine, Lattice, Place, coarse, fine_whole, nearest, place
-from .periods import Complex
-from .theta import NAMES
+from .lattice import Fine, Lattice, Place, coarse, coordinate_of, fine_whole, lattice, place_of
+from .modulus import Modulus, in_many_digits
+from .periods import NAMES, Complex
 
 _OTHER_NAMES = {
-    Kind.UNIT: {},
-    Kind.IMAGINARY: {"01": "00", "00": "01"},
-    Kind.LARGE: {"10": "00", "00": "10"},
+    ModulusKind.UNIT: {},
+    ModulusKind.IMAGINARY: {"01": "00", "00": "01"},
+    ModulusKind.LARGE: {"10": "00", "00": "10"},
 }
 """The function of the modulus in [0, 1] that one of another modulus is read from."""
 
 
-def inner_name(ij: str, kind: Kind) -> str:
+def inner_name(ij: str, kind: ModulusKind) -> str:
     """Return the function of the modulus in [0, 1] that ij of a kind of modulus is read from.
 
     Raises LagtopError for other indices than 01, 00, 11 and 10.
@@ -45,13 +46,37 @@ def rises(ij: str, periods: Lattice) -> bool:
 @in_arithmetic
 def complex_theta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
     """Return Theta_ij(v) of complex numbers v."""
-    return theta_at_place(ar, ij, place(ar, v, periods), periods)
+    return theta_at_place(ar, ij, place_of(ar, v, periods), periods)
 
 
 @in_arithmetic
 def complex_zeta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
     """Return Z_ij(v), the derivative of log Theta_ij(v), of complex numbers v."""
-    return zeta_at_place(ar, ij, place(ar, v, periods), periods)
+    return zeta_at_place(ar, ij, place_of(ar, v, periods), periods)
+
+
+def theta_of_modulus(ar: ComplexArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
+    """Return theta_ij(x, iK'/K) of complex x, for one modulus between 0 and 1."""
+    periods = _lattice_of(ar, modulus)
+    parts = ar.re(x), ar.im(x) / periods.ratio
+    if ar.is_array:
+        parts = DoubleDouble(parts[0]), DoubleDouble(parts[1])
+    at = Place(*(coordinate_of(ar, part) for part in parts))
+    return theta_at_place(ar, ij, at, periods)
+
+
+def zeta_of_modulus(ar: ComplexArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
+    """Return Z_ij(v) of complex v, for one modulus between 0 and 1."""
+    return complex_zeta(ar, ij, v, _lattice_of(ar, modulus))
+
+
+def _lattice_of(ar: ComplexArithmetic, modulus: Modulus) -> Lattice:
+    """Return the periods of a modulus in [0, 1], for arrays rounded from many digits."""
+    if not ar.is_array:
+        return lattice(ar, AnyModulus(ModulusKind.UNIT, modulus))
+    many = ManyDigits()
+    exact = in_many_digits(many, modulus)
+    return lattice(many, AnyModulus(ModulusKind.UNIT, exact)).rounded(ar)
 
 
 def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
@@ -60,7 +85,7 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     (r, s), (X, Y) = ((c.rest for c in at), map(fine_whole, at))
     parity = at.x.whole * (inner[0] == "1") + at.y.whole * (inner[1] == "1")
     turn = ar.mpc(1, 0) / (1 if periods.circular else ar.sqrt(T))
-    size = absolute(s if periods.circular else r)
+    size = fine_size(s if periods.circular else r)
     odd = rises(inner, periods)
     if periods.circular:
         rise = size - 0.25 if odd else 0 * r
@@ -68,7 +93,7 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     else:
         rise = -((0.5 - size) * (0.5 - size)) if odd else -(r * r)
         square, half_turns = (Y + s) * (Y + s), r * (Y + s) * -2
-    if periods.kind is Kind.LARGE:
+    if periods.kind is ModulusKind.LARGE:
         whole = X + r + Y + s
         bent = whole * whole * periods.bend
         square = bent - s * s if periods.circular else bent
@@ -78,7 +103,7 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     if ij in _EIGHTH[periods.kind]:
         turn = turn * ar.mpc(1, 1) / ar.sqrt(2)
     growth = rise * periods.steep + square * periods.lift
-    angle = ar.pi * 2 * coarse(nearest(ar, half_turns * 0.5).rest)
+    angle = ar.pi * 2 * coarse(coordinate_of(ar, half_turns * 0.5).rest)
     wave = ar.mpc(ar.cos(angle), ar.sin(angle)) * (1 - 2 * (parity % 2))
     value = wave * (turn * base_at(ar, inner, at, periods).value)
     rest = growth - _as_fine(growth)
@@ -90,7 +115,11 @@ def _as_fine(x: Fine) -> Fine:
     return DoubleDouble(x.high) if isinstance(x, DoubleDouble) else x
 
 
-_EIGHTH = {Kind.UNIT: (), Kind.IMAGINARY: ("11", "10"), Kind.LARGE: ("11", "01")}
+_EIGHTH = {
+    ModulusKind.UNIT: (),
+    ModulusKind.IMAGINARY: ("11", "10"),
+    ModulusKind.LARGE: ("11", "01"),
+}
 """The functions that are turned by an eighth, where tau is one unit further or tau/(1 - tau)."""
 
 
@@ -98,7 +127,7 @@ def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -
     """Return Z_ij at a place."""
     inner, T = inner_name(ij, periods.kind), periods.ratio
     real, imag = 0 * at.x.whole, at.y.whole
-    if periods.kind is Kind.LARGE:
+    if periods.kind is ModulusKind.LARGE:
         bent = (at.x.total() + at.y.total()) / (1 + T * T)
         real, imag = 2 * ar.pi * T * bent, bent - coarse(at.y.rest)
     slope = slope_in_cell(ar, inner, at, periods)
@@ -118,16 +147,16 @@ def base_at(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> B
     """Return the series of theta_ij at the rests of a place."""
     x, y, t = at.x.rest, at.y.rest, periods.steepness
     if periods.circular:
-        base = cell_series(ar, inner, x, absolute(y), t)
+        base = cell_series(ar, inner, x, fine_size(y), t)
         return base.mirrored(ar, coarse(y) < 0)
-    value, slope = cell_series(ar, inner[1] + inner[0], absolute(y), absolute(x), t)
+    value, slope = cell_series(ar, inner[1] + inner[0], fine_size(y), fine_size(x), t)
     base = Base(value, slope).mirrored(ar, coarse(x) > 0)
     turn = ar.mpc(0, 1) if inner == "11" else 1
     base = Base(turn * base.value, ar.mpc(0, -1 / periods.ratio) * base.slope)
     return base.mirrored(ar, coarse(y) < 0)
 
 
-def absolute(x: Fine) -> Fine:
+def fine_size(x: Fine) -> Fine:
     """Return the size of a coordinate."""
     if not isinstance(x, DoubleDouble):
         return abs(x)

@@ -19,12 +19,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.formulas import in_arithmetic
 from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Value
-from .any_modulus import Kind
-from .complex_theta import absolute, base_at, inner_name, rises, slope_in_cell
-from .lattice import Coordinate, Fine, Lattice, Place, coarse, place
+from .any_modulus import ModulusKind
+from .complex_theta import base_at, fine_size, inner_name, rises, slope_in_cell
+from .lattice import Coordinate, Fine, Lattice, Place, coarse, place_of
 from .periods import Complex
 
 
@@ -53,7 +53,7 @@ class Parameter(NamedTuple):
         periods = self.periods.rounded(ar)
         return self._replace(
             periods=periods,
-            at=place(ar, np.array([complex(self.v)]), periods),  # as eta: equal parts stay equal
+            at=place_of(ar, np.array([complex(self.v)]), periods),  # as eta: equal parts stay equal
             slope=complex(self.slope),
             along=complex(self.along),
             up=complex(self.up),
@@ -65,7 +65,7 @@ def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Paramete
 
     Where Z_ij has its pole, at v = 0 of the function 11, the constants of Pi are not numbers.
     """
-    at = place(ar, v, periods)
+    at = place_of(ar, v, periods)
     inner = inner_name(ij, periods.kind)
     r, s = at.x.rest, at.y.rest
     height = s if periods.circular else r
@@ -89,13 +89,13 @@ def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Paramete
 @in_arithmetic
 def complex_omega(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex:
     """Return Omega_ij(eta, v) of complex numbers eta."""
-    return omega_at(ar, place(ar, eta, given.periods), given)
+    return omega_at(ar, place_of(ar, eta, given.periods), given)
 
 
 @in_arithmetic
 def complex_pi(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex:
     """Return Pi_ij(eta, v) of complex numbers eta; not a number where it has a pole for each."""
-    return pi_at(ar, place(ar, eta, given.periods), given)
+    return pi_at(ar, place_of(ar, eta, given.periods), given)
 
 
 def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
@@ -104,7 +104,7 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     cell = _Cell(ar, u, given)
     (r, s), (a, b) = map(_coarse_rests, (at, v))
     height, other = (u.y, v.y) if given.periods.circular else (u.x, v.x)
-    bends = given.periods.kind is Kind.LARGE
+    bends = given.periods.kind is ModulusKind.LARGE
     rise, turns = cell.rise, cell.half_turns(at)
     if bends or not given.periods.circular:
         rise = rise + 2 * (height.rest * other.rest)
@@ -158,7 +158,7 @@ class _Cell:
         steps = [end.whole * (end.rest * 2 + end.whole) for end in _fine(ends)]
         rise = (steps[0] - steps[1]) * 0.5
         if rises(self.inner, periods):
-            rise = rise + (absolute(ends[0].rest) - absolute(ends[1].rest)) * 0.5
+            rise = rise + (fine_size(ends[0].rest) - fine_size(ends[1].rest)) * 0.5
         self.rise = rise
         if periods.circular:
             here = [coarse(u.x.rest - v.x.rest), coarse(u.x.rest + v.x.rest)]

@@ -1,54 +1,130 @@
-"""Tables of eta over tau, in doubles or to any number of digits."""
+"""Tables of eta over tau (Aksenov section 3.2)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from fractions import Fraction
-from functools import cache
+from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.ball_functions import BallFunctions, ball_functions
-from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.sums_of_doubles import Pair, pair
 from .complete import complete_k
 from .eta import Band, EtaConstants, band_of, eta_constants, modulus_in_use
-from .eta_swing import swing
-from .jacobi import jacobi_at
+from .jacobi import jacobi, jacobi_at
 from .periods import whole_and_rest
-from .proved_numbers import ProvedNumbers
 from .quadrature import Quadrature
+from .tables import RealTable
 
 if TYPE_CHECKING:
-    from ..arithmetic.points import Points
-    from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
+    from .tables import Known
 
 
-class Wanted(NamedTuple):
-    """What a table has beside tau and eta."""
+class EtaMotion(NamedTuple):
+    """How eta moves in its band."""
 
-    rate: bool = False
-    """Whether it has d eta/d tau."""
-    unit: str = ""
-    """The unit of theta, deg or rad, where it has h1, theta and xi'; else nothing."""
+    constants: EtaConstants
+    band: Band
+    half_period: Value
+    """2K of the modulus in use."""
+    periods: Callable[[Value], tuple[Value, Value]]
+    """Periods at tau since a passage of delta*: whole ones, and the rest."""
 
 
-TAU_AND_ETA = Wanted()
+class EtaTable(RealTable):
+    """Eta of times tau, eta = delta* at tau = -c3, with its rate, and with h1, theta and xi'.
 
+    Raises LagtopError as `Quadrature.check` does and, in doubles, as `Quadrature.check_doubles`
+    does and for times beyond 2^50 periods.
+    """
 
-def header(wanted: Wanted) -> list[str]:
-    """Return the names of the columns."""
-    rate = ["etadot"] if wanted.rate else []
-    return [
-        "tau",
-        "eta",
-        *rate,
-        *(("h1", f"theta_{wanted.unit}", "xi_prime") if wanted.unit else ()),
-    ]
+    def __init__(
+        self,
+        points: Points,
+        quadrature: Quadrature,
+        c3: Fraction = Fraction(0),
+        *,
+        rate: bool = False,
+        angle: str = "",
+    ) -> None:
+        """Take the inputs; `angle` is the unit of theta, deg or rad, if h1, theta, xi' are due."""
+        super().__init__(points)
+        self.quadrature, self.c3, self.rate, self.angle = quadrature, c3, rate, angle
+
+    def in_doubles(self) -> EtaTable:
+        """Return the table itself."""
+        self.quadrature.check_doubles()
+        return self
+
+    def check(self) -> None:
+        """Raise LagtopError unless the motion is periodic."""
+        self.quadrature.check()
+
+    def constants(self, ar: BallFunctions) -> EtaMotion:
+        """Return the motion in balls."""
+        c, band = eta_constants(ar, self.quadrature), band_of(ar, self.quadrature)
+        c3, quarter = ar.convert(self.c3), complete_k(ar, modulus_in_use(c, band).k_prime)
+
+        def periods(tau: Value) -> tuple[Value, Value]:
+            turns, rest, _ = whole_and_rest(ar, (tau + c3) / c.period)
+            return turns, rest
+
+        return EtaMotion(c, band, 2 * quarter, periods)
+
+    def rounded_constants(self) -> EtaMotion:
+        """Return the motion in doubles; raise LagtopError for times beyond 2^50 periods."""
+        from ..arithmetic.arrays import ARRAYS
+        from ..arithmetic.double_double import reduce_phase
+
+        def rounded(digits: int) -> tuple[EtaConstants, Pair, float, float]:
+            ar = ball_functions(digits)
+            exact = eta_constants(ar, self.quadrature)
+            offset = ar.convert(self.c3) / exact.period
+            whole = ar.nint(offset)
+            c = EtaConstants(*map(float, exact))
+            return c, pair(1 / exact.period), float(whole), float(offset - whole)
+
+        c, rate, whole, shift = decided("the constants of eta", rounded)
+        check_reach("tau", self.points, min(MAX_PERIODS * c.period, MAX_TIME))
+        band = band_of(ARRAYS, self.quadrature)
+        quarter = complete_k(DOUBLES, float(modulus_in_use(c, band).k_prime))
+
+        def periods(tau: Array) -> tuple[Array, Array]:
+            turns, since = reduce_phase(tau, rate, shift)
+            return turns + whole, since + shift
+
+        return EtaMotion(c, band, 2 * quarter, periods)
+
+    def columns(
+        self, ar: FunctionArithmetic, x: Value, constants: EtaMotion, known: Known
+    ) -> dict[str, Value]:
+        """Return tau, eta and what else the table has."""
+        c, band, half_period, periods = constants
+        turns, rest = periods(x)
+        place = place_in_band(ar, half_period * rest, c, band)
+        columns = {"tau": x, "eta": place.eta}
+        if self.rate:
+            columns["etadot"] = place.rate(ar, band)
+        if self.angle:
+            names = "h1", f"theta_{self.angle}", "xi_prime"
+            columns |= zip(names, chain(ar, (turns, rest), c, band, self.angle), strict=True)
+        return columns
+
+    def known(self, x: Fraction) -> dict[str, float]:
+        """Return the columns that are 0 at tau.
+
+        h1 and theta vanish at no rational tau: K is transcendental for algebraic k (Schneider
+        1937).
+        """
+        lower, still = self.quadrature.lower, self.quadrature.lower == self.quadrature.upper
+        at_start = still or x + self.c3 == 0
+        zero = {"tau": x == 0, "eta": at_start and not lower, "etadot": at_start}
+        return {name: 0 for name, is_zero in zero.items() if is_zero}
 
 
 def chain(
@@ -70,79 +146,43 @@ def chain(
     return h1, theta, (-cn if band.pair else sn)
 
 
-def rows(
-    quadrature: Quadrature, times: Points, c3: Fraction, wanted: Wanted = TAU_AND_ETA
-) -> Iterator[Array]:
-    """Return blocks of rows of the columns of `header`; eta = delta* at tau = -c3.
+class PlaceInBand(NamedTuple):
+    """Where eta is in its band."""
 
-    Raises LagtopError as `Quadrature.check_doubles` does, and for times beyond 2^50 periods.
+    eta: Value
+    risen: Value
+    """eta - delta*."""
+    left: Value
+    """delta - eta."""
+    falling: Value
+    """Whether eta is on its way back to delta*."""
+
+    def rate(self, ar: FunctionArithmetic, band: Band) -> Value:
+        """Return d eta/d tau, the root of (3.2.1) from distances that keep their digits."""
+        risen, left = self.risen, self.left
+        gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
+        if band.pair:
+            from_lower, from_upper, height = band.pair
+            apart = ar.where(ar.either(risen < left), from_lower + risen, from_upper - left)
+            gaps = [ar.sqrt(apart * apart + height * height)] * 2
+        size = prod(map(ar.sqrt, (band.g, risen, left, *gaps)))
+        return ar.where(self.falling, -size, size)
+
+
+def place_in_band(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band) -> PlaceInBand:
+    """Return the place of eta where v = 2K w/T, w the time since a passage of delta*.
+
+    eta - delta* : delta - eta = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2, which is (3.2.10) to
+    (3.2.12) after a halving of the argument: both distances keep their digits.  Of a complex pair
+    of roots it is m'' (sn v dn v)^2 : m' cn^2 v of the modulus kappa.
     """
-    import numpy as np
-
-    from ..arithmetic.double_double import reduce_phase
-
-    quadrature.check_doubles()
-
-    def constants(digits: int) -> tuple[EtaConstants, Pair, int, float]:
-        ar = ball_functions(digits)
-        exact = eta_constants(ar, quadrature)
-        offset = ar.convert(c3) / exact.period
-        whole = ar.nint(offset)
-        c = EtaConstants(*map(float, exact))
-        return c, pair(1 / exact.period), whole, float(offset - whole)
-
-    c, rate, whole, shift = decided("the constants of eta", constants)
-    band = band_of(ARRAYS, quadrature)
-    check_reach("tau", times, min(MAX_PERIODS * c.period, MAX_TIME))
-    half_period = 2 * complete_k(DOUBLES, float(modulus_in_use(c, band).k_prime))
-
-    def block(tau: Array) -> Array:
-        with np.errstate(all="ignore"):  # squares of small numbers may leave the doubles
-            turns, since = reduce_phase(tau, rate, shift)
-            place = swing(ARRAYS, half_period * (since + shift), c, band)
-            columns = [tau, place.eta]
-            if wanted.rate:
-                columns.append(place.rate(ARRAYS, band))
-            if wanted.unit:
-                phase = turns + float(whole), since + shift
-                columns += chain(ARRAYS, phase, c, band, wanted.unit)
-        return np.stack(columns, axis=1) + 0.0  # no -0
-
-    return (block(tau) for tau in times.blocks())
-
-
-def digit_rows(
-    quadrature: Quadrature, times: Points, c3: Fraction, wanted: Wanted, digits: int
-) -> Iterator[list[NumberText]]:
-    """Return rows of the columns of `header` to so many significant digits.
-
-    h1 and theta vanish at no rational tau: K is transcendental for algebraic k (Schneider 1937).
-    Raises LagtopError as `Quadrature.check` does.
-    """
-    quadrature.check()
-    still = quadrature.lower == quadrature.upper
-    names, numbers = header(wanted), ProvedNumbers(digits)
-
-    @cache
-    def constants(ar: BallFunctions) -> tuple[EtaConstants, Band]:
-        return eta_constants(ar, quadrature), band_of(ar, quadrature)
-
-    def at(tau: Fraction) -> list[NumberText]:
-        def compute(ar: BallFunctions) -> dict[str, Value]:
-            (c, band), time = constants(ar), ar.convert(tau + c3)
-            turns, phase, _ = whole_and_rest(ar, time / c.period)
-            quarter = complete_k(ar, modulus_in_use(c, band).k_prime)
-            place = swing(ar, 2 * quarter * phase, c, band)
-            values = [ar.convert(tau), place.eta]
-            if wanted.rate:
-                values.append(place.rate(ar, band))
-            if wanted.unit:
-                values += chain(ar, (turns, phase), c, band, wanted.unit)
-            return dict(zip(names, values, strict=True))
-
-        at_start = still or tau + c3 == 0
-        zero = {"tau": tau == 0, "eta": at_start and not quadrature.lower, "etadot": at_start}
-        known = {name: 0 for name, is_zero in zero.items() if is_zero}
-        return list(numbers.texts(compute, known).values())
-
-    return (at(tau) for tau in times.decimals())
+    _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, band))
+    if band.pair:
+        up, down = abs(ar.sqrt(c.m2) * sn * dn), abs(ar.sqrt(c.m1) * cn)
+    else:
+        up, down = abs(ar.sqrt(band.g) * c.m2 * sn), abs(c.sigma1 * cn * dn)
+    larger = ar.where(ar.either(up < down), down, up)  # so that no square leaves the range
+    up, down = (up / larger) ** 2, (down / larger) ** 2
+    risen, left = band.width * up / (up + down), band.width * down / (up + down)
+    eta = ar.where(ar.either(risen < left), band.lower + risen, band.upper - left)
+    return PlaceInBand(eta, risen, left, sn * cn < 0)

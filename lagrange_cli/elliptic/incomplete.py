@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k

@@ -14,28 +14,29 @@ import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.blocks import blocks
-from ..arithmetic.double_double import reduce_phase
-from ..arithmetic.formulas import polynomial
+from ..arithmetic.double_double import reduce_phase, sqrt_pair, two_product, two_sum
+from ..arithmetic.numbers import polynomial
 from ..arithmetic.protocol import Value
 from ..arithmetic.sums_of_doubles import Pair
 from ..arithmetic.types import Array
 from .complete import nome
-from .modulus import Modulus, rate_of_half_periods
+from .modulus import Modulus
 from .periods import Periods
 
+_INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 _LARGEST_ARGUMENT = 350.0
 """Greatest argument of sinh; beyond, for k' = 0 alone, cn and dn are exponentials."""
 _SMALL = 1e-290
 """Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
 
 
-Coefficients = tuple[Value, ...]
-"""Coefficients, the lowest power first."""
-Functions = tuple[Array, Array, Array, Array]
+Powers = tuple[Value, ...]
+"""Powers, the lowest power first."""
+JacobiArrays = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
 
 
-def jacobi_of_arrays(u: Value, modulus: Modulus) -> Functions:
+def jacobi_of_arrays(u: Value, modulus: Modulus) -> JacobiArrays:
     """Return the functions of arguments and moduli of shapes that broadcast."""
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
@@ -56,7 +57,7 @@ def jacobi_of_arrays(u: Value, modulus: Modulus) -> Functions:
     return am, sn, cn, dn
 
 
-def jacobi_of_places(x: Periods, modulus: Modulus) -> Functions:
+def jacobi_of_places(x: Periods, modulus: Modulus) -> JacobiArrays:
     """Return the functions at places in the periods of one modulus k < 1."""
     return _evaluate(x.turns, x.rest, 0.0, _series(modulus), x.low)
 
@@ -71,8 +72,8 @@ class _Series(NamedTuple):
     """Half periods per unit of u, 1/(2K)."""
     stretch: Value
     """Argument y per half period."""
-    above: Coefficients
-    below: Coefficients
+    above: Powers
+    below: Powers
     q: Value
     """The nome in use."""
 
@@ -91,7 +92,26 @@ def _series(modulus: Modulus) -> _Series:
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
-def _circular(q: Value, root: Value) -> tuple[Coefficients, Coefficients]:
+def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
+    """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
+    a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
+    a_low += rest / 2
+    b, b_low = sqrt_pair(np.asarray(k_prime), np.asarray(rest))
+    while (abs(a - b) > 2.0**-26 * a).any():
+        total, total_error = two_sum(a, b)
+        product, product_error = two_product(a, b)
+        product_error += a * b_low + b * a_low
+        a, a_low = total / 2, (total_error + a_low + b_low) / 2
+        b, b_low = sqrt_pair(product, product_error)
+    mean, mean_low = two_sum(a / 2, b / 2)
+    apart = (a - b) + (a_low - b_low)
+    mean_low += (a_low + b_low) / 2 - apart * apart / (16 * mean)  # agm(1 + x, 1 - x) = 1 - x^2/4
+    high, low = two_product(mean, _INVERSE_PI[0])
+    low += mean_low * _INVERSE_PI[0] + mean * _INVERSE_PI[1]
+    return Pair(*two_sum(high, low))
+
+
+def _circular(q: Value, root: Value) -> tuple[Powers, Powers]:
     """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
@@ -100,7 +120,7 @@ def _circular(q: Value, root: Value) -> tuple[Coefficients, Coefficients]:
     return above, tuple(root * c for c in below)
 
 
-def _hyperbolic(q: Value) -> tuple[Coefficients, Coefficients]:
+def _hyperbolic(q: Value) -> tuple[Powers, Powers]:
     """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
     q2 = q * q
     q4 = q2 * q2
@@ -121,14 +141,14 @@ def _hyperbolic(q: Value) -> tuple[Coefficients, Coefficients]:
     return above, tuple(scale * c for c in below)
 
 
-def _of_arguments(u: Array, series: _Series) -> Functions:
+def _of_arguments(u: Array, series: _Series) -> JacobiArrays:
     """Return the functions of one block of arguments."""
     return _evaluate(*reduce_phase(u, series.rate), u, series)
 
 
 def _evaluate(
     halves: Array, since: Array, u: Value, series: _Series, low: Value = 0.0
-) -> Functions:
+) -> JacobiArrays:
     """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0.
 
     `low` is what rounding took from `since`.

@@ -6,7 +6,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from .request import Request
+from .request import FunctionRequest
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -19,13 +19,13 @@ VANISH = {
 """The columns that are exactly 0 where u, the parameter or k is; no other is, at rational u."""
 
 
-def known_values(u: Fraction, request: Request) -> dict[str, float]:
+def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
     """Return the columns that are exactly 0 at u, and not a number where they have a pole.
 
     K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
     rational places to think of.
     """
-    name, value, _ = request.modulus
+    name, value, _ = request.real_modulus
     suffix = "_imag" if request.imaginary else ""
     known: dict[str, float] = {}
 
@@ -38,10 +38,10 @@ def known_values(u: Fraction, request: Request) -> dict[str, float]:
     if u == 0:
         add(VANISH["u"] + ("" if request.imaginary else " omega11 pi11"), 0)
         add("zeta11", math.nan)
-    if request.parameter == 0:
+    if request.size == 0:
         add(VANISH["param"], 0)
         add("pi11", math.nan)
-    elif abs(u) == abs(request.parameter) and not (request.imaginary or request.in_quarters):
+    elif abs(u) == abs(request.size) and not (request.imaginary or request.in_quarters):
         add("omega11 pi11", math.nan)
     if request.in_quarters and u.denominator == 1:
         known |= known_at_quarter(int(u % 4), request)
@@ -50,7 +50,7 @@ def known_values(u: Fraction, request: Request) -> dict[str, float]:
     return known
 
 
-def known_at_quarter(quarter: int, request: Request) -> dict[str, float]:
+def known_at_quarter(quarter: int, request: FunctionRequest) -> dict[str, float]:
     """Return the columns that are 0, 1, -1 or a pole at the multiples quarter + 4n of K.
 
     These are the entries of Aksenov's table 2, and what follows for theta and Zeta functions and
@@ -70,8 +70,8 @@ def known_at_quarter(quarter: int, request: Request) -> dict[str, float]:
     return known
 
 
-def put_exact_values(table: dict[str, Array], u: Array, request: Request) -> None:
-    """Put what is known at u = 0, and at whole multiples of K, in its place."""
+def put_exact_values(table: dict[str, Array], u: Array, request: FunctionRequest) -> None:
+    """Put what is known at u = 0, at whole multiples of K and at poles in its place."""
     import numpy as np
 
     def put(here: Array, known: dict[str, float]) -> None:
@@ -87,3 +87,6 @@ def put_exact_values(table: dict[str, Array], u: Array, request: Request) -> Non
         if request.imaginary:
             put(u == 1, {"omega11_imag": 0})
     put(u == 0, known_values(Fraction(0), request))
+    if request.size and not request.imaginary:
+        poles = abs(table["u"]) == abs(float(request.size))
+        put(poles, dict.fromkeys(("omega11", "pi11"), math.nan))

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..arithmetic.formulas import in_arithmetic
-from ..arithmetic.numbers import R
+from ..arithmetic.numbers import R, in_arithmetic
 from .complete import complete_k
 
 if TYPE_CHECKING:

@@ -12,10 +12,11 @@ from typing import NamedTuple
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.sums_of_doubles import Triple, triple
 from ..errors import LagtopError
-from .any_modulus import AnyModulus, Kind
+from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
-from .periods import Complex, Rate, reduced
+from .periods import Complex, reduced
 
 Fine = Value
 """A real number of a context, or an array of pairs of doubles."""
@@ -54,10 +55,10 @@ class Place(NamedTuple):
         seldom in different cells.
         """
         x, y = (a.rest + sign * b.rest for a, b in zip(self, by, strict=True))
-        across = nearest(ar, x)
+        across = coordinate_of(ar, x)
         inside = abs(coarse(x)) < _WIDE
         whole = ar.where(inside, 0 * across.whole, across.whole)
-        return Place(Coordinate(whole, x - fine_whole(Coordinate(whole, x))), nearest(ar, y))
+        return Place(Coordinate(whole, x - fine_whole(Coordinate(whole, x))), coordinate_of(ar, y))
 
 
 _WIDE = 0.52
@@ -67,7 +68,7 @@ _WIDE = 0.52
 class Lattice(NamedTuple):
     """The periods of a modulus, k strictly between 0 and 1 after its reduction."""
 
-    kind: Kind
+    kind: ModulusKind
     circular: bool
     """Whether the series run in the nome of k <= k', rather than in that of k'."""
     steepness: Value
@@ -76,9 +77,9 @@ class Lattice(NamedTuple):
     """K'/K."""
     scale: Value
     """Half periods along 2K for each unit of the argument, stretch/(2K)."""
-    along: Rate
+    along: Triple
     """What a real part is multiplied by."""
-    up: Rate
+    up: Triple
     """What an imaginary part is multiplied by."""
     across: Value
     """stretch/(2K') in many digits."""
@@ -120,8 +121,8 @@ def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
         steepness,
         ratio,
         given.stretch / (2 * K),
-        _rate(given.stretch / (2 * K)),
-        _rate(given.stretch / (2 * K_prime)),
+        triple(given.stretch / (2 * K)),
+        triple(given.stretch / (2 * K_prime)),
         given.stretch / (2 * K_prime),
         steepness,
         1 / (1 + ratio * ratio),
@@ -129,15 +130,18 @@ def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
     )
 
 
-def place(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
+def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
     """Return the place of complex numbers; arrays keep their digits far away."""
     if not ar.is_array:
-        return Place(nearest(ar, ar.re(u) * periods.scale), nearest(ar, ar.im(u) * periods.across))
+        return Place(
+            coordinate_of(ar, ar.re(u) * periods.scale),
+            coordinate_of(ar, ar.im(u) * periods.across),
+        )
     parts = (reduced(ar.re(u), periods.along), reduced(ar.im(u), periods.up))
     return Place(*(Coordinate(turns, DoubleDouble(rest, low)) for turns, rest, low in parts))
 
 
-def nearest(ar: FunctionArithmetic, x: Fine) -> Coordinate:
+def coordinate_of(ar: FunctionArithmetic, x: Fine) -> Coordinate:
     """Return a number of periods as whole ones and a rest."""
     whole = ar.nint(coarse(x))
     return Coordinate(whole, x - (DoubleDouble(whole) if ar.is_array else whole))
@@ -162,9 +166,3 @@ def fine_whole(coordinate: Coordinate) -> Fine:
 def coarse(x: Fine) -> Value:
     """Return the nearest doubles, or a number of a context as it is."""
     return x.high if isinstance(x, DoubleDouble) else x
-
-
-def _rate(exact: Value) -> Rate:
-    high = float(exact)
-    middle = float(exact - high)
-    return Rate(high, middle, float(exact - high - middle))

@@ -5,15 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..errors import LagtopError
 from .complete import complete_e, complete_k, nome
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
     from ..arithmetic.protocol import FunctionArithmetic, Value
-    from ..arithmetic.sums_of_doubles import Pair
-
-_INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 
 
 class Modulus(NamedTuple):
@@ -87,33 +84,15 @@ def constants(ar: FunctionArithmetic, modulus: Modulus) -> Constants:
     )
 
 
-def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
-    """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
-    import numpy as np
-
-    from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
-    from ..arithmetic.sums_of_doubles import Pair
-
-    a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
-    a_low += rest / 2
-    b, b_low = sqrt_pair(np.asarray(k_prime), np.asarray(rest))
-    while (abs(a - b) > 2.0**-26 * a).any():
-        total, total_error = two_sum(a, b)
-        product, product_error = two_product(a, b)
-        product_error += a * b_low + b * a_low
-        a, a_low = total / 2, (total_error + a_low + b_low) / 2
-        b, b_low = sqrt_pair(product, product_error)
-    mean, mean_low = two_sum(a / 2, b / 2)
-    apart = (a - b) + (a_low - b_low)
-    mean_low += (a_low + b_low) / 2 - apart * apart / (16 * mean)  # agm(1 + x, 1 - x) = 1 - x^2/4
-    high, low = two_product(mean, _INVERSE_PI[0])
-    low += mean_low * _INVERSE_PI[0] + mean * _INVERSE_PI[1]
-    return Pair(*two_sum(high, low))
-
-
 def exact_modulus(ar: FunctionArithmetic, k: Fraction) -> Modulus:
     """Return a modulus in [0, 1], whose complement keeps its digits however close k is to 1."""
     return Modulus(ar.convert(k), ar.sqrt(ar.convert(1 - k * k)))
+
+
+def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
+    """Return the modulus that doubles stand for in balls or an mpmath context."""
+    k, k_prime, rest = map(float, modulus)
+    return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
 
 def _from_k(ar: FunctionArithmetic, k: Value) -> Modulus:

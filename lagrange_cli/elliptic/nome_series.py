@@ -17,7 +17,7 @@ from ..arithmetic.protocol import FunctionArithmetic, Value
 from .complete import complete_k, nome
 from .modulus import Modulus
 
-Bound = Callable[[int], Value]
+ErrorBound = Callable[[int], Value]
 """A bound of the error after n terms."""
 
 
@@ -50,7 +50,7 @@ def k_sums(ar: FunctionArithmetic, modulus: Modulus) -> Iterator[Value]:
     return accumulate(terms)
 
 
-def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     """Return 2 pi/(k K) q^(n+1/2)/((1 - q)(1 - q^(2n+1))) of n, above the error of (3.1.4).
 
     Beyond the n-th term 1/(1 - q^(2j-1)) <= 1/(1 - q^(2n+1)), and the sum of q^(j-1/2) over j > n
@@ -61,7 +61,7 @@ def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
     return lambda n: first * q**n / (1 - q ** (2 * n + 1))
 
 
-def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     """Return 2 pi/(k K) q^(n+1/2)/(1 - q) of n, above the error of n terms of (3.1.5).
 
     There 1/(1 + q^(2j-1)) < 1, and the rest is as in `sn_bound`.
@@ -71,7 +71,7 @@ def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
     return lambda n: first * q**n
 
 
-def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     """Return 2 q^(n+1)/((n+1)(1 - q)) of n, above the error in radians of n terms of (3.1.7).
 
     There 1/(j (1 + q^2j)) < 1/(n+1) for j > n, and the sum of q^j is q^(n+1)/(1 - q).
@@ -81,7 +81,7 @@ def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
     return lambda n: first * q**n / (n + 1)
 
 
-def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> Bound:
+def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     """Return k^2n/((2n + 1/2) k'^2) of n, or K if that is less: above the error of (3.1.8).
 
     With c_j = 1 3 ... (2j-1)/(2 4 ... 2j): c_j^2 (j + 1/4) grows with j, by the factor

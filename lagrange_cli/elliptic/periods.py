@@ -1,4 +1,4 @@
-"""Arguments counted in periods 2K: whole ones, and a rest that keeps its digits.
+"""Real arguments counted in periods 2K: whole ones, and a rest that keeps its digits.
 
 Next to a pole of a Zeta function, or far from zero, all that matters is the rest; so 1/(2K) is held
 as a sum of three doubles, and the rest as a sum of two.
@@ -6,51 +6,45 @@ as a sum of three doubles, and the rest as a sum of two.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
+    from ..arithmetic.sums_of_doubles import Triple
     from ..arithmetic.types import Array
+
+NAMES = ("01", "00", "11", "10")
+"""The indices of the four theta functions, in the order of the sources."""
 
 Complex = Value
 """A real or complex number, or array, of the arithmetic in use."""
 
 
 class Periods(NamedTuple):
-    """An argument in periods: whole ones and the rest, its real part within half of one."""
+    """A real argument in periods: whole ones and the rest, which is within half of one."""
 
     turns: Value
-    rest: Complex
+    rest: Value
     low: Value = 0.0
-    """What rounding took from the rest (real arrays only)."""
+    """What rounding took from the rest (arrays only)."""
 
     def half_further(self, ar: FunctionArithmetic) -> Periods:
         """Return the place half a period further on."""
-        forward = ar.either(real_part(ar, self.rest) < 0)
+        forward = ar.either(self.rest < 0)
         if not ar.is_array:
             return Periods(self.turns + (not forward), self.rest + (0.5 if forward else -0.5))
-        half, turns = ar.where(forward, 0.5, -0.5), self.turns + ar.where(forward, 0.0, 1.0)
-        if is_real_array(ar, self.rest):
-            from ..arithmetic.double_double import two_sum
+        from ..arithmetic.double_double import two_sum
 
-            rest, low = two_sum(self.rest, half)
-            return Periods(turns, rest + (low + self.low))
-        return Periods(turns, self.rest + half)
+        rest, low = two_sum(self.rest, ar.where(forward, 0.5, -0.5))
+        return Periods(self.turns + ar.where(forward, 0.0, 1.0), rest + (low + self.low))
 
 
-class Rate(NamedTuple):
-    """1/(2K), the rate of periods, as a sum of three doubles."""
-
-    high: float | Array
-    middle: float | Array
-    low: float | Array = 0.0
-
-
-def whole_and_rest(ar: FunctionArithmetic, x: Complex) -> Periods:
-    """Return a number of periods as whole ones and the rest."""
-    real = real_part(ar, x)
-    turns = ar.nint(real)
+def whole_and_rest(ar: FunctionArithmetic, x: Value) -> Periods:
+    """Return a real number of periods as whole ones and the rest."""
+    turns = ar.nint(x)
     return Periods(turns, x - turns)
 
 
@@ -59,8 +53,8 @@ def of_quarters(ar: FunctionArithmetic, factor: Value) -> Periods:
     return whole_and_rest(ar, factor / 2)
 
 
-def reduced(u: Array, rate: Rate) -> Periods:
-    """Return real arguments in periods, for |u| up to 1e290."""
+def reduced(u: Array, rate: Triple) -> Periods:
+    """Return real arguments in periods by the rate 1/(2K), for |u| up to 1e290."""
     import numpy as np
 
     from ..arithmetic.double_double import two_product, two_sum
@@ -77,20 +71,28 @@ def reduced(u: Array, rate: Rate) -> Periods:
     return Periods(turns + more, rest, low)
 
 
-def is_real_array(ar: FunctionArithmetic, x: Complex) -> bool:
-    """Return whether x is an array of real numbers, whose rests have two doubles."""
+def negligible(ar: FunctionArithmetic) -> float:
+    """Return -log of the largest number that does not matter beside 1."""
+    magnitude: float = ar.magnitude
+    return 2.0 - math.log(10) * magnitude
+
+
+def is_complex(ar: FunctionArithmetic, x: Complex) -> bool:
+    """Return whether a number or an array has an imaginary part."""
+    return bool(ar.anywhere(ar.im(x) != 0))
+
+
+def each_alone(
+    ar: FunctionArithmetic, function: Callable[..., Value], x: Value, *constants: Value
+) -> Value:
+    """Return a function of arrays that broadcast, evaluated once for each set of constants."""
     if not ar.is_array:
-        return False
+        return function(x, *constants)
     import numpy as np
 
-    return bool(np.isrealobj(x))
-
-
-def real_part(ar: FunctionArithmetic, x: Complex) -> Value:
-    """Return the real part of a number or an array."""
-    return ar.re(x)
-
-
-def imaginary_part(ar: FunctionArithmetic, x: Complex) -> Value:
-    """Return the imaginary part of a number or an array."""
-    return ar.im(x)
+    x, *others = np.broadcast_arrays(x, *constants)
+    values = np.zeros(x.shape, dtype=np.result_type(float, x, *others))
+    for these in set(zip(*(part.ravel() for part in others), strict=True)):
+        same = np.all([part == one for part, one in zip(others, these, strict=True)], axis=0)
+        values[same] = function(x[same], *these)
+    return values

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..arithmetic.ball import Ball, TooFewDigitsError
 from ..arithmetic.ball_functions import BallFunctions, ball_functions
@@ -16,26 +16,8 @@ from ..arithmetic.rounding import MOST_DIGITS, alike, precisions, text_of
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
 
-if TYPE_CHECKING:
-    from ..arithmetic.types import Array
-
-_FEW = 24
-"""Numbers that are computed in many digits in the time that NumPy takes to load."""
 _MOST_FOR_DOUBLES = 120
 """Digits beyond which arrays of doubles are sooner ready."""
-
-
-def small_or_large(
-    numbers: int, small: Callable[[], list[list[NumberText]]], large: Callable[[], Iterator[Array]]
-) -> Iterator[Array | list[list[NumberText]]]:
-    """Return blocks of a table of doubles, made without NumPy where that is sooner.
-
-    So it is with few numbers, unless something cancels and they take many digits.
-    """
-    if numbers <= _FEW:
-        with suppress(TooFewDigitsError):
-            return iter([small()])
-    return large()
 
 
 class ProvedNumbers:

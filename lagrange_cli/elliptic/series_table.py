@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import islice
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
@@ -17,7 +17,7 @@ from .jacobi import jacobi
 from .modulus import Modulus
 from .modulus_input import ModulusInput
 from .nome_series import (
-    Bound,
+    ErrorBound,
     am_bound,
     am_sums,
     cn_bound,
@@ -27,10 +27,13 @@ from .nome_series import (
     sn_bound,
     sn_sums,
 )
+from .tables import TableOfFunctions
+
+if TYPE_CHECKING:
+    from .tables import Rows
 
 TOLERANCE = "1e-16"
 """The error, in the unit of the column, that the needed terms are counted for."""
-
 
 _DIGITS = 400
 """Enough for every error that a double can hold."""
@@ -41,46 +44,65 @@ class _Series(NamedTuple):
 
     sums: Iterator[Value]
     exact: Value
-    bound: Bound
+    bound: ErrorBound
 
 
-class SeriesTable(NamedTuple):
-    """Partial sums with their errors, and the bounds of the errors."""
+class SeriesTable(TableOfFunctions):
+    """Partial sums 1 to `terms`, each with its error and a bound of the error that is proved.
 
-    header: list[str]
-    rows: Iterator[list[str]]
-    needed: dict[str, int]
-    """How many terms make the bound of each column at most 1e-16."""
-
-
-def series_table(
-    modulus_input: ModulusInput, u: Fraction | None, terms: int, *, in_quarters: bool = False
-) -> SeriesTable:
-    """Return partial sums 1 to `terms`, each with its error and a bound that is proved.
-
-    They are (3.1.8) for K and, at u (a factor of K if `in_quarters`), (3.1.7), (3.1.4), (3.1.5) for
-    am, sn, cn.  Raises LagtopError for k = 0 and k = 1, where the series are limits, and for u
-    beyond 2^50 periods.
+    They are of (3.1.8) for K and, at u (a factor of K if `in_quarters`), of (3.1.7), (3.1.4),
+    (3.1.5) for am, sn, cn.
     """
-    ar = ManyDigits(_DIGITS)
-    modulus = modulus_input.in_digits(ar)
-    if not (modulus.k and modulus.k_prime):
-        raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(modulus.k)}")
-    K = complete_k(ar, modulus.k_prime)
-    columns = {"K": _Series(k_sums(ar, modulus), K, k_bound(ar, modulus))}
-    if u is not None:
-        argument = ar.convert(u) * (K if in_quarters else 1)
-        limit = MAX_PERIODS * 2 * K
-        if abs(argument) > limit:
-            reach, got = ar.nstr(limit, 3), float(argument)
-            raise LagtopError(f"u must be within 2^50 periods = {reach} of 0, got {got}", "u")
-        columns |= _at(ar, argument, modulus, radians=modulus_input.radians)
-    tolerance = ar.mpf(TOLERANCE)
-    return SeriesTable(
-        ["terms", *(name for key in columns for name in (key, f"{key}_error", f"{key}_bound"))],
-        _rows(list(columns.values()), terms),
-        {name: terms_needed(series.bound, tolerance) for name, series in columns.items()},
-    )
+
+    long = (1000, 1000)
+
+    def __init__(
+        self,
+        modulus_input: ModulusInput,
+        u: Fraction | None,
+        terms: int,
+        *,
+        in_quarters: bool = False,
+    ) -> None:
+        """Raise LagtopError for k = 0 and k = 1, where the series are limits, and for a distant u.
+
+        That is one beyond 2^50 periods.
+        """
+        ar = ManyDigits(_DIGITS)
+        modulus = modulus_input.in_digits(ar)
+        if not (modulus.k and modulus.k_prime):
+            raise LagtopError(f"the nome series need 0 < k < 1, got k = {float(modulus.k)}")
+        K = complete_k(ar, modulus.k_prime)
+        self.series = {"K": _Series(k_sums(ar, modulus), K, k_bound(ar, modulus))}
+        if u is not None:
+            argument = ar.convert(u) * (K if in_quarters else 1)
+            limit = MAX_PERIODS * 2 * K
+            if abs(argument) > limit:
+                reach, got = ar.nstr(limit, 3), float(argument)
+                raise LagtopError(f"u must be within 2^50 periods = {reach} of 0, got {got}", "u")
+            self.series |= _at(ar, argument, modulus, radians=modulus_input.radians)
+        self.count, self.tolerance = terms, ar.mpf(TOLERANCE)
+
+    def needed(self) -> dict[str, int]:
+        """Return how many terms make the bound of each column at most 1e-16."""
+        return {name: terms_needed(x.bound, self.tolerance) for name, x in self.series.items()}
+
+    def rows(self, digits: int | None = None) -> Rows:
+        """Return the header, and each row as a block of texts."""
+        names = (f"{name}{part}" for name in self.series for part in ("", "_error", "_bound"))
+        return ["terms", *names], ([row] for row in self._texts())
+
+    def _texts(self) -> Iterator[list[str]]:
+        """Yield the rows as texts."""
+        series = list(self.series.values())
+        sums = zip(*(islice(x.sums, self.count) for x in series), strict=True)
+        for n, parts in enumerate(sums, 1):
+            cells = (
+                x
+                for part, of in zip(parts, series, strict=True)
+                for x in (part, abs(part - of.exact), of.bound(n))
+            )
+            yield [str(n), *(double_text(float(x) + 0.0) for x in cells)]
 
 
 def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[str, _Series]:
@@ -97,18 +119,7 @@ def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[st
     }
 
 
-def _rows(columns: list[_Series], terms: int) -> Iterator[list[str]]:
-    """Yield the rows as texts."""
-    for n, sums in enumerate(zip(*(islice(x.sums, terms) for x in columns), strict=True), 1):
-        cells = [
-            x
-            for part, series in zip(sums, columns, strict=True)
-            for x in (part, abs(part - series.exact), series.bound(n))
-        ]
-        yield [str(n), *(double_text(float(x) + 0.0) for x in cells)]
-
-
-def terms_needed(bound: Bound, tolerance: Value) -> int:
+def terms_needed(bound: ErrorBound, tolerance: Value) -> int:
     """Return the least number of terms from which a falling bound is at most the tolerance."""
     enough = 1  # Python's integers have no end, and k may be as close to 1 as it likes
     while bound(enough) > tolerance:

@@ -5,9 +5,9 @@ two functions, one even (0.) and one odd (1.), and the same shifted by half a pe
 k = k' they are summed as Fourier series in the nome, beyond as Gaussians (Jacobi's imaginary
 transformation), so that a few terms are enough for every k < 1.
 
-All functions take an mpmath context, or numpy with arguments and moduli that broadcast, real or
-complex, and raise LagtopError for k = 1, where there are no periods.  Errors of arrays of real
-arguments of one modulus, each from a judge in ball arithmetic: see README.md in this folder.
+`theta` and `zeta` take an mpmath context, or numpy with arguments and moduli that broadcast (each
+modulus is evaluated alone), real or complex, and raise LagtopError for k = 1, where there are no
+periods.  Complex arguments are those of `complex_theta`.  Errors: see README.md in this folder.
 """
 
 from __future__ import annotations
@@ -17,98 +17,76 @@ from typing import NamedTuple
 
 from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
-from ..arithmetic.sums_of_doubles import triple
+from ..arithmetic.sums_of_doubles import Triple, triple
 from ..errors import LagtopError
 from .complete import complete_k, nome
-from .modulus import Modulus, rate_of_half_periods
+from .modulus import Modulus, in_many_digits
 from .periods import (
+    NAMES,
     Complex,
     Periods,
-    Rate,
-    imaginary_part,
-    is_real_array,
-    real_part,
+    each_alone,
+    is_complex,
+    negligible,
     reduced,
     whole_and_rest,
 )
 
-NAMES = ("01", "00", "11", "10")
-"""The indices of the four functions, in the order of the sources."""
-
-_SMALL_MODULUS = 1e-9
-"""Below it the fourth root of the nome is sqrt(k)/2, while the nome may leave the doubles."""
-
 
 class ThetaSeries(NamedTuple):
-    """The constants of the series of one modulus, or of an array of moduli."""
+    """The constants of the series of one modulus."""
 
-    circular: Value
+    circular: bool
     """Whether the Fourier series are in use, rather than the Gaussians."""
     q: Value
     """The nome, at most exp(-pi)."""
     steepness: Value
     """pi K/K' of the Gaussians, at least pi."""
     even_size: Value
-    """What all terms of the even function have in common."""
+    """Common factor of all terms of the even function."""
     odd_size: Value
     rate: Value
     """1/(2K)."""
-    exact_rate: Rate | None
-    """1/(2K) to reduce arrays of real arguments with; None for numbers."""
+    exact_rate: Triple | None = None
+    """1/(2K) to reduce arrays of arguments with; None for numbers."""
 
 
-def theta_series(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
-    """Return the constants in balls or an mpmath context or, for an array of moduli, in numpy."""
+def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
+    """Return the constants of one modulus, for arrays rounded from balls.
+
+    Raises LagtopError for k = 1.
+    """
+    if not modulus.k_prime > 0:
+        raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
+    return rounded_series(modulus) if ar.is_array else series_constants(ar, modulus)
+
+
+def series_constants(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
+    """Return the constants in balls or an mpmath context."""
     k, k_prime = modulus.k, modulus.k_prime
     circular = ar.either(k <= k_prime)
     quarter, other = complete_k(ar, k_prime), complete_k(ar, ar.where(k > 0, k, 1 + 0 * k))
-    limit = ar.exp(-ar.pi)
-    q = ar.where(circular, nome(ar, m=k * k, k_prime=k_prime), limit)
-    root = ar.where(k < _SMALL_MODULUS, ar.sqrt(k) / 2, ar.sqrt(ar.sqrt(q)))
-    if not ar.is_array:
-        root = ar.sqrt(ar.sqrt(q))
+    q = ar.where(circular, nome(ar, m=k * k, k_prime=k_prime), ar.exp(-ar.pi))
     gauss = ar.sqrt(quarter / other)
     steepness = ar.where(circular, ar.pi, ar.pi * quarter / other)
-    if not (ar.is_array or steepness > 3):
+    if not steepness > 3:
         raise TooFewDigitsError  # the bounds of what the sums leave out take it for granted
-    return ThetaSeries(
-        circular=circular,
-        q=q,
-        steepness=steepness,
-        even_size=ar.where(circular, 1 + 0 * q, gauss),
-        odd_size=ar.where(circular, root, gauss),
-        rate=1 / (2 * quarter),
-        exact_rate=Rate(*rate_of_half_periods(k_prime, modulus.rest)) if ar.is_array else None,
-    )
+    even_size = ar.where(circular, 1 + 0 * q, gauss)
+    odd_size = ar.where(circular, ar.sqrt(ar.sqrt(q)), gauss)
+    return ThetaSeries(circular, q, steepness, even_size, odd_size, 1 / (2 * quarter))
 
 
-def rounded(series: ThetaSeries) -> ThetaSeries:
+def series_in_doubles(series: ThetaSeries) -> ThetaSeries:
     """Return constants of many digits as doubles.
 
     Raises TooFewDigitsError for balls that do not know them.
     """
     q, steepness, even_size, odd_size, rate = map(float, series[1:-1])
-    exact_rate = Rate(*triple(series.rate))
-    return ThetaSeries(series.circular, q, steepness, even_size, odd_size, rate, exact_rate)
-
-
-def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
-    """Return the constants for an arithmetic; those of a single modulus have all their digits.
-
-    Raises LagtopError for k = 1.
-    """
-    if not ar.everywhere(modulus.k_prime > 0):
-        raise LagtopError("k must be below 1 for theta functions, got 1.0", "k")
-    if not ar.is_array:
-        return theta_series(ar, modulus)
-    import numpy as np
-
-    if any(np.ndim(part) for part in modulus):
-        return theta_series(ar, modulus)
-    return rounded_series(modulus)
+    exact = triple(series.rate)
+    return ThetaSeries(series.circular, q, steepness, even_size, odd_size, rate, exact)
 
 
 def rounded_series(modulus: Modulus) -> ThetaSeries:
@@ -116,22 +94,24 @@ def rounded_series(modulus: Modulus) -> ThetaSeries:
 
     def series(digits: int) -> ThetaSeries:
         ar = ball_functions(digits)
-        return rounded(theta_series(ar, in_many_digits(ar, modulus)))
+        return series_in_doubles(series_constants(ar, in_many_digits(ar, modulus)))
 
     return decided("the constants of the modulus", series)
-
-
-def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
-    """Return the modulus that doubles stand for in balls or an mpmath context."""
-    k, k_prime, rest = map(float, modulus)
-    return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
 
 @in_arithmetic
 def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
     """Return theta_ij(x, iK'/K) of section 1, `ij` one of 01, 00, 11, 10."""
-    series = _checked(ar, ij, modulus)
-    return theta_at(ar, ij, whole_and_rest(ar, x), series)
+    _check(ij)
+
+    def function(x: Complex, *parts: Value) -> Complex:
+        if is_complex(ar, x):
+            from .complex_theta import theta_of_modulus  # loads NumPy and mpmath
+
+            return theta_of_modulus(ar, ij, x, Modulus(*parts))
+        return theta_at(ar, ij, whole_and_rest(ar, ar.re(x)), series_for(ar, Modulus(*parts)))
+
+    return each_alone(ar, function, x, *modulus)
 
 
 @in_arithmetic
@@ -140,19 +120,33 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
 
     Poles are infinite in arrays, and at v = 0 in many digits.
     """
-    series = _checked(ar, ij, modulus)
-    if not ar.is_array and v == 0:  # to all digits
-        return ar.inf if ij == "11" else 0 * v
-    return zeta_at(ar, ij, in_periods(ar, v, series), series)
+    _check(ij)
+
+    def function(v: Complex, *parts: Value) -> Complex:
+        if is_complex(ar, v):
+            from .complex_theta import zeta_of_modulus  # loads NumPy and mpmath
+
+            return zeta_of_modulus(ar, ij, v, Modulus(*parts))
+        series = series_for(ar, Modulus(*parts))
+        if not ar.is_array and v == 0:  # to all digits
+            return ar.inf if ij == "11" else 0 * v
+        return zeta_at(ar, ij, in_periods(ar, ar.re(v), series), series)
+
+    return each_alone(ar, function, v, *modulus)
 
 
-def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
+def _check(ij: str) -> None:
+    if ij not in NAMES:
+        raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
+
+
+def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
     """Return theta_ij at a place in its periods."""
     size = series.odd_size if ij[0] == "1" else series.even_size
     return size * _bell(ar, ij, x.rest, series) * _value(ar, ij, x, series)
 
 
-def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
+def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
     """Return Z_ij at a place in its periods."""
     value, slope = _sums(ar, ij, x, series)
     if ij == "10":
@@ -160,54 +154,39 @@ def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) ->
     return slope / value * series.rate
 
 
-def in_periods(ar: FunctionArithmetic, v: Complex, series: ThetaSeries) -> Periods:
-    """Return v/2K; real arrays keep their digits far away and next to whole periods."""
-    if series.exact_rate and is_real_array(ar, v):
+def in_periods(ar: FunctionArithmetic, v: Value, series: ThetaSeries) -> Periods:
+    """Return v/2K; arrays keep their digits far away and next to whole periods."""
+    if series.exact_rate:
         return reduced(v, series.exact_rate)
     return whole_and_rest(ar, v * series.rate)
 
 
-def _checked(ar: FunctionArithmetic, ij: str, modulus: Modulus) -> ThetaSeries:
-    if ij not in NAMES:
-        raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
-    return series_for(ar, modulus)
-
-
-def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Complex:
+def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
     """Return theta_ij(x) over the size of the function and its `_bell`.
 
-    theta10 is read half a period further on, where it is theta11 and keeps its digits next to its
-    zero; its derivative keeps them next to 0, and is not read there.
+    theta10 is evaluated as theta11 half a period away, which is accurate next to the zero of
+    theta10; its derivative is accurate next to 0, and is not evaluated there.
     """
-    if ij != "10":
-        return _sums(ar, ij, x, series, slopes=False)[0]
-    further = x.half_further(ar)
-    value, _ = _sums(ar, "11", further, series, slopes=False)
-    if is_real_array(ar, x.rest):  # of a real x the two bells are one
-        return value
-    return value * (_bell(ar, "11", further.rest, series) / _bell(ar, "10", x.rest, series))
+    if ij == "10":
+        ij, x = "11", x.half_further(ar)
+    return _sums(ar, ij, x, series, slopes=False)[0]
 
 
 def _sums(
     ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries, *, slopes: bool = True
-) -> tuple[Complex, Complex]:
+) -> tuple[Value, Value]:
     """Return the sum of a series and, where it is wanted, of its derivative."""
-    odd, circular = ij[0] == "1", series.circular
-    if ar.everywhere(circular):
+    if series.circular:
         value, slope = _fourier(ar, ij, x.rest, series.q, slopes=slopes)
-    elif not ar.anywhere(circular):
-        value, slope = _gaussians(ar, ij, x.rest, series.steepness, slopes=slopes)
     else:
-        fourier = _fourier(ar, ij, x.rest, series.q, slopes=slopes)
-        gauss = _gaussians(ar, ij, x.rest, series.steepness, slopes=slopes)
-        value, slope = (ar.where(circular, *pair) for pair in zip(fourier, gauss, strict=True))
-    sign = 1 - 2 * (x.turns % 2) if odd else 1
+        value, slope = _gaussians(ar, ij, x.rest, series.steepness, slopes=slopes)
+    sign = 1 - 2 * (x.turns % 2) if ij[0] == "1" else 1
     return sign * value, sign * slope
 
 
 def _fourier(
-    ar: FunctionArithmetic, ij: str, x: Complex, q: Value, *, slopes: bool
-) -> tuple[Complex, Complex]:
+    ar: FunctionArithmetic, ij: str, x: Value, q: Value, *, slopes: bool
+) -> tuple[Value, Value]:
     """Return the series of section 1 in q <= exp(-pi) and its derivative.
 
     01 and 00: 1 + 2 sum (-+1)^h q^(h^2) cos 2 pi h x; over q^(1/4), 11 and 10:
@@ -216,35 +195,36 @@ def _fourier(
     odd, sines = ij[0] == "1", ij == "11"
     wave, other = (ar.sin, ar.cos) if sines else (ar.cos, ar.sin)
     value, slope = (0 * x, 0 * x) if odd else (1 + 0 * x, 0 * x)
-    terms = _fourier_terms(ar, x, q)
+    terms = 2 + int(math.sqrt(negligible(ar) / math.pi))
     for h in range(0 if odd else 1, terms):
         weight = 2 * (-1) ** (h * int(ij[1])) * q ** (h * (h + 1) if odd else h * h)
         rate = (2 * h + odd) * ar.pi
         value = value + weight * wave(rate * x)
         if slopes:
             slope = slope + weight * (rate if sines else -rate) * other(rate * x)
-    # from N = terms on they are at most 2 q^(N^2), of real x, and each less than half of the last
+    # from N = terms on they are at most 2 q^(N^2), and each less than half of the last
     left_out = q ** (terms * terms)
     return widened_by(ar, value, 4 * left_out), widened_by(ar, slope, 26 * terms * left_out)
 
 
-def _bell(ar: FunctionArithmetic, ij: str, x: Complex, series: ThetaSeries) -> Complex:
+def _bell(ar: FunctionArithmetic, ij: str, x: Value, series: ThetaSeries) -> Value:
     """Return the greatest of the Gaussians, over which their sums are; 1 for Fourier series."""
-    distance = ar.where(real_part(ar, x) < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
-    bell = ar.exp(-series.steepness * distance * distance)
-    return ar.where(series.circular, 1 + 0 * bell, bell)
+    if series.circular:
+        return 1
+    distance = ar.where(x < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
+    return ar.exp(-series.steepness * distance * distance)
 
 
 def _gaussians(
-    ar: FunctionArithmetic, ij: str, x: Complex, c: Value, *, slopes: bool
-) -> tuple[Complex, Complex]:
+    ar: FunctionArithmetic, ij: str, x: Value, c: Value, *, slopes: bool
+) -> tuple[Value, Value]:
     """Return sum (+-1)^n exp(-c (x - n)^2) and its derivative, over the greatest of them.
 
     c is the steepness; n are the half-integers for 01 and 11, the integers for 00 and 10.  A
     Gaussian and its mirror image are taken together, so that nothing cancels near x = 0.
     """
     half, subtracted = ij[1] == "1", ij == "11"
-    left = real_part(ar, x) < 0
+    left = x < 0
     x = ar.where(left, -x, x)
     value = slope = 0 * x
     if not half:
@@ -272,19 +252,3 @@ def _gaussians(
 def widened_by(ar: FunctionArithmetic, value: Value, left_out: Value) -> Value:
     """Return a number with all that are at most so far away, in balls."""
     return ar.widened(value, lambda: (left_out,), lambda x: x, values_only=True)
-
-
-def _fourier_terms(ar: FunctionArithmetic, x: Complex, q: Value) -> int:
-    """Return how many terms there are until q^(h^2) exp(2 pi h |Im x|) is negligible."""
-    height = ar.where(q > 0, abs(imaginary_part(ar, x)), 0 * q)
-    peaks = -ar.pi * height / ar.log(ar.where(q > 0, q, 0 * q + ar.eps))
-    if ar.is_array:
-        import numpy as np
-
-        peaks = np.max(peaks, initial=0.0)
-    return 2 + int(float(peaks) + math.sqrt(negligible(ar) / math.pi))
-
-
-def negligible(ar: FunctionArithmetic) -> float:
-    """Return -log of the largest number that does not matter beside 1."""
-    return 2.0 - math.log(10) * ar.magnitude

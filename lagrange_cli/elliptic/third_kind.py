@@ -13,63 +13,26 @@ A parameter of many digits and one rounded to doubles obey the same formulas, ov
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from functools import partial
+from typing import Any
 
 from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.doubles import DOUBLES
-from ..arithmetic.formulas import in_arithmetic
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
+from ..arithmetic.scalars import DOUBLES
 from ..errors import LagtopError
 from .complete import complete_k
-from .modulus import Modulus
-from .periods import Complex, Periods
+from .modulus import Modulus, in_many_digits
+from .periods import Complex, Periods, each_alone, negligible
 from .theta import (
-    in_many_digits,
     in_periods,
-    negligible,
-    rounded_series,
     series_for,
     zeta_at,
 )
 from .third_kind_imaginary import ImaginaryCircular, ImaginaryHyperbolic
-from .third_kind_real import RealCircular, RealHyperbolic
-
-
-class ThirdKind(Protocol):
-    """Omega and Pi of one modulus and one parameter, at places in the periods of eta.
-
-    Those of an imaginary parameter are imaginary, and given without the i.
-    """
-
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Omega at x = eta/2K."""
-
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi at x = eta/2K; not a number where it has a pole for every eta."""
-
-    def rounded(self) -> ThirdKind:
-        """Return the parameter with its constants in doubles."""
-
-
-class ZeroParameter:
-    """The parameter 0, where Omega vanishes, and Pi but for the pole of Z_11."""
-
-    def __init__(self, ij: str) -> None:
-        self.ij = ij
-
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return 0."""
-        return 0 * x.rest
-
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return 0 or, of the function 11, not a number."""
-        return (math.nan if self.ij == "11" else 0) * x.rest
-
-    def rounded(self) -> ZeroParameter:
-        """Return the parameter itself."""
-        return self
+from .third_kind_real import RealCircular, RealHyperbolic, ThirdKind, ZeroParameter
 
 
 def check_parameter(
@@ -150,23 +113,19 @@ def _evaluate(
     ar: Any, name: str, ij: str, place: tuple[Value, Complex], modulus: Modulus
 ) -> Complex:
     """Return Omega or Pi of numbers of a context, or of arrays that broadcast."""
+
+    def function(eta: Value, v: Complex, *parts: Value) -> Complex:
+        given = Modulus(*parts)
+        size, imaginary = parameter_of(ar, v)
+        make = rounded_kind if ar.is_array else partial(third_kind, ar)
+        kind = make(ij, size, given, imaginary=imaginary)
+        value = getattr(kind, name)(ar, in_periods(ar, eta, series_for(ar, given)))
+        return ar.mpc(0 * value, value) if imaginary else value
+
     eta, v = place
     if not ar.is_array:
-        size, imaginary = parameter_of(ar, ar.convert(v))
-        kind = third_kind(ar, ij, size, modulus, imaginary=imaginary)
-        value = getattr(kind, name)(ar, in_periods(ar, ar.convert(eta), series_for(ar, modulus)))
-        return ar.mpc(0, value) if imaginary else value
-    import numpy as np
-
-    eta, v, *parts = np.broadcast_arrays(eta, v, *modulus)
-    values = np.zeros(eta.shape, dtype=v.dtype if np.iscomplexobj(v) else float)
-    for pair in {tuple(pair) for pair in zip(*(x.ravel() for x in (v, *parts)), strict=True)}:
-        same = np.all([x == y for x, y in zip((v, *parts), pair, strict=True)], axis=0)
-        size, imaginary = parameter_of(ar, pair[0])
-        kind = rounded_kind(ij, size, Modulus(*pair[1:]), imaginary=imaginary)
-        x = in_periods(ar, eta[same], rounded_series(Modulus(*pair[1:])))
-        values[same] = getattr(kind, name)(ar, x) * (1j if imaginary else 1)
-    return values
+        eta, v = ar.convert(eta), ar.convert(v)
+    return each_alone(ar, function, eta, v, *modulus)
 
 
 def parameter_of(ar: FunctionArithmetic, v: Complex) -> tuple[Value, bool]:

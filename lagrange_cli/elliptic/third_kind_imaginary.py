@@ -7,16 +7,18 @@ All is odd in alpha, so y > 0 below.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from operator import mul
+from typing import Any, Self
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from .periods import Periods
 from .theta import widened_by
+from .third_kind_real import ThirdKind
 
 
 @dataclass(frozen=True)
-class ImaginaryCircular:
+class ImaginaryCircular(ThirdKind):
     """The parameter for k <= k', where the series run in the nome q."""
 
     odd: bool
@@ -97,21 +99,13 @@ class ImaginaryCircular:
         """Return the angle of two sums, with what they leave out."""
         return ar.atan2(*(widened_by(ar, x, self.left_out) for x in (across, along)))
 
-    def rounded(self) -> ImaginaryCircular:
+    def rounded(self, **others: Any) -> Self:
         """Return the parameter with its constants in doubles."""
-        return replace(
-            self,
-            zeta=float(self.zeta),
-            growth=float(self.growth),
-            floor=float(self.floor),
-            heights=tuple(map(float, self.heights)),
-            slants=tuple(map(float, self.slants)),
-            left_out=0.0,
-        )
+        return super().rounded(left_out=0.0, **others)
 
 
 @dataclass(frozen=True)
-class ImaginaryHyperbolic:
+class ImaginaryHyperbolic(ThirdKind):
     """The parameter for k > k', where the theta functions are sums of Gaussians.
 
     theta(x - i y) is exp(2 i c x y) times a sum over n > 0, half-integers or (for 00 and 10)
@@ -191,14 +185,7 @@ class ImaginaryHyperbolic:
         turned = ar.atan2(across, along)
         return ar.where(rest < 0, turned - ar.pi, -turned)
 
-    def rounded(self) -> ImaginaryHyperbolic:
-        """Return the parameter with its constants in doubles."""
-        return replace(
-            self,
-            steepness=float(self.steepness),
-            turn=float(self.turn),
-            slope=float(self.slope),
-            growth=float(self.growth),
-            cosines=tuple(map(float, self.cosines[:5])),
-            sines=tuple(map(float, self.sines[:5])),
-        )
+    def rounded(self, **others: Any) -> Self:
+        """Return the parameter with its constants in doubles, of which fewer matter."""
+        few = {"cosines": self.cosines[:5], "sines": self.sines[:5]}
+        return super().rounded(**few, **others)

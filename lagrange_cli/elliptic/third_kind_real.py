@@ -6,12 +6,58 @@ Both are odd in x and in y and, but for the growth of Pi, periodic; so the formu
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
+from ..arithmetic.ball import Ball
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.sums_of_doubles import pair
 from .periods import Periods
 from .theta import widened_by
+
+
+@dataclass(frozen=True)
+class ThirdKind:
+    """Omega and Pi of one modulus and one parameter, with constants in balls or in doubles.
+
+    Those of an imaginary parameter are imaginary, and given without the i.
+    """
+
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return Omega at x = eta/2K."""
+        raise NotImplementedError
+
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return Pi at x = eta/2K; not a number where it has a pole for every eta."""
+        raise NotImplementedError
+
+    def rounded(self, **others: Any) -> Self:
+        """Return the parameter with its constants in doubles, but for `others`."""
+        values = {x.name: getattr(self, x.name) for x in fields(self)} | others
+        return replace(self, **{name: _in_doubles(x) for name, x in values.items()})
+
+
+@dataclass(frozen=True)
+class ZeroParameter(ThirdKind):
+    """The parameter 0, where Omega vanishes, and Pi but for the pole of Z_11."""
+
+    ij: str
+
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return 0."""
+        return 0 * x.rest
+
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return 0 or, of the function 11, not a number."""
+        return (math.nan if self.ij == "11" else 0) * x.rest
+
+
+def _in_doubles(x: Any) -> Any:
+    """Return a ball, or the balls of a tuple, in doubles, and others as they are."""
+    if isinstance(x, tuple):
+        return tuple(map(float, x))
+    return float(x) if isinstance(x, Ball) else x
 
 
 def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Value:
@@ -20,7 +66,7 @@ def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Va
 
 
 @dataclass(frozen=True)
-class RealCircular:
+class RealCircular(ThirdKind):
     """The parameter for k <= k', where the series run in the nome q."""
 
     odd: bool
@@ -96,22 +142,13 @@ class RealCircular:
             (self.sign * self.growth) * x.rest + self.omega(ar, x)
         )
 
-    def rounded(self) -> RealCircular:
+    def rounded(self, **others: Any) -> Self:
         """Return the parameter with its constants in doubles."""
-        return replace(
-            self,
-            growth=float(self.growth),
-            cosines=tuple(map(float, self.cosines)),
-            sines=tuple(map(float, self.sines)),
-            weights=tuple(map(float, self.weights)),
-            size=float(self.size),
-            low=pair(self.size).low,
-            left_out=0.0,
-        )
+        return super().rounded(low=pair(self.size).low, left_out=0.0, **others)
 
 
 @dataclass(frozen=True)
-class RealHyperbolic:
+class RealHyperbolic(ThirdKind):
     """The parameter for k > k', where the theta functions are sums of Gaussians.
 
     theta(a) = exp(-c (1/2 - a)^2) S(a) for a in [0, 1/2], where S is close to 1 unless a is small,
@@ -175,21 +212,9 @@ class RealHyperbolic:
         within = within + self._ratio(ar, small, room, apart)
         return self.sign * (self.growth * x.turns + ar.sign(x.rest) * within)
 
-    def rounded(self) -> RealHyperbolic:
-        """Return the parameter with its constants in doubles."""
-        size, low = pair(self.size)
-        return RealHyperbolic(
-            odd=self.odd,
-            sign=self.sign,
-            growth=float(self.growth),
-            size=float(size),
-            room=float(self.room),
-            steepness=float(self.steepness),
-            slope=float(self.slope),
-            tilt=float(self.tilt),
-            terms=4,
-            low=low,
-        )
+    def rounded(self, **others: Any) -> Self:
+        """Return the parameter with its constants in doubles, of which fewer terms matter."""
+        return super().rounded(low=pair(self.size).low, terms=4, **others)
 
     def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value, Value]:
         """Return the smaller of |x| and |y|, 1 - 2 times the larger, and their distance."""

@@ -8,15 +8,17 @@ from types import NoneType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arithmetic.real_arrays import doubles_of
+from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError, check_type
-from ..inputs import rotations
 from ..inputs.names import ANGLES
+from ..inputs.seen import Conventions
 from .fit import fit_recordings
-from .known import known_inputs
+from .parameters import known_inputs
 from .record import Outcome, outcomes
-from .recording import Recording, settled, spread_evenly
+from .recording import Reading, Source, recording_of
+
+_IN_RADIANS = Conventions("wxyz", radians=True)
 
 
 def fit(
@@ -54,10 +56,12 @@ def fit(
     if (back := np.flatnonzero(np.diff(times) < 0)).size:
         before, after = times[back[0] : back[0] + 2].tolist()
         raise LagtopError(f"t must not turn back, got {after} after {before}", "t")
-    kind, angles = _angles(arrays)
-    raw = Recording("", times, 0.0, kind, angles, {})
-    full = Recording("", times, 0.0, kind, angles, spread_evenly(sigma, raw))
-    return outcomes(fit_recordings([settled(full, "the recording")], known_inputs(known or {})))[0]
+    _check_alone(arrays)
+    rows = {"t": times, **arrays}
+    columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
+    source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
+    recording = recording_of("", source, columns)
+    return outcomes(fit_recordings([recording], known_inputs(known or {})))[0]
 
 
 def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -69,14 +73,9 @@ def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
     return array
 
 
-def _angles(arrays: Mapping[str, Array]) -> tuple[str, dict[str, Array]]:
-    """Return what is given, and the angles that are known from it.  Raises LagtopError."""
-    alone = {name: x for name, x in arrays.items() if name in ANGLES}
-    if len(arrays) != max(len(alone), 1):
+def _check_alone(arrays: Mapping[str, Array]) -> None:
+    """Raise LagtopError unless there are angles only, or a single array of another quantity."""
+    angles = sum(name in ANGLES for name in arrays)
+    if len(arrays) != max(angles, 1):
         shown = ", ".join(arrays) or "nothing"
         raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")
-    if "quaternion" in arrays:
-        return "attitude", rotations.angles_of(rotations.directed(arrays["quaternion"]))
-    if "axis" in arrays:
-        return "axis", rotations.angles_of_axis(rotations.directed(arrays["axis"]))
-    return "angles", alone

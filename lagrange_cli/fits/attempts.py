@@ -10,15 +10,14 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError
-from .hidden_tilt import Turns
-from .least_squares import LEAST_SIGMA, Problem, Solution
-from .nutation import Shown, shown_by, turns_in
-from .parameters import QUANTITIES, Parameters, parameters_of
+from .harmonics import frame_of, slowest_spin
+from .least_squares import LEAST_SIGMA, FittedParameters, Problem
+from .nutation import Shown, Turns, shown_by, turns_in
+from .parameters import FIT_QUANTITIES, Parameters, parameters_of
 from .recording import Recording
-from .start import Start, placed, starts
-from .turning_rate import frame_of, slowest_spin
+from .starting_tops import StartingTop, starting_tops
 
-_BODY = [QUANTITIES.index(name) for name in ("a", "b", "r0")]
+_BODY = [FIT_QUANTITIES.index(name) for name in ("a", "b", "r0")]
 _MOST_STARTS = 6
 _COMPARABLE = 50.0
 """Starts, and then attempts, are not tried if they leave more than so many times the least."""
@@ -36,7 +35,7 @@ class Attempt(NamedTuple):
     """A fit of one recording."""
 
     problem: Problem
-    solution: Solution
+    solution: FittedParameters
     mirrored: bool
     """Whether psi is counted the other way."""
     noise: Mapping[str, float]
@@ -67,7 +66,7 @@ class Attempt(NamedTuple):
 
     def explains(self) -> bool:
         """Return whether no residual exceeds what harmonics leave of its channel, but by chance."""
-        left = dict(zip(self.recording.channels, self.solution.left[0], strict=True))
+        left = dict(zip(self.recording.channels, self.solution.residuals[0], strict=True))
         return all(
             np.isfinite(left[channel]).any()
             and float(np.sqrt(np.nanmean(left[channel] ** 2))) < _MUCH * noise
@@ -126,7 +125,7 @@ class _Case(NamedTuple):
     """A recording one way or the other, and a start for it."""
 
     way: _Way
-    start: Start
+    start: StartingTop
 
 
 def _ways(recording: Recording, known: Mapping[str, float], where: str) -> list[_Way]:
@@ -144,18 +143,18 @@ def _cases(ways: Sequence[_Way], known: Mapping[str, float], *, wide: bool) -> l
     others: list[_Case] = []
     for way in ways:
         cases = [
-            _Case(way, placed(start))
-            for start in starts(way.recording, way.shown, wide=wide)
+            _Case(way, start)
+            for start in starting_tops(way.recording, way.shown, wide=wide)
             if "phi" in way.recording.angles
             or start.state[1] * known.get("r0", start.state[1]) >= 0
         ]
         first, others = first + cases[:1], others + cases[1:]
-    nearest = min((case.start.left for case in first), default=0.0)
-    others = [case for case in others if case.start.left <= _COMPARABLE * nearest]
-    return first + sorted(others, key=lambda case: case.start.left)[: _MOST_STARTS - len(first)]
+    nearest = min((case.start.misfit for case in first), default=0.0)
+    others = [case for case in others if case.start.misfit <= _COMPARABLE * nearest]
+    return first + sorted(others, key=lambda case: case.start.misfit)[: _MOST_STARTS - len(first)]
 
 
-def _begun(way: _Way, start: Start, parameters: Parameters) -> Attempt | None:
+def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | None:
     """Return where some steps from one start lead, or None where that is no top."""
     noise = way.shown.noise
     problem = Problem([way.recording], [sigma_of(way.recording, noise)], parameters)
@@ -175,7 +174,7 @@ def sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, A
     }
 
 
-def _first(parameters: Parameters, start: Start) -> Array:
+def _first(parameters: Parameters, start: StartingTop) -> Array:
     """Return the parameters of a start."""
     a, b, theta, nutation, precession = start.state
     known = parameters.known

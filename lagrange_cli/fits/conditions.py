@@ -20,7 +20,7 @@ _WORDS = {"regime": tuple(regime.value for regime in Regime), "path": _PATHS}
 _BOUNDS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 
-class Bound(NamedTuple):
+class Inequality(NamedTuple):
     """A number that must not be beyond another one."""
 
     key: str
@@ -42,7 +42,7 @@ class Conditions(NamedTuple):
     numbers: Mapping[str, float]
     """What some keys shall be."""
     words: Mapping[str, str]
-    bounds: list[Bound]
+    bounds: list[Inequality]
 
     @property
     def keys(self) -> list[str]:
@@ -77,7 +77,7 @@ def read_conditions(texts: Iterable[str], *, radians: bool = False) -> Condition
         elif relation == "=":
             numbers[key] = _number(key, value)
         else:
-            bounds.append(Bound(key, relation, _number(key, value)))
+            bounds.append(Inequality(key, relation, _number(key, value)))
     return Conditions(numbers, words, bounds)
 
 

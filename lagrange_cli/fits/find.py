@@ -17,16 +17,15 @@ from ..inputs.names import check_names
 from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
 from ..motion.solve import Motion, record_in_range, solve
+from .newton import solutions
 from .roots import roots
 from .search import Scan, Search, Watch, scan_of, search_of
-from .several import solutions
-from .touching import touching
 
 _SWEPT = 2.0**-48
 """What a number of a sweep may be off, over its size, and a little more."""
 
 
-class Found(NamedTuple):
+class FoundTops(NamedTuple):
     """The tops that were found, and how they were looked for."""
 
     motions: list[Motion]
@@ -53,7 +52,7 @@ def find(
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:
-        return look(search, scan).motions
+        return find_tops(search, scan).motions
     except AbsentError:
         return []
 
@@ -66,7 +65,7 @@ def _read(name: str, value: Any) -> Any:
         raise LagtopError(f"{name} {error}", name) from None
 
 
-def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found:
+def find_tops(search: Search, count: int | None = None, watch: Watch = iter) -> FoundTops:
     """Return the tops that keep the conditions.
 
     Raises AbsentError, which says how near the scan came, where there is none.
@@ -87,23 +86,18 @@ def look(search: Search, count: int | None = None, watch: Watch = iter) -> Found
     looked = _looked(search, grid)
     if not motions:
         raise AbsentError(f"no top found: {_why(search, grid, len(points), broken)}; {looked}")
-    return Found(motions, looked)
+    return FoundTops(motions, looked)
 
 
 def _roots(search: Search, grid: Scan) -> list[float]:
-    wanted, x = float(search.wanted[0]), grid.values[:, 0]
+    target, x = float(search.wanted[0]), grid.values[:, 0]
 
     def off(at: float) -> float:
-        return float(search.numbers([at])[0]) - wanted
+        return float(search.numbers([at])[0]) - target
 
-    y = grid.numbers[:, 0] - wanted
+    y = grid.numbers[:, 0] - target
     _refuse_plateaus(search, x, y, off)
-    passed = roots(off, x, y)
-    near = float(np.max(np.diff(x)))  # two roots next to an extremum are no place that it touches
-    touched = [
-        at for at in touching(off, x, y, wanted) if all(abs(at - root) > near for root in passed)
-    ]
-    return sorted(passed + touched)
+    return roots(off, x, y, target)
 
 
 def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], float]) -> None:

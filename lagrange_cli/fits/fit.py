@@ -10,8 +10,8 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from .attempts import Attempt, best_attempt, sigma_of
-from .least_squares import Problem, Solution, sigma_left
-from .parameters import QUANTITIES, Parameters, parameters_of
+from .least_squares import FittedParameters, Problem, sigma_left
+from .parameters import FIT_QUANTITIES, Parameters, parameters_of
 from .recording import Recording
 
 _STEADY, _REWEIGHTINGS = 0.01, 6
@@ -25,7 +25,7 @@ class Fit(NamedTuple):
 
     recordings: Sequence[Recording]
     """Recordings as they were understood: psi may be counted the other way."""
-    solution: Solution
+    solution: FittedParameters
     sigma_known: bool
     """Whether the standard deviations were given; else they are those of the residuals."""
     mirrored: Sequence[bool]
@@ -33,7 +33,7 @@ class Fit(NamedTuple):
     noise: Sequence[Mapping[str, float]]
     """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Array | None = None
-    """Another top that explains the only recording as well, as of `Solution.quantities`."""
+    """Another top that explains the only recording as well, as of `FittedParameters.quantities`."""
 
 
 def fit_recordings(
@@ -71,7 +71,8 @@ def _named(where: str, recording: Recording) -> str:
 def _joined(together: Parameters, alone: Sequence[Attempt]) -> Array:
     """Return where a fit of several recordings starts: from the fits of each."""
     found = [
-        dict(zip(QUANTITIES, one.solution.quantities(0)[0].tolist(), strict=True)) for one in alone
+        dict(zip(FIT_QUANTITIES, one.solution.quantities(0)[0].tolist(), strict=True))
+        for one in alone
     ]
     for one in found:
         one["ratio"] = one["b"] / one["r0"] if one["r0"] else 1.0

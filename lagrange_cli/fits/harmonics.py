@@ -1,12 +1,18 @@
-"""Sums of harmonics that fit an angle, or the cosine of one, and the frequency that fits best."""
+"""Harmonics and mean rates of a recorded angle.
+
+Sums of harmonics are fitted to an angle, or to the cosine of one.  Frames that are a turn apart
+look alike, so rates are known within whole turns per frame.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arithmetic.types import Array
+from ..inputs.rotations import within_half_turn
 
 _HARMONICS = 4
 _FREQUENCIES = 49
@@ -18,15 +24,20 @@ _DIPS = 4
 """Frequencies that are looked at closely, where the residual has a dip."""
 _AS_GOOD = 1.2
 """How much more than the least a frequency may leave that is as good: noise makes that much."""
+_MOST_ROWS = 4000
+_CELLS, _MOST_CELLS = 4, 1 << 18
+"""Cells per frame of a spectrum, and in all: times need not be even."""
+_ALIASES = range(-3, 4)
+"""Turns per frame that are tried."""
 
 
-class Series(NamedTuple):
+class Harmonics(NamedTuple):
     """A sum of harmonics, and maybe a growth, that fits data."""
 
     frequency: float
     factors: Array
     grows: bool
-    left: float
+    misfit: float
     """Sum of the squares of the residuals."""
     rows: int
 
@@ -43,7 +54,7 @@ class Series(NamedTuple):
     @property
     def noise(self) -> float:
         """The standard deviation of the residuals."""
-        return float(np.sqrt(self.left / max(self.rows - self.factors.size, 1)))
+        return float(np.sqrt(self.misfit / max(self.rows - self.factors.size, 1)))
 
     def at(self, t: Array) -> Array:
         """Return its values."""
@@ -51,7 +62,7 @@ class Series(NamedTuple):
         return values
 
 
-def series_of(
+def harmonics_of(
     t: Array,
     y: Array,
     frequency: float,
@@ -59,7 +70,7 @@ def series_of(
     grows: bool = False,
     fine: bool = False,
     weights: Array | None = None,
-) -> Series:
+) -> Harmonics:
     """Return the series of a frequency that fits data best.
 
     A `fine` one has as many harmonics as leave the least noise.
@@ -87,7 +98,7 @@ def frequency_of(t: Array, y: Array, *, grows: bool = False) -> float:
     count = _harmonics(t, fine=False)
 
     def left(frequency: float) -> float:
-        return _fitted(t, y, frequency, count, grows=grows).left
+        return _fitted(t, y, frequency, count, grows=grows).misfit
 
     tried = np.linspace(max(peak - 1 / span, 0.8 / span), peak + 1 / span, _FREQUENCIES)
     sums = np.array([left(float(x)) for x in tried])
@@ -119,10 +130,54 @@ def _basis(t: Array, frequency: float, count: int, *, grows: bool) -> Array:
 
 def _fitted(
     t: Array, y: Array, frequency: float, count: int, *, grows: bool, weights: Array | None = None
-) -> Series:
+) -> Harmonics:
     basis = _basis(t, frequency, count, grows=grows)
     if weights is not None:
         basis, y = basis * weights[:, np.newaxis], y * weights
     factors = np.asarray(np.linalg.lstsq(basis, y, rcond=None)[0], dtype=np.float64)
     left = float(np.sum((y - basis @ factors) ** 2))
-    return Series(frequency, factors, grows, left, t.size)
+    return Harmonics(frequency, factors, grows, left, t.size)
+
+
+def frame_of(t: Array) -> float:
+    """Return the time between two frames."""
+    steps = np.diff(t)
+    return float(np.median(steps[steps > 0]))
+
+
+def turning_rate(t: Array, angle: Array) -> float:
+    """Return the mean rate of an angle in radians, of which NaN is missing."""
+    rows = np.flatnonzero(np.isfinite(angle))[:_MOST_ROWS]
+    t, turned = t[rows] - t[rows[0]], np.exp(1j * angle[rows])
+    frame = frame_of(t)
+    cell = frame / _CELLS
+    cells = np.zeros(min(int(t[-1] / cell) + 1, _MOST_CELLS), dtype=np.complex128)
+    places = np.rint(t / cell).astype(np.intp)
+    np.add.at(cells, places[places < cells.size], turned[places < cells.size])
+    sums = np.abs(np.fft.fft(cells, 4 * cells.size))
+    rates = 2 * math.pi * np.fft.fftfreq(4 * cells.size, cell)
+    sums[np.abs(rates) > math.pi / frame] = 0.0
+    return _refined(t, turned, float(rates[int(np.argmax(sums))]))
+
+
+def _refined(t: Array, turned: Array, rate: float) -> float:
+    """Return a rate made better by a line through the angles that it leaves."""
+    left = np.angle(turned * np.exp(-1j * rate * t))
+    left = within_half_turn(left - np.angle(np.sum(np.exp(1j * left))))
+    return rate + float(np.polyfit(t, left, 1)[0])
+
+
+def slowest_spin(r0: float, b: float, b_std: float, frame: float) -> float:
+    """Return the slowest of the spin rates that look alike and that a rigid body can have.
+
+    A body has 0 < C/A = b/r0 <= 2; b is known to two standard deviations.  If no rate is possible
+    r0 stays.
+    """
+    alike = [r0 + 2 * math.pi / frame * turns for turns in _ALIASES]
+    possible = [
+        x
+        for x in alike
+        if max(b * math.copysign(1, x) + 2 * b_std, 0) > 0
+        and b * math.copysign(1, x) - 2 * b_std <= 2 * abs(x)
+    ]
+    return min(possible, key=abs, default=r0)

@@ -10,9 +10,9 @@ from ..errors import AbsentError, LagtopError
 from ..inputs.top import Top
 from ..motion.quantity import unit_name
 from ..motion.solve import Motion, solve
-from .body import completed, told_of
 from .conditions import read_conditions
-from .turning_points import Nutation, top_of, with_mean_rate
+from .implied_body import completed_body, determined_products
+from .turning_points import TurningPoints, top_of, with_mean_rate
 
 _SEEN = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
 _SPIN = "mean_spin_rate"
@@ -31,7 +31,7 @@ def invert(
     numbers = _numbers(seen, radians)
     unit = unit_in_radians(radians=radians)
     least, greatest, period, rate = (numbers[unit_name(key, radians=radians)] for key in _SEEN)
-    nutation = Nutation(least * unit, greatest * unit, period).checked(radians=radians)
+    nutation = TurningPoints(least * unit, greatest * unit, period).checked(radians=radians)
     known = known or {}
     for name, value in known.items():
         if not value:
@@ -63,7 +63,7 @@ def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
     """Return a top that moves so and has the inputs of the body that are known."""
     a, b, r0 = 2 * float(top.g), float(top.C) * float(top.r0), float(top.r0)
     numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
-    inputs = completed(numbers, known, told_of(numbers, known))
+    inputs = completed_body(numbers, known, determined_products(numbers, known))
     given = ", ".join(f"{name} = {value:g}" for name, value in known.items())
     if not _moves_so(inputs, numbers):
         raise LagtopError(f"{given} must leave the motion open, which has other numbers: give less")

@@ -9,11 +9,9 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from .coordinates import Coordinates
-from .model import STATE, angles_and_slopes
-from .parameters import QUANTITIES, Parameters
+from .model import STATE, Residuals, angles_and_slopes, residuals
+from .parameters import FIT_QUANTITIES, Coordinates, Parameters
 from .recording import Recording
-from .residuals import Residuals, residuals
 
 _FAR = 1e3
 """Residuals, in standard deviations, of a state that is no top."""
@@ -29,7 +27,7 @@ _MOST_STRETCHES, _MOST_HELD, _HOLD = 10, 20, 100.0
 _N = len(STATE)
 
 
-class Solution(NamedTuple):
+class FittedParameters(NamedTuple):
     """Parameters that leave least."""
 
     parameters: Parameters
@@ -37,8 +35,8 @@ class Solution(NamedTuple):
     covariance: Array
     chi2: float
     dof: int
-    left: Sequence[Array]
-    """What is left of each recording in radians, shape (channels, times)."""
+    residuals: Sequence[Array]
+    """Residuals of each recording in radians, shape (channels, times)."""
     converged: bool
     unknown: Sequence[str]
     """Parameters that the data do not determine."""
@@ -69,7 +67,7 @@ class Problem:
         self.by = Coordinates([name for name, _ in parameters.names])
         self._last: tuple[Array, Array, Array, list[Array]] | None = None
 
-    def solve(self, start: Array, steps: int = MOST_STEPS) -> Solution:
+    def solve(self, start: Array, steps: int = MOST_STEPS) -> FittedParameters:
         """Return the parameters that leave least, from a start, after so many steps at most.
 
         Raises LagtopError.
@@ -97,7 +95,7 @@ class Problem:
         if (values == _FAR).all():
             raise LagtopError("the fit ends where no top moves as the recording shows")
         spread = _Inverse(self._slopes(ended.x)).spread
-        return Solution(
+        return FittedParameters(
             self.parameters,
             found,
             self.by.covariance(ended.x, spread),
@@ -108,7 +106,7 @@ class Problem:
             _Inverse(slopes).undetermined(self.by.names),
         )
 
-    def with_reach(self, solution: Solution) -> Solution:
+    def with_reach(self, solution: FittedParameters) -> FittedParameters:
         """Return a solution whose covariance holds for three standard deviations.
 
         Along the direction in which the data determine least, chi^2 need not be a parabola.  There
@@ -200,17 +198,17 @@ def _left(
         angles, by_state = angles_and_slopes(quantities[:_N], recording.t)
     except LagtopError:
         return None
-    moved, by_values = _seen_angles(recording.t, quantities, by_parameter, angles, by_state)
+    moved, by_values = _recorded_angles(recording.t, quantities, by_parameter, angles, by_state)
     rest = residuals(recording, moved)
     return rest, np.einsum("cta,atp->ctp", rest.slopes, by_values)
 
 
-def _seen_angles(
+def _recorded_angles(
     t: Array, quantities: Array, by_parameter: Array, angles: Array, by_state: Array
 ) -> tuple[Array, Array]:
     """Return the angles from the zeros of the recording, with the spin rate, and derivatives."""
-    value = dict(zip(QUANTITIES, quantities, strict=True))
-    slope = dict(zip(QUANTITIES, by_parameter, strict=True))
+    value = dict(zip(FIT_QUANTITIES, quantities, strict=True))
+    slope = dict(zip(FIT_QUANTITIES, by_parameter, strict=True))
     by_values = by_state @ by_parameter[:_N]
     moved = angles.copy()
     spins = bool(value["r0"] or slope["r0"].any())
@@ -230,19 +228,19 @@ class _Inverse:
         size = np.linalg.norm(slopes, axis=0)
         self.size = np.where(size > 0, size, 1.0)
         _, self.values, self.rows = np.linalg.svd(slopes / self.size, full_matrices=False)
-        self.told = self.values > _DEPENDENT * self.values[0]
+        self.determined = self.values > _DEPENDENT * self.values[0]
 
     @property
     def spread(self) -> Array:
         """A matrix S with the covariance S S^T; what is not determined has no part in it."""
-        inverse = np.where(self.told, 1 / np.where(self.told, self.values, 1.0), 0.0)
+        inverse = np.where(self.determined, 1 / np.where(self.determined, self.values, 1.0), 0.0)
         spread: Array = self.rows.T * inverse / self.size[:, np.newaxis]
         return spread
 
     @property
     def weakest(self) -> int:
         """The column of the spread that belongs to what is determined least."""
-        return int(np.flatnonzero(self.told)[-1])
+        return int(np.flatnonzero(self.determined)[-1])
 
     @property
     def measure(self) -> Array:
@@ -252,14 +250,14 @@ class _Inverse:
 
     def undetermined(self, names: Sequence[str]) -> list[str]:
         """Return the names of the numbers that are not determined."""
-        shares = np.abs(self.rows[~self.told]).max(axis=0, initial=0.0)
+        shares = np.abs(self.rows[~self.determined]).max(axis=0, initial=0.0)
         return [*dict.fromkeys(name for name, x in zip(names, shares, strict=True) if x > 0.05)]
 
 
-def sigma_left(solution: Solution, recordings: Sequence[Recording]) -> list[dict[str, Any]]:
+def sigma_left(solution: FittedParameters, recordings: Sequence[Recording]) -> list[dict[str, Any]]:
     """Return standard deviations from what is left: one for each channel of all recordings."""
     channels: dict[str, list[Array]] = {}
-    for recording, left in zip(recordings, solution.left, strict=True):
+    for recording, left in zip(recordings, solution.residuals, strict=True):
         for channel, values in zip(recording.channels, left, strict=True):
             channels.setdefault(channel, []).append(values[np.isfinite(values)])
     joined = {channel: np.concatenate(values) for channel, values in channels.items()}

@@ -1,12 +1,14 @@
-"""The angles of a top at the times of a recording, and their derivatives by its constants.
+"""The angles of a top at the times of a recording, their derivatives, and residuals.
 
-A motion is told by a, b and its start; the body is that of A = C = 1, so that its spin rate is b.
-The spin of a body with another rate r0 is phi + (r0 - b) t, as phi' = r0 - psi' cos(theta) (4,8).
+A, b and the initial state determine a motion; the body is that of A = C = 1, so that its spin rate
+is b.  The spin of a body with another rate r0 is phi + (r0 - b) t, as phi' = r0 - psi' cos(theta)
+(4,8).  Directions of the axis are compared in the plane that touches the sphere at the direction of
+the motion: along its meridian and across it.  The attitude has the turn about the axis too.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,19 +16,19 @@ from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
+from ..inputs.rotations import within_half_turn
 from ..inputs.top import Top
 from ..motion.regime import exact
 from ..motion.sensitivity.angle_sensitivities import AngleDerivatives
 from ..motion.sensitivity.neighbourhood import PARAMETERS
 from ..sweeps.angles import sweep_angles
+from .recording import Recording
 
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 """What tells a motion: constants (4,4) and (4,5), and the start in radians."""
-_NEAREST = 1e-9
-"""Least distance of a start from the vertical, where psi has no meaning."""
 
 
-def angles_of(states: Array, t: Array) -> Array:
+def motion_angles(states: Array, t: Array) -> Array:
     """Return theta, phi and psi, shape (3, tops, times).
 
     `states` are of shape (tops, 5), in the order of STATE; `t` is one row of times for all, or a
@@ -58,6 +60,51 @@ def _inputs(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dict[
     return {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": a / 2, "r0": b, **start}
 
 
-def kept_off_the_vertical(theta: float) -> float:
-    """Return a tilt that is neither upright nor hanging."""
-    return float(np.clip(theta, _NEAREST, np.pi - _NEAREST))
+class Residuals(NamedTuple):
+    """Differences by channel, recording less motion, in radians; NaN where a cell is missing."""
+
+    values: Array
+    """Shape (channels, times)."""
+    slopes: Array
+    """Derivatives by theta, phi and psi of the motion, shape (channels, times, 3)."""
+
+
+def residuals(recording: Recording, angles: Array) -> Residuals:
+    """Return what is left when angles of a motion, shape (3, times), are taken from a recording."""
+    if recording.kind == "angles":
+        return _of_angles(recording, angles)
+    theta, phi, psi = angles
+    seen, turned = recording.angles["theta"], recording.angles["psi"] - psi
+    sine, cosine = np.sin(seen), np.cos(seen)
+    sine_m, cosine_m = np.sin(theta), np.cos(theta)
+    values = [
+        sine * cosine_m * np.cos(turned) - cosine * sine_m,
+        sine * np.sin(turned),
+    ]
+    none = np.zeros_like(theta)
+    slopes = [
+        [
+            -sine * sine_m * np.cos(turned) - cosine * cosine_m,
+            none,
+            sine * cosine_m * np.sin(turned),
+        ],
+        [none, none, -sine * np.cos(turned)],
+    ]
+    if recording.kind == "attitude":
+        across = within_half_turn(turned)
+        values.append(within_half_turn(recording.angles["phi"] - phi + across * cosine_m))
+        slopes.append([-across * sine_m, none - 1, -cosine_m])
+    return Residuals(np.stack(values), np.moveaxis(np.array(slopes), 1, -1))
+
+
+def _of_angles(recording: Recording, angles: Array) -> Residuals:
+    """Return what is left of angles that have columns of their own."""
+    values, slopes = [], []
+    for channel in recording.channels:
+        i = ANGLES.index(channel)
+        left = recording.angles[channel] - angles[i]
+        values.append(left if channel == "theta" else within_half_turn(left))
+        slope = np.zeros((left.size, 3))
+        slope[:, i] = -1.0
+        slopes.append(slope)
+    return Residuals(np.stack(values), np.stack(slopes))

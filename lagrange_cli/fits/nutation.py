@@ -16,11 +16,9 @@ from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..errors import DataError
-from .harmonics import Series, frequency_of, series_of
-from .hidden_tilt import Turns
+from .harmonics import Harmonics, frequency_of, harmonics_of, turning_rate
 from .recording import Recording
-from .turning_points import Nutation
-from .turning_rate import turning_rate
+from .turning_points import TurningPoints
 
 _MOST_ROWS = 3000
 """Rows that are enough to start from; of more, so many are drawn."""
@@ -41,7 +39,7 @@ _PHASES = np.linspace(0, 1, 721)[:-1]
 class Shown(NamedTuple):
     """What a recording shows of a nutation."""
 
-    nutation: Nutation
+    nutation: TurningPoints
     seen: tuple[float, float]
     """The least and the greatest tilt of any row."""
     u_start: float
@@ -58,6 +56,15 @@ class Shown(NamedTuple):
     """
 
 
+class Turns(NamedTuple):
+    """The precession and the spin of a recording over a period."""
+
+    psi: Harmonics
+    phi: Harmonics
+    noise: dict[str, float]
+    """Standard deviations of the residuals, of psi and phi."""
+
+
 def shown_by(recording: Recording, where: str) -> Shown:
     """Return what a recording with the tilt shows.  Raises DataError if there is no nutation."""
     rows = _some_rows(recording.angles["theta"])
@@ -66,7 +73,7 @@ def shown_by(recording: Recording, where: str) -> Shown:
         raise DataError(f"{where}: theta must vary, got {math.degrees(theta[0]):g} in all rows")
     u = np.cos(theta)
     frequency = frequency_of(t, u)
-    series = series_of(t, u, frequency, fine=True)  # the turning points want more harmonics
+    series = harmonics_of(t, u, frequency, fine=True)  # the turning points want more harmonics
     _check(series, u, t, f"{where}: theta")
     noise = {"theta": max(series.noise / max(float(np.sin(theta).mean()), 0.1), _LEAST_NOISE)}
     channels = {"psi": "psi", "phi": "phi"} if recording.kind == "angles" else {"across": "psi"}
@@ -105,7 +112,7 @@ def _shown(
 ) -> Shown:
     """Return what is shown by the cosine of the tilt over a period, from the first row on."""
     least, greatest = np.arccos(np.clip([wave.max(), wave.min()], -1, 1)).tolist()
-    nutation = Nutation(_inside(least), _inside(greatest), 1 / frequency)
+    nutation = TurningPoints(_inside(least), _inside(greatest), 1 / frequency)
     falls = 1.0 if wave[1] < wave[0] else -1.0
     edges = _inside(seen[0]), _inside(seen[1])
     return Shown(nutation, edges, float(wave[0]), falls, noise, mean_rates)
@@ -116,7 +123,7 @@ def _inside(tilt: float) -> float:
     return min(max(tilt, _EDGE), math.pi - _EDGE)
 
 
-def _check(series: Series, y: Array, t: Array, what: str) -> None:
+def _check(series: Harmonics, y: Array, t: Array, what: str) -> None:
     """Raise DataError for a nutation that is too slow, or lost in the noise."""
     span = float(t[-1] - t[0])
     if series.frequency * span < 1:
@@ -128,10 +135,10 @@ def _check(series: Series, y: Array, t: Array, what: str) -> None:
         raise DataError(f"{what} must nod beyond its noise; no period explains it")
 
 
-def _clearness(series: Series, y: Array, t: Array) -> float:
+def _clearness(series: Harmonics, y: Array, t: Array) -> float:
     """Return how much of the data a harmonic explains on average, over the noise."""
     steady = np.polyval(np.polyfit(t, y, int(series.grows)), t)
-    explained = (float(np.sum((y - steady) ** 2)) - series.left) / (2 * series.order)
+    explained = (float(np.sum((y - steady) ** 2)) - series.misfit) / (2 * series.order)
     return explained / max(series.noise**2, 1e-300)
 
 
@@ -150,9 +157,9 @@ class _Turn(NamedTuple):
 
     def series(
         self, frequency: float, *, fine: bool = False, weights: Array | None = None
-    ) -> Series:
+    ) -> Harmonics:
         """Return the harmonics and the growth of the whole angle."""
-        found = series_of(self.t, self.around, frequency, grows=True, fine=fine, weights=weights)
+        found = harmonics_of(self.t, self.around, frequency, grows=True, fine=fine, weights=weights)
         return found._replace(factors=np.append(found.factors[:-1], found.growth + self.rate))
 
     def clearness(self) -> float:

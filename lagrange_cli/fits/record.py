@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
-from .body import Told, completed, told_of
 from .fit import Fit
-from .model import STATE, angles_of
-from .parameters import QUANTITIES
-from .quality import Remainder, chi2_bounds, remainder
+from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
+from .model import STATE, motion_angles
+from .parameters import FIT_QUANTITIES
 
-ANGLES = ("theta0", "psi_zero", "phi_zero")
+_ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
-_BODY = ("a", "b", "r0")
 FAILED = "failed"
 _MUCH = 2.0
 """A fit has failed if its residuals of a channel exceed so many times the noise."""
@@ -34,6 +32,12 @@ MEANINGS = {
     "psi_zero": "psi of the data there",
     "phi_zero": "phi of the data there",
 }
+_BEYOND = 0.00135
+"""Probability beyond each bound of chi^2: that of three standard deviations."""
+_DEVIATIONS = 3.0
+"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
+_ROUNDING = 1e-11
+"""Radians that are left of data without noise."""
 
 
 class Outcome:
@@ -44,23 +48,20 @@ class Outcome:
         self.recording = found.recordings[index]
         self.known = found.solution.parameters.known
         values, covariance = found.solution.quantities(index)
-        self.values = dict(zip(QUANTITIES, values.tolist(), strict=True))
+        self.values = dict(zip(FIT_QUANTITIES, values.tolist(), strict=True))
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
-        self.deviations = dict(zip(QUANTITIES, deviations.tolist(), strict=True))
-        self.seen = {name: self.values[name] for name in _BODY if self._is_seen(name)}
-        self.told = told_of(self.seen, self.known) if all(self.seen.values()) else []
+        self.deviations = dict(zip(FIT_QUANTITIES, deviations.tolist(), strict=True))
+        spins = found.solution.parameters.spins and "r0" not in self.known
+        self.shown = {name: self.values[name] for name in ("a", "b", *["r0"] * spins)}
+        self.determined = (
+            determined_products(self.shown, self.known) if all(self.shown.values()) else []
+        )
         channels = self.recording.channels
-        self.remainders: dict[str, Remainder] = {
-            channel: remainder([values])
-            for channel, values in zip(channels, found.solution.left[index], strict=True)
+        self.remainders: dict[str, Residual] = {
+            channel: residual_of(values)
+            for channel, values in zip(channels, found.solution.residuals[index], strict=True)
         }
-
-    def _is_seen(self, name: str) -> bool:
-        """Return whether a number of the body is there, and not as an input that is known."""
-        if name == "r0":
-            return self.fit.solution.parameters.spins and "r0" not in self.known
-        return True
 
     @property
     def chi2_dof(self) -> float:
@@ -78,8 +79,8 @@ class Outcome:
         """Return the reasons why the numbers are none, if there are any."""
         solution, found = self.fit.solution, []
         if self.fit.rival is not None:
-            rival = dict(zip(QUANTITIES, self.fit.rival.tolist(), strict=True))
-            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.seen)
+            rival = dict(zip(FIT_QUANTITIES, self.fit.rival.tolist(), strict=True))
+            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.shown)
             found.append(f"another top explains the recording as well: {shown}")
         if solution.unknown:
             found.append(f"the recording does not determine {' and '.join(solution.unknown)}")
@@ -97,11 +98,11 @@ class Outcome:
 
     def unit(self, name: str) -> str:
         """Return the key of a quantity in the unit of angles in use."""
-        return f"{name}_{'rad' if self.radians else 'deg'}" if name in ANGLES else name
+        return f"{name}_{'rad' if self.radians else 'deg'}" if name in _ANGLES else name
 
     def scale(self, name: str) -> float:
         """Return what takes a quantity from radians to the unit of angles in use."""
-        return per_radian(radians=self.radians or name not in ANGLES)
+        return per_radian(radians=self.radians or name not in _ANGLES)
 
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of what was found of the motion."""
@@ -116,40 +117,43 @@ class Outcome:
             if is_there.get(name, True):
                 yield name, self.values[name], self.deviations[name]
 
-    def products(self) -> Iterator[tuple[Told, float]]:
+    def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
         """Yield what is told of the body, beside r0, and its standard deviation."""
-        rows = [QUANTITIES.index(name) for name in self.seen]
+        rows = [FIT_QUANTITIES.index(name) for name in self.shown]
         covariance = self.covariance[np.ix_(rows, rows)]
-        for told in self.told:
-            if told.name == "r0":
-                continue
-            change = np.array(
-                [float(told.shares.get(name, 0)) / self.seen[name] for name in self.seen]
-            )
-            spread = abs(told.value) * math.sqrt(max(float(change @ covariance @ change), 0.0))
-            yield told, spread
+        for product in self.determined:
+            if product.name != "r0":
+                change = np.array(
+                    [float(product.shares.get(x, 0)) / y for x, y in self.shown.items()]
+                )
+                variance = max(float(change @ covariance @ change), 0.0)
+                yield product, abs(product.value) * math.sqrt(variance)
+
+    def numbers(self) -> Iterator[tuple[str, float, float, str]]:
+        """Yield key, value, standard deviation and meaning of everything, in the unit in use."""
+        for name, value, deviation in self.found():
+            scale = self.scale(name)
+            yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
+        for product, deviation in self.products():
+            meaning = "" if len(product.powers) == 1 else "not to be told apart"
+            yield product.name, product.value, deviation, meaning
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
         """Yield the correlations of a, b and r0."""
-        names = [name for name in self.seen if self.deviations[name] > 0]
+        names = [name for name in self.shown if self.deviations[name] > 0]
         for i, first in enumerate(names):
             for second in names[i + 1 :]:
-                both = self.covariance[QUANTITIES.index(first), QUANTITIES.index(second)]
+                both = self.covariance[FIT_QUANTITIES.index(first), FIT_QUANTITIES.index(second)]
                 yield (
                     first,
                     second,
                     float(both) / (self.deviations[first] * self.deviations[second]),
                 )
 
-    def untold(self) -> list[str]:
+    def undetermined(self) -> list[str]:
         """Return sentences on inputs that cannot be told apart."""
-        sentences = []
-        for told in self.told:
-            names = list(told.powers)
-            if len(names) > 1:
-                listed = f"{', '.join(names[:-1])} and {names[-1]}"
-                sentences.append(f"{listed} only as {told.name}")
-        return sentences
+        several = [(x.name, list(x.powers)) for x in self.determined if len(x.powers) > 1]
+        return [f"{', '.join(x[:-1])} and {x[-1]} only as {name}" for name, x in several]
 
     def failure(self) -> str:
         """Return why a fit has failed, with the name of the recording if it has one."""
@@ -190,12 +194,8 @@ class Outcome:
         """Return everything by key, flat."""
         solution, recording = self.fit.solution, self.recording
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
-        for name, value, deviation in self.found():
-            scale = self.scale(name)
-            record[self.unit(name)] = value * scale
-            record[f"{self.unit(name)}_std"] = deviation * scale
-        for told, deviation in self.products():
-            record[told.name], record[f"{told.name}_std"] = told.value, deviation
+        for key, value, deviation, _ in self.numbers():
+            record[key], record[f"{key}_std"] = value, deviation
         for name, value in self.known.items():
             record[self.unit(name)] = value * self.scale(name)
         for first, second, value in self.correlations():
@@ -216,22 +216,19 @@ class Outcome:
             record[f"{channel}_lag1"] = left.lag1
         return record | {
             "verdict": self.verdict,
-            "remark": "; ".join([*self.notes(), *self.untold(), *self.warnings()]) or None,
+            "remark": "; ".join([*self.notes(), *self.undetermined(), *self.warnings()]) or None,
         }
 
     def inputs(self) -> dict[str, float]:
         """Return inputs of `Top` that move so; what is not told is 1, or such that C = A."""
-        body = completed(self.seen, _of_body(self.known), self.told)
+        known = {name: x for name, x in self.known.items() if name in BODY_INPUTS}
+        body = completed_body(self.shown, known, self.determined)
         return {
             **body,
             "theta0_deg": math.degrees(self.values["theta0"]),
             "thetadot0": self.values["thetadot0"],
             "psidot0": self.values["psidot0"],
         }
-
-
-def _of_body(known: Mapping[str, float]) -> dict[str, float]:
-    return {name: x for name, x in known.items() if name in {"m", "A", "C", "s", "g", "r0"}}
 
 
 def outcomes(found: Fit, *, radians: bool = False) -> list[Outcome]:
@@ -243,10 +240,45 @@ def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
     """Return the angles of the motion that was found, counted as in the recording."""
     values = outcome.values
     state = np.array([[values[name] for name in STATE]])
-    theta, phi, psi = angles_of(state, t)[:, 0]
+    theta, phi, psi = motion_angles(state, t)[:, 0]
     spin = (values["r0"] - values["b"]) * t if "phi" in outcome.recording.angles else 0.0
     return {
         "theta": theta,
         "phi": phi + spin + values["phi_zero"],
         "psi": psi + values["psi_zero"],
     }
+
+
+class Residual(NamedTuple):
+    """What is left of one channel."""
+
+    rows: int
+    rms: float
+    """Root of the mean square, in radians."""
+    lag1: float
+    """Correlation of what is left with itself a row later."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the correlation is within three standard deviations of 0; roundings count too."""
+        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
+
+
+def residual_of(values: Array) -> Residual:
+    """Return what the residuals of one channel are like; NaN is missing."""
+    known = values[np.isfinite(values)]
+    total = float(np.sum(known * known))
+    if not total:
+        return Residual(known.size, 0.0, 0.0)
+    return Residual(
+        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
+    )
+
+
+def chi2_bounds(dof: int) -> tuple[float, float]:
+    """Return the bounds that chi^2/dof keeps within but for one time in 370."""
+    from scipy.special import gammaincinv
+
+    half = dof / 2
+    low, high = (float(gammaincinv(half, p)) / half for p in (_BEYOND, 1 - _BEYOND))
+    return low, high

@@ -102,7 +102,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
         made = []
         for name, given in parts.items():
             where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"
-            made.append(_recording(name, _Source(where, reading, said, spread), given))
+            made.append(recording_of(name, Source(where, reading, said, spread), given))
     return made
 
 
@@ -146,7 +146,7 @@ def _joined(blocks: Iterable[Quantities]) -> dict[str, Array]:
     return {key: np.concatenate([block[key] for block in listed]) for key in listed[0]}
 
 
-class _Source(NamedTuple):
+class Source(NamedTuple):
     """Where rows come from, and how they are read."""
 
     where: str
@@ -156,13 +156,14 @@ class _Source(NamedTuple):
     """Units of the columns NAME_std, by what they belong to."""
 
 
-def _recording(name: str, source: _Source, given: Quantities) -> Recording:
+def recording_of(name: str, source: Source, given: Quantities) -> Recording:
+    """Return the recording in some quantities.  Raises LagtopError, DataError for a bad one."""
     kind, angles = _angles(given, source.said, source.reading.conventions)
     raw = Recording(name, given["t"][:, 0], 0.0, kind, angles, {})
-    return settled(replace(raw, sigma=_sigma(source, given, raw)), source.where)
+    return _checked(replace(raw, sigma=_sigma(source, given, raw)), source.where)
 
 
-def settled(raw: Recording, where: str) -> Recording:
+def _checked(raw: Recording, where: str) -> Recording:
     """Return a recording from its first row on, in the order of time.
 
     Rows and angles without a number are left out.  Raises DataError for a recording that has too
@@ -239,13 +240,13 @@ def _angles(
     return "angles", {}
 
 
-def _sigma(source: _Source, given: Quantities, raw: Recording) -> dict[str, Array]:
+def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array]:
     """Return the standard deviation of each channel: of columns, or else as it was given.
 
     Raises LagtopError where only some channels have one.
     """
     reading, spread = source.reading, source.spread
-    found = spread_evenly(reading.sigma, raw)
+    found = _spread_evenly(reading.sigma, raw)
     for channel in raw.channels:
         names = [channel] if raw.kind == "angles" else ["attitude", "quaternion", "axis"]
         column = next((name for name in names if name in spread), None)
@@ -261,7 +262,7 @@ def _sigma(source: _Source, given: Quantities, raw: Recording) -> dict[str, Arra
     return found
 
 
-def spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> dict[str, Array]:
+def _spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> dict[str, Array]:
     """Return standard deviations that are the same in all rows, by channel.
 
     Raises LagtopError for one of what is not there.

@@ -1,22 +1,36 @@
-"""The report on a fit: what was found of each recording, and what may be concluded."""
+"""The report on a fit, its scene file, and the curves of its picture."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ..arithmetic.angles import per_radian
+from ..arithmetic.types import Array
+from ..inputs.rotations import within_half_turn
 from ..motion.record import KEYS
 from ..output.findings import Field, Findings, with_unit
+from ..output.terminal import one_line
 from ..output.uncertain_text import uncertain_text
-from .quality import chi2_bounds
-from .record import MEANINGS, Outcome
+from .record import Outcome, angles_at, chi2_bounds
 
 if TYPE_CHECKING:
     from ..inputs.units import System
+_FIELDS = [
+    Field("name", "recording", is_text=True, names_the_row=True),
+    Field("key", "key", is_text=True),
+    Field("value", "value", is_text=True),
+    Field("meaning", "meaning", is_text=True),
+]
+_FINE = 1200
+"""Points of a curve."""
+Curve = tuple[str, Array, Array, Array, Array, Array]
+"""Name, times, data, fine times, motion at these, and data less motion."""
 
 
-class Line(NamedTuple):
+class ReportRow(NamedTuple):
     """A number of one recording."""
 
     name: str
@@ -25,15 +39,7 @@ class Line(NamedTuple):
     meaning: str
 
 
-_FIELDS = [
-    Field("name", "recording", is_text=True, names_the_row=True),
-    Field("key", "key", is_text=True),
-    Field("value", "value", is_text=True),
-    Field("meaning", "meaning", is_text=True),
-]
-
-
-def units_of(outcome: Outcome, system: System) -> dict[str, str]:
+def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     """Return the units of the keys of the record of an outcome, with the names of a system."""
     units = {"t_start": system.named("time")}
     for told, _ in outcome.products():
@@ -57,24 +63,16 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None =
     return Findings(_conditions(outcomes, source, system), fields, lines, conclusions)
 
 
-def _lines(outcome: Outcome, system: System | None) -> Iterator[Line]:
-    name, units = outcome.recording.name, units_of(outcome, system) if system else {}
-    for key, value, deviation in outcome.found():
-        scale = outcome.scale(key)
-        text = uncertain_text(value * scale, deviation * scale)
-        yield Line(
-            name, with_unit(outcome.unit(key), units.get(outcome.unit(key))), text, MEANINGS[key]
-        )
-    for told, deviation in outcome.products():
-        single = len(told.powers) == 1
-        meaning = "" if single else "not to be told apart"
-        text = uncertain_text(told.value, deviation)
-        yield Line(name, with_unit(told.name, units.get(told.name)), text, meaning)
+def _lines(outcome: Outcome, system: System | None) -> Iterator[ReportRow]:
+    name, units = outcome.recording.name, outcome_units(outcome, system) if system else {}
+    for key, value, deviation, meaning in outcome.numbers():
+        text = uncertain_text(value, deviation)
+        yield ReportRow(name, with_unit(key, units.get(key)), text, meaning)
 
 
 def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None) -> dict[str, str]:
     first = outcomes[0]
-    units = units_of(first, system) if system else {}
+    units = outcome_units(first, system) if system else {}
 
     def text(name: str, value: float) -> str:
         return f"{name} = {value:g} {units.get(name, '')}".rstrip()
@@ -104,7 +102,48 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:
         yield f"{name}Correlation: {related}."
-    for text in [*outcome.notes(), *outcome.untold()]:
+    for text in [*outcome.notes(), *outcome.undetermined()]:
         yield f"{name}{text}."
     for text in outcome.warnings():
         yield f"{name}Warning: {text}."
+
+
+def scene_text(outcome: Outcome, source: str) -> str:
+    """Return a scene file of the motion, which every command reads."""
+    lines = [
+        f"# Found by `lagtop fit` from {one_line(source)}: the start is its first row, at "
+        f"t = {outcome.recording.t_start!r}.",
+        *(f"# {text}: one of them is put in." for text in outcome.undetermined()),
+        *(f"# Warning: {text}." for text in outcome.warnings()),
+    ]
+    spread = {
+        **{"theta0_deg" if x == "theta0" else x: (y, z) for x, y, z in outcome.found()},
+        **{told.name: (told.value, deviation) for told, deviation in outcome.products()},
+    }
+    for name, value in outcome.inputs().items():
+        found, deviation = spread.get(name, (0.0, 0.0))
+        scale = per_radian(radians=name != "theta0_deg")
+        told = f"  # {uncertain_text(found * scale, deviation * scale)}" if deviation else ""
+        lines.append(f"{name} = {value!r}{told}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def curves_of(outcome: Outcome) -> Iterator[Curve]:
+    """Yield the curves of one recording, in the unit of angles in use.
+
+    What was measured is brought to the turn of the motion that was found.
+    """
+    recording, scale = outcome.recording, per_radian(radians=outcome.radians)
+    t = recording.t
+    fine = np.linspace(0, t[-1], _FINE)
+    at_rows, at_fine = angles_at(outcome, t), angles_at(outcome, fine)
+    for name in ("theta", "psi", "phi"):
+        if name in recording.angles:
+            left = within_half_turn(recording.angles[name] - at_rows[name])
+            data = at_rows[name] + left
+            start = recording.t_start
+            label = f"{recording.name}: {name}" if recording.name else name
+            yield (
+                *(label, t + start, data * scale),
+                *(fine + start, at_fine[name] * scale, left * scale),
+            )

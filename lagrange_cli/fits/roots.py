@@ -1,8 +1,9 @@
-"""Where one number of the record, as a function of one input, has a wanted value.
+"""Where one number of the record, as a function of one input, has a target value.
 
-Each evaluation is by `solve`, whose numbers are the nearest doubles: of neighbouring doubles the
-one is taken whose number comes nearest.  Where the number hardly changes with the input, many
-doubles have the same one, and a root may be that many last bits off.
+Each evaluation is by `solve`, whose numbers are correctly rounded: of neighbouring doubles the one
+is taken whose number comes nearest.  Where the number hardly changes with the input, many doubles
+have the same one, and a root may be that many last bits off.  The number may pass its target, or
+touch it: next to a steady precession the axis nutates on either side.
 """
 
 from __future__ import annotations
@@ -16,55 +17,86 @@ import numpy as np
 from ..arithmetic.types import Array
 
 Function = Callable[[float], float]
-"""The number less its wanted value; NaN where there is none."""
-_MOST_EXTREMA = 12
-"""Extrema next to the wanted value that are looked at: each takes some thirty motions."""
-_LEAP = 1e-6
-"""What is left of a continuous function at its root, over its size, is far less."""
-_STEPS = 64
-_EPS, _TINY = 2.0**-52, 5e-324
+"""The number less its target value; NaN where there is none."""
 Point = tuple[float, float]
 """An argument, and the value of the function there."""
+_MOST_EXTREMA = 12
+"""Extrema next to the target that are searched: each takes some fifty motions."""
+_LEAP = 1e-6
+"""The residual of a continuous function at its root, over its size, is far less."""
+_STEPS = 64
+_EPS, _TINY = 2.0**-52, 5e-324
+_GOLDEN = (math.sqrt(5) - 1) / 2
+_FIRST_STEPS = 40
+"""Steps of golden section, which leave 4e-9 of a bracket."""
+_NEARER = 0.1
+"""The part of a distance that is left after these, at most, where it goes to 0."""
+_BITS = 4.0
+"""How many last bits of the argument, and of the number, a distance from 0 may be."""
 
 
-def roots(function: Function, x: Array, y: Array) -> list[float]:
-    """Return the roots that values y at points x bracket, each as near as its numbers can tell.
+def roots(function: Function, x: Array, y: Array, target: float = 0.0) -> list[float]:
+    """Return where a function is 0, from its values y at points x, in ascending order.
 
-    A pair of roots between two points is found where the function has an extremum there.
+    It is a number less its `target`.  A root is as near as the numbers can tell.  Between two
+    points that have the same sign, a pair of roots is found next to an extremum, or the place at
+    which an extremum touches 0, if its distance from 0 is explained by some last bits.
     """
-    brackets = [*_brackets(x, y), *_hidden(function, x, y)]
-    found = [root for bracket in brackets if (root := _root(function, *bracket)) is not None]
-    return sorted(set(found))
+    brackets, touching = list(_sign_changes(x, y)), []
+    for i in _extrema(y):
+        left, right, sign = float(x[i - 1]), float(x[i + 1]), math.copysign(1.0, y[i])
+        at, height = _lowest(function, sign, left, right)
+        if height <= 0:
+            brackets += [(left, at), (at, right)]
+            continue
+        slope = max(abs(float(y[j]) / (float(x[j]) - at)) for j in (i - 1, i + 1))
+        if height <= _BITS * (slope * math.ulp(at) + math.ulp(target)):
+            touching.append(at)
+    passed = {root for bracket in brackets if (root := _root(function, *bracket)) is not None}
+    near = float(np.max(np.diff(x)))  # two roots next to an extremum are no place that it touches
+    apart = {at for at in touching if all(abs(at - root) > near for root in passed)}
+    return sorted(passed | apart)
 
 
-def _brackets(x: Array, y: Array) -> Iterator[tuple[float, float]]:
+def _sign_changes(x: Array, y: Array) -> Iterator[tuple[float, float]]:
     """Yield neighbouring points between which the sign changes."""
     for i in np.flatnonzero(y[:-1] * y[1:] <= 0).tolist():
         yield float(x[i]), float(x[i + 1])
 
 
-def _hidden(function: Function, x: Array, y: Array) -> Iterator[tuple[float, float]]:
-    """Yield brackets on both sides of an extremum that lies beyond 0, or on 0, between points."""
+def _extrema(y: Array) -> list[int]:
+    """Return points that are nearer to 0 than both neighbours, on the same side, nearest first."""
     size = np.abs(y)
     inner = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
     inner = inner[(y[inner - 1] * y[inner] > 0) & (y[inner] * y[inner + 1] > 0)]
-    for i in inner[np.argsort(size[inner])][:_MOST_EXTREMA].tolist():
-        from scipy.optimize import minimize_scalar  # half a second, for searches that need it
-
-        sign = math.copysign(1.0, y[i])
-        lowest = minimize_scalar(
-            lambda at, sign=sign: _or_infinite(sign * function(float(at))),
-            bounds=(x[i - 1], x[i + 1]),
-            method="bounded",
-            options={"xatol": 1e-9 * float(x[i + 1] - x[i - 1])},
-        )
-        if lowest.fun <= 0:
-            yield float(x[i - 1]), float(lowest.x)
-            yield float(lowest.x), float(x[i + 1])
+    found: list[int] = inner[np.argsort(size[inner])][:_MOST_EXTREMA].tolist()
+    return found
 
 
-def _or_infinite(value: float) -> float:
-    return math.inf if math.isnan(value) else value
+def _lowest(function: Function, sign: float, low: float, high: float) -> Point:
+    """Return where a function, times a sign, is least between two ends, by golden section.
+
+    The search ends at the first value that is not positive.  If the values do not go to 0 it ends
+    after some steps, with infinity for the value.
+    """
+
+    def at(x: float) -> Point:
+        height = sign * function(x)
+        return x, math.inf if math.isnan(height) else height
+
+    left, right = at(high - _GOLDEN * (high - low)), at(low + _GOLDEN * (high - low))
+    first, step = min(left[1], right[1]), 0
+    while low < left[0] < right[0] < high and min(left[1], right[1]) > 0:
+        if left[1] <= right[1]:
+            high, right = right[0], left
+            left = at(high - _GOLDEN * (high - low))
+        else:
+            low, left = left[0], right
+            right = at(low + _GOLDEN * (high - low))
+        step += 1
+        if step == _FIRST_STEPS and not min(left[1], right[1]) <= _NEARER * first:
+            return left[0], math.inf
+    return left if left[1] <= right[1] else right
 
 
 def _root(function: Function, low: float, high: float) -> float | None:

@@ -39,14 +39,14 @@ SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 """Signs of beta + b and of beta - b."""
 
 
-class Nutation(NamedTuple):
+class TurningPoints(NamedTuple):
     """Observed turning points, tilts in radians or arrays of them, and the observed period."""
 
     theta_min: Value
     theta_max: Value
     period: float
 
-    def checked(self, *, radians: bool = False) -> Nutation:
+    def checked(self, *, radians: bool = False) -> TurningPoints:
         """Return the nutation.
 
         Raises LagtopError for one that no top has, with its tilts in degrees or in radians.
@@ -105,7 +105,7 @@ class Candidates(NamedTuple):
         rate: Array = self.plus / np.cos(theta / 2) ** 2 + self.minus / np.sin(theta / 2) ** 2
         return rate / 4
 
-    def tilt_rate(self, nutation: Nutation, theta: Array | float) -> Array:
+    def tilt_rate(self, nutation: TurningPoints, theta: Array | float) -> Array:
         """Return the size of the nutation rate, by (4,9), at a tilt between the turning points."""
         u = np.cos(theta)
         between = np.maximum((nutation.u1 - u) * (u - nutation.u2), 0.0)
@@ -117,7 +117,7 @@ class Candidates(NamedTuple):
         return Candidates(*(x[index] for x in self))
 
 
-def candidates(nutation: Nutation, u3_above: Array, signs: tuple[int, int]) -> Candidates:
+def candidates(nutation: TurningPoints, u3_above: Array, signs: tuple[int, int]) -> Candidates:
     """Return the tops with these u3 - 1; `signs` are those of beta + b and of beta - b."""
     north, south = nutation.from_top, nutation.from_bottom
     u3_above_u2 = north[1] + u3_above
@@ -138,7 +138,7 @@ def mean_inverse(k_prime: Array, at_u1: Value, at_u2: Value) -> Array:
     return mean
 
 
-def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
+def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> list[Candidates]:
     """Return the tops that have a nutation and a mean precession rate, the fastest first."""
     grid, found = nutation.from_top[1] * _HEIGHTS, []
     for signs in SIGNS:
@@ -154,7 +154,7 @@ def with_mean_rate(nutation: Nutation, mean_rate: float) -> list[Candidates]:
     return sorted(found, key=lambda x: float(x.u3_above), reverse=True)
 
 
-def top_of(nutation: Nutation, found: Candidates, mean_spin: float | None = None) -> Top:
+def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None = None) -> Top:
     """Return a top that starts at u1, in units of A = 1 and m = s = 1.
 
     C is A as long as nobody knows the spin rate; a mean spin rate tells it.  Raises LagtopError

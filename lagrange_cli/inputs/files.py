@@ -13,9 +13,6 @@ from typing import BinaryIO, cast
 
 from ..errors import CannotWriteError, DataError
 
-LONGEST_LINE = 1 << 20
-"""Bytes of a line: memory does not grow with a file that has no line ends."""
-
 
 @contextmanager
 def opened(path: str) -> Iterator[BufferedIOBase]:
@@ -59,22 +56,6 @@ def temporary_copy(stream: BufferedIOBase) -> Iterator[BinaryIO]:
         with temporary_files():
             copy.seek(0)
         yield cast(BinaryIO, copy)
-
-
-def numbered_lines(stream: BufferedIOBase, name: str) -> Iterator[tuple[int, bytes]]:
-    """Yield the lines of a file and their numbers, from 1.  Raises DataError for a long line."""
-    number = 0
-    while line := stream.readline(LONGEST_LINE):
-        number += 1
-        check_length(line, name, number)
-        yield number, line
-
-
-def check_length(line: bytes, name: str, number: int) -> None:
-    """Raise DataError for a line that is too long to be a row."""
-    if len(line) >= LONGEST_LINE:
-        wrong = f"a line must have less than {LONGEST_LINE} bytes"
-        raise DataError(f"{name}, line {number}: {wrong}")
 
 
 def utf8_path(path: str) -> str:

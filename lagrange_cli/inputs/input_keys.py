@@ -5,8 +5,9 @@ Help texts, tables of records, units, pictures and READMEs take the inputs from 
 
 from __future__ import annotations
 
+import re
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
@@ -17,7 +18,7 @@ N = TypeVar("N")
 
 
 class Input(Values):
-    """An input of a top; the unit `angle` stands for degrees or radians."""
+    """An input of a top."""
 
     symbol: str
     name: str
@@ -26,71 +27,40 @@ class Input(Values):
     """The full meaning, for help texts."""
     bound: str
     unit: str
-    default: float | None = None
+    """The unit in words; `angle` stands for degrees or radians."""
+    default: float | None
     """The value in the worked example, in CGS; None for an input that stands for another."""
 
 
-_RATE = "rad/time"
-DECLARED = {
-    "m": Input("m", "mass", "mass", "positive", "mass", 1587.0),
-    "A": Input(
-        "A",
-        "equatorial moment",
-        "equatorial moment of inertia about the pivot",
-        "positive",
-        "mass len²",
-        39032.0,
-    ),
-    "A_cm": Input(
-        "A_cm",
-        "equatorial moment",
-        "equatorial moment about the mass centre, in place of A: A = A_cm + m s^2",
-        "",
-        "mass len²",
-    ),
-    "C": Input(
-        "C", "polar moment", "polar moment of inertia", "positive, at most 2A", "mass len²", 17458.0
-    ),
-    "s": Input(
-        "s",
-        "pivot to mass centre",
-        "distance from the pivot to the mass centre",
-        "0 or more",
-        "len",
-        4.0,
-    ),
-    "g": Input("g", "gravity", "gravity", "0 or more", "len/time²", 981.0),
-    "r0": Input(
-        "r0",
-        "total spin rate",
-        "total rate about the figure axis, phi' + psi' cos(theta)",
-        "",
-        _RATE,
-        50.0,
-    ),
-    "phidot0": Input(
-        "φ'0",
-        "spin rate",
-        "rate of the spin angle, in place of r0: r0 = phidot0 + psidot0 cos(theta0)",
-        "",
-        _RATE,
-    ),
-    "theta0": Input(
-        "ϑ0",
-        "tilt at the start",
-        "tilt of the axis from the upward vertical",
-        "0 to 180 degrees",
-        "angle",
-        30.0,
-    ),
-    "thetadot0": Input(
-        "ϑ'0", "nutation rate at start", "nutation rate at the start", "", _RATE, 0.0
-    ),
-    "psidot0": Input(
-        "ψ'0", "precession rate at start", "precession rate at the start", "", _RATE, 0.0
-    ),
-}
-"""Every input, in the order in which they stand everywhere."""
+_TABLE = """
+m | m | mass | mass | positive | mass | 1587
+A | A | equatorial moment
+    | equatorial moment of inertia about the pivot | positive | mass len² | 39032
+A_cm | A_cm | moment about the mass centre
+    | equatorial moment about the mass centre, in place of A: A = A_cm + m s^2 | | mass len² |
+C | C | polar moment | polar moment of inertia | positive, at most 2A | mass len² | 17458
+s | s | pivot to mass centre | distance from the pivot to the mass centre | 0 or more | len | 4
+g | g | gravity | gravity | 0 or more | len/time² | 981
+r0 | r0 | total spin rate
+    | total rate about the figure axis, phi' + psi' cos(theta) | | rad/time | 50
+phidot0 | φ'0 | spin rate at start
+    | rate of the spin angle, in place of r0: r0 = phidot0 + psidot0 cos(theta0) | | rad/time |
+theta0 | ϑ0 | tilt at the start
+    | tilt of the axis from the upward vertical | 0 to 180 degrees | angle | 30
+thetadot0 | ϑ'0 | nutation rate at start | nutation rate at the start | | rad/time | 0
+psidot0 | ψ'0 | precession rate at start | precession rate at the start | | rad/time | 0
+"""
+
+
+def _declared(table: str) -> Iterator[tuple[str, Input]]:
+    """Yield the inputs of a table, a line each, which may go on in an indented line."""
+    for line in table.strip().replace("\n ", " ").split("\n"):
+        key, symbol, name, meaning, bound, unit, default = re.split(r"\s*\|\s*", line)
+        yield key, Input(symbol, name, meaning, bound, unit, float(default) if default else None)
+
+
+DECLARED = dict(_declared(_TABLE))
+"""Every input by key, in the order in which they stand everywhere."""
 
 TILT = "theta0"
 """The key of a tilt that has a unit of its own; `theta0_deg` and `theta0_rad` have none."""

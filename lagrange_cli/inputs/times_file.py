@@ -10,10 +10,15 @@ from typing import TYPE_CHECKING
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
 from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
-from .files import numbered_lines, opened, shown_path
+from .files import opened, shown_path
+from .text_tables import NumberedLines, has_row, text_of
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+
+
+HEADERS = ("t", "time")
+"""First rows that name the column: `lagtop table --columns t` writes the first of them."""
 
 
 class TimesFile(Points):
@@ -26,7 +31,7 @@ class TimesFile(Points):
 
         Where the times are to be `counted`, the file is read twice; otherwise their count is 0.
 
-        Blank lines and lines that begin with # are left out.  Raises DataError for a file that
+        Blank lines, comments and a header are left out.  Raises DataError for a file that
         cannot be read and for a line that is no time, here or while the rest is read.
         """
         if counted:
@@ -58,14 +63,14 @@ class TimesFile(Points):
 
 
 def _read(path: str) -> Iterator[Fraction]:
+    name = shown_path(path)
     with opened(path) as file:
-        for number, line in numbered_lines(file, shown_path(path)):
-            place = f"{shown_path(path)}, line {number}"
+        rows = ((number, line) for number, line in NumberedLines(file, name) if has_row(line))
+        for i, (number, line) in enumerate(rows):
             try:
-                text = line.decode("utf-8-sig" if number == 1 else "utf-8").strip()
-                if text and not text.startswith("#"):
+                text = text_of(line, "a time").strip()
+                if i or text not in HEADERS:
                     yield parse_number(text)
-            except UnicodeDecodeError:
-                raise DataError(f"{place}: a time must be UTF-8 text") from None
             except LagtopError as error:
-                raise DataError(f"{place}: the time {error}") from None
+                what = "" if str(error).startswith("a time") else "the time "
+                raise DataError(f"{name}, line {number}: {what}{error}") from None

@@ -1,4 +1,4 @@
-"""Files of tops, one per line: CSV with a header, or JSON objects.
+"""Files of tops, one per line: a table with a header, or JSON objects.
 
 Lines are cut into blocks without being read closer, so that any machine can take any block; a line
 that cannot be read becomes an error of its own row and harms no other.
@@ -6,7 +6,6 @@ that cannot be read becomes an error of its own row and harms no other.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -16,13 +15,22 @@ from itertools import chain, islice
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ..arithmetic.text import json_text, parse_number, shortened
+from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
-from .files import numbered_lines, opened, shown_path
+from .files import opened, shown_path
 from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, heading, units_of
 from .input_keys import from_example, one_of_each, overridden
 from .ranges import InputArrays
+from .text_tables import (
+    NumberedLines,
+    delimiter_of,
+    has_row,
+    json_object,
+    shown_json,
+    split_cells,
+    text_of,
+)
 from .top import INPUTS
 from .value import Value
 
@@ -56,13 +64,13 @@ class Lines(NamedTuple):
 
     @property
     def size(self) -> int:
-        """The number of tops; blank lines hold none."""
-        return sum(1 for text in self.texts if text.strip())
+        """The number of tops; blank lines and comments hold none."""
+        return sum(1 for text in self.texts if has_row(text))
 
     def rows(self) -> Iterator[TopRow]:
         """Yield the tops of the lines."""
         for number, text in enumerate(self.texts, self.first):
-            if text.strip():
+            if has_row(text):
                 yield self.file.row(number, text)
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
@@ -86,7 +94,7 @@ class TopsFile(NamedTuple):
     name: str
     """What the file is called in messages."""
     columns: Sequence[str] | None
-    """The header of a CSV file; None for JSON lines."""
+    """The header of a table; None for JSON lines."""
     carried: Sequence[str]
     """The names that are carried through, in their order."""
     computed: frozenset[str]
@@ -97,6 +105,7 @@ class TopsFile(NamedTuple):
     """1 in each column of an input, in the unit of its heading."""
     factors: Mapping[str, Fraction] = MappingProxyType({})
     """What the numbers of a column are multiplied with, where its heading has a unit."""
+    delimiter: str = ","
 
     def among(
         self, inputs: Mapping[str, Any], scene: str | None, system: str | None
@@ -145,7 +154,7 @@ class TopsFile(NamedTuple):
 
     def _read_csv(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         assert self.columns is not None
-        cells = split_cells(_decoded(raw))
+        cells = split_cells(text_of(raw), self.delimiter)
         texts = dict(zip(self.columns, cells, strict=False))
         carried.update((name, texts[name]) for name in self.carried if name in texts)
         if len(cells) != len(self.columns):
@@ -155,34 +164,13 @@ class TopsFile(NamedTuple):
                 inputs[name] = _double(name, text, self.factors.get(name))
 
     def _read_json(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
-        values = _json_object(raw)
+        values = json_object(raw)
         carried.update((name, values[name]) for name in self.carried if name in values)
         for name, value in values.items():
             if name in INPUTS:
                 inputs[name] = _json_double(name, value)
             elif name not in carried and name not in self.computed:
                 raise LagtopError(f"the key {name!r} must be in one of the first rows too")
-
-
-def split_cells(line: str) -> list[str]:
-    """Return the cells of a line of CSV.
-
-    A quoted cell ends on its line, or one open quote would swallow the rows that follow.  Raises
-    LagtopError for a wrong quote.
-    """
-    if '"' not in line:
-        return line.split(",")
-    try:
-        return next(csv.reader([line], strict=True))
-    except csv.Error as error:
-        raise LagtopError(f"a row must be CSV, got a wrong quote: {error}") from None
-
-
-def _decoded(raw: bytes) -> str:
-    try:
-        return raw.decode().rstrip("\r\n")
-    except UnicodeDecodeError:
-        raise LagtopError("a row must be UTF-8 text") from None
 
 
 def _double(name: str, text: str, factor: Fraction | None = None) -> float:
@@ -200,26 +188,10 @@ def _double(name: str, text: str, factor: Fraction | None = None) -> float:
         raise LagtopError(f"{name} {error}") from None
 
 
-def _json_object(raw: bytes) -> dict[str, Any]:
-    import orjson
-
-    try:
-        values = orjson.loads(raw)
-    except ValueError as error:
-        raise LagtopError(f"a row must be a JSON object: {error}") from None
-    if not isinstance(values, dict):
-        raise LagtopError(f"a row must be a JSON object, got {_shown(values)}")
-    return values
-
-
 def _json_double(name: str, value: Any) -> float:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
-    raise LagtopError(f"{name} must be a finite number, got {_shown(value)}")
-
-
-def _shown(value: Any) -> str:
-    return shortened(json_text(value))
+    raise LagtopError(f"{name} must be a finite number, got {shown_json(value)}")
 
 
 def open_tops(
@@ -233,8 +205,7 @@ def open_tops(
     """
     name = shown_path(path)
     lines = _lines(path, stream)
-    start, first = next(((i, raw) for i, raw in lines if raw.strip()), (1, b""))
-    first = first.removeprefix(b"\xef\xbb\xbf")
+    start, first = next(((i, raw) for i, raw in lines if has_row(raw)), (1, b""))
     if first.lstrip().startswith(b"{"):
         head = [(start, first), *_some(name, lines, size - 1)]
         carried = [x for x in _names(raw for _, raw in head) if x not in computed]
@@ -242,7 +213,9 @@ def open_tops(
         file = TopsFile(name, None, carried, frozenset(computed), _named(raw for _, raw in head))
         return file, _blocks(file, chain(head, lines), size)
     try:
-        headings = [heading(cell.strip()) for cell in split_cells(_decoded(first))]
+        header = text_of(first)
+        delimiter = delimiter_of(header)
+        headings = [heading(cell.strip()) for cell in split_cells(header, delimiter or ",")]
     except LagtopError as error:
         raise DataError(f"{name}, line {start}: {error}") from None
     columns = [column for column, _ in headings]
@@ -251,13 +224,21 @@ def open_tops(
     check_spelling(carried, name)
     check_header(columns, known, name)
     units = units_of(headings, known, name)
-    file = TopsFile(name, columns, carried, frozenset(computed), set(columns) & set(INPUTS), units)
+    file = TopsFile(
+        name,
+        columns,
+        carried,
+        frozenset(computed),
+        set(columns) & set(INPUTS),
+        units,
+        delimiter=delimiter or ",",
+    )
     return file, _blocks(file, lines, size)
 
 
 def _lines(path: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
     with stream or opened(path) as file:
-        yield from numbered_lines(file, shown_path(path))
+        yield from NumberedLines(file, shown_path(path))
 
 
 def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:
@@ -281,7 +262,7 @@ def _names(lines: Iterable[bytes]) -> list[str]:
     names: dict[str, None] = {}
     for raw in lines:
         with suppress(LagtopError):  # which the row will name
-            names |= dict.fromkeys(_json_object(raw) if raw.strip() else ())
+            names |= dict.fromkeys(json_object(raw) if raw.strip() else ())
     return [name for name in names if name not in INPUTS]
 
 
@@ -290,7 +271,7 @@ def _named(lines: Iterable[bytes]) -> set[str]:
     named: set[str] = set()
     for raw in lines:
         with suppress(LagtopError):  # which the row will name
-            named = {*_json_object(raw)} & {*INPUTS} if raw.strip() else named
+            named = {*json_object(raw)} & {*INPUTS} if raw.strip() else named
             if from_example(dict.fromkeys(named)):
                 break
     return named

@@ -14,8 +14,8 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
-from ..errors import DataError
-from .files import LONGEST_LINE, check_length
+from ..errors import DataError, LagtopError
+from .text_tables import NumberedLines, delimiter_of, json_object, text_of
 from .trajectory_columns import names_in_comments
 from .trajectory_rows import Block, Table
 from .words import PlainNumbers, Words
@@ -23,7 +23,6 @@ from .words import PlainNumbers, Words
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
-BYTES_AT_ONCE = 1 << 21
 _COMMENT = b"#"
 _AROUND = b"[], \t"
 """What may stand around the objects of an array, one per line."""
@@ -33,56 +32,26 @@ Numbered = tuple[int, bytes]
 
 def read_text(stream: BinaryIO, name: str) -> Table:
     """Return the rows of a text.  Raises DataError where there are none."""
-    lines = _Lines(stream, name)
+    lines = NumberedLines(stream, name)
     comments: list[str] = []
-    while first := lines.one():
-        number, line = first
+    for number, raw in lines:
+        line = raw.strip(b" \r\n")
         if line.startswith(_COMMENT):
             comments.append(_decoded(line, name, number).lstrip("# \t"))
-        elif line == b"[":
+        elif line in {b"", b"["}:
             continue
         elif line[:1] in {b"{", b"["}:
-            return JsonTable(name, first, lines)
+            return JsonTable(name, (number, line), lines)
         else:
-            return TextTable(name, first, lines, comments)
+            return TextTable(name, (number, line), lines, comments)
     raise DataError(f"{name} must hold a trajectory, got no row")
-
-
-class _Lines:
-    """The lines of a text that are not blank, stripped, by their numbers."""
-
-    def __init__(self, stream: BinaryIO, name: str) -> None:
-        self.stream, self.name, self.number = stream, name, 0
-
-    def one(self) -> Numbered | None:
-        """Return the next line, or None at the end."""
-        while line := self.stream.readline(LONGEST_LINE):
-            self.number += 1
-            check_length(line, self.name, self.number)
-            if self.number == 1:
-                line = line.removeprefix(b"\xef\xbb\xbf")
-            if stripped := line.strip(b" \r\n"):
-                return self.number, stripped
-        return None
-
-    def blocks(self) -> Iterator[list[Numbered]]:
-        """Yield the lines that are left, many at once."""
-        while chunk := self.stream.read(BYTES_AT_ONCE):
-            if not chunk.endswith(b"\n"):
-                chunk += self.stream.readline(LONGEST_LINE)
-            first, self.number = self.number + 1, self.number + chunk.count(b"\n")
-            lines = chunk.split(b"\n")
-            longest = max(lines, key=len)
-            check_length(longest, self.name, first + lines.index(longest))
-            stripped = (line.strip(b" \r") for line in lines)
-            yield [x for x in enumerate(stripped, first) if x[1]]
 
 
 def _decoded(line: bytes, name: str, number: int) -> str:
     try:
-        text = line.decode()
-    except UnicodeDecodeError:
-        raise DataError(f"{name}, line {number}: a row must be UTF-8 text") from None
+        text = text_of(line)
+    except LagtopError as error:
+        raise DataError(f"{name}, line {number}: {error}") from None
     if "\0" in text:
         raise DataError(f"{name}, line {number}: a row must be text, got the character NUL")
     return text
@@ -98,9 +67,11 @@ class TextTable:
 
     place = "line"
 
-    def __init__(self, name: str, first: Numbered, lines: _Lines, comments: Sequence[str]) -> None:
+    def __init__(
+        self, name: str, first: Numbered, lines: NumberedLines, comments: Sequence[str]
+    ) -> None:
         self.name = name
-        self.delimiter = next((x for x in ",;\t" if x in first[1].decode(errors="replace")), None)
+        self.delimiter = delimiter_of(first[1].decode(errors="replace"))
         cells = self._cells(*first)
         self.width = len(cells)
         has_header = not any(_is_number(cell) for cell in cells)
@@ -189,7 +160,7 @@ class JsonTable:
 
     place = "line"
 
-    def __init__(self, name: str, first: Numbered, lines: _Lines) -> None:
+    def __init__(self, name: str, first: Numbered, lines: NumberedLines) -> None:
         self.name = name
         self._lines = chain([[first]], lines.blocks())
         bare = first[1].strip(_AROUND)
@@ -225,17 +196,10 @@ class JsonTable:
         return self._words.setdefault(name, Words()) if name in self._texts else PlainNumbers()
 
     def _object(self, number: int, line: bytes) -> dict[str, Any]:
-        import orjson
-
         try:
-            value = orjson.loads(line)
-        except ValueError as error:
-            raise DataError(
-                f"{self.name}, line {number}: a row must be a JSON object: {error}"
-            ) from None
-        if not isinstance(value, dict):
-            raise DataError(f"{self.name}, line {number}: a row must be a JSON object")
-        return value
+            return json_object(line)
+        except LagtopError as error:
+            raise DataError(f"{self.name}, line {number}: {error}") from None
 
     def _row(self, number: int, line: bytes) -> list[float]:
         row: list[float] = []

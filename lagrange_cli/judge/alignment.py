@@ -82,37 +82,37 @@ class Frames(NamedTuple):
         return replace(turned, t=seen.t - self.time, angles=angles)
 
 
-def frames_of(wish: Alignment, motion: Motion, first: Seen) -> Frames:
+def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> Frames:
     """Return the frames of a trajectory from its first row.
 
     Raises LagtopError where what is given of the attitude does not have the frames.
     """
     if first.quaternion is None:
-        _check(wish, first)
+        _check(alignment, first)
     frames = Frames(
-        rotations.to_z(wish.up),
-        rotations.to_z(wish.axis),
-        float(first.t[0]) if wish.time else 0.0,
+        rotations.to_z(alignment.up),
+        rotations.to_z(alignment.axis),
+        float(first.t[0]) if alignment.time else 0.0,
     )
-    if not (wish.start or wish.hides_frames):
+    if not (alignment.start or alignment.hides_frames):
         return frames
     seen = frames.aligned(first)
     exact = motion.table(seen.t, [*ANGLES, "quaternion"], wrap=True)
-    if wish.start:
+    if alignment.start:
         return _counted_from(frames, seen, {x: float(y[0]) for x, y in exact.items()})
     assert seen.quaternion is not None
     wanted = np.array([exact[f"quaternion_{part}"][0] for part in "wxyz"])
     given = seen.quaternion[0] / np.linalg.norm(seen.quaternion[0])
-    if wish.body:
+    if alignment.body:
         turn = rotations.product(rotations.conjugate(wanted), given)
         return frames._replace(body=rotations.product(turn, frames.body))
     turn = rotations.product(wanted, rotations.conjugate(given))
     return frames._replace(space=rotations.product(turn, frames.space))
 
 
-def _check(wish: Alignment, first: Seen) -> None:
+def _check(alignment: Alignment, first: Seen) -> None:
     lacks_space = first.axis is None and first.space_rates is None
-    if wish.hides_frames or wish.axis != "z" or (wish.up != "z" and lacks_space):
+    if alignment.hides_frames or alignment.axis != "z" or (alignment.up != "z" and lacks_space):
         raise LagtopError("align needs the whole attitude for axis, up, body and space", "align")
 
 

@@ -1,29 +1,50 @@
-"""`compare(top, t, quaternion=...)`: somebody's motion of a top, judged by the exact one."""
+"""The two entry points: `compare` of arrays, and trajectories in files, block by block."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
-from ..errors import LagtopError, check_type
+from ..errors import DataError, LagtopError, check_type
+from ..inputs.files import shown_path, utf8_path
 from ..inputs.seen import Conventions, Quantities
 from ..inputs.top import Top
+from ..inputs.trajectory import Trajectory, open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.over_time.times import times_of
 from ..motion.solve import Motion, solve
-from .alignment import alignment
+from .alignment import Alignment, alignment
 from .convergence import Convergence, check_steps, convergence
-from .judgement import LIMIT, Given, JudgedRun, Judgement, judge
-from .slips import explanation
-from .verdict import verdict
+from .judgement import LIMIT, JudgedRun, Judgement, ReadTrajectory, judge
+from .mistakes import explanation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+FINE, DRIFTS, OFF, ANOTHER, LOST = (
+    "fine",
+    "drifts",
+    "off from the start",
+    "another top",
+    "lost",
+)
+VERDICTS = {
+    FINE: "the error stays below the limit, 1e-3 rad or --max-error",
+    DRIFTS: "it starts right, and the error grows beyond the limit",
+    ANOTHER: "it is beyond the limit and does not fall with the step, or a usual slip explains it",
+    OFF: "the first row is beyond the limit already: another start, or other frames",
+    LOST: "a row is not finite",
+}
+"""The words with their meanings; of several that apply it is the last one."""
+_Watch = Callable[[Iterable[Quantities]], Iterable[Quantities]]
+"""Passes blocks on, and may show how many rows have passed."""
+_OF_THE_FILE = {"t", "angle_rates"}
+"""Arguments that a file gives, so that an error about them is one of its data."""
 
 
 def compare(
@@ -67,10 +88,10 @@ def compare(
     }
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, True).checked()
     block = _quantities(t, {key: x for key, x in arrays.items() if x is not None})
-    given = Given([block], {}, conventions, alignment(align))
+    given = ReadTrajectory([block], {}, conventions, alignment(align))
     check_type("top", top, Top, Motion)
     motion = top if isinstance(top, Motion) else solve(top)
-    (judgement,), _ = settled(motion, [(judge(motion, given), given)], max_error)
+    (judgement,), _ = with_verdicts(motion, [(judge(motion, given), given)], max_error)
     return replace(judgement, step=step)
 
 
@@ -113,16 +134,16 @@ def _shown(array: ArrayLike) -> str:
     return quoted(array)
 
 
-def settled(
+def with_verdicts(
     motion: Motion,
-    cases: Sequence[tuple[JudgedRun, Given]],
+    cases: Sequence[tuple[JudgedRun, ReadTrajectory]],
     limit: float | None = None,
     steps: Sequence[float] | None = None,
 ) -> tuple[list[Judgement], Convergence | None]:
     """Return the judgements of trajectories with their verdicts, and how they converge.
 
-    A slip is looked for where a trajectory is beyond the limit, but not where the error falls with
-    the step: there the top is the right one.  Raises LagtopError for bad steps.
+    A mistake is looked for if a trajectory is beyond the limit, but not if the error falls with the
+    step: then the top is the right one.  Raises LagtopError for bad steps.
     """
     limit = LIMIT if limit is None else limit
     judgements = [run.judgement for run, _ in cases]
@@ -133,18 +154,94 @@ def settled(
         found = convergence(judgements)
         judgements = [replace(x, order=found.order if found else None) for x in judgements]
     judgements = [
-        replace(judgement, **_slip(motion, *case, limit, found))
+        replace(judgement, **_mistake(motion, *case, limit, found))
         for judgement, case in zip(judgements, cases, strict=True)
     ]
-    return [replace(x, verdict=verdict(x, limit, found)) for x in judgements], found
+    return [replace(x, verdict=_verdict(x, limit, found)) for x in judgements], found
 
 
-def _slip(
-    motion: Motion, run: JudgedRun, given: Given, limit: float, found: Convergence | None
+def _mistake(
+    motion: Motion, run: JudgedRun, given: ReadTrajectory, limit: float, found: Convergence | None
 ) -> dict[str, Any]:
-    """Return the keys of the slip that explains a trajectory, if it needs to be explained."""
+    """Return the keys of the mistake that explains a trajectory, if it needs to be explained."""
     error = run.judgement.error_max
     if error is None or (error <= limit if found is None else found.falls):
         return {}
     best = explanation(motion, run, given)
     return {} if best is None else {"explained_by": best.name, "explained_error": best.error}
+
+
+def _verdict(judgement: Judgement, limit: float, found: Convergence | None) -> str:
+    """Return the word for a trajectory, alone or among others with other steps."""
+    beyond = judgement.error_max is not None and judgement.error_max > limit
+    if judgement.lost_at is not None:
+        return LOST
+    if judgement.error_start > limit:
+        return OFF
+    if judgement.explained_by or (beyond and found is not None and not found.falls):
+        return ANOTHER
+    return DRIFTS if beyond else FINE
+
+
+class ComparisonRequest(NamedTuple):
+    """What is asked of trajectories in files."""
+
+    columns: Sequence[str] | None = None
+    """The names of all columns from the left; None for those that the files give."""
+    conventions: Conventions = Conventions()
+    align: Alignment = Alignment()
+    limit: float | None = None
+    steps: Sequence[float] | None = None
+
+
+class Comparison(NamedTuple):
+    """Trajectories that have been judged together."""
+
+    judgements: Sequence[Judgement]
+    convergence: Convergence | None
+
+
+def compare_files(
+    motion: Motion,
+    paths: Sequence[str],
+    request: ComparisonRequest,
+    watch: _Watch = iter,
+) -> Comparison:
+    """Return the judgements of the trajectories in files, and how they converge.
+
+    Raises LagtopError for a bad request, DataError for a file that cannot be read or is bad.
+    """
+    if paths.count("-") > 1:
+        raise LagtopError("standard input can be read once, got - twice")
+    if request.steps is not None:
+        check_steps(request.steps, len(paths))
+    cases = [_judged(motion, path, request, watch) for path in paths]
+    judgements, found = with_verdicts(motion, cases, request.limit, request.steps)
+    return Comparison(judgements, found)
+
+
+def _judged(
+    motion: Motion,
+    path: str,
+    request: ComparisonRequest,
+    watch: _Watch,
+) -> tuple[JudgedRun, ReadTrajectory]:
+    with open_trajectory(path, request.columns) as trajectory:
+        said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
+        given = ReadTrajectory(watch(_blocks(trajectory)), said, request.conventions, request.align)
+        try:
+            run = judge(motion, given)
+        except DataError:
+            raise
+        except LagtopError as error:
+            if error.key not in {None, *_OF_THE_FILE}:
+                raise
+            kind = DataError if error.key in _OF_THE_FILE else LagtopError
+            raise kind(f"{shown_path(path)}: {error}") from None
+    named = replace(run.judgement, file=utf8_path(path))
+    return run._replace(judgement=named), given
+
+
+def _blocks(trajectory: Trajectory) -> Iterator[Quantities]:
+    for block, _ in trajectory.blocks():
+        yield block

@@ -17,7 +17,7 @@ from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, 
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
 from .deviations import Deviations
-from .tally import Extremes, Fit, Kept, Passages
+from .tally import Extremes, Kept, LineFit, Passages
 
 LIMIT = 1e-3
 """The error in radians (rad) up to which a trajectory is fine, unless told otherwise."""
@@ -35,7 +35,7 @@ PROVED, DISPROVED = 1e-6, 1e-3
 """Errors at the first row by which one order of a quaternion is right and the other is wrong."""
 
 
-def key(meaning: str, default: Any = None) -> Any:
+def _field(meaning: str, default: Any = None) -> Any:
     """Return the field of a key of the record, with its meaning."""
     return field(default=default, metadata={"meaning": meaning})
 
@@ -44,48 +44,52 @@ def key(meaning: str, default: Any = None) -> Any:
 class Judgement:
     """What is said of one trajectory; angles are in radians, and what cannot be told is None."""
 
-    file: str | None = key("the file, `-` for standard input")
-    step: float | None = key("its step, by --steps")
-    verdict: str = key("the verdict, in a word", "fine")
-    rows: int = key("the number of rows", 0)
-    judged: str = key("what the error is of: attitude, axis, angles or rates", "")
-    error_max: float | None = key(
+    file: str | None = _field("the file, `-` for standard input")
+    step: float | None = _field("its step, by --steps")
+    verdict: str = _field("the verdict, in a word", "fine")
+    rows: int = _field("the number of rows", 0)
+    judged: str = _field("what the error is of: attitude, axis, angles or rates", "")
+    error_max: float | None = _field(
         "greatest error: of the attitude, or of what is given of it "
         "(of an angular velocity over the size of the rates)"
     )
-    attitude_error_max: float | None = key("greatest angle between the given and exact attitude")
-    attitude_error_final: float | None = key("the angle at the last row")
-    axis_error_max: float | None = key("greatest angle between the figure axes")
-    theta_error_max: float | None = key("greatest difference of the tilt")
-    theta_error_final: float | None = key("its size at the last row")
-    phi_error_max: float | None = key("greatest difference of the spin, in (-pi, pi]")
-    phi_error_final: float | None = key("its size at the last row")
-    psi_error_max: float | None = key("greatest difference of the precession, in (-pi, pi]")
-    psi_error_final: float | None = key("its size at the last row")
-    rate_error_max: float | None = key("greatest difference of the angular velocity, rad/time")
-    rate_error_final: float | None = key("its size at the last row")
-    theta_drift: float | None = key("growth of the tilt's difference per period, fitted")
-    phi_drift: float | None = key("growth of the spin's difference per period, fitted")
-    psi_drift: float | None = key("growth of the precession's difference per period, fitted")
-    theta_rest: float | None = key("what does not grow: root mean square about the fitted line")
-    phi_rest: float | None = key("the like for the spin")
-    psi_rest: float | None = key("the like for the precession")
-    period: float | None = key("the period: that of the nutation, or else of the spin, or else 1")
-    norm_drift: float | None = key(
+    attitude_error_max: float | None = _field("greatest angle between the given and exact attitude")
+    attitude_error_final: float | None = _field("the angle at the last row")
+    axis_error_max: float | None = _field("greatest angle between the figure axes")
+    theta_error_max: float | None = _field("greatest difference of the tilt")
+    theta_error_final: float | None = _field("its size at the last row")
+    phi_error_max: float | None = _field("greatest difference of the spin, in (-pi, pi]")
+    phi_error_final: float | None = _field("its size at the last row")
+    psi_error_max: float | None = _field("greatest difference of the precession, in (-pi, pi]")
+    psi_error_final: float | None = _field("its size at the last row")
+    rate_error_max: float | None = _field("greatest difference of the angular velocity, rad/time")
+    rate_error_final: float | None = _field("its size at the last row")
+    theta_drift: float | None = _field("growth of the tilt's difference per period, fitted")
+    phi_drift: float | None = _field("growth of the spin's difference per period, fitted")
+    psi_drift: float | None = _field("growth of the precession's difference per period, fitted")
+    theta_rest: float | None = _field("what does not grow: root mean square about the fitted line")
+    phi_rest: float | None = _field("the like for the spin")
+    psi_rest: float | None = _field("the like for the precession")
+    period: float | None = _field(
+        "the period: that of the nutation, or else of the spin, or else 1"
+    )
+    norm_drift: float | None = _field(
         "greatest distance from 1: of the norm of a quaternion or axis, of R R^T, of the "
         "mass centre's distance over s"
     )
-    energy_drift: float | None = key("greatest change of energy, over its size at the start")
-    Lz_drift: float | None = key("greatest change of the vertical angular momentum, likewise")
-    t_past_1e_6: float | None = key("first time at which the error is beyond 1e-6 rad")
-    t_past_1e_3: float | None = key("beyond 1e-3 rad")
-    t_past_0_1: float | None = key("beyond 0.1 rad")
-    t_past_1: float | None = key("beyond 1 rad")
-    lost_at: float | None = key("time of the first row that is not finite")
-    quaternion_order: str | None = key("order of the quaternion, where the first row has proved it")
-    order: float | None = key("order of convergence of all files, by --steps")
-    explained_by: str | None = key("the slip that explains the error best")
-    explained_error: float | None = key("greatest error that is left if that slip is undone")
+    energy_drift: float | None = _field("greatest change of energy, over its size at the start")
+    Lz_drift: float | None = _field("greatest change of the vertical angular momentum, likewise")
+    t_past_1e_6: float | None = _field("first time at which the error is beyond 1e-6 rad")
+    t_past_1e_3: float | None = _field("beyond 1e-3 rad")
+    t_past_0_1: float | None = _field("beyond 0.1 rad")
+    t_past_1: float | None = _field("beyond 1 rad")
+    lost_at: float | None = _field("time of the first row that is not finite")
+    quaternion_order: str | None = _field(
+        "order of the quaternion, where the first row has proved it"
+    )
+    order: float | None = _field("order of convergence of all files, by --steps")
+    explained_by: str | None = _field("the slip that explains the error best")
+    explained_error: float | None = _field("greatest error that is left if that slip is undone")
 
     error_start: float = field(default=math.nan, compare=False)
     """Error at the first row."""
@@ -96,13 +100,13 @@ class Judgement:
 
     def record(self) -> dict[str, Any]:
         """Return the judgement by key."""
-        return {name: getattr(self, name) for name in KEYS}
+        return {name: getattr(self, name) for name in JUDGEMENT_KEYS}
 
     def __repr__(self) -> str:
         return f"<Judgement: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"
 
 
-KEYS: dict[str, str] = {
+JUDGEMENT_KEYS: dict[str, str] = {
     x.name: x.metadata["meaning"] for x in fields(Judgement) if "meaning" in x.metadata
 }
 """The keys of a record with their meanings."""
@@ -118,13 +122,13 @@ class JudgedRun(NamedTuple):
     """Conventions by which it was read."""
 
 
-class Given(NamedTuple):
+class ReadTrajectory(NamedTuple):
     """A trajectory as it is given: blocks of quantities, and how they are meant."""
 
     blocks: Iterable[Quantities]
     said: Said
     conventions: Conventions
-    wish: Alignment
+    alignment: Alignment
     change: Callable[[Seen], Seen] | None = None
     """What is done to it before it is brought to our frames."""
 
@@ -134,7 +138,7 @@ class Given(NamedTuple):
         return seen if self.change is None else self.change(seen)
 
 
-def judge(motion: Motion, given: Given) -> JudgedRun:
+def judge(motion: Motion, given: ReadTrajectory) -> JudgedRun:
     """Return what a trajectory is like, but for its verdict.
 
     Raises LagtopError for one without rows, and where nothing tells the order of a quaternion.
@@ -152,11 +156,11 @@ def judge(motion: Motion, given: Given) -> JudgedRun:
         return JudgedRun(tally.judgement(), tally.kept_rows(), tally.given.conventions)
 
 
-def errors_of(motion: Motion, given: Given) -> Array:
+def errors_of(motion: Motion, given: ReadTrajectory) -> Array:
     """Return the errors of a trajectory in one block against some other motion."""
     (block,) = given.blocks
     with ARRAYS.working():
-        frames = frames_of(given.wish, motion, given.see(_first_row(block)))
+        frames = frames_of(given.alignment, motion, given.see(_first_row(block)))
         return Deviations(motion).of(frames.aligned(given.see(block)))["error"]
 
 
@@ -170,7 +174,7 @@ def _first_row(block: Quantities) -> dict[str, Array]:
 class _Tally:
     """What is known of a trajectory so far."""
 
-    def __init__(self, motion: Motion, given: Given, first: Mapping[str, Array]) -> None:
+    def __init__(self, motion: Motion, given: ReadTrajectory, first: Mapping[str, Array]) -> None:
         self.motion, self.proved = motion, None
         said_order = given.said.get("quaternion", ("", None))[0] or given.conventions.quaternion
         if "quaternion" in first and not said_order:
@@ -178,10 +182,10 @@ class _Tally:
             proved = given.conventions._replace(quaternion=self.proved)
             given = given._replace(conventions=proved)
         self.given = given
-        self.frames = frames_of(given.wish, motion, given.see(first))
+        self.frames = frames_of(given.alignment, motion, given.see(first))
         self.deviations = Deviations(motion)
         self.extremes: dict[str, Extremes] = {}
-        self.fits = {name: Fit() for name in ANGLES}
+        self.fits = {name: LineFit() for name in ANGLES}
         self.passages, self.kept = Passages(tuple(PASSED.values())), Kept()
         self.rows, self.start = 0, math.nan
         self.lost_at: float | None = None
@@ -244,7 +248,7 @@ class _Tally:
         return self.extremes.get(name) or Extremes()
 
 
-def _proved_order(motion: Motion, given: Given, first: Mapping[str, Array]) -> str:
+def _proved_order(motion: Motion, given: ReadTrajectory, first: Mapping[str, Array]) -> str:
     """Return the order of a quaternion by which the first row is right, where only one is.
 
     Raises LagtopError where it is not.

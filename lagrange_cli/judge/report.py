@@ -9,10 +9,9 @@ from ..inputs.names import ANGLES
 from ..motion.solve import Motion
 from ..output.findings import Field, Findings, short
 from ..output.terminal import one_line
+from .compare import ANOTHER, DRIFTS, FINE, LOST, OFF, Comparison, ComparisonRequest
 from .convergence import LEAST_ORDER
-from .files import Comparison, Request
-from .judgement import KEYS, LIMIT, Judgement
-from .verdict import ANOTHER, DRIFTS, FINE, LOST, OFF
+from .judgement import JUDGEMENT_KEYS, LIMIT, Judgement
 
 _SHOWN: dict[str, tuple[str, Callable[[Any], str]]] = {
     "file": ("file", one_line),
@@ -35,23 +34,25 @@ _SHOWN: dict[str, tuple[str, Callable[[Any], str]]] = {
 }
 """The columns of the table: their headings and how they are shown."""
 _TEXTS = {"file", "verdict", "judged", "explained_by", "quaternion_order"}
-FIELDS = [
+_FIELDS = [
     Field(
         key,
         *_SHOWN.get(key, ("", str)),
         is_text=key in _TEXTS,
         names_the_row=key == "file",
     )
-    for key in KEYS
+    for key in JUDGEMENT_KEYS
 ]
 
 
-def comparison_report(motion: Motion, comparison: Comparison, request: Request) -> Findings:
+def comparison_report(
+    motion: Motion, comparison: Comparison, request: ComparisonRequest
+) -> Findings:
     """Return the report on trajectories."""
     shown = {
         key for key in _SHOWN if any(getattr(x, key) is not None for x in comparison.judgements)
     }
-    fields = [field if field.key in shown else field._replace(heading="") for field in FIELDS]
+    fields = [field if field.key in shown else field._replace(heading="") for field in _FIELDS]
     conclusions = list(_conclusions(comparison))
     return Findings(
         _conditions(motion, comparison, request), fields, comparison.judgements, conclusions
@@ -65,7 +66,9 @@ def failures(findings: Findings) -> list[str]:
     ]
 
 
-def _conditions(motion: Motion, comparison: Comparison, request: Request) -> dict[str, str]:
+def _conditions(
+    motion: Motion, comparison: Comparison, request: ComparisonRequest
+) -> dict[str, str]:
     period = comparison.judgements[0].period
     conditions = {
         "scene": motion.top.options(),
@@ -116,8 +119,12 @@ def _sentence(judgement: Judgement) -> str:
 
 
 def _drift(judgement: Judgement) -> str:
-    drifts = {key: getattr(judgement, f"{key}_drift") for key in ANGLES}
+    seen = [key for key in ANGLES if getattr(judgement, f"{key}_error_max") is not None]
+    drifts = {key: getattr(judgement, f"{key}_drift") for key in seen}
     known = {key: x for key, x in drifts.items() if x is not None}
+    if judgement.rows > 2 and len(known) < len(seen):
+        uncounted = " and ".join(key for key in seen if key not in known)
+        return f"; rows are too far apart to count whole turns of {uncounted}"
     if not known:
         return ""
     worst = max(known, key=lambda key: abs(known[key]))

@@ -30,7 +30,7 @@ class Extremes:
             self.last = float(known[-1])
 
 
-class Line(NamedTuple):
+class FittedLine(NamedTuple):
     """A straight line through the deviations of an angle."""
 
     slope: float
@@ -39,7 +39,7 @@ class Line(NamedTuple):
     """Root mean square of what is left."""
 
 
-class Fit:
+class LineFit:
     """A straight line through an angle's deviations, unwrapped, by least squares."""
 
     def __init__(self) -> None:
@@ -69,12 +69,12 @@ class Fit:
         self.x += step_x * n / whole
         self.count = whole
 
-    def line(self) -> Line | None:
+    def line(self) -> FittedLine | None:
         """Return the line, or None for less than three rows or if whole turns are not sure."""
         if self.count < 3 or not self.turns_are_sure:
             return None
         slope = self.tx / self.tt
-        return Line(slope, math.sqrt(max(self.xx - slope * self.tx, 0.0) / self.count))
+        return FittedLine(slope, math.sqrt(max(self.xx - slope * self.tx, 0.0) / self.count))
 
 
 class Passages:

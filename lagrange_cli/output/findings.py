@@ -42,7 +42,7 @@ class Findings(NamedTuple):
         return [{field.key: getattr(row, field.key) for field in self.fields} for row in self.rows]
 
     def as_json(self) -> bytes:
-        """Return one JSON object, in which infinite numbers are null."""
+        """Return one JSON object on one line, in which infinite numbers are null."""
         whole: dict[str, Any] = {
             "conditions": self.conditions,
             "rows": self.values(),
@@ -50,7 +50,7 @@ class Findings(NamedTuple):
         }
         if self.units:
             whole["units"] = self.units
-        return orjson.dumps(whole, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE)
+        return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
 
 def with_unit(text: str, unit: str | None) -> str:

@@ -149,16 +149,15 @@ class Json(Format):
         return json_objects(columns, names, b",\n")
 
     def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return the objects, with commas between, as orjson would write them."""
-        keys = [f'"{name}":' for name in names]
-        members = (
-            [key + (cell or "null") for key, cell in zip(keys, row, strict=True)] for row in rows
+        """Return the objects, with commas between."""
+        objects = (
+            _object(zip(names, (cell or "null" for cell in row), strict=True)) for row in rows
         )
-        return b",\n".join(f"{{{','.join(one)}}}".encode() for one in members)
+        return ",\n".join(objects).encode()
 
     def record(self, record: Mapping[str, Any], layout: Callable[[], Layout], view: View) -> bytes:
         """Return one object on one line."""
-        return _object((key, _json_value(value)) for key, value in record.items()) + b"\n"
+        return f"{_json_value(record)}\n".encode()
 
     def findings(self, findings: Findings, view: View) -> bytes:
         """Return one object."""
@@ -252,14 +251,15 @@ FORMATS: dict[str, Format] = {
 """The formats by name."""
 
 
-def _object(members: Iterable[tuple[str, str]]) -> bytes:
-    inside = ", ".join(f'"{name}": {text}' for name, text in members)
-    return f"{{{inside}}}".encode()
+def _object(members: Iterable[tuple[str, str]]) -> str:
+    """Return a JSON object of values that are written out, as orjson would write it."""
+    inside = ",".join([f'"{name}":{text}' for name, text in members])
+    return f"{{{inside}}}"
 
 
 def _json_value(value: Any) -> str:
-    if isinstance(value, dict):  # of words
-        return _object((key, _json_value(x)) for key, x in value.items()).decode()
+    if isinstance(value, Mapping):
+        return _object((key, _json_value(x)) for key, x in value.items())
     if type(value) is str:  # our only strings are plain words
         return f'"{value}"'
     return value_text(value) or "null"

@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.doubles import DOUBLES
 from ..arithmetic.numbers import Number
+from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.complete import complete_k

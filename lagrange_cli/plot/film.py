@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from PIL import Image
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
@@ -28,19 +32,21 @@ from .sphere import axis_path
 from .style import points, scale, styled
 
 COLOURS = 64
-"""Colours of a GIF; all of them are in the frame at its middle."""
+"""Colours of a GIF; they are chosen for the frame at its middle, which has all."""
 
 
 class SmallGifWriter(PillowWriter):
     """A writer of GIFs whose frames share their colours, which makes them a fifth as large."""
 
+    fig: Any
     _frames: list[Any]
+    colours: Image.Image
+    """A frame with the colours of all."""
 
-    def finish(self) -> None:
-        """Write the file."""
-        shared = self._frames[len(self._frames) // 2].quantize(COLOURS)
-        self._frames = [frame.quantize(palette=shared, dither=0) for frame in self._frames]
-        super().finish()
+    def grab_frame(self, **_: Any) -> None:
+        """Keep a frame, a byte per pixel."""
+        frame = self.fig.frame(self.dpi)
+        self._frames.append(frame.quantize(palette=self.colours, dither=0))
 
 
 HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
@@ -57,6 +63,9 @@ ALIASED = math.pi / 3
 """The lid repeats after 120 degrees: faster than half of it per frame, its spin cannot be seen."""
 FOOT = 0.16
 """Height below the globe, in its radii, for the line that tells how time is shown."""
+BACKGROUND, BEHIND, BODY, FAR, RIM, NEAR, BEFORE = 2.0, 2.1, 2.2, 2.3, 2.5, 3.0, 4.0
+"""Layers: the globe as far as the top hides it, the axle on its far side, the top, the trace on the
+far side, the rim, the trace on the near side, and the axle there."""
 USUAL_SIZE = 4.8, 5.0
 """Width and height in inches."""
 
@@ -151,6 +160,9 @@ def film_bytes(
         film = Film(page, pace)
         path = Path(folder) / f"film{suffix}"
         with writer.saving(film.figure, str(path), dpi):
+            if isinstance(writer, SmallGifWriter):
+                film.show(pace.frames // 2)
+                writer.colours = film.figure.frame(dpi).quantize(COLOURS)
             for frames in progress((range(i, i + 1) for i in range(pace.frames)), pace.frames):
                 for i in frames:
                     film.show(i)
@@ -161,6 +173,49 @@ def film_bytes(
 def film_span(motion: Motion) -> float:
     """Return the time of a turn of the precession, at most six nutations: more would flicker."""
     return min(turn_span(motion), span(motion, 6))
+
+
+class Frames(Figure):
+    """A figure whose frames are drawn between a background and a foreground that stand still."""
+
+    moving: Sequence[Artist]
+    """The artists of each frame, from the back to the front."""
+    front: Sequence[Artist]
+    """The artists that stand still before them."""
+    _still: Any = None
+
+    def frame(self, dpi: float) -> Image.Image:
+        """Return the pixels of a frame; what stands still is drawn for the first one."""
+        if self._still is None:
+            self._still = self._drawn_once(dpi)
+        canvas, background, (place, foreground) = self._still
+        canvas.restore_region(background)
+        for artist in self.moving:
+            artist.draw(canvas.get_renderer())
+        shown = canvas.buffer_rgba()
+        pixels = Image.frombuffer("RGBA", shown.shape[1::-1], shown, "raw", "RGBA", 0, 1)
+        frame = pixels.convert("RGB")
+        frame.paste(foreground, place, foreground)
+        return frame
+
+    def _drawn_once(self, dpi: float) -> tuple[Any, Any, tuple[Any, Image.Image]]:
+        """Return a canvas, the pixels of the background, and the foreground with its place."""
+        self.dpi = dpi
+        for artist in (*self.moving, *self.front):
+            artist.set_animated(True)
+        canvas: Any = FigureCanvasAgg(self)
+        canvas.draw()
+        background = canvas.copy_from_bbox(self.bbox)
+        canvas.get_renderer().clear()
+        for artist in self.front:
+            artist.draw(canvas.get_renderer())
+        foreground = Image.fromarray(np.array(canvas.buffer_rgba()))
+        place = foreground.getbbox() or (0, 0, 1, 1)
+        return canvas, background, (place, foreground.crop(place))
+
+    def savefig(self, file: Any, *, dpi: Any, **_: Any) -> None:  # type: ignore[override]
+        """Write the pixels of a frame, which is all that a writer of films asks for."""
+        file.write(self.frame(dpi).convert("RGBA").tobytes())
 
 
 class Face(NamedTuple):
@@ -211,28 +266,32 @@ class Film:
 
     def __init__(self, page: Page, pace: Pace) -> None:
         motion, look, request = page.motion, page.look, page.request
-        self.figure, self.look = Figure(figsize=page.size or USUAL_SIZE), look
+        self.figure, self.look = Frames(figsize=page.size or USUAL_SIZE), look
         self.path = axis_path(motion, pace.t_max)
         self.times = np.linspace(0.0, pace.t_max, pace.frames)
         columns = motion.table(self.times, ["quaternion"])
         self.attitude = np.stack([*columns.values()], axis=1)
         self.turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
         self.camera = camera_at(*request.camera) if request.camera else side_camera(self.path.axis)
+        self.trace = self.camera.project(self.path.axis), self.camera.faces(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
         limits = Limits(self.path.least, self.path.greatest)
         draw_globe(self.axes, self.camera, limits, request, look)
         low, high = self.axes.get_ylim()
         self.axes.set_ylim(low - FOOT, high)
-        self.body = PolyCollection([], zorder=2, linewidths=0.3)
+        self.body = PolyCollection([], zorder=BODY, linewidths=0.3, edgecolors="face")
         self.axes.add_collection(self.body)
-        (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=2.5)
-        (self.far,) = self.axes.plot([], [], color=scale(look)(0.35), lw=1.2, alpha=0.45)
-        (self.near,) = self.axes.plot([], [], color=scale(look)(0.35), lw=2.2, zorder=3)
+        past = scale(look)(0.35)
+        (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=RIM)
+        (self.far,) = self.axes.plot([], [], color=past, lw=1.2, alpha=0.45, zorder=FAR)
+        (self.near,) = self.axes.plot([], [], color=past, lw=2.2, zorder=NEAR)
         (self.axle,) = self.axes.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
         self.clock = self.axes.text(0.03, 0.95, "", transform=self.axes.transAxes)
-        self.axes.text(
-            0.03, 0.02, self._time_scale(pace), size="small", transform=self.axes.transAxes
-        )
+        place: dict[str, Any] = {"transform": self.axes.transAxes, "zorder": 0}
+        self.axes.text(0.03, 0.02, self._time_scale(pace), size="small", **place)
+        self.moving = self.body, self.axle, self.far, self.rim, self.near, self.clock
+        others = {*self.axes.lines, *self.axes.texts}.difference(self.moving)
+        self.figure.front = [x for x in others if x.get_zorder() > BACKGROUND]
 
     def _time_scale(self, pace: Pace) -> str:
         """Return how time and spin are shown, for the foot of the picture."""
@@ -244,22 +303,20 @@ class Film:
         top = cone_at(self.attitude[i], self.camera)
         white, blue, red = self.look.paper, *self.look.lines[:2]
         colours = [white if face.light else blue if face.on_lid else red for face in top.faces]
-        self.body.set(
-            verts=[face.corners for face in top.faces], facecolors=colours, edgecolors=colours
-        )
+        self.body.set(verts=[face.corners for face in top.faces], facecolors=colours)
         self.rim.set_data(*top.rim)
         self.axle.set_data(*top.axle)
-        self.axle.set_zorder(4 if top.lid_in_sight else 1.5)
+        self.axle.set_zorder(BEFORE if top.lid_in_sight else BEHIND)
         passed = int(np.searchsorted(self.path.t, self.times[i], side="right"))
-        self._trace(self.path.axis[:passed])
+        self._trace(passed)
         self.clock.set_text(f"t = {self.times[i]:.4g}")
+        self.figure.moving = sorted(self.moving, key=Artist.get_zorder)
 
-    def _trace(self, axis: Array) -> None:
+    def _trace(self, passed: int) -> None:
         """Draw the path of the axis so far, paler on the far side."""
-        x, y = self.camera.project(axis)
-        near = self.camera.faces(axis)
+        (x, y), near = (z[:passed] for z in self.trace[0]), self.trace[1][:passed]
         for line, side in ((self.near, True), (self.far, False)):
-            shown = np.full((axis.shape[0], 2), np.nan)
+            shown = np.full((passed, 2), np.nan)
             for part, on_near in runs(near):
                 if on_near is side:
                     shown[part] = np.stack([x[part], y[part]], axis=1)

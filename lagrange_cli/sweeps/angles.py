@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import BLOCK, blocks
+from ..arithmetic.blocks import BLOCK, blocks, workspace
 from ..arithmetic.types import Array, Mask
-from ..arithmetic.workspace import workspace
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.top import Top

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.real_arrays import doubles_of
+from ..arithmetic.arrays import ARRAYS, doubles_of
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.input_keys import from_example, one_of_each, overridden, warn_of

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..arithmetic.arrays import ARRAYS, PAIRS
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.formulas import polynomial
+from ..arithmetic.numbers import polynomial
 from ..arithmetic.types import Array, Mask
 from ..motion.gaps import Gaps, State, gaps_from_start
 from ..motion.kinds import Nutating

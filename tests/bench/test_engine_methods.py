@@ -14,15 +14,19 @@ import pytest
 from conftest import ROOT, Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, compare, solve
-from lagrange_cli.bench import long_spans
+from lagrange_cli.bench import compare_methods
 from lagrange_cli.bench import method as methods
-from lagrange_cli.bench import work_precision as bench
 from lagrange_cli.bench.engines import process
-from lagrange_cli.bench.engines.body import scaled_body
-from lagrange_cli.bench.engines.families import FAMILIES, IMPORTS, engines
-from lagrange_cli.bench.engines.process import engine_attitudes, engine_sample
+from lagrange_cli.bench.engines.process import (
+    FAMILIES,
+    IMPORTS,
+    engine_attitudes,
+    engine_sample,
+    engines,
+)
+from lagrange_cli.bench.engines.scaled_body import scaled_body
+from lagrange_cli.bench.measure import chosen_methods, measure, task
 from lagrange_cli.bench.method import FailedError, NotApplicableError
-from lagrange_cli.bench.work_precision import measure, task
 from lagrange_cli.judge.convergence import convergence
 from lagrange_cli.judge.judgement import Judgement
 
@@ -175,13 +179,13 @@ def test_steps_of_a_gap_that_rounding_makes_longer() -> None:
 def test_groups_stand_for_their_methods(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(methods, "find_spec", lambda _: True)  # as if all engines were installed
     names = list(engines(1))
-    assert list(bench.chosen_methods(["engines"], 1)) == names
-    assert list(bench.chosen_methods(["pybullet", "mujoco"], 1)) == [
+    assert list(chosen_methods(["engines"], 1)) == names
+    assert list(chosen_methods(["pybullet", "mujoco"], 1)) == [
         *("pybullet", "mujoco-euler", "mujoco-rk4")
     ]
-    assert not set(names) & set(bench.chosen_methods(None, 1))
+    assert not set(names) & set(chosen_methods(None, 1))
     with pytest.raises(LagtopError, match=r"got 'bullet' \(did you mean 'pybullet'"):
-        bench.chosen_methods(["bullet"], 1)
+        chosen_methods(["bullet"], 1)
 
 
 def test_the_extra_installs_every_engine() -> None:
@@ -209,7 +213,7 @@ def test_missing_engines_are_named_over_long_spans_too(
     lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(methods, "find_spec", lambda _: None)
-    monkeypatch.setattr(long_spans, "SPANS", [1.3, 2.3])
+    monkeypatch.setattr(compare_methods, "SPANS", [1.3, 2.3])
     words = ["--long", "--methods", "lagtop,pybullet", "--n", 5, "--format", "json"]
     said = json.loads(lagtop("bench", *words).stdout)["conclusions"]
     needs = "not applicable: needs pybullet: pip install pybullet"

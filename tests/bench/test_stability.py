@@ -34,7 +34,7 @@ from lagrange_cli.output.findings import Findings
 def test_stratum(stratum: str) -> None:
     """A part of the battery; its worst cases, over 200 scenes a stratum, are the bounds here."""
     for i in range(3):
-        case = battery.judge(hard_scene(stratum, 0, i, 2), peers=False)
+        case = battery.judged_case(hard_scene(stratum, 0, i, 2), peers=False)
         assert case.angle_units <= 2.7, case
         assert case.quaternion_units <= 2.7, case
         assert case.key_ulps <= 0.5, case
@@ -112,7 +112,7 @@ def test_the_seed_and_the_samples_reach_the_battery(
 
     def no_battery(*how: Any, certify: bool) -> Findings:
         asked.append((*how[:3], certify))
-        return Findings({}, stability.FIELDS, [], ["nothing"])
+        return Findings({}, stability.STRATUM_FIELDS, [], ["nothing"])
 
     monkeypatch.setattr(stability, "run_battery", no_battery)
     for line in ("--seed 7 --samples 3", "--thorough", "--certify"):
@@ -132,7 +132,7 @@ def near(inputs: dict[str, float]) -> HardScene:
 @pytest.mark.slow
 @pytest.mark.parametrize("stratum", ["bottom pass", "units", "fast"])
 def test_command_line_of_an_angle_shows_it(stratum: str, lagtop: Lagtop) -> None:
-    case = battery.judge(near(hard_scene(stratum, 5, 0, 2).inputs), peers=False)
+    case = battery.judged_case(near(hard_scene(stratum, 5, 0, 2).inputs), peers=False)
     case = replace(case, key_ulps=0.0, quaternion_units=0.0)
     words = shlex.split(case.command(), comments=True)
     assert words[:2] == ["lagtop", "bench"]
@@ -141,14 +141,14 @@ def test_command_line_of_an_angle_shows_it(stratum: str, lagtop: Lagtop) -> None
 
 
 def test_command_line_of_a_key_shows_it(lagtop: Lagtop) -> None:
-    case = battery.judge(near(hard_scene("generic", 5, 0, 1).inputs), peers=False)
+    case = battery.judged_case(near(hard_scene("generic", 5, 0, 1).inputs), peers=False)
     words = shlex.split(replace(case, key_ulps=9.0).command(), comments=True)
     record = json.loads(lagtop(*words[1:]).stdout)
     assert record[case.worst_key] == getattr(solve(case.top), case.worst_key)
 
 
 def test_command_line_of_a_quaternion_shows_it(lagtop: Lagtop) -> None:
-    case = battery.judge(near(hard_scene("generic", 5, 0, 1).inputs), peers=False)
+    case = battery.judged_case(near(hard_scene("generic", 5, 0, 1).inputs), peers=False)
     words = shlex.split(replace(case, quaternion_units=9.0).command())
     header, values = lagtop(*words[1:], "--format", "csv").stdout.splitlines()
     assert header == "t,quaternion_w,quaternion_x,quaternion_y,quaternion_z"
@@ -187,9 +187,9 @@ def test_every_key_is_there_to_be_bent() -> None:
 @pytest.mark.parametrize("key", NUMBER_KEYS)
 def test_a_key_wrong_by_1e_15_is_seen(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = MOVING if key == "precession_rate_start" else RELEASED
-    assert battery.judge(scene, peers=False).excess <= 1
+    assert battery.judged_case(scene, peers=False).excess <= 1
     bend(monkeypatch, key, lambda value: value * (1 + 1e-15))
-    case = battery.judge(scene, peers=False)
+    case = battery.judged_case(scene, peers=False)
     assert case.excess > 1
     assert case.worst_key == key
 
@@ -198,9 +198,9 @@ def test_a_key_wrong_by_1e_15_is_seen(key: str, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize("key", ["a", "u_quarter", "amplitude_deg"])
 def test_a_missing_or_a_needless_key_is_seen(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     bend(monkeypatch, key, lambda _: None)
-    assert battery.judge(RELEASED, peers=False).worst_key == key
+    assert battery.judged_case(RELEASED, peers=False).worst_key == key
     bend(monkeypatch, "alpha", lambda _: 1.0)
-    assert battery.judge(MOVING, peers=False).worst_key == "alpha"
+    assert battery.judged_case(MOVING, peers=False).worst_key == "alpha"
 
 
 @pytest.mark.parametrize("angle", ["phi", "psi"])
@@ -213,7 +213,7 @@ def test_an_angle_wrong_by_a_turn_is_seen(angle: str, monkeypatch: pytest.Monkey
         return with_a_turn
 
     bend(monkeypatch, "angles", turned)
-    case = battery.judge(RELEASED, peers=False)
+    case = battery.judged_case(RELEASED, peers=False)
     assert getattr(case, f"{angle}_units") > 1e13
 
 
@@ -223,7 +223,7 @@ def test_a_quaternion_with_the_other_sign_is_seen(monkeypatch: pytest.MonkeyPatc
         return header, (-block if "quaternion" in columns else block for block in blocks)
 
     monkeypatch.setattr(battery, "rows", other_sign)
-    case = battery.judge(RELEASED, peers=False)
+    case = battery.judged_case(RELEASED, peers=False)
     assert case.quaternion_units > 1e13
     assert case.command().startswith("lagtop table ")
 
@@ -267,7 +267,7 @@ def test_without_scipy(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_failures_of_others_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(battery, "INTEGRATOR_SECONDS", 1e-6)
-    assert battery.judge(RELEASED).integrated == math.inf
+    assert battery.judged_case(RELEASED).integrated == math.inf
     assert stability.worst_and_failed([1.0, 3.0, math.inf, math.inf]) == (3.0, 2)
     assert stability.worst_and_failed([math.inf]) == (None, 1)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from lagrange_cli.cli.given import is_scene
+from lagrange_cli.cli.top_options import is_scene
 
 
 @pytest.mark.parametrize("word", ["-", "top.toml", "folder/scene", "./scene", "x.txt", "a.b/c"])

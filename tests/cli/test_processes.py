@@ -12,52 +12,48 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.shell_completion import ShellComplete
-from conftest import LAGTOP, process
+from conftest import LAGTOP, forked, process
 
 from lagrange_cli.cli.group import main
 
 HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotlib", "orjson"}
 
 
-def loaded(*args: str) -> set[str]:
-    """Return the top-level modules that a command imports."""
-    command = [sys.executable, "-X", "importtime", "-m", "lagrange_cli", *args]
-    listing = subprocess.run(command, capture_output=True, check=True).stderr.decode()
-    names = (line.rpartition("|")[2].strip() for line in listing.splitlines() if "|" in line)
-    return {name.partition(".")[0] for name in names}
+LOADED = {
+    "solve --format json": set(),
+    "solve --format csv --rad --theta0 1": set(),
+    "--help": set(),
+    "table --help": set(),
+    "plot --help": set(),
+    "view -o -": set(),
+    "solve": {"rich"},
+    "table": {"numpy", "orjson"},
+    "table --r0 0 --format json": {"numpy", "orjson"},
+    "solve --get T_nutation": set(),
+    "sweep --help": set(),
+    "compare --help": set(),
+    "find --help": set(),
+    "fit --help": set(),
+    "sweep --r0 1:2:3": {"numpy", "orjson"},
+    "jacobi --k 0.8 --format json": set(),
+    "jacobi --k-prime 1e-9": {"rich"},
+    "jacobi --nome 0.1 --format csv": set(),
+    "jacobi --k 0.8 --u K/2 --u K/3 --format csv": set(),
+    "jacobi --k 0.8 --u 0.5 --zeta --pi --param 0.7i --format json": set(),
+    "jacobi --k 0.8 --u 0.5 --theta --omega --param 0.7": {"rich"},
+    "jacobi --k 0.8 --phi 30 --phi 60 --format csv": set(),
+    "jacobi --k 0.8 --u-range 0:1:99 --format csv": {"numpy", "orjson"},
+    "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json": set(),
+}
+"""Command lines, and the heavy packages that each needs."""
 
 
-@pytest.mark.parametrize(
-    ("line", "allowed"),
-    [
-        ("solve --format json", set()),
-        ("solve --format csv --rad --theta0 1", set()),
-        ("--help", set()),
-        ("table --help", set()),
-        ("plot --help", set()),
-        ("view -o -", set()),
-        ("solve", {"rich"}),
-        ("table", {"numpy", "orjson"}),
-        ("table --r0 0 --format json", {"numpy", "orjson"}),
-        ("solve --get T_nutation", set()),
-        ("sweep --help", set()),
-        ("compare --help", set()),
-        ("find --help", set()),
-        ("fit --help", set()),
-        ("sweep --r0 1:2:3", {"numpy", "orjson"}),
-        ("jacobi --k 0.8 --format json", set()),
-        ("jacobi --k-prime 1e-9", {"rich"}),
-        ("jacobi --nome 0.1 --format csv", set()),
-        ("jacobi --k 0.8 --u K/2 --u K/3 --format csv", set()),
-        ("jacobi --k 0.8 --u 0.5 --zeta --pi --param 0.7i --format json", set()),
-        ("jacobi --k 0.8 --u 0.5 --theta --omega --param 0.7", {"rich"}),
-        ("jacobi --k 0.8 --phi 30 --phi 60 --format csv", set()),
-        ("jacobi --k 0.8 --u-range 0:1:99 --format csv", {"numpy", "orjson"}),
-        ("eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json", set()),
-    ],
-)
-def test_nothing_is_loaded_that_is_not_needed(line: str, allowed: set[str]) -> None:
-    assert loaded(*line.split()) & HEAVY == allowed
+def test_nothing_is_loaded_that_is_not_needed(tmp_path: Path) -> None:
+    listing = "import atexit; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
+    ends = forked(LOADED, tmp_path, each=listing)
+    assert [end.code for end in ends] == [0] * len(LOADED)
+    names = [{name.partition(".")[0] for name in end.stderr.decode().split()} for end in ends]
+    assert {line: x & HEAVY for line, x in zip(LOADED, names, strict=True)} == LOADED
 
 
 def test_the_package_alone_loads_no_numpy() -> None:

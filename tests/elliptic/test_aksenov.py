@@ -16,7 +16,7 @@ from lagrange_cli.elliptic.eta import (
     band_of,
     eta_constants,
 )
-from lagrange_cli.elliptic.eta_swing import swing
+from lagrange_cli.elliptic.eta_table import place_in_band
 from lagrange_cli.elliptic.incomplete import incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
@@ -232,7 +232,7 @@ K1 = ar.ellipk(C.k1**2)
 
 def eta_at(tau: Any) -> Any:
     """Return eta at a time since it was at delta*."""
-    return swing(ar, C.sigma1 * tau / 2, C, band_of(ar, NESTED)).eta
+    return place_in_band(ar, C.sigma1 * tau / 2, C, band_of(ar, NESTED)).eta
 
 
 TAUS = [C.period * x for x in (ar.mpf("0.07"), ar.mpf("0.21"), ar.mpf("0.44"))]

@@ -12,12 +12,11 @@ from errata import misprints
 
 from lagrange_cli.elliptic.any_modulus import any_modulus
 from lagrange_cli.elliptic.complete import nome
-from lagrange_cli.elliptic.complex_jacobi import complex_jacobi
 from lagrange_cli.elliptic.complex_theta import complex_zeta
 from lagrange_cli.elliptic.complex_third_kind import complex_omega, complex_pi
 from lagrange_cli.elliptic.complex_third_kind import parameter as parameter_of
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
-from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.jacobi import complex_jacobi, jacobi
 from lagrange_cli.elliptic.lattice import lattice
 from lagrange_cli.elliptic.modulus import constants, modulus
 from lagrange_cli.elliptic.theta import zeta

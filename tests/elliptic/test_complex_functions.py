@@ -17,9 +17,9 @@ from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.elliptic.any_modulus import any_constants, any_modulus
-from lagrange_cli.elliptic.complex_jacobi import complex_jacobi
 from lagrange_cli.elliptic.complex_theta import complex_theta, complex_zeta
 from lagrange_cli.elliptic.complex_third_kind import complex_omega, complex_pi, parameter
+from lagrange_cli.elliptic.jacobi import complex_jacobi
 from lagrange_cli.elliptic.lattice import lattice
 
 AR = ManyDigits(50)

@@ -185,33 +185,6 @@ def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lag
             assert abs(difference - 1j * mpmath.pi * turns) < 2e-8
 
 
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        ("--k 1+2i", "--k must be 0 or more, or imaginary as 0.8i, got 1.0+2.0i"),
-        ("--k=-0.8i --u 1", "--k must be 0 or more, or imaginary as 0.8i, got -0.8i"),
-        ("--k x", "--k must be a finite decimal number, got 'x'"),
-        ("--k 1.5 --phi 30", "--phi needs a real --u, and a --k in [0, 1]"),
-        ("--k 0.5 --u i --series 3", "--series needs a real --u, and a --k in [0, 1]"),
-        ("--k 0.5 --u i --u 2K", "--u must be without K beside complex numbers"),
-        ("--k 1 --u i --theta", "--k must not be 0 or 1 for theta functions of complex arguments"),
-        ("--k 1e-160 --u i", "--k must be farther than 1e-150 from 0"),
-        ("--k 1e30 --u i", "--k must be at most 1e+20 (or give --digits)"),
-        ("--k 0.8 --u 1e20+i", "--u must be within 2^50 periods = 4.49e+15 of 0, got 1e+20"),
-        ("--k 0.8 --u 1+1e20i", "the imaginary part of u must be within 2^50 periods"),
-        ("--k 0.8 --u 1 --pi --param 1+1e20i", "--param must have parts within 2^50 periods"),
-        ("--k 0.8 --u 1+i --pi", "--omega and --pi need --param, as 0.7, 0.7i or 0.2+0.7i"),
-        ("--k 1.5 --pi --param 1", "--pi needs --u or --u-range"),
-        ("--k 0.8 --u 1+2", "--u must be a finite decimal number"),
-    ],
-)
-def test_bad_input(args: str, message: str, lagtop: Lagtop) -> None:
-    result = lagtop("jacobi", *args.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1
-
-
 def test_real_input_prints_what_it_did(lagtop: Lagtop) -> None:
     shown = lagtop(*"jacobi --k 0.5 --u 0.3 --pi --param 0i --format csv".split()).stdout
     assert shown.splitlines()[0] == "u,pi01_imag,pi00_imag,pi11_imag"

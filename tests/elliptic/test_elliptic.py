@@ -10,8 +10,8 @@ import pytest
 from scenes import EPS
 
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.doubles import DOUBLES
 from lagrange_cli.arithmetic.many_digits import ManyDigits
+from lagrange_cli.arithmetic.scalars import DOUBLES
 from lagrange_cli.elliptic.carlson import carlson_rf
 from lagrange_cli.elliptic.complete import complete_e, complete_k, nome, period_mean
 

@@ -11,18 +11,18 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import Lagtop
+from function_tables import array_rows
 from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.arithmetic.points import ListedPoints
-from lagrange_cli.bench.reference import units
+from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.eta import eta_constants, record
-from lagrange_cli.elliptic.eta_table import Wanted, digit_rows, header, rows
+from lagrange_cli.elliptic.eta_table import EtaTable
 from lagrange_cli.elliptic.quadrature import Quadrature
 
-RATE, ALL = Wanted(rate=True), Wanted(rate=True, unit="rad")
 ORBITS = {
     "generic": Quadrature(Fraction("-0.5"), Fraction("0.6"), (Fraction("-1.3"), Fraction("1.5"))),
     "Earth-like": Quadrature(Fraction("-0.9"), Fraction("0.9"), (Fraction(-33), Fraction("33.1"))),
@@ -115,8 +115,9 @@ def test_eta(name: str) -> None:
         period = 2 * integral.tau(mpmath.pi)
         assert abs(mpmath.mpf(eta_constants(ManyDigits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
-        block = next(rows(of, ListedPoints(times), Fraction(0), RATE))
-        for exact_time, (_, eta, rate) in zip(times, block.tolist(), strict=True):
+        rows = array_rows(EtaTable(ListedPoints(times), of, rate=True))
+        for exact_time, row in zip(times, rows, strict=True):
+            eta, rate = row["eta"], row["etadot"]
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             tau = time - period * mpmath.nint(time / period)
             risen = (mpmath.mpf(eta) - integral.lower) / (integral.upper - integral.lower)
@@ -124,7 +125,7 @@ def test_eta(name: str) -> None:
             chi = integral.chi(abs(tau), guess)
             slope = mpmath.sign(tau) * (integral.upper - integral.lower) * mpmath.sin(chi) / 2
             slope /= integral.pace(chi)
-            assert units(eta, integral.eta(chi), slope, tau) <= 1.6
+            assert error_in_units(eta, integral.eta(chi), slope, tau) <= 1.6
             size = max(1, abs(slope)) * mpmath.sqrt(integral.g)
             assert abs(rate - slope) <= 1e-13 * size + abs(tau) * 1e-12 * size
 
@@ -150,12 +151,12 @@ def test_chain(name: str) -> None:
         m, sigma1 = k2 / (1 + k2), mpmath.sqrt(integral.g * less * more * (1 + k2))
         assert abs(4 * mpmath.ellipk(m) / sigma1 / period - 1) < 1e-40
         times = [Fraction(float(period) * part) for part in PARTS]
-        block = next(rows(of, ListedPoints(times), Fraction(0), ALL))
-        for exact_time, row in zip(times, block.tolist(), strict=True):
+        rows = array_rows(EtaTable(ListedPoints(times), of, angle="rad"))
+        for exact_time, row in zip(times, rows, strict=True):
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             turns = mpmath.nint(time / period)
             tau = time - period * turns
-            _, eta, _, h1, theta, xi = row
+            _, eta, h1, theta, xi = row.values()
             risen = (mpmath.mpf(eta) - integral.lower) / (integral.upper - integral.lower)
             guess = 2 * mpmath.asin(mpmath.sqrt(max(0, min(1, risen))))
             chi = integral.chi(abs(tau), guess)
@@ -164,10 +165,10 @@ def test_chain(name: str) -> None:
             )
             within = mpmath.sign(tau) * 2 * half - mpmath.pi / 2
             pace = sigma1 * mpmath.sqrt(1 - m * mpmath.sin(within) ** 2)
-            assert units(theta, within + 2 * mpmath.pi * turns, pace, tau) <= 2
-            assert units(xi, mpmath.sin(within), pace * mpmath.cos(within), tau) <= 2
+            assert error_in_units(theta, within + 2 * mpmath.pi * turns, pace, tau) <= 2
+            assert error_in_units(xi, mpmath.sin(within), pace * mpmath.cos(within), tau) <= 2
             exact_h1 = sigma1 * time - mpmath.ellipk(m)
-            assert units(h1, exact_h1, sigma1, tau) <= 2
+            assert error_in_units(h1, exact_h1, sigma1, tau) <= 2
             assert abs(mpmath.ellipf(within, m) + 4 * turns * mpmath.ellipk(m) - exact_h1) < 1e-15
 
 
@@ -183,8 +184,9 @@ def test_the_top_is_the_cubic_case() -> None:
     exact = {key: Fraction(x) for key, x in solve(Top()).record(digits=50, keys=TOP_KEYS).items()}
     of = Quadrature(exact["u2"], exact["u1"], (exact["u3"],), exact["a"])
     times = np.linspace(-3, 400, 1001)
-    block = next(rows(of, ListedPoints([Fraction(t) for t in times]), exact["T_nutation"] / 2))
-    assert abs(block[:, 1] - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
+    table = EtaTable(ListedPoints([Fraction(t) for t in times]), of, exact["T_nutation"] / 2)
+    eta = np.array([row["eta"] for row in array_rows(table)])
+    assert abs(eta - np.cos(solve(Top()).angles(times).theta)).max() < 1e-15
     assert float(eta_constants(ManyDigits(50), of).period) == solve(Top()).T_nutation
 
 
@@ -203,7 +205,8 @@ def test_energy_and_ends(
     upper = lower + width
     ends = [upper + gaps[0] if above else lower - gaps[0], lower - gaps[-1]]
     of = Quadrature(lower, upper, tuple(ends[: len(gaps)]))
-    ((_, eta, rate),) = next(rows(of, ListedPoints([tau]), Fraction(0), RATE)).tolist()
+    (row,) = array_rows(EtaTable(ListedPoints([tau]), of, rate=True))
+    eta, rate = row["eta"], row["etadot"]
     assert lower <= Fraction(eta) + Fraction("1e-15")
     assert Fraction(eta) <= upper + Fraction("1e-15")
     radicand = (upper - Fraction(eta)) * (Fraction(eta) - lower)
@@ -222,17 +225,16 @@ def test_far_times(lagtop: Lagtop) -> None:
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
     of = ORBITS["generic"]
     period = eta_constants(ManyDigits(60), of).period
-    shifted = next(rows(of, ListedPoints([Fraction(1)]), rational(10**15 * period)))
-    assert shifted == pytest.approx(
-        next(rows(of, ListedPoints([Fraction(1)]), Fraction(0))), abs=1e-14
-    )
+    (shifted,) = array_rows(EtaTable(ListedPoints([Fraction(1)]), of, rational(10**15 * period)))
+    (row,) = array_rows(EtaTable(ListedPoints([Fraction(1)]), of))
+    assert shifted == pytest.approx(row, abs=1e-14)
 
 
 def test_digits_close_to_the_ends() -> None:
     """Next to a turning point eta is reckoned from there."""
     of = Quadrature(Fraction(0), Fraction(1), (Fraction(-1), Fraction(2)))
-    ((_, eta),) = next(rows(of, ListedPoints([Fraction("1e-9")]), Fraction(0))).tolist()
-    assert eta == pytest.approx(0.5e-18, rel=1e-12, abs=0)
+    (row,) = array_rows(EtaTable(ListedPoints([Fraction("1e-9")]), of))
+    assert row["eta"] == pytest.approx(0.5e-18, rel=1e-12, abs=0)
 
 
 def test_the_order_of_the_outer_roots_is_free() -> None:
@@ -246,58 +248,13 @@ LOW, HIGH, OUT, IN = (Fraction(x) for x in ("-0.5", "0.6", "-1.3", "1.5"))
 
 def test_digits_agree_with_doubles() -> None:
     of, times = ORBITS["generic"], ListedPoints([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
-    block = next(rows(of, times, Fraction("0.4"), ALL))
-    texts = digit_rows(of, times, Fraction("0.4"), ALL, 30)
-    assert header(ALL) == ["tau", "eta", "etadot", "h1", "theta_rad", "xi_prime"]
-    assert header(RATE) == ["tau", "eta", "etadot"]
-    assert block == pytest.approx(
-        np.array([[float(x) for x in row] for row in texts]), abs=1e-15, rel=1e-15
-    )
+    table = EtaTable(times, of, Fraction("0.4"), rate=True, angle="rad")
+    rows = array_rows(table)
+    assert list(rows[0]) == ["tau", "eta", "etadot", "h1", "theta_rad", "xi_prime"]
+    for row, texts in zip(rows, table.digit_rows(30), strict=True):
+        exact = {name: float(text) for name, text in texts.items()}
+        assert row == pytest.approx(exact, abs=1e-15, rel=1e-15)
     assert record(of)["sigma1"] == float(record(of, 30)["sigma1"])
-
-
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        (
-            "--delta 0.2 --delta-star 0.5 --p 0 --q 2",
-            "--delta must be >= --delta-star = 0.5, got 0.2",
-        ),
-        (
-            "--delta 1 --delta-star 0 --p 0 --q 0.5",
-            "outside the band from delta* to delta, [0.0, 1.0]",
-        ),
-        (
-            "--delta 1 --delta-star 0 --p 0 --q -2",
-            "--q must be >= 0, or imaginary as 0.7i, got -2.0",
-        ),
-        ("--delta 1 --delta-star 0 --p 0", "give either --p and --q or"),
-        ("--delta 1 --delta-star 0", "give either --p and --q or"),
-        (
-            "--delta 1 --delta-star 0 --gap-above 0",
-            "--gap-above must be > 0",
-        ),
-        ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "--g must be > 0, got 0.0"),
-        ("--delta 1 --delta-star 0 --gap-below 1 --tau-range 0:1:0", "--tau-range must have"),
-        ("--delta 1 --delta-star 0 --gap-below 1 --tau 1 --tau-range 0:1:5", "exclude each other"),
-        ("--delta x --delta-star 0 --gap-below 1", "--delta must be a finite decimal"),
-        ("--delta 1 --delta-star 0 --p 0 --q xi", "--q must be a finite number, complex as"),
-        (
-            "--delta 1 --delta-star 0 --p 0 --q=-2i",
-            "--q must be >= 0, or imaginary as 0.7i, got -2.0i",
-        ),
-        ("--delta 1 --delta-star 0 --p 0 --q 1+i", "--q must be real, or imaginary as 0.7i, got"),
-        ("--delta 1 --delta-star 0 --p 0 --quadratic", "--quadratic and --p exclude each other"),
-        ("--delta 1 --delta-star 0 --p 3 --q 2", "makes the period infinite (k1 = 1), got 1.0"),
-        ("--delta 1 --delta-star 0 --quadratic --chain", "--chain needs --tau or --tau-range"),
-        ("--delta 1 --delta-star 0 --quadratic --rate", "--rate needs --tau or --tau-range"),
-    ],
-)
-def test_bad_input(lagtop: Lagtop, args: str, message: str) -> None:
-    result = lagtop("eta", *args.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -371,10 +328,10 @@ def test_complex_pairs_at_random() -> None:
             exact = (m1 * start * (1 + cn) + m2 * end * (1 - cn)) / (m1 * (1 + cn) + m2 * (1 - cn))
             slope = mpmath.sqrt((end - exact) * (exact - start) * ((exact - p) ** 2 + far**2))
             theta = mpmath.atan2(sn, cn) - mpmath.pi / 2 + 2 * mpmath.pi * turns
-            row = next(rows(of, ListedPoints([time]), Fraction(0), ALL))[0].tolist()
-            assert units(row[1], exact, slope, since) <= 2.5
-            assert units(row[4], theta, rate * dn, since) <= 2
-            assert units(row[5], -cn, rate * sn * dn, since) <= 2
+            (row,) = array_rows(EtaTable(ListedPoints([time]), of, angle="rad"))
+            assert error_in_units(row["eta"], exact, slope, since) <= 2.5
+            assert error_in_units(row["theta_rad"], theta, rate * dn, since) <= 2
+            assert error_in_units(row["xi_prime"], -cn, rate * sn * dn, since) <= 2
 
 
 def test_chain_of_the_command(lagtop: Lagtop) -> None:

@@ -149,23 +149,3 @@ def test_far_amplitudes_with_digits(lagtop: Lagtop) -> None:
         turns = 5555555555555555555555555555
         exact = 2 * turns * mpmath.ellipk(m) + mpmath.ellipf(mpmath.radians(100), m)
         assert abs(mpmath.mpf(shown.splitlines()[1].split(",")[1]) / exact - 1) < 1e-44
-
-
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        ("--k 0.8 --phi 1 --u 3", "--phi and --u exclude each other"),
-        ("--k 0.8 --phi 1 --zeta", "--phi and --zeta exclude each other"),
-        ("--k 0.8 --phi 1 --series 3", "--phi and --series exclude each other"),
-        ("--k 0.8 --phi 1 --param 3", "--param needs --omega or --pi"),
-        ("--k 0.8 --phi 1 --phi-range 0:1:2", "--phi and --phi-range exclude each other"),
-        ("--k 0.8 --phi 1e30", "--phi must be within 2^50 periods = 2.03e+17 of 0, got 1e+30"),
-        ("--k 1.1 --phi 1", "--phi needs a real --u, and a --k in [0, 1]"),
-        ("--k 0.8 --phi x", "--phi must be a finite decimal number, got 'x'"),
-    ],
-)
-def test_bad_input(args: str, message: str, lagtop: Lagtop) -> None:
-    result = lagtop("jacobi", *args.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert message in result.stderr
-    assert result.stderr.count("\n") == 1

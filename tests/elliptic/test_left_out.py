@@ -26,7 +26,7 @@ from lagrange_cli.elliptic.landen import (
     hyperbolic_cosine_and_sine,
     place,
 )
-from lagrange_cli.elliptic.modulus import Modulus, exact_modulus, modulus
+from lagrange_cli.elliptic.modulus import exact_modulus, modulus
 from lagrange_cli.elliptic.periods import whole_and_rest
 from lagrange_cli.elliptic.theta import series_for, theta_at, zeta_at
 from lagrange_cli.elliptic.third_kind import third_kind
@@ -43,6 +43,29 @@ class Unwidened(BallFunctions):
 
     def widened(self, x: Ball, *_: Any, **__: Any) -> Ball:
         return x
+
+
+def missed(
+    compute: Callable[[BallFunctions], Sequence[Ball]],
+    exact: Sequence[arb],
+    sharp: Callable[[int, Decimal], bool],
+    stops: Sequence[int] = STOPS,
+) -> int:
+    """Return how often results that are cut short miss the truth without the bound.
+
+    With it they hold the truth, and `sharp` says whether their largest radius is small enough.
+    """
+    for stop in stops:
+        found = compute(BallFunctions(DIGITS, stop))
+        assert all(map(holds, found, exact)), stop
+        assert sharp(stop, max(x.radius for x in found)), stop  # or the bound would be no bound
+    short = (compute(Unwidened(DIGITS, stop)) for stop in stops)
+    return sum(not all(map(holds, found, exact)) for found in short)
+
+
+def within(share: int, first: int) -> Callable[[int, Decimal], bool]:
+    """Return whether a radius is at most 10^(share - stop), from some stop on."""
+    return lambda stop, radius: stop < first or radius < Decimal(10) ** (share - stop)
 
 
 def real(value: acb) -> arb:
@@ -153,24 +176,6 @@ def theta_of(ij: str, x: arb, k: Fraction) -> arb:
     return real({"11": one, "10": two, "00": three, "01": four}[ij])
 
 
-def theta_here(ij: str) -> Callable[..., Ball]:
-    def computed(ar: BallFunctions, k: Ball, x: Ball) -> Ball:
-        series = series_for(ar, Modulus(k, ar.sqrt(1 - k * k)))
-        found: Ball = theta_at(ar, ij, whole_and_rest(ar, x), series)
-        return found
-
-    return computed
-
-
-def zeta_here(ij: str) -> Callable[..., Ball]:
-    def computed(ar: BallFunctions, k: Ball, x: Ball) -> Ball:
-        series = series_for(ar, Modulus(k, ar.sqrt(1 - k * k)))
-        found: Ball = zeta_at(ar, ij, whole_and_rest(ar, x), series)
-        return found
-
-    return computed
-
-
 def along(function: Callable[..., arb], point: list[arb], i: int, x: arb) -> arb:
     """Return a function where coordinate i of a point is x."""
     return function(*point[:i], x, *point[i + 1 :])
@@ -210,22 +215,19 @@ SERIES = [("0.4", "0.23"), ("0.4", "-0.49"), ("0.9", "0.001"), ("0.999", "0.31")
 @pytest.mark.parametrize("name", ["theta", "zeta"])
 def test_a_theta_series_cut_short_holds_the_truth(name: str, ij: str) -> None:
     """Without the bound the series misses the truth."""
-    computed = (theta_here if name == "theta" else zeta_here)(ij)
-    truth, missed = theta_of if name == "theta" else zeta_of, 0
+    function, truth = (theta_at, theta_of) if name == "theta" else (zeta_at, zeta_of)
+
+    def computed(ar: BallFunctions, k: str, x: str) -> list[Ball]:
+        series = series_for(ar, exact_modulus(ar, Fraction(k)))
+        return [function(ar, ij, whole_and_rest(ar, ar.convert(Fraction(x))), series)]
+
+    count = 0
     with arb_bits(2000):
         for k, x in SERIES:
             exact = truth(ij, exact_arb(x), Fraction(k))
-            for stop in SERIES_STOPS:
-                for kind in (BallFunctions, Unwidened):
-                    ar = kind(DIGITS, stop)
-                    found = computed(ar, *(ar.convert(Fraction(text)) for text in (k, x)))
-                    if kind is BallFunctions:
-                        assert holds(found, exact), (k, x, stop)
-                        if stop > 3 and exact.is_finite():
-                            assert found.radius < Decimal(10) ** (5 - stop), (k, x, stop)
-                    else:
-                        missed += not holds(found, exact)
-    assert missed >= 3
+            sharp = within(5, 4) if exact.is_finite() else lambda *_: True
+            count += missed(partial(computed, k=k, x=x), [exact], sharp, SERIES_STOPS)
+    assert count >= 3
 
 
 def kind_at(ar: BallFunctions, ij: str, k: str, y: str, *, imaginary: bool) -> Any:
@@ -239,24 +241,20 @@ def kind_at(ar: BallFunctions, ij: str, k: str, y: str, *, imaginary: bool) -> A
 @pytest.mark.parametrize("k", ["0.5", "0.95"])
 def test_omega_cut_short_holds_the_truth(k: str, ij: str, imaginary: bool) -> None:
     """Without the bound the series misses the truth."""
-    truth, missed = imaginary_omega_of if imaginary else omega_of, 0
-    heights = ("0.05", "0.17") if imaginary else ("0.05", "0.31", "-0.2")
+    truth, count = imaginary_omega_of if imaginary else omega_of, 0
+
+    def computed(ar: BallFunctions, x: str, y: str) -> list[Ball]:
+        given = kind_at(ar, ij, k, y, imaginary=imaginary)
+        found = given.omega(ar, whole_and_rest(ar, ar.convert(Fraction(x))))
+        return [ar.sin(found) / ar.cos(found) if imaginary else found]
+
     with arb_bits(1000):
-        for y in heights:
+        for y in ("0.05", "0.17") if imaginary else ("0.05", "0.31", "-0.2"):
             for x in ("0.1", "0.37", "-0.45"):
                 exact = truth(ij, exact_arb(x), exact_arb(y), Fraction(k))
-                for stop in SERIES_STOPS:
-                    for kind in (BallFunctions, Unwidened):
-                        ar = kind(DIGITS, stop)
-                        given = kind_at(ar, ij, k, y, imaginary=imaginary)
-                        found = given.omega(ar, whole_and_rest(ar, ar.convert(Fraction(x))))
-                        value = ar.sin(found) / ar.cos(found) if imaginary else found
-                        if kind is BallFunctions:
-                            assert holds(value, exact), (x, y, stop)
-                            assert stop < 36 or value.radius < Decimal(10) ** (6 - stop)
-                        else:
-                            missed += not holds(value, exact)
-    assert missed >= 3
+                compute = partial(computed, x=x, y=y)
+                count += missed(compute, [exact], within(6, 36), SERIES_STOPS)
+    assert count >= 3
 
 
 @pytest.mark.parametrize("imaginary", [False, True])
@@ -292,21 +290,12 @@ def _log_size(ij: str, y: arb, k: str) -> arb:
 @pytest.mark.parametrize("q", ["0.01", "0.04", "0.3", "0.9"])
 def test_the_modulus_of_a_nome_cut_short_holds_the_truth(q: str) -> None:
     """k = theta2^2/theta3^2 at tau = log q/(i pi); without the bound it is missed."""
-    missed = 0
     with arb_bits(1000):
         tau = acb(0, -exact_arb(q).log() / arb.pi())
         _, two, three, four = acb.modular_theta(acb(0), tau)
         exact = real((two / three) ** 2), real((four / three) ** 2)
-        for stop in STOPS:
-            for kind in (BallFunctions, Unwidened):
-                ar = kind(DIGITS, stop)
-                found = modulus(ar, q=ar.convert(Fraction(q)))[:2]
-                if kind is BallFunctions:
-                    assert all(map(holds, found, exact)), stop
-                    assert stop < 6 or max(x.radius for x in found) < Decimal(10) ** (3 - stop)
-                else:
-                    missed += not all(map(holds, found, exact))
-    assert missed >= 2
+        count = missed(lambda ar: modulus(ar, q=ar.convert(Fraction(q)))[:2], exact, within(3, 6))
+    assert count >= 2
 
 
 def balls_of(ar: Any, texts: Sequence[str]) -> list[Ball]:
@@ -315,33 +304,25 @@ def balls_of(ar: Any, texts: Sequence[str]) -> list[Ball]:
 
 @pytest.mark.parametrize("name", ITERATIONS)
 def test_an_iteration_cut_short_holds_the_truth(name: str) -> None:
+    """Without the bound some of those that are cut short miss the truth."""
     computed, truth, cases = ITERATIONS[name]
+    count = 0
     with arb_bits(1000):
         for texts in cases:
             ar = BallFunctions(DIGITS)
             exact, whole = truth(*map(exact_arb, texts)), computed(ar, *balls_of(ar, texts))
+            size = whole.greatest
             assert holds(whole, exact), texts
-            assert whole.radius <= whole.greatest * Decimal(10) ** (12 - DIGITS), texts
-            for stop in STOPS:
-                ar = BallFunctions(DIGITS, stop)
-                short = computed(ar, *balls_of(ar, texts))
-                assert holds(short, exact), (texts, stop)
-                if stop > 3:  # a bound that says nothing would be no bound
-                    assert short.radius <= 40 * short.greatest * Decimal(10) ** (1 - stop), texts
+            assert whole.radius <= size * Decimal(10) ** (12 - DIGITS), texts
 
+            def compute(ar: BallFunctions) -> list[Ball]:
+                return [computed(ar, *balls_of(ar, texts))]  # noqa: B023
 
-@pytest.mark.parametrize("name", ITERATIONS)
-def test_the_bound_is_needed(name: str) -> None:
-    """Without it some of those that are cut short miss the truth."""
-    computed, truth, cases = ITERATIONS[name]
-    with arb_bits(1000):
-        missed = 0
-        for texts in cases:
-            exact = truth(*map(exact_arb, texts))
-            for stop in STOPS:
-                ar = Unwidened(DIGITS, stop)
-                missed += not holds(computed(ar, *balls_of(ar, texts)), exact)
-    assert missed >= 3
+            def sharp(stop: int, radius: Decimal) -> bool:
+                return stop <= 3 or radius <= 40 * size * Decimal(10) ** (1 - stop)  # noqa: B023
+
+            count += missed(compute, [exact], sharp)
+    assert count >= 3
 
 
 @pytest.mark.parametrize("name", SMOOTH)

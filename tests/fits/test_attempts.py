@@ -12,12 +12,10 @@ import pytest
 from engines import Array
 
 from lagrange_cli import LagtopError, Top, fit, solve
-from lagrange_cli.fits.coordinates import Coordinates
-from lagrange_cli.fits.harmonics import frequency_of, series_of
+from lagrange_cli.fits.harmonics import frequency_of, harmonics_of, slowest_spin, turning_rate
 from lagrange_cli.fits.least_squares import Problem
-from lagrange_cli.fits.parameters import QUANTITIES
+from lagrange_cli.fits.parameters import FIT_QUANTITIES, Coordinates
 from lagrange_cli.fits.record import FAILED, Outcome
-from lagrange_cli.fits.turning_rate import slowest_spin, turning_rate
 
 NOISE = math.radians(0.28925)
 MISLED = Top(
@@ -93,8 +91,8 @@ def test_a_fit_that_is_not_good_takes_no_sense_of_psi_for_a_fact(
 def test_a_recording_that_two_tops_explain_has_no_good_fit() -> None:
     t, angles = noisy(MISLED, 1.5, 60, 5)
     found = fit(t, **angles)
-    rival = np.zeros(len(QUANTITIES))
-    rival[QUANTITIES.index("b")] = 12.5
+    rival = np.zeros(len(FIT_QUANTITIES))
+    rival[FIT_QUANTITIES.index("b")] = 12.5
     other = Outcome(found.fit._replace(rival=rival), 0)
     assert (found.verdict, other.verdict) == ("good", FAILED)
     said = "another top explains the recording as well: a = 0, b = 12.5, r0 = 0"
@@ -162,7 +160,7 @@ def test_harmonics_have_a_growth_and_a_noise() -> None:
     y = 3 * t + 0.4 * np.sin(5 * t) + 0.1 * np.cos(10 * t) + 0.01 * rng.normal(size=t.size)
     frequency = frequency_of(t, y, grows=True)
     assert frequency == pytest.approx(5 / (2 * math.pi), rel=1e-3)
-    series = series_of(t, y, 5 / (2 * math.pi), grows=True, fine=True)
+    series = harmonics_of(t, y, 5 / (2 * math.pi), grows=True, fine=True)
     assert series.noise == pytest.approx(0.01, rel=0.15)
     assert series.growth == pytest.approx(3, abs=0.002)
 

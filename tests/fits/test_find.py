@@ -19,14 +19,13 @@ from conftest import Lagtop, assert_one_line
 from scipy.integrate import solve_ivp
 
 from lagrange_cli import LagtopError, MixedBodyWarning, Top, solve
-from lagrange_cli.fits.body import INPUTS, completed, told_of
 from lagrange_cli.fits.conditions import read_conditions
 from lagrange_cli.fits.find import find
+from lagrange_cli.fits.implied_body import BODY_INPUTS, completed_body, determined_products
 from lagrange_cli.fits.invert import invert
+from lagrange_cli.fits.newton import number_slopes
 from lagrange_cli.fits.roots import crossing, middle, roots
 from lagrange_cli.fits.search import Search
-from lagrange_cli.fits.slopes import number_slopes
-from lagrange_cli.fits.touching import touching
 from lagrange_cli.inputs.ranges import parse_span
 
 
@@ -114,8 +113,8 @@ def test_touching_is_told_from_passing_by() -> None:
         ([], lambda at: (at - 33.3) ** 2 + 1e-12),
     ]
     for places, function in functions:
-        assert touching(function, x, function(x), 1.0) == pytest.approx(places, abs=1e-7)
-    passed_by = touching(lambda at: 1e-12 + abs(at - 40.1), x, 1e-12 + np.abs(x - 40.1), 0.0)
+        assert roots(function, x, function(x), 1.0) == pytest.approx(places, abs=1e-7)
+    passed_by = roots(lambda at: 1e-12 + abs(at - 40.1), x, 1e-12 + np.abs(x - 40.1))
     assert passed_by == []
 
 
@@ -330,7 +329,7 @@ def test_the_spin_gives_the_moments() -> None:
     assert float(motion.top.r0) == pytest.approx(50, rel=1e-11)
 
 
-@pytest.mark.parametrize("known", [(), ("g",), ("m", "g", "A"), ("C",), ("C", "A"), INPUTS])
+@pytest.mark.parametrize("known", [(), ("g",), ("m", "g", "A"), ("C",), ("C", "A"), BODY_INPUTS])
 @pytest.mark.parametrize("spins", [False, True])
 def test_the_body_that_is_made_moves_as_seen(known: tuple[str, ...], spins: bool) -> None:
     true = {"m": 1.587, "A": 3.9e-3, "C": 1.7e-3, "s": 0.04, "g": 9.81, "r0": -50.0}
@@ -338,8 +337,8 @@ def test_the_body_that_is_made_moves_as_seen(known: tuple[str, ...], spins: bool
     b = true["C"] * true["r0"] / true["A"]
     given = {name: true[name] for name in known}
     seen = {"a": a, "b": b} | ({"r0": true["r0"]} if spins and "r0" not in known else {})
-    told = told_of(seen, given)
-    body = completed(seen, given, told)
+    told = determined_products(seen, given)
+    body = completed_body(seen, given, told)
     assert body["C"] <= 2 * body["A"]
     assert 2 * body["m"] * body["g"] * body["s"] / body["A"] == pytest.approx(a, rel=1e-13)
     assert body["C"] * body["r0"] / body["A"] == pytest.approx(b, rel=1e-13)
@@ -378,9 +377,12 @@ def test_tilts_are_refused_in_their_own_unit(radians: bool, message: str) -> Non
 
 
 def test_what_cannot_be_told_apart_is_named() -> None:
-    names = [x.name for x in told_of({"a": 100.0, "b": 20.0}, {"g": 9.81, "A": 0.004})]
+    names = [x.name for x in determined_products({"a": 100.0, "b": 20.0}, {"g": 9.81, "A": 0.004})]
     assert names == ["C*r0", "m*s"]
-    names = [x.name for x in told_of({"a": 100.0, "b": 20.0, "r0": 50.0}, {"g": 9.81, "m": 1.5})]
+    names = [
+        x.name
+        for x in determined_products({"a": 100.0, "b": 20.0, "r0": 50.0}, {"g": 9.81, "m": 1.5})
+    ]
     assert names == ["C/A", "r0", "s/A"]
 
 

@@ -20,12 +20,11 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli import LagtopError, Top, fit, read_scene, solve
 from lagrange_cli.fits import fit as fits
 from lagrange_cli.fits.least_squares import Problem
-from lagrange_cli.fits.parameters import QUANTITIES, parameters_of
-from lagrange_cli.fits.quality import chi2_bounds
-from lagrange_cli.fits.record import FAILED, Outcome, outcomes
+from lagrange_cli.fits.model import residuals
+from lagrange_cli.fits.parameters import FIT_QUANTITIES, parameters_of
+from lagrange_cli.fits.record import FAILED, Outcome, chi2_bounds, outcomes
 from lagrange_cli.fits.recording import Reading, Recording, read_recordings
-from lagrange_cli.fits.residuals import residuals
-from lagrange_cli.fits.turning_points import Nutation, candidates, top_of
+from lagrange_cli.fits.turning_points import TurningPoints, candidates, top_of
 
 NOISE = math.radians(0.5)
 SAMPLE = recordings.PATH
@@ -257,7 +256,7 @@ def trials(tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_a_start_next_to_an_upright_root_is_found() -> None:
     """Without psi nothing tells the modulus, and u3 = 1 is at an end of what it may be."""
-    nutation, t = Nutation(1.5, 1.52, 1.0), np.linspace(0, 60, 300)
+    nutation, t = TurningPoints(1.5, 1.52, 1.0), np.linspace(0, 60, 300)
     exact = candidates(nutation, np.array(1e-6 * nutation.from_top[1]), (1, 1))
     top = top_of(nutation, exact).replace(C=0.7, r0=float(exact.b) / 0.7)
     angles, rng = solve(top).angles(t), np.random.default_rng(1)
@@ -484,7 +483,7 @@ def test_what_is_known_ties_the_rest(names: str, seen: tuple[str, ...]) -> None:
     parameters = parameters_of(known, [recording])
     values = np.linspace(1, 2, len(parameters.names))
     found, slopes = parameters.quantities(values, 0)
-    by = dict(zip(QUANTITIES, found, strict=True))
+    by = dict(zip(FIT_QUANTITIES, found, strict=True))
     for i in range(values.size):
         step = np.eye(values.size)[i] * 1e-6
         change = parameters.quantities(values + step, 0)[0]

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from test_fit import angles_of, motion_of
 
 from lagrange_cli import Top, fit
-from lagrange_cli.fits.quality import Remainder, remainder
+from lagrange_cli.fits.record import Residual, residual_of
 
 
 @pytest.mark.parametrize(
@@ -18,17 +18,17 @@ from lagrange_cli.fits.quality import Remainder, remainder
 )
 def test_the_bound_of_a_correlation(lag1: float, is_noise: bool) -> None:
     """Noise of 1000 rows stays within three standard deviations of 1/sqrt(1000), 0.095."""
-    assert Remainder(1000, 1e-3, lag1).is_noise is is_noise
-    assert Remainder(100, 1e-3, lag1).is_noise is True
+    assert Residual(1000, 1e-3, lag1).is_noise is is_noise
+    assert Residual(100, 1e-3, lag1).is_noise is True
 
 
 def test_correlated_residuals_are_no_noise() -> None:
     rng = np.random.default_rng(5)
     white = rng.normal(size=20_000)
     red = lfilter([1], [1, -0.15], white)
-    assert remainder([white]).is_noise
-    assert not remainder([red]).is_noise
-    assert remainder([red]).lag1 == pytest.approx(np.corrcoef(red[1:], red[:-1])[0, 1], abs=1e-3)
+    assert residual_of(white).is_noise
+    assert not residual_of(red).is_noise
+    assert residual_of(red).lag1 == pytest.approx(np.corrcoef(red[1:], red[:-1])[0, 1], abs=1e-3)
 
 
 @pytest.mark.parametrize("rows", [14, 30])
@@ -45,7 +45,7 @@ def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
     found = fit(t, theta=theta, known=known)
     freedom = given.fit.solution.dof
     assert freedom == rows - len(given.fit.solution.parameters.names) < rows
-    left = given.fit.solution.left[0][0]
+    left = given.fit.solution.residuals[0][0]
     assert given.chi2_dof == pytest.approx(float(np.sum(left**2)) / 0.02**2 / freedom, rel=1e-6)
     for name in ("a", "b", "theta0"):
         if given.deviations[name]:

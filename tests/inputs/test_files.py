@@ -230,6 +230,38 @@ def test_the_memory_for_times_does_not_grow(tmp_path: Path) -> None:
     assert peaks[1] - peaks[0] < 8
 
 
+# Tables as text: one grammar for tops, times and trajectories
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+def test_each_reader_takes_delimiters_comments_and_a_mark(
+    delimiter: str, tmp_path: Path, lagtop: Lagtop
+) -> None:
+    path = tmp_path / "file"
+    rows = [["r0", "theta0_deg", "id"], ["40", "30", '"x, y; z"'], ["50", "60", "w"]]
+    lines = [delimiter.join(row) for row in rows]
+    path.write_text("\ufeff# measured\r\n" + "\r\n\r\n# more\r\n".join(lines))
+    assert lagtop("sweep", path, "--keys", "r0,theta0_deg").stdout == (
+        'id,r0,theta0_deg,error\n"x, y; z",40.0,30.0,\nw,50.0,60.0,\n'
+    )
+    tables = lagtop("table", "--tops", path, "--n", "1", "--columns", "t")
+    assert tables.stdout == 'id,t,error\n"x, y; z",0.0,\nw,0.0,\n'
+    rows = [["t", "theta", "phi", "psi"], ["0", "30", "0", "0"], ["0", "30", "0", "0"]]
+    path.write_text("\ufeff# seen\n" + "\n\n# more\n".join(map(delimiter.join, rows)))
+    assert "t must not repeat, got 0.0 twice" in lagtop("compare", path, "--exit-zero").stderr
+
+
+def test_times_may_be_a_column_that_table_has_written(lagtop: Lagtop) -> None:
+    column = lagtop("table", "--t-max", "1", "--n", "3", "--columns", "t").stdout
+    again = lagtop("table", "--times", "-", "--columns", "t", input="\ufeff# times\n\n" + column)
+    assert (again.stdout, again.stderr) == (column, "")
+    assert_one_line(
+        lagtop("table", "--times", "-", input="0\nt\n"),
+        65,
+        "standard input, line 2: the time must be a finite decimal number, got 't'",
+    )
+
+
 # Tops
 
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import os
 import resource
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pyarrow
 import pytest
-from conftest import LAGTOP, ROOT, Lagtop, assert_one_line
+from conftest import ROOT, Lagtop, assert_one_line, forked, process
 from hostile_files import CSV, GOOD, HOSTILE, damaged, npy, npz, saved
 
 from lagrange_cli.inputs import tops_file, trajectory_arrays
@@ -78,31 +76,25 @@ def test_lists_that_are_missing_are_missing_numbers(tmp_path: Path, lagtop: Lagt
     assert json.loads(result.stdout)["rows"][0]["lost_at"] == 1.0
 
 
-@pytest.mark.parametrize("piped", [True, False])
 def test_fortran_order_is_mapped(
-    piped: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Rows of a file and of a pipe are those of an array; an npz file holds it up to a size."""
-    monkeypatch.setattr(trajectory_arrays, "ROWS_AT_ONCE", 7)
+    monkeypatch.chdir(tmp_path)
     table = np.stack([np.linspace(0, 1, 40), np.full(40, 30.0)], axis=1)
-    path, plain = tmp_path / "a.npy", tmp_path / "b.npy"
-    np.save(path, np.asfortranarray(table))
-    np.save(plain, table)
-    shown = []
-    for file in (path, plain):
-        words = [*LAGTOP, "compare", "-" if piped else "a.npy", "--columns", "t,theta"]
-        copy = tmp_path / "a.npy"
-        content = file.read_bytes()
-        copy.write_bytes(content)
-        with subprocess.Popen(
-            [*words, "--format", "json"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            cwd=tmp_path,
-        ) as running:
-            shown.append(running.communicate(content if piped else b"")[0])
-    assert shown[0] == shown[1]
-    assert json.loads(shown[0])["rows"][0]["rows"] == 40
+    words = ["--columns", "t,theta", "--format", "json"]
+    for rows_at_once in (1 << 15, 7):
+        monkeypatch.setattr(trajectory_arrays, "ROWS_AT_ONCE", rows_at_once)
+        found = []
+        for array in (table, np.asfortranarray(table)):
+            np.save("a.npy", array)
+            found.append(json.loads(lagtop("compare", "a.npy", *words).stdout)["rows"])
+        assert found[0] == found[1]
+        assert found[0][0]["rows"] == 40
+        if rows_at_once > 40:
+            content = Path("a.npy").read_bytes()
+            piped = process("compare", "-", *words, check=False, input=content)
+            assert [x | {"file": "a.npy"} for x in json.loads(piped.stdout)["rows"]] == found[0]
 
 
 def test_the_largest_array_in_fortran_order_of_npz(
@@ -124,41 +116,26 @@ def test_npz_files_by_other_methods_are_read(tmp_path: Path, lagtop: Lagtop) -> 
         assert lagtop("compare", path, "--exit-zero").exit_code == 0
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "sweep {}",
-        "table --times {}",
-        "table --tops {}",
-        "compare {}",
-        "fit {}",
-        "solve {}",
-        "sweep -",
-    ],
-)
-def test_a_file_without_line_ends_takes_no_memory(line: str, tmp_path: Path) -> None:
+def test_a_file_without_line_ends_takes_no_memory(tmp_path: Path) -> None:
     """The file is /dev/zero, and a process may have 600 MB more than it starts with."""
-    source = "/dev/zero"
-    words = line.format(source).split()
-    code = f"""if True:
-        import resource, sys, numpy, scipy.optimize
+    zeros = "/dev/zero"
+    lines = ["sweep", "table --times", "table --tops", "compare", "fit", "solve"]
+    limit = f"""if True:
+        import resource
         used = int(open("/proc/self/statm").read().split()[0]) * {resource.getpagesize()}
         resource.setrlimit(resource.RLIMIT_AS, (used + 600_000_000,) * 2)
-        from lagrange_cli.__main__ import main
-        main()
+        os.dup2(os.open("{zeros}", os.O_RDONLY), 0)
     """
-    with open(source, "rb") as stdin:
-        done = subprocess.run(
-            [sys.executable, "-c", code, *words],
-            stdin=stdin,
-            capture_output=True,
-            check=False,
-            timeout=60,
-        )
-    name = "standard input" if words[-1] == "-" else source
-    assert (done.returncode, done.stdout) == (65, b"")
-    assert done.stderr.startswith(f"Error: {name}".encode())
-    assert done.stderr.count(b"\n") == 1
+    words = [*(f"{line} {zeros}" for line in lines), "sweep -"]
+    for word, end in zip(
+        words,
+        forked(words, tmp_path, before="import numpy, scipy.optimize", each=limit),
+        strict=True,
+    ):
+        name = "standard input" if word.endswith("-") else zeros
+        assert (end.code, end.stdout) == (65, b""), word
+        assert end.stderr.startswith(f"Error: {name}".encode()), word
+        assert end.stderr.count(b"\n") == 1, word
 
 
 def test_lines_that_are_kept_are_bounded(
@@ -197,28 +174,30 @@ def test_times_that_are_far_apart(tmp_path: Path, lagtop: Lagtop) -> None:
     assert_one_line(lagtop("fit", path), 65, f"{path}, {wrong}")
 
 
-@pytest.mark.parametrize("form", ["json", "csv", "table"])
-def test_a_file_name_that_is_not_utf8(form: str, tmp_path: Path) -> None:
-    name = b"\xff.csv"
-    (tmp_path / os.fsdecode(name)).write_bytes(CSV)
-    command: list[str | bytes] = [*LAGTOP, "compare", name, "--exit-zero", "--format", form]
-    done = subprocess.run(command, capture_output=True, check=False, cwd=tmp_path)
-    assert done.returncode == 0
+def test_file_names_that_are_not_utf8(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = os.fsdecode(b"\xff.csv")
+    Path(name).write_bytes(CSV)
+    for form in ("json", "csv"):
+        shown = lagtop("compare", name, "--exit-zero", "--format", form).stdout
+        assert "udcff.csv" in shown
+        assert json.loads(shown)["rows"][0]["file"] == "\\udcff.csv" if form == "json" else True
+    done = process("compare", name, "--exit-zero", "--format", "table")
+    assert "udcff.csv" in done.stdout.decode()
     assert b"Traceback" not in done.stderr
-    shown = done.stdout.decode()
-    assert json.loads(shown)["rows"][0]["file"] == "\\udcff.csv" if form == "json" else True
-    assert "udcff.csv" in shown
 
 
-def test_a_scene_from_a_file_name_that_is_not_utf8(tmp_path: Path) -> None:
-    name = b"\xff\x7f.csv"
-    sample = ROOT / "sample_inputs" / "recording.csv"
-    (tmp_path / os.fsdecode(name)).write_bytes(sample.read_bytes())
-    command: list[str | bytes] = [*LAGTOP, "fit", name, "-o", "found.toml"]
-    done = subprocess.run(command, capture_output=True, check=False, cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, b"")
-    read = subprocess.run([*LAGTOP, "solve", "found.toml"], check=False, cwd=tmp_path)
-    assert read.returncode == 0
+def test_a_scene_from_a_file_name_that_is_not_utf8(
+    tmp_path: Path, lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = os.fsdecode(b"\xff\x7f.csv")
+    Path(name).write_bytes((ROOT / "sample_inputs" / "recording.csv").read_bytes())
+    done = lagtop("fit", name, "-o", "found.toml")
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert lagtop("solve", "found.toml").exit_code == 0
 
 
 def test_the_generator_makes_what_it_says() -> None:

@@ -17,7 +17,7 @@ from pyarrow import parquet
 
 from lagrange_cli import LagtopError
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs import trajectory_arrays, trajectory_text
+from lagrange_cli.inputs import text_tables, trajectory_arrays
 from lagrange_cli.inputs.trajectory import open_trajectory
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES, expanded, quantities_in
 
@@ -113,7 +113,7 @@ def test_every_form_holds_the_same_numbers(
     form: str, at_once: int, made: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(trajectory_arrays, "ROWS_AT_ONCE", at_once)
-    monkeypatch.setattr(trajectory_text, "BYTES_AT_ONCE", 100 * at_once)
+    monkeypatch.setattr(text_tables, "BYTES_AT_ONCE", 100 * at_once)
     found = read(made(form))
     assert np.array_equal(found["t"][:, 0], DATA[:, 0])
     assert np.array_equal(found["quaternion"], DATA[:, 1:])

@@ -15,7 +15,7 @@ from engines import Body, Run, rk4, semi_implicit_euler
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
-from lagrange_cli.judge.judgement import KEYS
+from lagrange_cli.judge.judgement import JUDGEMENT_KEYS
 from lagrange_cli.plot.reports import ErrorCurve, draw_errors
 
 TOP = Top(psidot0=3)
@@ -54,7 +54,7 @@ def test_formats_say_the_same(lagtop: Lagtop, right: Path, coarse: Path) -> None
     assert {result.exit_code for result in shown.values()} == {1}
     rows = rows_of(shown["json"].stdout)
     assert [row["verdict"] for row in rows] == ["fine", "drifts"]
-    assert [list(row) for row in rows] == [[*KEYS]] * 2
+    assert [list(row) for row in rows] == [[*JUDGEMENT_KEYS]] * 2
     for row, cells in zip(rows, csv.DictReader(io.StringIO(shown["csv"].stdout)), strict=True):
         known = {key: "" if x is None else str(x) for key, x in row.items()}
         assert cells["verdict"] == known["verdict"]
@@ -102,6 +102,19 @@ def test_a_trajectory_that_is_not_fine_is_a_failure(
     assert "Error" not in looked.stderr
     both = lagtop("compare", other, other, *OPTIONS)
     assert "Error: 2 of 2 trajectories failed; the first: " in both.stderr
+
+
+def test_an_angle_whose_turns_cannot_be_counted_is_named(lagtop: Lagtop, tmp_path: Path) -> None:
+    """The last line named psi, which drifts by 1e-17 rad, where it is phi that drifts."""
+    t, path = np.linspace(0, 20, 200), tmp_path / "run.csv"
+    theta, phi, psi = solve(TOP).angles(t)
+    run = np.column_stack([t, theta, phi + 33.6 * t, psi])
+    np.savetxt(
+        path, run, delimiter=",", header="t,theta_rad,phi_rad,psi_rad", comments="", fmt="%.17g"
+    )
+    result = lagtop("compare", path, *OPTIONS)
+    assert "rows are too far apart to count whole turns of phi" in result.stderr
+    assert "drifts by" not in result.stdout + result.stderr
 
 
 def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> None:

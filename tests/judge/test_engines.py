@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from lagrange_cli import Judgement, Top, solve
-from lagrange_cli.judge.files import Request, compare_files
+from lagrange_cli.judge.compare import ComparisonRequest, compare_files
 
 M, A, C, S, G, R0 = 1.587, 3.9032e-3, 1.7458e-3, 0.04, 9.81, 50.0
 TOP = Top(m=M, A=A, C=C, s=S, g=G, r0=R0)
@@ -23,7 +23,9 @@ END = 2.0
 
 
 def verdicts(paths: list[Path], steps: list[float]) -> list[Judgement]:
-    session = compare_files(solve(TOP), [str(path) for path in paths], Request(steps=steps))
+    session = compare_files(
+        solve(TOP), [str(path) for path in paths], ComparisonRequest(steps=steps)
+    )
     return list(session.judgements)
 
 

@@ -16,7 +16,7 @@ from scenes import UNIT, period
 from lagrange_cli import Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.points import EvenPoints
 from lagrange_cli.arithmetic.types import Array
-from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic
+from lagrange_cli.bench.hard_scenes import STRATA, Scene
 from lagrange_cli.bench.reference import Reference, angle_units
 from lagrange_cli.motion.over_time.table import rows
 
@@ -235,7 +235,7 @@ def test_bodies_of_any_size(key: str, exponent: int) -> None:
 
 def generic_motions(count: int) -> list[tuple[Scene, Motion]]:
     rng = random.Random(33)
-    scenes = [generic(rng) for _ in range(count)]
+    scenes = [STRATA["generic"](rng) for _ in range(count)]
     return [(scene, solve(Top(**scene))) for scene in scenes]
 
 
@@ -411,7 +411,7 @@ def test_against_integrators_over_twenty_periods(
     """Vertical and rates in the body frame; the error seen is the integrators' own."""
     rng = random.Random(100)
     for _ in range(scenes):
-        scene = generic(rng)
+        scene = STRATA["generic"](rng)
         motion = solve(Top(**scene))
         t = np.linspace(0, 20, 41) * period(motion)
         theta, phi, p, q = columns(motion, "theta phi p q", t)

@@ -77,7 +77,7 @@ def test_any_text_is_a_number_or_one_clear_error(text: str) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(r0=spins, theta0=tilts, psidot0=st.floats(-1e3, 1e3), thetadot0=st.floats(-1e3, 1e3))
 def test_every_start_gives_numbers_or_one_clear_error(
     r0: float, theta0: float, psidot0: float, thetadot0: float
@@ -102,7 +102,7 @@ def test_every_start_gives_numbers_or_one_clear_error(
     assert angles.theta.max() <= greatest + 4e-15
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(r0=spins, theta0=tilts)
 def test_json_is_json_and_carries_the_doubles(r0: float, theta0: float) -> None:
     options = ["--r0", repr(r0), "--theta0", repr(theta0), "--format", "json"]

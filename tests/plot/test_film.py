@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from itertools import pairwise
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import Lagtop
+from matplotlib.figure import Figure
 from pictures import sample_motion
 from scenes import SAMPLES
 from scipy.spatial.transform import Rotation
@@ -83,6 +85,24 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
             assert (drawn[0] | drawn[1]).sum() == passed.sum()
             assert moving.clock.get_text() == f"t = {moving.times[i]:.4g}"
     assert moving.times[-1] == 1.0
+
+
+def test_a_frame_over_the_background_is_the_whole_picture() -> None:
+    """Front parts are drawn by themselves and laid over it, which rounds colours once more."""
+    page = Page(solve(Top()), ["sphere"], PlotRequest(t_max=1.3), LIGHT)
+    with styled(LIGHT):
+        moving = film.Film(page, film.Pace(24.0, 144, 1.3))
+        ends = []
+        for i in (0, 57, 143):
+            moving.show(i)
+            frame = np.asarray(moving.figure.frame(50), dtype=int)
+            ends.append(moving.axle.get_zorder())
+            whole = io.BytesIO()
+            Figure.savefig(moving.figure, whole, format="rgba", dpi=50)
+            pixels = np.frombuffer(whole.getvalue(), np.uint8).reshape(*frame.shape[:2], 4)
+            apart = np.abs(frame - pixels[..., :3]).max(axis=2)
+            assert apart.max() <= 4
+    assert len(set(ends)) == 2  # the axle is before the globe in some frames and behind in others
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...arithmetic.types import Array
-from .body import Body
+from .scaled_body import Body
 from .serve import Simulate
 
 TO_ENGINE = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]])

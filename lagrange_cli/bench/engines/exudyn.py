@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...arithmetic.types import Array
-from .body import Body
+from .scaled_body import Body
 from .serve import Simulate
 
 IMPLICIT = "GeneralizedAlpha"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...arithmetic.types import Array
-from .body import Body
+from .scaled_body import Body
 from .serve import Simulate, stepped
 
 

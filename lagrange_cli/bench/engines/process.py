@@ -1,29 +1,38 @@
-"""The process of an engine, seen from the bench: started, asked, and killed if it hangs."""
+"""The engines that take part, each in a process of its own: started, asked, and killed if it hangs.
+
+Another engine, or another scheme, is one entry in FAMILIES.
+"""
 
 from __future__ import annotations
 
 import multiprocessing
 import textwrap
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from multiprocessing.context import SpawnProcess
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...arithmetic.types import Array
 from ...inputs.top import Top
 from ...motion.solve import solve
 from ...sweeps.jobs import interrupts_blocked, safe_path
 from ..integrators import quaternion_angles
-from ..method import FailedError, NotApplicableError, Sample
-from .body import Body, scaled_body
+from ..method import AngleFunction, FailedError, Method, NotApplicableError
+from .scaled_body import Body, scaled_body
 from .serve import serve
 
 SECONDS_TO_START = 60.0
 """How long the import of an engine may take."""
 LONGEST_ERROR = 80
 """Letters of the error of an engine that are shown."""
+STEPS = [50, 200, 800, 3200]
+MANY_STEPS = [200, 800, 3200, 12800]
+"""Steps per nutation period of schemes with a fixed step; many for those of order 1."""
+IMPORTS = {"drake": "pydrake"}
+"""Modules of packages, where they have another name than the package."""
 
 
 class EngineProcess:
@@ -78,14 +87,16 @@ def _stop(process: SpawnProcess, folder: TemporaryDirectory[str]) -> None:
     folder.cleanup()
 
 
-def engine_sample(module: str, scheme: str, top: Top, setting: Any, limit: float = 5.0) -> Sample:
+def engine_sample(
+    module: str, scheme: str, top: Top, setting: Any, limit: float = 5.0
+) -> AngleFunction:
     """Return an engine in a process of its own; a run may take `limit` seconds.
 
     Raises NotApplicableError for a body that engines refuse, and FailedError if the process does
     not start.
     """
     attitudes = engine_attitudes(module, scheme, top, setting, limit)
-    return lambda t: quaternion_angles(attitudes(t).T)
+    return lambda t: quaternion_angles(attitudes(t))
 
 
 def engine_attitudes(
@@ -106,3 +117,43 @@ def engine_attitudes(
         return process.attitudes(t * clock, limit)
 
     return attitudes
+
+
+class Scheme(NamedTuple):
+    """An integrator of an engine, and the settings that it is tried at."""
+
+    name: str
+    settings: Sequence[Any] = STEPS
+    """Steps per nutation period, or tolerances."""
+
+
+FAMILIES: dict[str, dict[str, Scheme]] = {
+    "mujoco": {"euler": Scheme("Euler", MANY_STEPS), "rk4": Scheme("RK4")},
+    "exudyn": {
+        "rk44": Scheme("RK44"),
+        "rk67": Scheme("RK67"),
+        "alpha": Scheme("GeneralizedAlpha"),
+    },
+    "pybullet": {"": Scheme("", MANY_STEPS)},
+    "drake": {
+        "rk3": Scheme("runge_kutta3", [1e-2, 1e-4, 1e-6, 1e-8]),
+        "rk5": Scheme("runge_kutta5", [1e-6, 1e-9, 1e-12, 1e-14]),
+        "discrete": Scheme("discrete", MANY_STEPS),
+    },
+}
+"""Schemes of each engine, by the module of this folder that runs it: that of its package."""
+
+
+def engines(limit: float) -> dict[str, Method]:
+    """Return each engine with each of its schemes by name; a run may take `limit` seconds."""
+    return {
+        f"{package}-{short}".rstrip("-"): Method(
+            scheme.settings,
+            partial(engine_sample, package, scheme.name, limit=limit),
+            IMPORTS.get(package, package),
+            whole_turns=False,
+            engine=package,
+        )
+        for package, schemes in FAMILIES.items()
+        for short, scheme in schemes.items()
+    }

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...arithmetic.types import Array
-from .body import Body
+from .scaled_body import Body
 from .serve import Simulate, stepped
 
 URDF = """<robot name="top">

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...arithmetic.types import Array
-from .body import Body
+from .scaled_body import Body
 
 Simulate = Callable[[Array], Array]
 """Runs from the start through growing times; returns a quaternion w, x, y, z for each."""

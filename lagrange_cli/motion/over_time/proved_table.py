@@ -13,6 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ...arithmetic.ball import Ball
+from ...arithmetic.balls import Balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
@@ -101,7 +102,7 @@ class BallSample(ColumnFormulas[Ball]):
 
     def wrapped(self, angle: Ball) -> Ball:
         """Return an angle in (-pi, pi]."""
-        ar = self.t.ar
+        ar: Balls = self.t.ar
         if self.kind.facts.plane:  # half turns, where both ends belong to pi
             return ar.pi * (ar.nint(angle / ar.pi) % 2)
         return angle - 2 * ar.pi * ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))

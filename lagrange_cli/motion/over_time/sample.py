@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...arithmetic.arrays import ARRAYS
-from ...arithmetic.blocks import BLOCK, blocks
+from ...arithmetic.blocks import BLOCK, blocks, workspace
 from ...arithmetic.types import Array
-from ...arithmetic.workspace import workspace
 from ..numbers import Numbers
 from .attitude import Attitude, needed
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants

@@ -25,11 +25,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...arithmetic.arrays import ARRAYS
-from ...arithmetic.blocks import BLOCK, blocks
+from ...arithmetic.blocks import BLOCK, blocks, workspace
 from ...arithmetic.double_double import Period, whole_periods
 from ...arithmetic.order import order_by_parity, placed, taken
 from ...arithmetic.types import Array
-from ...arithmetic.workspace import workspace
 from .attitude import Attitude, Growths, Spinor, Times
 from .columns import NOTHING, TILT, TURN, Needs
 from .theta_series import Frame

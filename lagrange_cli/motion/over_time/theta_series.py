@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ...arithmetic.formulas import polynomial
+from ...arithmetic.numbers import polynomial
 from ...arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
 from ...elliptic.complete import nome
 from ...elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...arithmetic.arrays import doubles_of
 from ...arithmetic.points import MAX_TIME
-from ...arithmetic.real_arrays import doubles_of
 from ...arithmetic.types import Array
 from ...errors import LagtopError
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-INPUTS = ("C", "r0", "m", "s", "g", "A")
+BODY_INPUTS = ("C", "r0", "m", "s", "g", "A")
 """The inputs of a body and its spin; what stands first is expressed by what stands last."""
 _EXPONENTS: Mapping[str, Mapping[str, int]] = {
     "a": {"m": 1, "s": 1, "g": 1, "A": -1},
@@ -22,7 +22,7 @@ _EXPONENTS: Mapping[str, Mapping[str, int]] = {
 """The inputs whose product each number is; a stands for a/2."""
 
 
-class Told(NamedTuple):
+class DeterminedProduct(NamedTuple):
     """A product of powers of inputs that the numbers and the known inputs tell."""
 
     powers: Mapping[str, Fraction]
@@ -42,12 +42,14 @@ def _power(name: str, exponent: Fraction) -> str:
     return name if exponent == 1 else f"{name}^{exponent}"
 
 
-def told_of(seen: Mapping[str, float], known: Mapping[str, float]) -> list[Told]:
+def determined_products(
+    seen: Mapping[str, float], known: Mapping[str, float]
+) -> list[DeterminedProduct]:
     """Return what is told of the inputs that are not known: single ones, and products.
 
     `seen` are a, b and, where it is seen, r0; none of them is 0.
     """
-    unknown = [name for name in INPUTS if name not in known]
+    unknown = [name for name in BODY_INPUTS if name not in known]
     rows = []
     for number, value in seen.items():
         powers = [Fraction(_EXPONENTS[number].get(name, 0)) for name in unknown]
@@ -64,7 +66,7 @@ def told_of(seen: Mapping[str, float], known: Mapping[str, float]) -> list[Told]
         named = {name: n for name, n in zip(unknown, powers, strict=True) if n}
         sign = math.copysign(1.0, seen["b"]) if named.get("r0") else 1.0
         parts = {number: n for number, n in zip(seen, shares, strict=True) if n}
-        told.append(Told(named, sign * math.exp(logarithm), parts))
+        told.append(DeterminedProduct(named, sign * math.exp(logarithm), parts))
     return told
 
 
@@ -100,8 +102,8 @@ def _less(row: Row, other: Row, times: Fraction) -> Row:
     )
 
 
-def completed(
-    seen: Mapping[str, float], known: Mapping[str, float], told: list[Told]
+def completed_body(
+    seen: Mapping[str, float], known: Mapping[str, float], told: list[DeterminedProduct]
 ) -> dict[str, float]:
     """Return all six inputs of a body that moves so; what is not told is 1, or such that C = A.
 
@@ -109,7 +111,7 @@ def completed(
     out so that m s^2 = A/10, as of a body that can be built.
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
-    inputs = {name: others.get(name, 1.0) for name in INPUTS} | dict(known)
+    inputs = {name: others.get(name, 1.0) for name in BODY_INPUTS} | dict(known)
     for x in told:
         (name, power), *rest = x.powers.items()
         assert power == 1

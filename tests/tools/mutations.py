@@ -1,6 +1,6 @@
 """Break the package on purpose, one small change at a time, and count which tests see it.
 
-    python tests/mutations.py 100 --seed 1 --out mutations.csv
+    python tests/tools/mutations.py 100 --seed 1 --out mutations.csv
 
 Each mutation is made in a temporary clone of the last commit and meets the tests of its room,
 the quick ones before the slow ones; only if it lives there, the quick tests of the whole suite.
@@ -28,7 +28,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 ROOM_TESTS = {
     "arithmetic": ["tests/elliptic", "tests/motion"],
     "inputs": ["tests/sweeps", "tests/cli"],

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from ...inputs.top import Top
-from ..integrators import problem
+from ..integrators import scaled_top
 from ..method import NotApplicableError
 
 
@@ -42,7 +42,7 @@ def scaled_body(top: Top, period: float) -> tuple[Body, float]:
 
     Raises NotApplicableError where no masses have such moments: engines refuse them.
     """
-    p, mass, A = problem(top), float(top.m), float(top.A)
+    p, mass, A = scaled_top(top), float(top.m), float(top.A)
     s, C = float(top.s) * math.sqrt(mass / A), float(top.C) / A
     central = 1 - s * s
     if central <= 0 or C > 2 * central * (1 + 1e-12):

@@ -1,4 +1,4 @@
-"""A recording as a camera makes it: `python tests/recordings.py` writes it to sample_inputs.
+"""A recording as a camera makes it: `python tests/tools/recordings.py` writes it to sample_inputs.
 
 The motion is exact.  The camera takes 120 pictures a second, sees the tilt and the precession with
 some noise, loses frames, and sees the mark on the rotor only while that is in front.
@@ -12,7 +12,7 @@ import numpy as np
 
 from lagrange_cli import Top, solve
 
-PATH = Path(__file__).parent.parent / "sample_inputs" / "recording.csv"
+PATH = Path(__file__).parents[2] / "sample_inputs" / "recording.csv"
 TOP = Top(
     m=1.587,
     A=3.9032e-3,

@@ -1,6 +1,6 @@
-"""The usual slips: each is undone in turn, and the one that explains an error best is named.
+"""Common mistakes: each is undone in turn, and the one that explains an error best is named.
 
-Another slip is one entry of SLIPS, or of `_slips_of_rates` where it needs a start with rates.
+Another mistake is one entry of MISTAKES, or of `_mistakes_of_rates` if a start has rates.
 """
 
 from __future__ import annotations
@@ -21,63 +21,63 @@ from ..inputs.seen import Seen
 from ..inputs.top import Top
 from ..motion.solve import Motion, solve
 from .alignment import Alignment
-from .judgement import Given, JudgedRun, errors_of
+from .judgement import JudgedRun, ReadTrajectory, errors_of
 
 EXPLAINS = 0.1
-"""The part of the error that may be left where a slip explains it."""
+"""The part of the error that may be left where a mistake explains it."""
 
 
-class Slip(NamedTuple):
-    """A slip: the top that moved in the place of the one that was meant, or another reading."""
+class Mistake(NamedTuple):
+    """A mistake: the top that moved in the place of the one that was meant, or another reading."""
 
     name: str
     top: Callable[[Top], Top] | None = None
     seen: Callable[[Seen], Seen] | None = None
-    wish: Callable[[Alignment], Alignment] | None = None
+    alignment: Callable[[Alignment], Alignment] | None = None
     other_unit: bool = False
     """Whether angles whose names have no unit are in the other one."""
     excess: Callable[[Top], Fraction] | None = None
     """Spin rate of the top that moved, less that of `top`, if another body stands for it."""
 
-    def reading(self, given: Given, meant: Top) -> Given:
-        """Return the trajectory of the top that was meant as it is read without the slip."""
+    def reading(self, given: ReadTrajectory, meant: Top) -> ReadTrajectory:
+        """Return the trajectory of the top that was meant as it is read without the mistake."""
         conventions = given.conventions
         if self.other_unit:
             conventions = conventions._replace(radians=not conventions.radians)
-        wish = given.wish if self.wish is None else self.wish(given.wish)
+        alignment = given.alignment if self.alignment is None else self.alignment(given.alignment)
         change = self.seen if self.excess is None else _spun_less(float(self.excess(meant)))
-        return given._replace(conventions=conventions, wish=wish, change=change)
+        return given._replace(conventions=conventions, alignment=alignment, change=change)
 
 
 class Explanation(NamedTuple):
-    """The slip that explains a trajectory best."""
+    """The mistake that explains a trajectory best."""
 
     name: str
     error: float
     """Greatest error that is left."""
 
 
-def explanation(motion: Motion, run: JudgedRun, given: Given) -> Explanation | None:
-    """Return the slip that leaves the least error in the rows that were kept, if it explains them.
+def explanation(motion: Motion, run: JudgedRun, given: ReadTrajectory) -> Explanation | None:
+    """Return the mistake that leaves the least error in the kept rows, if it explains them.
 
     Rows that are lost do not count.
     """
     kept = given._replace(blocks=[run.kept], conventions=run.conventions)
     left = [
-        Explanation(slip.name, error)
-        for slip in [*SLIPS, *_slips_of_rates(motion.top)]
-        if (error := _error_without(slip, motion, kept)) is not None
+        Explanation(mistake.name, error)
+        for mistake in [*MISTAKES, *_mistakes_of_rates(motion.top)]
+        if (error := _error_without(mistake, motion, kept)) is not None
     ]
     best = min(left, key=lambda x: x.error, default=None)
     error = run.judgement.error_max
     return best if best and error and best.error <= EXPLAINS * error else None
 
 
-def _error_without(slip: Slip, motion: Motion, given: Given) -> float | None:
-    """Return the greatest error without a slip, or None for one that cannot be."""
+def _error_without(mistake: Mistake, motion: Motion, given: ReadTrajectory) -> float | None:
+    """Return the greatest error without a mistake, or None for one that cannot be."""
     try:
-        moved = motion if slip.top is None else solve(slip.top(motion.top))
-        errors = errors_of(moved, slip.reading(given, motion.top))
+        moved = motion if mistake.top is None else solve(mistake.top(motion.top))
+        errors = errors_of(moved, mistake.reading(given, motion.top))
     except LagtopError:
         return None
     return None if np.isnan(errors).all() else float(np.nanmax(errors))
@@ -169,37 +169,37 @@ def _in_the_other_frame(seen: Seen) -> Seen:
 def _framed(axis: str = "z", up: str = "z") -> Callable[[Alignment], Alignment]:
     """Return the alignment with these frames, and with the angles counted from the first row."""
 
-    def aligned(wish: Alignment) -> Alignment:
-        if wish.hides_frames:
+    def aligned(alignment: Alignment) -> Alignment:
+        if alignment.hides_frames:
             raise LagtopError("the frames come from the first row")
-        return wish._replace(start=True, axis=axis, up=up)
+        return alignment._replace(start=True, axis=axis, up=up)
 
     return aligned
 
 
-SLIPS = [
-    Slip(
+MISTAKES = [
+    Mistake(
         "A: the moment about the pivot taken as about the mass centre (A + m s^2)", _moment_moved(1)
     ),
-    Slip(
+    Mistake(
         "A: the moment about the mass centre taken as about the pivot (A - m s^2)",
         _moment_moved(-1),
     ),
-    Slip("A and C exchanged", _exchanged_moments, excess=_spin_of_exchanged_moments),
-    Slip("r0 with the wrong sign", _spin_times(-1)),
-    Slip("r0 in radians taken as degrees", _spin_times(math.pi / 180)),
-    Slip("r0 in degrees taken as radians", _spin_times(180 / math.pi)),
-    Slip("r0 in radians taken as turns a minute", _spin_times(math.pi / 30)),
-    Slip("r0 in turns a minute taken as radians", _spin_times(30 / math.pi)),
-    Slip("theta0 in radians taken as degrees", lambda top: top.replace(theta0_deg=_tilt(top))),
-    Slip("theta0 in degrees taken as radians", lambda top: _tilt_of(top, 1)),
-    Slip(
+    Mistake("A and C exchanged", _exchanged_moments, excess=_spin_of_exchanged_moments),
+    Mistake("r0 with the wrong sign", _spin_times(-1)),
+    Mistake("r0 in radians taken as degrees", _spin_times(math.pi / 180)),
+    Mistake("r0 in degrees taken as radians", _spin_times(180 / math.pi)),
+    Mistake("r0 in radians taken as turns a minute", _spin_times(math.pi / 30)),
+    Mistake("r0 in turns a minute taken as radians", _spin_times(30 / math.pi)),
+    Mistake("theta0 in radians taken as degrees", lambda top: top.replace(theta0_deg=_tilt(top))),
+    Mistake("theta0 in degrees taken as radians", lambda top: _tilt_of(top, 1)),
+    Mistake(
         "theta0 in degrees taken as radians",
         lambda top: _tilt_of(top, -1),
         _turned(HALF_TURN_Z, HALF_TURN_Z),
     ),
-    Slip("g left out", lambda top: top.replace(g=0)),
-    Slip(
+    Mistake("g left out", lambda top: top.replace(g=0)),
+    Mistake(
         "g upwards",
         _upside_down,
         _turned(
@@ -207,53 +207,53 @@ SLIPS = [
             rotations.conjugate(HALF_TURN_Z),
         ),
     ),
-    Slip(
+    Mistake(
         "the quaternion is the conjugate, from space to body",
         None,
         _with_quaternion(rotations.conjugate),
     ),
-    Slip(
+    Mistake(
         "the quaternion is xyzw and was read as wxyz",
         None,
         _with_quaternion(lambda q: np.roll(q, 1, 1)),
     ),
-    Slip(
+    Mistake(
         "the quaternion is wxyz and was read as xyzw",
         None,
         _with_quaternion(lambda q: np.roll(q, -1, 1)),
     ),
-    Slip("phi and psi have each other's names", None, _exchanged),
-    Slip("the angular velocity is in the other frame (--rates)", None, _in_the_other_frame),
-    Slip("angles in degrees taken as radians, or the reverse", other_unit=True),
-    Slip("spin and precession do not start at 0 (--align start)", wish=_framed()),
+    Mistake("phi and psi have each other's names", None, _exchanged),
+    Mistake("the angular velocity is in the other frame (--rates)", None, _in_the_other_frame),
+    Mistake("angles in degrees taken as radians, or the reverse", other_unit=True),
+    Mistake("spin and precession do not start at 0 (--align start)", alignment=_framed()),
     *(
-        Slip(
+        Mistake(
             f"the figure axis is the body's {axis} axis (--align axis={axis},start)",
-            wish=_framed(axis=axis),
+            alignment=_framed(axis=axis),
         )
         for axis in ("x", "y", "-z")
     ),
     *(
-        Slip(f"up is the {up} axis of space (--align up={up},start)", wish=_framed(up=up))
+        Mistake(f"up is the {up} axis of space (--align up={up},start)", alignment=_framed(up=up))
         for up in ("x", "y", "-z")
     ),
     *(
-        Slip(
+        Mistake(
             f"the figure axis and up are the {axis} axes (--align axis={axis},up={axis},start)",
-            wish=_framed(axis=axis, up=axis),
+            alignment=_framed(axis=axis, up=axis),
         )
         for axis in ("x", "y", "-z")
     ),
 ]
-"""Every slip that any top may suffer."""
+"""Mistakes that are possible with any top."""
 
 
-def _slips_of_rates(top: Top) -> Iterator[Slip]:
-    """Yield the slips of a start that is not at rest."""
+def _mistakes_of_rates(top: Top) -> Iterator[Mistake]:
+    """Yield the mistakes of a start that is not at rest."""
     if top.psidot0:
         along = Fraction(top.psidot0) * Fraction(math.cos(_tilt(top)))
-        yield Slip("psidot0 with the wrong sign", lambda x: x.replace(psidot0=-x.psidot0))
-        yield Slip("r0 taken as phi'", lambda x: x.replace(r0=Fraction(x.r0) + along))
-        yield Slip("phi' taken as r0", lambda x: x.replace(r0=Fraction(x.r0) - along))
+        yield Mistake("psidot0 with the wrong sign", lambda x: x.replace(psidot0=-x.psidot0))
+        yield Mistake("r0 taken as phi'", lambda x: x.replace(r0=Fraction(x.r0) + along))
+        yield Mistake("phi' taken as r0", lambda x: x.replace(r0=Fraction(x.r0) - along))
     if top.thetadot0:
-        yield Slip("thetadot0 with the wrong sign", lambda x: x.replace(thetadot0=-x.thetadot0))
+        yield Mistake("thetadot0 with the wrong sign", lambda x: x.replace(thetadot0=-x.thetadot0))

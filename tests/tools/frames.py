@@ -1,4 +1,4 @@
-"""The drawing of the frames; `python tests/frames.py` writes sample_inputs/images/frames.svg."""
+"""The drawing of the frames in `sample_inputs/images`: `python tests/tools/frames.py` writes it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-PICTURE = Path(__file__).parent.parent / "sample_inputs" / "images" / "frames.svg"
+PICTURE = Path(__file__).parents[2] / "sample_inputs" / "images" / "frames.svg"
 PSI, THETA, PHI = 48.0, 42.0, 30.0
 """Degrees that keep all arcs apart."""
 AZIMUTH, ELEVATION = np.radians([20.0, 20.0])

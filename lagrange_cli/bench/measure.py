@@ -17,22 +17,22 @@ from ..errors import LagtopError, UnavailableError
 from ..inputs.names import ANGLES, check_names
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from ..output.findings import Findings
 from .closed_forms import CLOSED_FORMS
-from .engines.families import FAMILIES, engines
-from .front import FIELDS, NOT_APPLICABLE, MethodRow, conclusions, is_out, with_front
-from .integrators import STEPS_PER_SECOND, integrators
-from .machine import common_conditions, warm_allocator
+from .engines.process import FAMILIES, engines
+from .integrators import integrators
+from .machine import warm_allocator
 from .method import (
+    NOT_APPLICABLE,
+    AngleFunction,
     FailedError,
     Method,
+    MethodRow,
     NotApplicableError,
-    Sample,
-    Sampled,
-    Steps,
+    SampledAngles,
+    StepsThrough,
     silent_steps,
 )
-from .reference import Exact, Reference, angle_differences, angle_units
+from .reference import ExactAngles, Reference, angle_differences, angle_units
 
 JUDGED = 201
 """Number of the times, the last among them, that are compared with the reference."""
@@ -49,17 +49,17 @@ class Task(NamedTuple):
     times: Array
     judged: NDArray[np.int64]
     """Indices into the times."""
-    exact: list[Exact]
+    exact: list[ExactAngles]
     agreement: float
     """Greatest difference, in radians, of the reference at two precisions."""
 
     @property
     def periods(self) -> float:
         """The span in nutation periods."""
-        return float(self.times[-1]) / nutation_period(self.motion)
+        return float(self.times[-1]) / reference_period(self.motion)
 
 
-def nutation_period(motion: Motion) -> float:
+def reference_period(motion: Motion) -> float:
     """Return the nutation period of a scene that `check_scene` has passed."""
     return float(motion.T_nutation or math.inf)
 
@@ -102,7 +102,12 @@ def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Metho
 
 
 def task(
-    motion: Motion, t_max: float, count: int, *, judged: int = JUDGED, steps: Steps = silent_steps
+    motion: Motion,
+    t_max: float,
+    count: int,
+    *,
+    judged: int = JUDGED,
+    steps: StepsThrough = silent_steps,
 ) -> Task:
     """Return `count` times from 0 to t_max (just t_max for one), with exact angles at a part.
 
@@ -154,7 +159,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
     return _judged(timed, work, [[angle[i] for angle in angles] for i in kept], method)
 
 
-def _set_up(method: Method, work: Task, setting: Any) -> tuple[Sample, float]:
+def _set_up(method: Method, work: Task, setting: Any) -> tuple[AngleFunction, float]:
     if method.package and not method.engine:
         import_module(method.package)
     begun = time.perf_counter()
@@ -162,7 +167,7 @@ def _set_up(method: Method, work: Task, setting: Any) -> tuple[Sample, float]:
     return sample, time.perf_counter() - begun
 
 
-def _run(sample: Sample, times: Array) -> tuple[Sampled, list[float]]:
+def _run(sample: AngleFunction, times: Array) -> tuple[SampledAngles, list[float]]:
     """Return the angles of a first run, and the seconds of later ones, which find all warm.
 
     A run that takes long by itself is not repeated.
@@ -194,46 +199,3 @@ def _judged(
     each: dict[str, Any] = {f"{name}_max": x for name, x in zip(ANGLES, worst, strict=True)}
     each |= {f"{name}_end": x for name, x in zip(ANGLES, end, strict=True)}
     return row._replace(error_max=max(worst), error_end=max(end), units_max=units, **each)
-
-
-def compare_methods(
-    motion: Motion,
-    t_max: float,
-    count: int,
-    methods: dict[str, Method],
-    *,
-    limit: float,
-    steps: Steps = silent_steps,
-) -> Findings:
-    """Return the report on every method at every setting.  Raises LagtopError as `task` does."""
-    work = task(motion, t_max, count, steps=steps)
-    runs = [(name, method, x) for name, method in methods.items() for x in method.settings]
-    found: list[MethodRow] = []
-    for name, method, setting in steps(runs, "methods"):
-        if not (found and found[-1].method == name and is_out(found[-1])):  # said once is enough
-            found.append(measure(work, name, method, setting))
-    rows = with_front(found)
-    return Findings(conditions(work, limit), FIELDS, rows, list(conclusions(rows, methods)))
-
-
-def conditions(work: Task, limit: float) -> dict[str, str]:
-    """Return all that the figures depend on."""
-    motion = work.motion
-    return common_conditions() | {
-        "scene": motion.top.options(),
-        "regime": f"{motion.regime.value}, nutation period {motion.T_nutation}",
-        "times": f"{work.times.size} from 0 to {float(work.times[-1])} "
-        f"({work.periods:.6g} nutation periods)",
-        "reference": f"Legendre's third integral by mpmath, {DIGITS} digits; with {FEWER_DIGITS} "
-        f"digits it differs by {work.agreement:.0e} rad at most",
-        "error": f"radians, greatest of the three angles at {len(work.exact)} of the times, the "
-        "last among them",
-        "units": "the same over eps (max(1, |angle|) + |tau rate|), tau the time since the nearest "
-        "whole period",
-        "turns": "compared unwrapped; quaternion forms know angles modulo 2 pi, and so are judged",
-        "time": f"one thread; after a warm-up, of memory too, least and median of up to {RUNS} "
-        f"runs (of one where it takes {SECONDS_OF_RUNS} s)",
-        "exceptions": f"a run of {limit:g} s fails (of heyoka, one of {limit * STEPS_PER_SECOND:g} "
-        "steps); lagtop-digits runs at the judged times only, "
-        "set-up included",
-    }

@@ -1,18 +1,25 @@
-"""Pictures of the reports, by matplotlib: work and precision, long spans, error by stratum."""
+"""Pictures of the reports, by matplotlib: work and precision, long spans, error by stratum.
+
+A family of methods has one hue, and each method a mark of its own.  The hues are as far from each
+other, from black and from white as a search could bring them for normal, protan, deutan and tritan
+vision; a test simulates these.  Marks tell methods apart within a family, and everything where
+there is no colour at all.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..output.findings import Findings
 from ..output.write import write_bytes
 from ..plot.files import About, figure_bytes
 from ..plot.style import LIGHT, head, styled
 from .battery import CONTRACT
-from .front import is_done
-from .series import Series, series
+from .closed_forms import CLOSED_FORMS
+from .measure import all_methods
+from .method import OURS, is_done
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +31,19 @@ LEAST_UNITS = 1e-2
 """Least error in units that is drawn; a smaller one stands there as an arrow."""
 LETTERS = 0.85
 """Size of the letters over that of `lagtop plot`."""
+HUES = {
+    OURS: LIGHT.ink,
+    "closed forms": "#005000",
+    "scipy": "#c8a000",
+    "heyoka": "#7828a0",
+    "mujoco": "#2800eb",
+    "exudyn": "#eb5078",
+    "pybullet": "#00c8eb",
+    "drake": "#780050",
+}
+"""Colours of the families, in the order of the legend."""
+SHAPES = "os^Dv<>pP*Xhd"
+"""Marks, which are first filled, and then empty."""
 
 
 def draw_work_precision(findings: Findings, path: str) -> None:
@@ -36,7 +56,7 @@ def draw_work_precision(findings: Findings, path: str) -> None:
             x, y = _drawable(front)
             label = "front: none is faster\nand more accurate"
             axes.step(x, y, where="post", color="0.85", lw=6, zorder=1, label=label)
-        for name, look in series(row.method for row in sorted(rows, key=_by_error)).items():
+        for name, look in method_looks(row.method for row in sorted(rows, key=_by_error)).items():
             points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
             _line(axes, name, look, points)
         axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
@@ -48,7 +68,7 @@ def draw_long_spans(findings: Findings, path: str) -> None:
     with styled(LIGHT, LETTERS):
         figure, (above, below) = _figure(2)
         rows = [row for row in findings.rows if is_done(row)]
-        for name, look in series(row.method for row in rows).items():
+        for name, look in method_looks(row.method for row in rows).items():
             mine = [row for row in rows if row.method == name]
             _line(above, name, look, [(row.periods, row.error_max) for row in mine])
             _line(below, name, look, [(row.periods, row.ns_min) for row in mine])
@@ -127,7 +147,7 @@ def _drawable(points: Sequence[tuple[float, float]]) -> list[list[float]]:
     return [[max(value, LEAST_ERROR) for value in axis] for axis in zip(*points, strict=True)]
 
 
-def _line(axes: Axes, name: str, look: Series, points: Sequence[tuple[float, float]]) -> None:
+def _line(axes: Axes, name: str, look: MethodLook, points: Sequence[tuple[float, float]]) -> None:
     """Draw the line of a method; the errors of points beyond the left edge are written there."""
     x, y = _drawable(points)
     axes.plot(x, y, label=name, **look.look())
@@ -164,3 +184,57 @@ def _save(figure: Figure, path: str, title: str, findings: Findings) -> None:
     text = "; ".join(f"{name}: {line}" for name, line in findings.conditions.items())
     about = About(f"lagtop: {title}", text)
     write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about))
+
+
+class MethodLook(NamedTuple):
+    """How the line of a method is drawn."""
+
+    family: str
+    mark: str
+    is_filled: bool
+    is_dashed: bool
+
+    def look(self) -> dict[str, Any]:
+        """Return the arguments of matplotlib's `plot`."""
+        color = HUES.get(self.family, LIGHT.quiet)
+        return {
+            "color": color,
+            "marker": self.mark,
+            "markerfacecolor": color if self.is_filled else LIGHT.paper,
+            "ls": "--" if self.is_dashed else "-",
+            "lw": 2 if self.family == OURS else 1,
+            "ms": 5,
+        }
+
+
+def method_looks(names: Iterable[str]) -> dict[str, MethodLook]:
+    """Return the look of each method, by name, in the order of the legend.
+
+    The two forms of an integrator share a mark, and that in Euler angles is dashed.
+    """
+    order = [*HUES, ""]
+    listed = sorted(names, key=lambda name: order.index(_family(name)))
+    marks = {stem: i for i, stem in enumerate(dict.fromkeys(map(_stem, listed)))}
+    found = {}
+    for name in listed:
+        again, shape = divmod(marks[_stem(name)], len(SHAPES))
+        is_dashed = _stem(name) != name and name.endswith("-euler")
+        found[name] = MethodLook(_family(name), SHAPES[shape], not again, is_dashed)
+    return found
+
+
+def _family(name: str) -> str:
+    """Return the family of a method; "" for one that is not known."""
+    method = all_methods(1.0).get(name)
+    if name.startswith(OURS):
+        return OURS
+    if name in CLOSED_FORMS:
+        return "closed forms"
+    return (method.engine or method.package.partition(".")[0]) if method else ""
+
+
+def _stem(name: str) -> str:
+    """Return the name of an integrator without its form, and any other name as it is."""
+    if _family(name) not in {"scipy", "heyoka", ""}:
+        return name
+    return name.removesuffix("-euler").removesuffix("-quaternion")

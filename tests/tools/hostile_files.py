@@ -1,6 +1,6 @@
 """Files that are broken, hostile or unusual: each command must end with one line, in little memory.
 
-    python tests/hostile_files.py --count 150 --seed 1
+    python tests/tools/hostile_files.py --count 150 --seed 1
 
 Every file is given to `compare`, `fit`, `solve`, `sweep`, `table --times` and `table --tops`, each
 in a process of its own with limited memory and time.  A run is a fault if it ends with a traceback,

@@ -1,0 +1,180 @@
+"""One engine for the tables of functions; each table declares its columns.
+
+With N digits every number is rounded from a proof or, of complex functions, from two precisions
+that agree.  In doubles a table is computed in arrays; a short one of real functions is computed as
+enclosures, which takes less time than to load NumPy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from fractions import Fraction
+from functools import cache
+from itertools import chain
+from typing import TYPE_CHECKING, Any, Self
+
+from ..arithmetic.ball import TooFewDigitsError
+from ..arithmetic.protocol import FunctionArithmetic, Value
+from .proved_numbers import ProvedNumbers
+
+if TYPE_CHECKING:
+    from ..arithmetic.ball_functions import BallFunctions
+    from ..arithmetic.points import Points
+    from ..arithmetic.text import NumberText
+    from ..arithmetic.types import Array
+
+    Texts = Sequence[Sequence[str]]
+    Rows = tuple[list[str], Iterator[Array | Texts]]
+    DigitRows = Iterator[dict[str, NumberText]]
+    ArrayColumns = tuple[Callable[[Any], dict[str, Array]], Iterator[Any]]
+    Known = Mapping[str, float]
+
+FEW = 24
+"""Numbers that are computed as enclosures in the time that NumPy takes to load."""
+
+
+class TableOfFunctions:
+    """A row of functions for each of `count` arguments."""
+
+    count: int
+    functions: float = math.inf
+    """Functions in a row, if short tables are computed as enclosures; else infinite."""
+    long: tuple[int, int] = (3_000_000, 1000)
+    """Numbers of rows, in doubles and in digits, from which on the work takes seconds."""
+
+    def rows(self, digits: int | None = None) -> Rows:
+        """Return the header, and blocks of rows in doubles or with N significant digits.
+
+        In doubles a pole, and a number that no double can hold, is not a number or an empty text;
+        with N digits it is an empty text.  Raises LagtopError, before any row, for what the table
+        cannot hold: see each table.
+        """
+        if digits is not None:
+            return _listed(self.digit_rows(digits))
+        if self.functions * self.count <= FEW:
+            with suppress(TooFewDigitsError):  # something cancels, so that arrays are sooner ready
+                header, blocks = _listed(self.digit_rows(short=True))
+                return header, iter([list(chain.from_iterable(blocks))])
+        return self.array_rows()
+
+    def array_rows(self) -> Rows:
+        """Return the header, and blocks of rows in doubles as arrays."""
+        return _stacked(*self.array_columns())
+
+    def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
+        """Yield rows with N significant digits or, without `digits`, the nearest doubles.
+
+        A `short` search raises TooFewDigitsError for a number that arrays would yield sooner.
+        """
+        raise NotImplementedError
+
+    def array_columns(self) -> ArrayColumns:
+        """Return the columns of a block of arguments in doubles, and the blocks."""
+        raise NotImplementedError
+
+
+class RealTable(TableOfFunctions):
+    """A table of functions of real points: numbers with N digits are proved by enclosures."""
+
+    rounds = True
+    """Whether a point stands for its nearest double, in a table of doubles."""
+
+    def __init__(self, points: Points) -> None:
+        self.points, self.count = points, points.count
+
+    def in_doubles(self) -> Self:
+        """Return the table that doubles stand for; raise LagtopError if they cannot hold it."""
+        raise NotImplementedError
+
+    def check(self) -> None:
+        """Raise LagtopError for inputs that no number of digits can help."""
+
+    def constants(self, ar: BallFunctions) -> Any:
+        """Return all that does not depend on the point, in balls."""
+        raise NotImplementedError
+
+    def rounded_constants(self) -> Any:
+        """Return the constants in doubles."""
+        raise NotImplementedError
+
+    def columns(
+        self, ar: FunctionArithmetic, x: Value, constants: Any, known: Known
+    ) -> dict[str, Value]:
+        """Return the columns by name at balls or arrays x; `known` ones may be left out."""
+        raise NotImplementedError
+
+    def known(self, x: Fraction) -> Known:
+        """Return the columns that are known exactly at a point; a pole is not a number."""
+        raise NotImplementedError
+
+    def put_known(self, columns: dict[str, Array], x: Array) -> None:
+        """Put values that are known exactly into columns of doubles."""
+
+    def digits_lost(self, x: Fraction) -> int:
+        """Return how many digits the whole periods of a point take."""
+        return 0
+
+    def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
+        """Yield rows of proved numbers; see `TableOfFunctions`."""
+        if digits is None:
+            table = self.in_doubles()
+        else:
+            self.check()
+            table = self
+        numbers, constants = ProvedNumbers(digits, short=short), cache(table.constants)
+
+        def row(point: Fraction) -> dict[str, NumberText]:
+            x = Fraction(float(point)) if digits is None and self.rounds else point
+            known = table.known(x)
+
+            def compute(ar: BallFunctions) -> dict[str, Value]:
+                return table.columns(ar, ar.convert(x), constants(ar), known)
+
+            return numbers.texts(compute, known, table.digits_lost(x))
+
+        return map(row, self.points.decimals())
+
+    def array_columns(self) -> ArrayColumns:
+        """Return the columns of a block of points in doubles, and the blocks."""
+        from ..arithmetic.arrays import ARRAYS
+
+        table = self.in_doubles()
+        constants = table.rounded_constants()
+
+        def columns(x: Array) -> dict[str, Array]:
+            found = table.columns(ARRAYS, x, constants, {})
+            table.put_known(found, x)
+            return found
+
+        return columns, self.points.blocks()
+
+
+def _listed(rows: DigitRows) -> tuple[list[str], Iterator[Texts]]:
+    """Return the header of rows of texts, and a block for each row."""
+    first = next(rows)
+    return list(first), ([list(row.values())] for row in chain([first], rows))
+
+
+def _stacked(columns: Callable[[Any], dict[str, Array]], arguments: Iterable[Any]) -> Rows:
+    """Return the header of columns of doubles, and blocks of rows; NaN for what is not finite.
+
+    A complex number of which one part is not finite has no other part either.
+    """
+    import numpy as np
+
+    def block(x: Any) -> tuple[list[str], Array]:
+        with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
+            found = columns(x)
+        table = np.stack(list(found.values()), axis=1)
+        wrong = ~np.isfinite(table)
+        for i, name in enumerate(found):
+            if name.endswith("_re"):
+                wrong[:, i : i + 2] |= wrong[:, i : i + 2].any(axis=1, keepdims=True)
+        table[wrong] = np.nan
+        return list(found), table + 0.0  # no -0
+
+    blocks = map(block, arguments)
+    header, first = next(blocks)
+    return header, chain([first], (table for _, table in blocks))

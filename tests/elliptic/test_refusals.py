@@ -1,0 +1,101 @@
+"""What `lagtop jacobi` and `lagtop eta` refuse: one line says why, before any work."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import Lagtop
+
+JACOBI = [
+    # real functions
+    ("", "give exactly one of --k, --k-prime, --modular-angle, --nome"),
+    ("--k 0.5 --nome 0.1", "give exactly one of"),
+    ("--k=-1", "--k must be 0 or more, or imaginary as 0.8i, got -1.0"),
+    ("--k-prime -1", "--k-prime must be in [0, 1], got -1.0"),
+    ("--modular-angle 91", "--modular-angle must be in [0, 90], got 91.0"),
+    ("--nome 1", "--nome must be in [0, 1), got 1.0"),
+    ("--k 0.5 --u-range 0:1", "--u-range must be a range [log:]start:stop:count"),
+    ("--k 0.5 --u-range 0:1:0", "--u-range must have a whole count of 1 to 1e9"),
+    ("--k 0.5 --u 1 --u-range 0:1:3", "exclude each other"),
+    ("--k 0.5 --theta", "--theta needs --u or --u-range"),
+    ("--k 0.5 --u 1 --pi", "--omega and --pi need --param"),
+    ("--k 0.5 --u 1 --param 2", "--param needs --omega or --pi"),
+    ("--k 0.5 --u 1 --pi --param x", "must be a finite decimal number"),
+    ("--k 0.5 --u 1 --pi --param 3i", "must be smaller than K'"),
+    ("--k 1 --u 1 --theta", "k must be below 1 for theta functions"),
+    ("--k 0.5 --series 0", "--series must be in [1, 10000], got 0"),
+    ("--k 1 --series 3", "the nome series need 0 < k < 1"),
+    ("--k 0.5 --u 1 --u 2 --series 3", "--series takes one --u, got 2"),
+    # complex numbers, and moduli of any kind
+    ("--k 1+2i", "--k must be 0 or more, or imaginary as 0.8i, got 1.0+2.0i"),
+    ("--k=-0.8i --u 1", "--k must be 0 or more, or imaginary as 0.8i, got -0.8i"),
+    ("--k x", "--k must be a finite decimal number, got 'x'"),
+    ("--k 1.5 --phi 30", "--phi needs a real --u, and a --k in [0, 1]"),
+    ("--k 0.5 --u i --series 3", "--series needs a real --u, and a --k in [0, 1]"),
+    ("--k 0.5 --u i --u 2K", "--u must be without K beside complex numbers"),
+    ("--k 1 --u i --theta", "--k must not be 0 or 1 for theta functions of complex arguments"),
+    ("--k 1e-160 --u i", "--k must be farther than 1e-150 from 0"),
+    ("--k 1e30 --u i", "--k must be at most 1e+20 (or give --digits)"),
+    ("--k 0.8 --u 1e20+i", "--u must be within 2^50 periods = 4.49e+15 of 0, got 1e+20"),
+    ("--k 0.8 --u 1+1e20i", "the imaginary part of u must be within 2^50 periods"),
+    ("--k 0.8 --u 1 --pi --param 1+1e20i", "--param must have parts within 2^50 periods"),
+    ("--k 0.8 --u 1+i --pi", "--omega and --pi need --param, as 0.7, 0.7i or 0.2+0.7i"),
+    ("--k 1.5 --pi --param 1", "--pi needs --u or --u-range"),
+    ("--k 0.8 --u 1+2", "--u must be a finite decimal number"),
+    # F and E
+    ("--k 0.8 --phi 1 --u 3", "--phi and --u exclude each other"),
+    ("--k 0.8 --phi 1 --zeta", "--phi and --zeta exclude each other"),
+    ("--k 0.8 --phi 1 --series 3", "--phi and --series exclude each other"),
+    ("--k 0.8 --phi 1 --param 3", "--param needs --omega or --pi"),
+    ("--k 0.8 --phi 1 --phi-range 0:1:2", "--phi and --phi-range exclude each other"),
+    ("--k 0.8 --phi 1e30", "--phi must be within 2^50 periods = 2.03e+17 of 0, got 1e+30"),
+    ("--k 1.1 --phi 1", "--phi needs a real --u, and a --k in [0, 1]"),
+    ("--k 0.8 --phi x", "--phi must be a finite decimal number, got 'x'"),
+    # multiples of K
+    ("--k 0.3 --u K/0", "--u must be a multiple of K such as K, -2.5K, K/2 or 3K/4, got 'K/0'"),
+    ("--k 0.3 --u K --u 1", "--u must be in units of K every time or never, got both"),
+    ("--k 0.3 --u-range 1:2K:3", "--u-range must have both ends in units of K or none"),
+    ("--k 0.3 --u K --u-range 0:K:3", "--u and --u-range exclude each other"),
+    ("--k 0.3 --u 1e16K", "u in units of K must be within 2^50 periods = 2.25e+15 of 0"),
+    ("--k 1 --u K", "--u must be a number, without K, for k = 1, where K is infinite"),
+    ("--k 1 --u K --digits 9", "--u must be a number, without K, for k = 1"),
+    ("--k 1 --u K --series 2", "the nome series need 0 < k < 1, got k = 1.0"),
+    # some of these never ended, others gave inf or warnings (which are errors in these tests)
+    ("--k 0.9 --u 1 --pi --param 1e17", "--param must be within 2^50 periods = 5.14e+15 of 0"),
+    ("--k 0.5 --u 1 --pi --param=-4e15", "--param must be within 2^50 periods"),
+    ("--k 0.67 --u 3 --pi --param 1e8i", "--param must be smaller than K' = 1.89997 in size"),
+    ("--k 0.5 --u 1 --pi --param 1e15i --digits 30", "--param must be smaller than K' = 2.15652"),
+    ("--k 0.5 --u 1 --omega --param=-1e300i", "--param must be smaller than K'"),
+    ("--k 0.8 --u 0.99999999999999999999 --pi --param 1e15i", "--param must be smaller than K'"),
+    ("--nome 1.6e-274 --u 0.1 --pi --param=-478.87i", "--param must be smaller than K' = 315.219"),
+    ("--modular-angle 0.999 --series 1 --u 1.7e308", "--u must be within 2^50 periods"),
+]
+ETA = [
+    ("--delta 0.2 --delta-star 0.5 --p 0 --q 2", "--delta must be >= --delta-star = 0.5, got 0.2"),
+    ("--delta 1 --delta-star 0 --p 0 --q 0.5", "outside the band from delta* to delta, [0.0, 1.0]"),
+    ("--delta 1 --delta-star 0 --p 0 --q -2", "--q must be >= 0, or imaginary as 0.7i, got -2.0"),
+    ("--delta 1 --delta-star 0 --p 0", "give either --p and --q or"),
+    ("--delta 1 --delta-star 0", "give either --p and --q or"),
+    ("--delta 1 --delta-star 0 --gap-above 0", "--gap-above must be > 0"),
+    ("--delta 1 --delta-star 0 --gap-below 1 --g 0", "--g must be > 0, got 0.0"),
+    ("--delta 1 --delta-star 0 --gap-below 1 --tau-range 0:1:0", "--tau-range must have"),
+    ("--delta 1 --delta-star 0 --gap-below 1 --tau 1 --tau-range 0:1:5", "exclude each other"),
+    ("--delta x --delta-star 0 --gap-below 1", "--delta must be a finite decimal"),
+    ("--delta 1 --delta-star 0 --p 0 --q xi", "--q must be a finite number, complex as"),
+    ("--delta 1 --delta-star 0 --p 0 --q=-2i", "--q must be >= 0, or imaginary as 0.7i, got -2.0i"),
+    ("--delta 1 --delta-star 0 --p 0 --q 1+i", "--q must be real, or imaginary as 0.7i, got"),
+    ("--delta 1 --delta-star 0 --p 0 --quadratic", "--quadratic and --p exclude each other"),
+    ("--delta 1 --delta-star 0 --p 3 --q 2", "makes the period infinite (k1 = 1), got 1.0"),
+    ("--delta 1 --delta-star 0 --quadratic --chain", "--chain needs --tau or --tau-range"),
+    ("--delta 1 --delta-star 0 --quadratic --rate", "--rate needs --tau or --tau-range"),
+]
+REFUSED = [("jacobi", *case) for case in JACOBI] + [("eta", *case) for case in ETA]
+
+
+@pytest.mark.parametrize(("command", "args", "message"), REFUSED)
+def test_bad_input_is_refused_in_a_line(
+    command: str, args: str, message: str, lagtop: Lagtop
+) -> None:
+    result = lagtop(command, *args.split(), "--format", "json")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert result.stderr.count("\n") == 1
