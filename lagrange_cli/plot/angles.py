@@ -12,25 +12,24 @@ from matplotlib.axes import Axes
 from ..arithmetic.types import Array
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from .curves import sampled, span
+from .curves import sampled_columns, span
 from .kinds import Drawing
-from .motion_facts import nutation_period
+from .motion_facts import tilt_period
 from .request import PlotRequest
 from .style import Look, points, short_text
-
-TITLE = "Tilt ϑ, spin φ, precession ψ; dashed: mean growth"
 
 
 def drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the angles; where the axis stays vertical there is no precession to draw."""
     all_is_spin = motion.regime in (Regime.SLEEPING, Regime.HANGING)
-    t, *angles = sampled(motion, request.t_max or span(motion, 3), ["theta", "phi", "psi"]).values()
+    t_max = request.t_max or span(motion, 3)
+    t, *angles = sampled_columns(motion, t_max, ["theta", "phi", "psi"]).values()
     stds = [None] * 3 if request.stds is None else request.stds.at(t)
     rates = None, motion.mean_spin_rate, motion.mean_precession_rate
     rows = list(zip("ϑφψ", angles, rates, stds, strict=True))
 
     def draw(axes: Sequence[Axes], look: Look) -> None:
-        """Draw each angle, with its mean growth and its uncertainty."""
+        """Draw each angle, with its mean rate and its uncertainty."""
         for ax, (symbol, angle, rate, std), colour in zip(axes, rows, look.lines, strict=False):
             ax.set_ylabel(f"{symbol} ({request.angle_unit})")
             ax.plot(t, angle * request.per_radian, color=colour)
@@ -43,20 +42,21 @@ def drawing(motion: Motion, request: PlotRequest) -> Drawing:
                 ax.set_title(mean + note, fontsize="small", color=look.quiet)
         finish_time_axes(axes, motion, t, request)
 
-    title = TITLE if request.stds is None else f"{TITLE}; bands: ±1σ"
+    title = "Tilt ϑ, spin φ, precession ψ; dashed: mean rate"
+    title += "; bands: ±1σ" * (request.stds is not None)
     return Drawing(title, draw, (1.0,) * (2 if all_is_spin else 3))
 
 
 def _draw_mean(
     ax: Axes, t: Array, angle: Array, rate: float, *, request: PlotRequest, look: Look
 ) -> str:
-    """Draw the mean growth of an angle upon its curve, and return in words what a line hides."""
+    """Draw the mean rate of an angle as a line on its curve, and return both in words."""
     mean: dict[str, Any] = {"lw": points(0.9), "ls": (0, (4, 3)), "zorder": 3}
     ax.plot(t, rate * t * request.per_radian, color=look.ink, **mean)
     apart = float(np.abs(angle - rate * t).max()) * request.per_radian
     text = f"mean {short_text(rate)} {request.unit('rad/time')}"
     if apart > 1e-9 * request.per_radian:
-        text += f", from which it departs by {apart:.3g} {request.angle_unit} at most"
+        text += f", greatest deviation {apart:.3g} {request.angle_unit}"
     return text
 
 
@@ -66,7 +66,7 @@ def finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array, request: Pl
     axes[-1].locator_params(axis="x", nbins=6)  # small steps have long labels
     for ax in axes:
         ax.set_xlim(t[0], t[-1])
-    T = nutation_period(motion)
+    T = tilt_period(motion)
     if not T or t[-1] < T * (1 - 1e-9):
         return
     whole = np.arange(1, round(t[-1] / T + 0.499999) + 1)

@@ -27,8 +27,6 @@ TOUCHING = 0.09
 POLES = {1: "upright", -1: "hanging"}
 """What the top is at the ends of the range of a cosine."""
 
-TITLE = "The cubic f(u) = u̇² (4,9), the motion shaded"
-
 
 class Cubic(NamedTuple):
     """f(u) of (4,9) about its roots."""
@@ -90,7 +88,7 @@ def drawing(motion: Motion, request: PlotRequest) -> Drawing:
         _draw_roots(axes[0], cubic, look)
         number_from_left_to_right(axes[0])
 
-    return Drawing(TITLE, draw)
+    return Drawing("The cubic f(u) = u̇² (4,9), the motion shaded", draw)
 
 
 def _draw_curve(axes: Axes, cubic: Cubic, look: Look) -> None:

@@ -22,10 +22,10 @@ from ..errors import LagtopError
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 from .motion_facts import (
-    nutation_period,
     periods_since_highest,
     separatrix_swing,
     swings_in_a_plane,
+    tilt_period,
 )
 
 PHASES = 48
@@ -49,14 +49,14 @@ def span(motion: Motion, periods: float) -> float:
     if motion.regime is Regime.SEPARATRIX:
         swing = separatrix_swing(motion)
         return max(6.0 / swing.speed, 2.0 * swing.lowest)
-    if nutation := nutation_period(motion):
+    if nutation := tilt_period(motion):
         return periods * nutation
     return motion.T_precession or motion.T_spin or 1.0
 
 
 def turn_span(motion: Motion) -> float:
     """Return the time of one turn of the precession, within 3 and 40 nutation periods."""
-    nutation, turn = nutation_period(motion), motion.T_precession
+    nutation, turn = tilt_period(motion), motion.T_precession
     if not nutation:
         return span(motion, 1)
     return min(max(turn / nutation if turn else 3.0, 3.0), 40.0) * nutation
@@ -66,9 +66,9 @@ def sphere_span(motion: Motion) -> float:
     """Return the time of a path on the globe: about one turn of the precession.
 
     A top that swings in a plane comes back along the same arc, and a fast one hardly precesses
-    while it nods: they are shown for one and three nutation periods.
+    in a nutation: they are shown for one and three nutation periods.
     """
-    nutation, turn = nutation_period(motion), turn_span(motion)
+    nutation, turn = tilt_period(motion), turn_span(motion)
     if nutation and swings_in_a_plane(motion):
         return nutation
     if nutation and abs(motion.mean_precession_rate or 1.0) * turn < math.radians(20):
@@ -85,7 +85,7 @@ def checked_span(motion: Motion, t_max: Number | None) -> float | None:
         return None
     if not t_max > 0:
         raise LagtopError(f"t_max must be > 0, got {float(t_max):g}", "t_max")
-    nutation = nutation_period(motion)
+    nutation = tilt_period(motion)
     if nutation and t_max > MOST_PERIODS * nutation:
         most = f"{MOST_PERIODS} nutation periods = {MOST_PERIODS * nutation:.6g}"
         raise LagtopError(f"t_max must be at most {most}, got {float(t_max):g}", "t_max")
@@ -94,7 +94,7 @@ def checked_span(motion: Motion, t_max: Number | None) -> float | None:
 
 def highest_times(motion: Motion, t_max: float) -> Array:
     """Return the times in [0, t_max] at which the axis is highest: its cusps, if it has any."""
-    T = nutation_period(motion)
+    T = tilt_period(motion)
     if not T:
         return np.empty(0)
     before = periods_since_highest(motion)
@@ -103,7 +103,7 @@ def highest_times(motion: Motion, t_max: float) -> Array:
     return times
 
 
-def sampled(motion: Motion, t_max: float, names: Sequence[str]) -> dict[str, Array]:
+def sampled_columns(motion: Motion, t_max: float, names: Sequence[str]) -> dict[str, Array]:
     """Return columns of `lagtop table` from 0 to t_max, in radians, by their headings.
 
     The times, under `t`, are those at which the columns make a smooth curve.
@@ -122,7 +122,7 @@ def phase_times(motion: Motion, t_max: float) -> Array:
     """
     if motion.regime is Regime.SEPARATRIX:
         return _separatrix_times(motion, t_max)
-    T = nutation_period(motion)
+    T = tilt_period(motion)
     if not T:
         return np.linspace(0.0, t_max, 4 * PHASES + 1)
     before = periods_since_highest(motion)

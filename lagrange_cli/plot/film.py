@@ -18,14 +18,13 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from PIL import Image
 
-from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
-from ..inputs.rotations import rotated
 from ..motion.solve import Motion
-from .camera import Camera, camera_at, runs, side_camera
+from .camera import camera_at, runs, side_camera
+from .cone import cone_at
 from .curves import MOST_PERIODS, span, turn_span
 from .globe import Limits, draw_globe
-from .motion_facts import nutation_period
+from .motion_facts import tilt_period
 from .page import Page, check_pixels
 from .request import Progress, no_progress
 from .sphere import axis_path
@@ -47,10 +46,6 @@ class SmallGifWriter(PillowWriter):
         """Keep a frame, a byte per pixel."""
         frame = self.fig.frame(self.dpi)
         self._frames.append(frame.quantize(palette=self.colours, dither=0))
-
-
-HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
-"""Height and radius (in radii of the sphere) and wedges of the cone that stands for the top."""
 
 
 WRITERS = {".gif": SmallGifWriter, ".mp4": FFMpegWriter}
@@ -124,7 +119,7 @@ def film_pace(
 
 def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
     """Return the time that a film shows.  Raises LagtopError where its path would be a blot."""
-    nutation = nutation_period(motion)
+    nutation = tilt_period(motion)
     if nutation and speed * duration > MOST_PERIODS * nutation:
         most = f"{MOST_PERIODS * nutation / duration:.6g} ({MOST_PERIODS} nutation periods)"
         raise LagtopError(f"speed must be at most {most}, got {speed:g}", "speed")
@@ -171,7 +166,7 @@ def film_bytes(
 
 
 def film_span(motion: Motion) -> float:
-    """Return the time of a turn of the precession, but of six nods at most: more would flicker."""
+    """Return the time of a turn of the precession, at most six nutations: more would flicker."""
     return min(turn_span(motion), span(motion, 6))
 
 
@@ -216,49 +211,6 @@ class Frames(Figure):
     def savefig(self, file: Any, *, dpi: Any, **_: Any) -> None:  # type: ignore[override]
         """Write the pixels of a frame, which is all that a writer of films asks for."""
         file.write(self.frame(dpi).convert("RGBA").tobytes())
-
-
-class Face(NamedTuple):
-    """A triangle of the cone on the page."""
-
-    corners: Array
-    """x and y of the corners, shape (3, 2)."""
-    on_lid: bool
-    light: bool
-    """True on every other sixth of a turn, so that one sees the spin."""
-
-
-class Cone(NamedTuple):
-    """The cone that stands for the top, on the page: the faces in sight, the lid last."""
-
-    faces: list[Face]
-    rim: tuple[Array, Array]
-    axle: tuple[Array, Array]
-    """Line from the middle of the lid to the sphere."""
-    lid_in_sight: bool
-
-
-def cone_at(quaternion: Array, camera: Camera) -> Cone:
-    """Return a cone that stands on its tip, turned from body to space by a quaternion."""
-    around = 2 * math.pi / WEDGES * np.arange(WEDGES + 1)
-    spokes = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
-    z = np.array([0.0, 0.0, 1.0])
-    outward = HEIGHT * (spokes[1:] + spokes[:-1]) / 2 - RADIUS * z
-    tip, middle, axis = rotated(quaternion, np.stack([0 * z, HEIGHT * z, z]))
-    rim = rotated(quaternion, RADIUS * spokes + HEIGHT * z)
-    lid_in_sight = bool(axis @ camera.toward > 0)
-
-    def face(j: int, apex: Array, on_lid: bool) -> Face:
-        """Return the triangle between an apex and wedge j of the rim."""
-        corners = np.stack(camera.project(np.stack([apex, rim[j], rim[j + 1]])), axis=1)
-        return Face(corners, on_lid, light=j * 6 // WEDGES % 2 == 0)
-
-    sides = np.flatnonzero(rotated(quaternion, outward) @ camera.toward > 0)
-    faces = [face(int(j), tip, False) for j in sides]
-    if lid_in_sight:
-        faces += [face(j, middle, True) for j in range(WEDGES)]
-    axle = camera.project(np.stack([middle, axis]))
-    return Cone(faces, camera.project(rim), axle, lid_in_sight)
 
 
 class Film:

@@ -28,7 +28,7 @@ class Drawing(NamedTuple):
     """Heights of the axes of a page, in any unit."""
 
 
-class Kind(NamedTuple):
+class PictureKind(NamedTuple):
     """A kind of picture."""
 
     name: str
@@ -51,12 +51,12 @@ class Kind(NamedTuple):
 
 
 _ROWS = [
-    Kind("sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
-    Kind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
-    Kind("remainders", "spin and precession less their mean growth", (7, 5), True, 2),
-    Kind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
-    Kind("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
-    Kind("map", "a key of the record over two inputs", (6.8, 5.0), False),
+    PictureKind("sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
+    PictureKind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
+    PictureKind("remainders", "periodic parts of spin and precession", (7, 5), True, 2),
+    PictureKind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
+    PictureKind("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
+    PictureKind("map", "a key of the record over two inputs", (6.8, 5.0), False),
 ]
 
 KINDS = {kind.name: kind for kind in _ROWS}

@@ -145,9 +145,9 @@ def _draw_cells(
     axes: Axes, chart: KeyMap, limits: tuple[float, float] | None, look: Look
 ) -> Colorbar:
     """Draw the values as coloured cells, with the bar that explains the colours."""
-    axes.set_facecolor(look.faint)  # where there is no such number
+    axes.set_facecolor(look.faint)  # if the key is undefined
     if not np.isfinite(chart.values).all():
-        axes.fill([], [], color=look.faint, label="has no such number")
+        axes.fill([], [], color=look.faint, label="undefined here")
     low, high = limits or colour_limits(chart.values)
     logarithmic = low > 0 and high > 30 * low
     mesh = axes.pcolormesh(

@@ -20,7 +20,7 @@ def axis_at(motion: Motion, t: Array) -> Array:
     return np.stack([*motion.table(t, ["axis"]).values()], axis=1)
 
 
-def nutation_period(motion: Motion) -> float | None:
+def tilt_period(motion: Motion) -> float | None:
     """Return the period of the tilt, or None for a tilt that stays or never comes back.
 
     The record of a steady precession also has a period: that of a small nutation about it.

@@ -41,7 +41,7 @@ def draw_angles(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) ->
 
 
 def draw_remainders(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw spin and precession less their mean growth on two axes, and return these."""
+    """Draw the periodic parts of spin and precession on two axes, and return these."""
     return _drawn("remainders", motion, ax, **shown)
 
 

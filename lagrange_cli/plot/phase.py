@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .curves import PHASES, sampled, span
+from .curves import PHASES, sampled_columns, span
 from .kinds import Drawing
 from .motion_facts import motion_in_words
 from .request import PlotRequest
@@ -40,17 +40,17 @@ class PhasePortrait(NamedTuple):
 
 def phase_portrait(motion: Motion) -> PhasePortrait:
     """Return the orbit and the separatrix in the plane of tilt and tilt rate."""
-    _, theta, rate = sampled(motion, span(motion, 1), ["theta", "thetadot"]).values()
+    _, theta, rate = sampled_columns(motion, span(motion, 1), ["theta", "thetadot"]).values()
     start = float(theta[0]), float(motion.top.thetadot0)
     a, b = float(motion.a), float(motion.b)
     if not b * b < 2 * a:
         reason = "without torque" if a == 0 else f"as C²r₀² = {b * b / (2 * a):.3g} · 4Amgs"
         why = f"no separatrix: upright it is stable with this spin, {reason}"
         return PhasePortrait(theta, rate, start, None, why)
-    return PhasePortrait(theta, rate, start, separatrix(a, b), SEPARATRIX)
+    return PhasePortrait(theta, rate, start, separatrix_orbit(a, b), SEPARATRIX)
 
 
-def separatrix(a: float, b: float) -> tuple[Array, Array]:
+def separatrix_orbit(a: float, b: float) -> tuple[Array, Array]:
     """Return tilt and rate on the orbit that leaves the upright position and comes back to it.
 
     It needs b^2 < 2a.  With alpha = a and beta = b, (4,9) becomes

@@ -1,4 +1,4 @@
-"""The picture `remainders`: spin and precession less their mean growth."""
+"""The picture `remainders`: the periodic parts of spin and precession."""
 
 from __future__ import annotations
 
@@ -10,13 +10,11 @@ from ..errors import NothingToDrawError
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 from .angles import finish_time_axes
-from .curves import sampled, span
+from .curves import sampled_columns, span
 from .kinds import Drawing
-from .motion_facts import nutation_period
+from .motion_facts import tilt_period
 from .request import PlotRequest
 from .style import Look, points
-
-TITLE = "Spin and precession less their mean growth, (6,4), (7,4)"
 
 
 def drawing(motion: Motion, request: PlotRequest) -> Drawing:
@@ -24,10 +22,10 @@ def drawing(motion: Motion, request: PlotRequest) -> Drawing:
 
     Raises NothingToDrawError if the tilt has no period, so that both are 0 or undefined.
     """
-    if nutation_period(motion) is None or motion.mean_precession_rate is None:
+    if tilt_period(motion) is None or motion.mean_precession_rate is None:
         reason = "never comes back" if motion.regime is Regime.SEPARATRIX else "stays as it is"
         raise NothingToDrawError(f"no remainders: the tilt {reason} ({motion.regime.value})")
-    t, *parts = sampled(motion, request.t_max or span(motion, 2), ["dphi", "dpsi"]).values()
+    t, *parts = sampled_columns(motion, request.t_max or span(motion, 2), ["dphi", "dpsi"]).values()
 
     def draw(axes: Sequence[Axes], look: Look) -> None:
         """Draw each periodic part about 0."""
@@ -37,4 +35,4 @@ def drawing(motion: Motion, request: PlotRequest) -> Drawing:
             ax.set_ylabel(f"Δ{symbol} ({request.angle_unit})")
         finish_time_axes(axes, motion, t, request)
 
-    return Drawing(TITLE, draw, (1.0, 1.0))
+    return Drawing("Periodic parts of spin and precession, (6,4), (7,4)", draw, (1.0, 1.0))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..motion.quantity import Key
     from ..motion.sensitivity.angle_uncertainty import AngleStds
 
-P = TypeVar("P")
+Piece = TypeVar("Piece")
 
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows where none is asked for."""
@@ -30,11 +30,11 @@ MOST_VALUES = 2000
 class Progress(Protocol):
     """A function that hands on the parts of some long work and may show how far it is."""
 
-    def __call__(self, parts: Iterable[P], count: int, /) -> Iterable[P]:
+    def __call__(self, parts: Iterable[Piece], count: int, /) -> Iterable[Piece]:
         """Yield the parts as they are computed; `count` is the size of the whole work."""
 
 
-def no_progress(parts: Iterable[P], count: int, /) -> Iterable[P]:
+def no_progress(parts: Iterable[Piece], count: int, /) -> Iterable[Piece]:
     """Return the parts as they are and show nothing."""
     return parts
 

@@ -14,17 +14,17 @@ from matplotlib.collections import LineCollection
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
 from .camera import Camera, Near, best_camera, camera_at, runs
-from .curves import highest_times, sampled, span, sphere_span
+from .curves import highest_times, sampled_columns, span, sphere_span
 from .globe import Limits, draw_globe
 from .kinds import Drawing
-from .motion_facts import axis_at, motion_in_words, nutation_period
+from .motion_facts import axis_at, motion_in_words, tilt_period
 from .request import PlotRequest
 from .style import Look, mark_start, points, scale
 
 NARROW = math.radians(6.0)
 """A band of tilts that a circle on the globe hides: it is shown magnified as well."""
 
-NODS_MAGNIFIED = 3
+PERIODS_MAGNIFIED = 3
 """Nutation periods of a narrow path that are shown magnified."""
 
 PIECES = 160
@@ -33,7 +33,7 @@ PIECES = 160
 ARROWS = 0.1, 0.28, 0.46, 0.64, 0.82
 """Parts of the length of a path at which an arrowhead shows which way it is run."""
 
-USUAL_NODS = 6
+USUAL_PERIODS = 6
 """Nutation periods up to which a path has its full width: more of them are drawn finer."""
 
 
@@ -60,7 +60,7 @@ class AxisPath(NamedTuple):
 
 def axis_path(motion: Motion, t_max: float) -> AxisPath:
     """Return the path from 0 to t_max."""
-    t, *axis = sampled(motion, t_max, ["axis"]).values()
+    t, *axis = sampled_columns(motion, t_max, ["axis"]).values()
     least, greatest = motion.theta_min_deg, motion.theta_max_deg
     assert least is not None
     assert greatest is not None
@@ -114,8 +114,8 @@ def _draw_path(
 
 def _fineness(motion: Motion, path: AxisPath) -> float:
     """Return the width of a path over the usual one: a long one must not become a blot."""
-    T = nutation_period(motion)
-    return max(0.35, math.sqrt(min(1.0, USUAL_NODS * T / path.t[-1]))) if T else 1.0
+    T = tilt_period(motion)
+    return max(0.35, math.sqrt(min(1.0, USUAL_PERIODS * T / path.t[-1]))) if T else 1.0
 
 
 def _coloured(t: Array, places: Array, near: Near, look: Look, *, side: bool) -> LineCollection:
@@ -177,12 +177,12 @@ def _arrowhead(axes: Axes, first: object, last: object, colour: object) -> None:
 def _draw_magnified(
     axes: Axes, motion: Motion, path: AxisPath, request: PlotRequest, look: Look
 ) -> None:
-    """Draw some nods unrolled, coloured as on the globe.
+    """Draw some nutations unrolled, coloured as on the globe.
 
     A degree of precession is as long as it is on the sphere.
     """
-    until = min(span(motion, NODS_MAGNIFIED), float(path.t[-1]))
-    t, psi, theta = sampled(motion, until, ["psi", "theta"]).values()
+    until = min(span(motion, PERIODS_MAGNIFIED), float(path.t[-1]))
+    t, psi, theta = sampled_columns(motion, until, ["psi", "theta"]).values()
     x, y = psi * request.per_radian, theta * request.per_radian
     axes.set_aspect(1 / math.sin(path.greatest), adjustable="datalim")
     lines = _coloured(t, np.stack([x, y], axis=1), np.ones(x.size, bool), look, side=True)

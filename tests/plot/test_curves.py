@@ -19,14 +19,14 @@ from lagrange_cli.plot.curves import (
     highest_times,
     phase_times,
     refined,
-    sampled,
+    sampled_columns,
     span,
     turn_span,
 )
 from lagrange_cli.plot.motion_facts import (
-    nutation_period,
     periods_since_highest,
     separatrix_swing,
+    tilt_period,
 )
 from lagrange_cli.plot.sphere import axis_path
 
@@ -51,7 +51,7 @@ def test_the_path_is_smooth(path: Path) -> None:
     size = np.linalg.norm(steps, axis=1)
     assert size.max() < 0.06
     turn = np.sum(steps[1:] * steps[:-1], axis=1) / (size[1:] * size[:-1])
-    T = nutation_period(scene)
+    T = tilt_period(scene)
     assert T
     away = np.abs(course.t[1:-1] / T - np.round(course.t[1:-1] / T)) > 0.02
     seen = np.minimum(size[1:], size[:-1]) > 2e-3  # smaller ones are not visible
@@ -61,7 +61,7 @@ def test_the_path_is_smooth(path: Path) -> None:
 @pytest.mark.parametrize("sign", [1, -1])
 def test_cusps_point_up_and_loops_turn_back(sign: int) -> None:
     cusped = solve(Top(r0=sign * 50.0))
-    T = nutation_period(cusped)
+    T = tilt_period(cusped)
     assert T
     times = highest_times(cusped, 2 * T)
     assert times.tolist() == pytest.approx([0, T, 2 * T], abs=1e-15)
@@ -74,13 +74,13 @@ def test_cusps_point_up_and_loops_turn_back(sign: int) -> None:
     assert into @ out / np.linalg.norm(into) / np.linalg.norm(out) < -0.99  # it turns on the spot
     assert cusp == pytest.approx(course.highest[1], abs=1e-14)
     looping = solve(Top(r0=sign * 50.0, psidot0=sign * -4.0))
-    psi = sampled(looping, T, ["psi"])["psi"] * sign
+    psi = sampled_columns(looping, T, ["psi"])["psi"] * sign
     assert np.diff(psi).min() < 0 < np.diff(psi).max()
 
 
 def test_samples_are_even_in_the_amplitude_and_hold_the_turning_points() -> None:
     scene = solve(Top(r0=0.5, theta0_deg=20.0))
-    T = nutation_period(scene)
+    T = tilt_period(scene)
     assert T
     t = phase_times(scene, 2 * T)
     for turning in (0.0, T / 2, T, 1.5 * T, 2 * T):
@@ -96,7 +96,7 @@ def test_samples_are_even_in_the_amplitude_and_hold_the_turning_points() -> None
 def test_the_highest_points_of_any_start(rate: float, around: float) -> None:
     """There the tilt is the least one, and the tilt rate turns from rising to falling."""
     scene = solve(Top(thetadot0=rate, psidot0=around))
-    T = nutation_period(scene)
+    T = tilt_period(scene)
     assert T
     times = highest_times(scene, 3 * T)
     assert times.size == 3 + (abs(rate) < 1)  # those that start highest come back three times
@@ -110,7 +110,7 @@ def test_the_highest_points_of_any_start(rate: float, around: float) -> None:
 @pytest.mark.parametrize("name", REGIMES)
 def test_the_tilt_comes_back_after_a_period_if_it_has_one(name: str) -> None:
     scene = regime_motion(name)
-    T, tilts = nutation_period(scene), (scene.theta_min_deg, scene.theta_max_deg)
+    T, tilts = tilt_period(scene), (scene.theta_min_deg, scene.theta_max_deg)
     steady = "sleeping", "hanging", "torque-free", "separatrix", "steady precession"
     assert (T is None) == (name in steady)
     if T is None:

@@ -22,7 +22,7 @@ from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.motion.sensitivity.angle_uncertainty import AngleStds
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET
-from lagrange_cli.plot.motion_facts import nutation_period
+from lagrange_cli.plot.motion_facts import tilt_period
 from lagrange_cli.plot.page import (
     LEAST_LETTERS,
     MOST_PIXELS,
@@ -83,7 +83,7 @@ def test_a_picture_that_is_missing_says_why(name: str) -> None:
     scene = regime_motion(name) if name in REGIMES else solve(Top())
     panel = drawn(scene, ["cubic", "remainders"]).subfigs[1].subfigs[1]
     texts = [text.get_text() for text in panel.texts if "remainders" in text.get_text()]
-    missing = nutation_period(scene) is None
+    missing = tilt_period(scene) is None
     assert texts == ["no remainders: the tilt stays as it is (sleeping)"] * missing
     if missing:
         with pytest.raises(NothingToDrawError, match=re.escape(texts[0])):

@@ -20,11 +20,11 @@ from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.plot.camera import best_camera
 from lagrange_cli.plot.cubic import cubic_curve
-from lagrange_cli.plot.curves import sampled, span, sphere_span, turn_span
+from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, turn_span
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, help_lines
 from lagrange_cli.plot.map import colour_limits, key_map
-from lagrange_cli.plot.motion_facts import nutation_period
-from lagrange_cli.plot.phase import phase_portrait, separatrix
+from lagrange_cli.plot.motion_facts import tilt_period
+from lagrange_cli.plot.phase import phase_portrait, separatrix_orbit
 from lagrange_cli.plot.request import PlotRequest, parse_input_range
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
@@ -72,7 +72,7 @@ def test_the_angles_are_drawn_as_they_are(radians: bool) -> None:
             assert end == pytest.approx(rate * factor, rel=1e-15)
         assert ("rad" if radians else "deg") in axes.get_ylabel()
     marks = figure.axes[0].child_axes[0].get_xticks()
-    assert marks == pytest.approx([nutation_period(scene), 2 * (nutation_period(scene) or 0)])
+    assert marks == pytest.approx([tilt_period(scene), 2 * (tilt_period(scene) or 0)])
 
 
 def test_a_vertical_top_has_no_precession_to_draw() -> None:
@@ -88,7 +88,7 @@ def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
     """Compared with (6,4) and (7,4) in 50 digits, and with what is drawn."""
     r0, tilt = scene
     top = solve(Top(r0=r0, theta0_deg=tilt))
-    course = sampled(top, span(top, 2), ["dphi", "dpsi"])
+    course = sampled_columns(top, span(top, 2), ["dphi", "dpsi"])
     judge = oracle.Scene(r0=r0, theta0_deg=tilt)
     constants = oracle.constants(judge)
     for i in range(0, course["t"].size, 37):
@@ -107,8 +107,8 @@ def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
 @pytest.mark.parametrize("name", REGIMES)
 def test_remainders_need_a_period(name: str) -> None:
     scene = regime_motion(name)
-    if nutation_period(scene):
-        assert np.ptp(sampled(scene, span(scene, 1), ["dphi"])["dphi"]) < 2 * math.pi
+    if tilt_period(scene):
+        assert np.ptp(sampled_columns(scene, span(scene, 1), ["dphi"])["dphi"]) < 2 * math.pi
         return
     with pytest.raises(
         NothingToDrawError, match=r"^no remainders: the tilt (stays as it is|never comes back) \("
@@ -189,7 +189,7 @@ def test_the_orbit_in_the_phase_plane_keeps_the_energy(path: Path) -> None:
 def test_the_separatrix_is_where_upright_tops_go() -> None:
     """A top at rest 1e-7 degrees off the vertical follows it."""
     near = solve(Top(r0=30.0, theta0_deg=1e-7))
-    theta, rate = separatrix(near.a, near.b)
+    theta, rate = separatrix_orbit(near.a, near.b)
     assert theta[0] == rate[0] == 0
     assert theta[-1] == pytest.approx(math.radians(near.theta_max_deg or 0), abs=1e-12)
     orbit = phase_portrait(near)
@@ -307,10 +307,10 @@ def test_the_drawn_path_is_the_path() -> None:
 
 
 def test_a_narrow_path_is_magnified() -> None:
-    """The inset shows the first nods in the angles themselves."""
+    """The inset shows the first nutations in the angles themselves."""
     assert len(drawn(solve(Top()), ["sphere"]).axes) == 2  # the globe and the bar of colours
     scene = solve(Top(r0=1000.0))
-    T = nutation_period(scene)
+    T = tilt_period(scene)
     assert T
     _, inset, _ = drawn(scene, ["sphere"]).axes
     (lines,) = (x for x in inset.collections if isinstance(x, LineCollection))
@@ -362,7 +362,7 @@ def test_the_globe_says_how_the_top_moves(inputs: dict[str, float], words: str) 
 
 def test_a_swing_in_a_plane_is_shown_once() -> None:
     motion = solve(Top(r0=0))
-    assert sphere_span(motion) == nutation_period(motion)
+    assert sphere_span(motion) == tilt_period(motion)
     assert sphere_span(solve(Top())) == turn_span(solve(Top()))
 
 

@@ -14,18 +14,18 @@ from ...inputs.top import Top
 from ...motion.record import KEYS
 from ...motion.solve import Motion, solve
 
-LEAST, LARGEST = 1e-30, 1e30
+SMALLEST, LARGEST = 1e-30, 1e30
 """Sizes of inputs that the page computes with: others would leave the range of doubles."""
 LEAST_TILT = 9e-13
 """Least tilt (degrees) from the vertical, so that the double next to 180 - 1e-12 is allowed."""
 
-Scene = dict[str, float]
+PageScene = dict[str, float]
 
 UNIT = dict.fromkeys(EXAMPLE, 0.0) | dict.fromkeys(("m", "A", "C", "s", "g", "r0"), 1.0)
 LEVEL = UNIT | {"theta0_deg": 90.0}
 GYROSCOPE = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81, "r0": 1256.6370614359172}
 
-EXAMPLES: dict[str, Scene] = {
+EXAMPLES: dict[str, PageScene] = {
     "Cusps: let go at rest (Chrapan 1952)": EXAMPLE,
     "Loops: started against its precession": EXAMPLE | {"psidot0": -4.0},
     "Waves: started along its precession": EXAMPLE | {"psidot0": 4.0},
@@ -43,7 +43,7 @@ EXAMPLES: dict[str, Scene] = {
 }
 """Scenes to begin with."""
 
-WORDS = {
+DESCRIPTIONS = {
     "sleeping, stable": (
         "Sleeping, stable",
         "The top stands upright and stays: λ = b²/2a = {lambda} is at least 1.",
@@ -114,13 +114,13 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
         "EXAMPLES": EXAMPLES,
         "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
         "KEYS": {name: key.as_dict() for name, key in KEYS.items()},
-        "WORDS": WORDS,
-        "LIMITS": {"least": LEAST, "largest": LARGEST, "tilt": LEAST_TILT},
+        "DESCRIPTIONS": DESCRIPTIONS,
+        "LIMITS": {"least": SMALLEST, "largest": LARGEST, "tilt": LEAST_TILT},
     }
     return json.dumps(data, ensure_ascii=False).replace("</", "<\\/")
 
 
-def page_scene(motion: Motion) -> Scene:
+def page_scene(motion: Motion) -> PageScene:
     """Return the inputs of the page as doubles, the tilt in degrees.
 
     Raises LagtopError for inputs that are beyond what the page computes with.
@@ -132,7 +132,7 @@ def page_scene(motion: Motion) -> Scene:
             f"theta0_deg must be 0, 180 or 1e-12 from both for a page, got {tilt}", "theta0_deg"
         )
     for name, value in scene.items():
-        if name != _key(TILT) and value and not LEAST <= abs(value) <= LARGEST:
+        if name != _key(TILT) and value and not SMALLEST <= abs(value) <= LARGEST:
             raise LagtopError(f"{name} must be from 1e-30 to 1e30 for a page, got {value}", name)
     solve(Top(**scene))  # a tilt in radians may round to the vertical, where nothing precesses
     return scene

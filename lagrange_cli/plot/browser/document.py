@@ -31,11 +31,11 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     """
     check_type("motion", motion, Motion)
     parts = {
-        "style": _filled(text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
+        "style": _filled(_text_of("style.css"), {"light": _colours(LIGHT), "dark": _colours(DARK)}),
         "units": _units_in_words(*map(unit, ("mass", "len", "time"))),
         "script": joined_script(page_data(motion, unit)),
     }
-    return Document(_filled(text_of("index.html"), parts))
+    return Document(_filled(_text_of("index.html"), parts))
 
 
 def _units_in_words(mass: str, length: str, time: str) -> str:
@@ -82,7 +82,7 @@ def joined_script(data: str) -> str:
 
 def _collect(name: str, scripts: dict[str, str]) -> None:
     """Add the script of a module after those of the modules it imports."""
-    text = text_of(name)
+    text = _text_of(name)
     for match in _IMPORT.finditer(text):
         path = _resolved(name, match[2])
         if path not in scripts:
@@ -103,6 +103,6 @@ def _resolved(name: str, other: str) -> str:
     return other.removeprefix("../") if other.startswith("../") else f"{room}/{other[2:]}"
 
 
-def text_of(name: str) -> str:
+def _text_of(name: str) -> str:
     """Return the text of a file of this folder."""
     return files(__package__).joinpath(name).read_text(encoding="utf-8")

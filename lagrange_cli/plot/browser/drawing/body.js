@@ -1,6 +1,7 @@
 // The top: a cone on its tip, with six wedges that show the spin.
 
 import { combined } from "./camera.js";
+import { fill, stroke } from "./look.js";
 
 const HEIGHT = 0.62;
 export const LID = { height: HEIGHT, radius: 0.34 };
@@ -22,14 +23,15 @@ export function drawBody(context, view, look, frame, spin, blurred) {
     for (let sixth = 0; sixth < 6; sixth += 1) {
       const inks = [look.paper, colour];
       const ink = blurred ? mixed(...inks) : inks[sixth % 2];
-      area(context, apex, cornersOf(rim, sixth * WEDGES / 6, seen), ink);
+      const corners = cornersOf(rim, sixth * WEDGES / 6, seen);
+      if (corners.length) fill(context, [apex, ...corners], ink);
     }
   };
   parts(view.project([0, 0, 0]), look.red, sides);
   if (view.depth(frame.axis) > 0) {
     parts(view.project(onLid(frame, 0, 0)), look.blue, sides.map(() => true));
   }
-  outline(context, rim, look.ink);
+  stroke(context, rim, { colour: look.ink, width: 0.9 });
 }
 
 /** The corners along the rim of the seen wedges of the sixth that begins at `first`. */
@@ -43,27 +45,6 @@ function facesEye(view, { nodes, across, axis }, angle) {
   const outward = combined(
     HEIGHT * Math.cos(angle), nodes, HEIGHT * Math.sin(angle), across, -LID.radius, axis);
   return view.depth(outward) > 0;
-}
-
-function area(context, apex, corners, colour) {
-  if (!corners.length) return;
-  context.beginPath();
-  context.moveTo(...apex);
-  corners.forEach((corner) => context.lineTo(...corner));
-  context.closePath();
-  context.fillStyle = colour;
-  context.strokeStyle = colour;
-  context.lineWidth = 0.6;
-  context.fill();
-  context.stroke();
-}
-
-function outline(context, points, colour) {
-  context.beginPath();
-  points.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
-  context.strokeStyle = colour;
-  context.lineWidth = 0.9;
-  context.stroke();
 }
 
 /** The colour midway between two, each #rrggbb. */

@@ -25,7 +25,8 @@ function windowOf({ u1, u2, u3 }) {
 export function drawCubic(canvas, look, motion) {
   const { context, width, height } = prepared(canvas);
   if (motion.facts.vertical) {
-    write(context, "the axis is vertical: nothing nods", [width / 2, height / 2], look.quiet);
+    const why = "the axis is vertical: the tilt does not change";
+    write(context, why, [width / 2, height / 2], look.quiet);
     return () => null;
   }
   const f = cubicOf(motion);
@@ -65,10 +66,8 @@ function drawField(context, look, place, { low, high, u1, u2, width, height }) {
       colour: look.quiet, dash: [4, 3],
     });
   }
-  const ticks = ticksBetween(low, high, width / 70);
-  const step = ticks.length > 1 ? ticks[1] - ticks[0] : high - low;
-  for (const u of ticks) {
-    write(context, tickText(u, step), [place.x(u), floor + 10], look.ink, { size: 11 });
+  for (const { x, text } of ticksBetween(low, high, width / 70)) {
+    write(context, text, [place.x(x), floor + 10], look.ink, { size: 11 });
   }
   write(context, "u = cos ϑ", [width - MARGIN.right, height - 8], look.quiet, {
     size: 11, align: "right",

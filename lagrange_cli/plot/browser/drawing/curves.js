@@ -2,7 +2,6 @@
 // sharp, and even in time for a top that waits; with more of them where the axis is fast.
 
 import { firstKind } from "../numerics/integrals.js";
-import { pair } from "../numerics/pair.js";
 import { frameOf } from "./camera.js";
 
 const PHASES = 40;  // samples per half period
@@ -60,7 +59,7 @@ function even(from, until, count) {
 function halfPeriod(kPrime) {
   const amplitudes = even(0, Math.PI / 2, PHASES);
   const parts = amplitudes.map((x) => (
-    +firstKind(pair(Math.sin(x) ** 2), pair(Math.cos(x) ** 2), kPrime.squared())));
+    firstKind(Math.sin(x) ** 2, Math.cos(x) ** 2, kPrime * kPrime)));
   return parts.map((part) => 0.5 - part / parts[PHASES] / 2).reverse();
 }
 

@@ -2,7 +2,7 @@
 
 import { combined } from "./camera.js";
 import { LID, onLid } from "./body.js";
-import { stroke, write } from "./look.js";
+import { fill, stroke, write } from "./look.js";
 
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 const LENGTH = 1.2;
@@ -64,13 +64,8 @@ function arrow(context, view, from, to, colour, width) {
   const length = Math.hypot(x1 - x0, y1 - y0);
   if (length < 12) return;
   const [dx, dy] = [(x1 - x0) / length * 7, (y1 - y0) / length * 7];
-  context.beginPath();
-  context.moveTo(x1, y1);
-  context.lineTo(x1 - dx - dy * 0.4, y1 - dy + dx * 0.4);
-  context.lineTo(x1 - dx + dy * 0.4, y1 - dy - dx * 0.4);
-  context.closePath();
-  context.fillStyle = colour;
-  context.fill();
+  const corners = [1, -1].map((side) => [x1 - dx - side * dy * 0.4, y1 - dy + side * dx * 0.4]);
+  fill(context, [[x1, y1], ...corners], colour);
 }
 
 function scaled(p, factor) {

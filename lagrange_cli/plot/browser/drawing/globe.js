@@ -24,30 +24,31 @@ export function drawDisc(context, view, look) {
   context.stroke();
 }
 
-/** Draw one side of a curve on the sphere, the far side pale and dashed. */
+/** Draw the part of a curve on one side of the sphere. */
 function drawSide(context, view, points, near, style) {
   const seen = points.map((p) => ((view.depth(p) >= 0) === near ? view.project(p) : [NaN, NaN]));
-  stroke(context, seen, near ? style : { ...style, alpha: 0.4 * (style.alpha ?? 1), dash: [3, 3] });
+  stroke(context, seen, style);
 }
 
-/** Draw equator and limiting circles on the near or the far side. */
+/** Draw equator and limiting circles on the near side or, pale and dashed, on the far side. */
 export function drawCircles(context, view, look, { theta_min_deg, theta_max_deg }, near) {
-  drawSide(context, view, parallel(Math.PI / 2), near, { colour: look.quiet, width: 0.6 });
-  const circles = [[theta_min_deg, look.blue], [theta_max_deg, look.red]];
-  for (const [tilt, colour] of circles) {
-    drawSide(context, view, parallel(tilt * Math.PI / 180), near, { colour, width: 1.1 });
+  const circles = [
+    [90, { colour: look.quiet, width: 0.6 }],
+    [theta_min_deg, { colour: look.blue, width: 1.1 }],
+    [theta_max_deg, { colour: look.red, width: 1.1 }],
+  ];
+  const faded = near ? {} : { alpha: 0.4, dash: [3, 3] };
+  for (const [tilt, style] of circles) {
+    drawSide(context, view, parallel(tilt * Math.PI / 180), near, { ...style, ...faded });
   }
 }
 
-/** Draw one side of the trace: what has passed strong, what comes faint. */
+/** Draw one side of the trace: the past strong, the future faint. */
 export function drawTrace(context, view, look, { axes, times }, t, near) {
   const here = times.findIndex((time) => time > t);
   const end = here < 0 ? times.length : here;
-  const side = (points, style) => {
-    const shown = points.map((p) => ((view.depth(p) >= 0) === near ? view.project(p) : [NaN, NaN]));
-    stroke(context, shown, style);
-  };
   const [width, alpha] = near ? [2.2, 1] : [1.2, 0.4];
+  const side = (points, style) => drawSide(context, view, points, near, style);
   side(axes.slice(Math.max(end - 1, 0)), { colour: look.trace, width: 1, alpha: 0.35 * alpha });
   side(axes.slice(0, end), { colour: look.trace, width, alpha });
 }

@@ -45,6 +45,18 @@ export function stroke(context, points, { colour, width = 1, dash = [], alpha = 
   context.globalAlpha = 1;
 }
 
+/** Fill a polygon, its edges in the same colour so that neighbours leave no gap. */
+export function fill(context, points, colour) {
+  context.beginPath();
+  points.forEach((point) => context.lineTo(...point));
+  context.closePath();
+  context.fillStyle = colour;
+  context.fill();
+  context.strokeStyle = colour;
+  context.lineWidth = 0.6;
+  context.stroke();
+}
+
 /** Draw a disc with a rim. */
 export function dot(context, [x, y], radius, fill, rim) {
   context.beginPath();

@@ -1,12 +1,12 @@
 // Tilt, spin and precession over time.
 
 import { prepared, stroke, write } from "./look.js";
-import { tickText, ticksBetween } from "./ticks.js";
+import { ticksBetween } from "./ticks.js";
 
 const MARGIN = { left: 54, right: 10, top: 8, bottom: 30, gap: 12 };
 const DEGREES = 180 / Math.PI;
 
-/** The three rows of the plot; `waves` leaves the mean growth out. */
+/** The three rows of the plot; `waves` shows their periodic parts. */
 function rowsOf({ motion }, look, waves) {
   const { facts } = motion;
   const undefinedWhy = facts.vertical ? "not defined: all is spin" : null;
@@ -43,14 +43,12 @@ export function drawPlots(canvas, look, curves, waves) {
 }
 
 /** Draw lines of time and their numbers, and the nutation periods as thin marks above. */
-function drawTimes(context, look, { from, until, span }, x, { width, height }) {
-  const ticks = ticksBetween(from, until, width / 90);
-  const step = ticks.length > 1 ? ticks[1] - ticks[0] : span;
-  for (const t of ticks) {
+function drawTimes(context, look, { from, until }, x, { width, height }) {
+  for (const { x: t, text } of ticksBetween(from, until, width / 90)) {
     stroke(context, [[x(t), MARGIN.top], [x(t), height - MARGIN.bottom]], {
       colour: look.quiet, width: 0.6, alpha: 0.35,
     });
-    write(context, tickText(t, step), [x(t), height - MARGIN.bottom + 10], look.ink, { size: 11 });
+    write(context, text, [x(t), height - MARGIN.bottom + 10], look.ink, { size: 11 });
   }
   write(context, "time t", [width - MARGIN.right, height - 8], look.quiet, {
     size: 11, align: "right",
@@ -70,13 +68,9 @@ function drawRow(context, look, curves, row, x, { left, width, top, rowHeight })
   const values = inside.map((at) => row.value(at) * DEGREES);
   const [low, high] = rangeOf(values);
   const y = (value) => bottom - 3 - (value - low) / (high - low) * (rowHeight - 6);
-  const ticks = ticksBetween(low, high, rowHeight / 28);
-  const step = ticks.length > 1 ? ticks[1] - ticks[0] : high - low;
-  for (const tick of ticks) {
+  for (const { x: tick, text } of ticksBetween(low, high, rowHeight / 28)) {
     stroke(context, [[left - 4, y(tick)], [left, y(tick)]], { colour: look.quiet });
-    write(context, tickText(tick, step), [left - 7, y(tick)], look.ink, {
-      size: 11, align: "right",
-    });
+    write(context, text, [left - 7, y(tick)], look.ink, { size: 11, align: "right" });
   }
   if (row.mean) {
     const ends = [curves.from, curves.until].map((t) => [x(t), y(row.mean(t) * DEGREES)]);

@@ -1,6 +1,6 @@
 // Round numbers along an axis.
 
-/** At most `most` round numbers from `low` to `high`. */
+/** At most `most` round numbers `x` from `low` to `high`, each with its `text`. */
 export function ticksBetween(low, high, most) {
   const rough = (high - low) / Math.max(most, 1);
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -8,7 +8,8 @@ export function ticksBetween(low, high, most) {
   const first = Math.ceil(low / step - 1e-9);
   const last = Math.floor(high / step + 1e-9);
   if (!(last - first < 100)) return [];
-  return [...Array(last - first + 1).keys()].map((i) => (first + i) * step);
+  const numbers = [...Array(last - first + 1).keys()].map((i) => (first + i) * step);
+  return numbers.map((x) => ({ x, text: tickText(x, step) }));
 }
 
 /** A tick as text, with as many digits as tell it from its neighbours. */

@@ -6,46 +6,8 @@ import { pair } from "./pair.js";
 
 const NEAR = 1e-3;  // how near a root is to a pole where differences give way to products
 
-/** The gaps of any start. */
+/** The gaps of a start: with x = u - u0 the cubic is a x^3 + c2 x^2 + c1 x + c0. */
 export function gapsOf(start, facts) {
-  const released = facts.atRest && !facts.steady && !facts.separatrix;
-  return released ? gapsFromRest(start) : gapsFromStart(start, facts);
-}
-
-/** After release from rest, (4,11)-(4,18) times a: nothing cancels. */
-function gapsFromRest({ a, b, sleep, sin, above, below }) {
-  const halfSquare = b.squared().over(2);
-  const x = above <= below ? sleep.plus(a.times(above)) : halfSquare.plus(a).minus(a.times(below));
-  const aSin = a.times(sin);
-  const rho = x.squared().plus(aSin.squared()).sqrt();
-  const larger = rho.plus(x.size());
-  const smaller = aSin.times(aSin.over(larger));
-  const [up, down] = x >= 0 ? [larger, smaller] : [smaller, larger];
-  const largerAbove = rho.plus(sleep.size());
-  const smallerAbove = b.squared().times(above.over(largerAbove));
-  const fast = sleep >= 0;
-  const aBelowU3 = halfSquare.plus(a).plus(rho);
-  const band = down.over(a);
-  return {
-    u1FromStart: pair(0),
-    startFromU2: band,
-    band,                                                             // u1 - u2
-    belowU1: below,                                                   // 1 + u1
-    belowU2: b.squared().times(below).over(aBelowU3),                 // 1 + u2
-    aboveU1: above,                                                   // 1 - u1
-    aboveU2: fast ? smallerAbove : largerAbove.over(a),               // 1 - u2
-    aU3FromU1: up,                                                    // a (u3 - u1)
-    aU3FromU2: rho.times(2),                                          // a (u3 - u2)
-    aU3Above: fast ? largerAbove : a.times(smallerAbove),             // a (u3 - 1)
-    momentumU1: pair(0),                                              // beta - b u1
-    momentumU2: b.times(band),                                        // beta - b u2
-    betaPlusB: b.times(below),                                        // beta + b
-    betaMinusB: b.times(above).negative(),                            // beta - b
-  };
-}
-
-/** After any start: with x = u - u0 the cubic is a x^3 + c2 x^2 + c1 x + c0. */
-function gapsFromStart(start, facts) {
   const { a, b, above, below, psiRate } = start;
   const { far, x1, x2 } = rootsFromStart(start, facts);
   const touches = facts.upperRoot || facts.separatrix;

@@ -8,6 +8,9 @@ import { checkScene, startOf } from "./scene.js";
 import { constantSampler, nutatingSampler, separatrixSampler } from "./samplers.js";
 import { offsetOf } from "./series.js";
 
+/** Least mean rate over the parts that cancel in it, of which the record can tell ten digits. */
+const LEAST_RATE = 1e-20;
+
 /** The motion of a scene: its record, and `angles(t)`.  Raises RangeError for a bad input. */
 export function motionOf(scene) {
   checkScene(scene);
@@ -19,6 +22,9 @@ export function motionOf(scene) {
   Object.assign(motion, ratesOf(motion));
   motion.record = recordOf(motion);
   motion.angles = samplerOf(motion);
+  if (!Object.values(motion.angles(motion.period ?? 1)).every(Number.isFinite)) {
+    throw new RangeError("its numbers leave the range of the page: ask lagtop solve");
+  }
   return motion;
 }
 
@@ -51,7 +57,7 @@ function ratesOf(motion) {
   if (facts.vertical) return { spinRate: start.r0, precessionRate: pair(0) };
   if (facts.steady) {
     const spinRate = start.r0.minus(start.psiRate.times(start.cos));  // (4,8)
-    return { spinRate, precessionRate: start.psiRate };
+    return { spinRate, precessionRate: start.psiRate, spinSize: Math.abs(start.r0) };
   }
   if (facts.separatrix) return {};
   return nutatingRates(motion, PI.over(motion.period));
@@ -60,27 +66,36 @@ function ratesOf(motion) {
 function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
   // south and north are the means of (beta - b u)/(2 (1 + u)) and (beta - b u)/(2 (1 - u)): the
   // precession rate is their sum (4,7), the spin rate r0 + south - north (4,8)
+  const { belowU1, belowU2, aboveU1, aboveU2, momentumU1, momentumU2 } = gaps;
   const mean = (fromU1, fromU2, atU1, atU2) => {
     const mc = kPrime.squared();
     const p = fromU2.times(mc).over(fromU1);
     return periodMean(kPrime, p, atU1, atU2.times(mc)).over(fromU1).over(2);
   };
+  const overTop = facts.upperRoot === 1;
+  if (!facts.free && !overTop && !facts.overBottom) {
+    const south = mean(belowU1, belowU2, momentumU1, momentumU2);
+    const north = mean(aboveU1, aboveU2, momentumU1, momentumU2);
+    return rates(start.r0, south, north);
+  }
+  // apart, (beta + b)/(2 (1 + u)) and (beta - b)/(2 (1 - u)): each makes half a turn per period
+  // without torque, and over its pole
   const poleRate = (pole, sign, fromU1, fromU2, beta) => (
     facts.free || pole ? halfTurn.times(sign) : mean(fromU1, fromU2, beta, beta));
-  const overTop = facts.upperRoot === 1;
-  const { belowU1, belowU2, aboveU1, aboveU2, momentumU1, momentumU2 } = gaps;
-  let spinRate;
-  if (facts.atRest) spinRate = start.spinDrift.plus(start.r0 < 0 ? halfTurn.negative() : halfTurn);
-  if (facts.free || overTop || facts.overBottom) {
-    const south = poleRate(facts.overBottom, facts.signPlus, belowU1, belowU2, gaps.betaPlusB);
-    const north = poleRate(overTop, facts.signMinus, aboveU1, aboveU2, gaps.betaMinusB);
-    spinRate ??= start.poleDrift.plus(south).minus(north);
-    return { spinRate, precessionRate: south.plus(north) };
-  }
-  const south = mean(belowU1, belowU2, momentumU1, momentumU2);
-  const north = mean(aboveU1, aboveU2, momentumU1, momentumU2);
-  spinRate ??= start.r0.plus(south).minus(north);
-  return { spinRate, precessionRate: south.plus(north) };
+  const south = poleRate(facts.overBottom, facts.signPlus, belowU1, belowU2, gaps.betaPlusB);
+  const north = poleRate(overTop, facts.signMinus, aboveU1, aboveU2, gaps.betaMinusB);
+  return rates(start.poleDrift, south, north);
+}
+
+/** Mean rates, and the sizes of the parts that cancel in them. */
+function rates(spin, south, north) {
+  const precessionSize = Math.abs(south) + Math.abs(north);
+  return {
+    spinRate: spin.plus(south).minus(north),
+    precessionRate: south.plus(north),
+    spinSize: Math.abs(spin) + precessionSize,
+    precessionSize,
+  };
 }
 
 /** Path of the figure axis, by where the precession stands still: at u1, within, or nowhere. */
@@ -100,7 +115,12 @@ function degreesOf(above, below) {
 function recordOf(motion) {
   const { start, facts, gaps } = motion;
   const number = (x) => (x === undefined || x === null ? null : +x);
-  const turn = (rate) => (+rate ? 2 * Math.PI / Math.abs(rate) : null);
+  const vanish = facts.vertical || facts.free || !(facts.spins || +start.psiRate);  // exactly 0
+  const known = (x, size = 0) => (+x ? Math.abs(x) > LEAST_RATE * size : vanish);
+  const rate = (x, size) => (x !== undefined && known(x, size) ? +x : null);
+  const spinRate = rate(motion.spinRate, motion.spinSize);
+  const precessionRate = facts.vertical ? null : rate(motion.precessionRate, motion.precessionSize);
+  const turn = (x) => (x ? 2 * Math.PI / Math.abs(x) : null);
   const u2 = +gaps.aboveU2 < +gaps.belowU2
     ? pair(1).minus(gaps.aboveU2) : gaps.belowU2.minus(1);
   const nome = motion.K && motion.KPrime ? Math.exp(-Math.PI * motion.KPrime / motion.K) : null;
@@ -117,12 +137,12 @@ function recordOf(motion) {
     K: number(motion.K),
     K_prime: number(motion.KPrime),
     T_nutation: number(motion.period),
-    T_spin: turn(motion.spinRate),
-    T_precession: facts.vertical ? null : turn(motion.precessionRate),
+    T_spin: turn(spinRate),
+    T_precession: turn(precessionRate),
     theta_min_deg: degreesOf(gaps.aboveU1, gaps.belowU1),
     theta_max_deg: degreesOf(gaps.aboveU2, gaps.belowU2),
-    mean_spin_rate: number(motion.spinRate),
-    mean_precession_rate: facts.vertical ? null : number(motion.precessionRate),
+    mean_spin_rate: spinRate,
+    mean_precession_rate: precessionRate,
     path: pathOf(motion),
   };
 }

@@ -1,4 +1,4 @@
-// From a motion to its angles at any time: the mean growth in 32 digits, and a short series.  A
+// From a motion to its angles at any time: the mean rates in 32 digits, and a short series.  A
 // time far away costs what a near one costs, and is as exact.
 
 import { PI, pair } from "./pair.js";
@@ -25,7 +25,7 @@ export function nutatingSampler(motion) {
   const { period, spinRate, precessionRate, start, offset } = motion;
   const series = thetaSeries(motion);
   const first = Math.round(offset);
-  const sinceFirst = +offset.minus(first);
+  const sinceFirst = offset - first;
   const stepsPerTime = pair(2).over(period);
   const rises = start.thetaRate < 0 ? -1 : 1;
   const at = (steps, phase) => evaluate(series, Math.abs(first + steps) % 2, phase, rises);

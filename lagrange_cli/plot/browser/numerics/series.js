@@ -7,7 +7,6 @@
 // terms are enough for doubles.  See `lagrange_cli/motion/theta_series.py`.
 
 import { firstKind } from "./integrals.js";
-import { pair } from "./pair.js";
 
 const TERMS = 4;
 const indices = [...Array(TERMS).keys()];
@@ -18,11 +17,9 @@ const indices = [...Array(TERMS).keys()];
  */
 export function thetaSeries(motion) {
   const { gaps, m, kPrime, K, KPrime, facts } = motion;
-  const mc = kPrime.squared();
   // the parameters of X and Y: eta with sn^2(eta, k') : cn^2(eta, k') as these, and K' - eta
-  const plus = place(gaps.belowU2, gaps.band, m, KPrime);
-  const minus = place(
-    gaps.aboveU1.times(gaps.aU3FromU2), gaps.aU3Above.times(gaps.band), m, KPrime);
+  const plus = place(gaps.belowU2, gaps.band, m);
+  const minus = place(gaps.aboveU1.times(gaps.aU3FromU2), gaps.aU3Above.times(gaps.band), m);
   const sizeX = Math.sqrt(gaps.belowU1 / 2);
   const sizeY = Math.sqrt(kPrime * gaps.aboveU2 / 2);
   const sizes = [[plus, sizeX, facts.signPlus], [minus, sizeY, facts.signMinus]];
@@ -31,16 +28,15 @@ export function thetaSeries(motion) {
   return circularSeries(sizes, K, nome);
 }
 
-function place(s2, c2, m, KPrime) {
-  const eta = firstKind(s2, c2, m);
-  return { eta, rest: KPrime === null ? null : KPrime.minus(eta), s2, c2 };
+function place(s2, c2, m) {
+  return { eta: firstKind(s2, c2, m), rest: m > 0 ? firstKind(c2, m * s2, m) : null };
 }
 
 /** Series in q (2,2), (2,3), which wind by half a turn, up or down, per period. */
 function circularSeries(sizes, K, nome) {
   const weights = indices.map((n) => nome ** (n * (n + 1)));
   const components = sizes.map(([{ eta }, size, sign]) => {
-    const y = Math.PI / 2 * eta.over(K);
+    const y = Math.PI / 2 * eta / K;
     const cosh = indices.map((n) => weights[n] * Math.cosh((2 * n + 1) * y));
     const sinh = indices.map((n) => weights[n] * Math.sinh((2 * n + 1) * y));
     const unit = size / total(cosh);
@@ -58,8 +54,8 @@ function hyperbolicSeries(sizes, K, KPrime) {
   const nome = Math.exp(-Math.PI * K / KPrime);
   const slopes = [];
   const components = sizes.map(([{ eta, rest }, size, sign]) => {
-    const angle = Math.PI / 2 * eta.over(KPrime);
-    const complement = Math.PI / 2 * rest.over(KPrime);
+    const angle = Math.PI / 2 * eta / KPrime;
+    const complement = Math.PI / 2 * rest / KPrime;
     const [cos, sin] = multiples(Math.sin(complement), Math.sin(angle));
     const even = indices.map((n) => (n ? 2 : 1) * nome ** (n * n));
     const odd = indices.map((n) => 2 * nome ** (n * (n + 1) + 0.25));
@@ -74,7 +70,7 @@ function hyperbolicSeries(sizes, K, KPrime) {
       component(1, unit, sinOdd, sign, cosOdd),     // theta1
     ];
   });
-  return series(components, true, Math.PI / 2 * K.over(KPrime), ...slopes);
+  return series(components, true, Math.PI / 2 * K / KPrime, ...slopes);
 }
 
 /** Cosines and sines of 0, 1, 2 ... times an angle; all keep the digits of its cosine and sine. */
@@ -142,11 +138,11 @@ function polar({ first, real, imaginary }, sin, cos, twice, side) {
 
 /** Half periods from the nearest passage of u1 to t = 0, with the sign of the nutation rate. */
 export function offsetOf(start, gaps, kPrime, K) {
-  if (!(gaps.u1FromStart > 0)) return pair(0);
-  if (!(gaps.startFromU2 > 0)) return pair(1);
+  if (!(gaps.u1FromStart > 0)) return 0;
+  if (!(gaps.startFromU2 > 0)) return 1;
   // sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)) (4,22)
   const w = firstKind(
     gaps.u1FromStart.times(gaps.aU3FromU2), gaps.aU3FromU1.times(gaps.startFromU2),
     kPrime.squared());
-  return w.over(K).times(start.thetaRate < 0 ? -1 : 1);
+  return w / K * (start.thetaRate < 0 ? -1 : 1);
 }

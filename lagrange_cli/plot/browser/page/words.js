@@ -1,6 +1,6 @@
 // The motion in words.
 
-import { WORDS } from "../data.js";
+import { DESCRIPTIONS } from "../data.js";
 
 /** A title and one or two sentences on a motion. */
 export function wordsOf({ facts, record, start }) {
@@ -12,7 +12,7 @@ export function wordsOf({ facts, record, start }) {
     regular: fast ? "fast" : record.path ?? "wavy",
   };
   const kind = kinds[record.regime];
-  const [title, text] = WORDS[kind ? `${record.regime}, ${kind}` : record.regime];
+  const [title, text] = DESCRIPTIONS[kind ? `${record.regime}, ${kind}` : record.regime];
   const numbers = {
     lambda: start.b * start.b / (2 * start.a),
     nutation: record.theta_max_deg - record.theta_min_deg,
