@@ -57,7 +57,7 @@ def _decoded(line: bytes, name: str, number: int) -> str:
 
 
 def _is_plain(text: bytes) -> bool:
-    """Return whether a line is ASCII text, whose quoted cells are left to `_row`."""
+    """Return whether lines are ASCII text without quoted cells, which are left to `_row`."""
     return text.isascii() and b'"' not in text and b"\0" not in text
 
 
@@ -111,7 +111,7 @@ class TextTable:
     ) -> Array:
         import numpy as np
 
-        if all(map(_is_plain, texts)):
+        if _is_plain(b"\n".join(texts)):
             with suppress(ValueError):
                 values = np.loadtxt(
                     texts,

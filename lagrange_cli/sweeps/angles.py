@@ -18,7 +18,7 @@ from ..motion.regime import Regime
 from ..motion.solve import solve
 from .angle_arrays import ArraySampler, array_sampler
 from .pair_motions import PairMotions, released, started
-from .records import BLOCK_ROWS, Column, together
+from .records import BLOCK_ROWS, Column, Together
 from .top_arrays import TopArrays
 
 
@@ -31,8 +31,8 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> di
     with a top; its angles are NaN.  Angles are as exact as those of `Motion.angles`.  Raises
     LagtopError for an unknown input, or for shapes that do not go together.
     """
-    arrays = together(inputs)
-    tops, shape = TopArrays(*(x.ravel() for x in arrays)), arrays[0].shape
+    together = Together(inputs)
+    tops, shape = together.part(slice(None)), together.shape
     times = times_of(t)
     if times.ndim > 1 and times.shape[:-1] != shape:
         raise LagtopError(f"t must have the shape {(*shape, 'n')} or (n,), got {times.shape}", "t")

@@ -55,39 +55,45 @@ def sweep(
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
     chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
-    arrays = together(inputs)
-    shape, size = arrays[0].shape, arrays[0].size
-    flat = [x if x.ndim == 1 else x.flat for x in arrays]  # of which a block is copied at most
+    together = Together(inputs)
+    size = together.size
     found = empty_columns(chosen, size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, first + step)
-        tops = TopArrays(*(x[rows] for x in flat))
-        records(tops, chosen, radians=radians, columns={key: x[rows] for key, x in found.items()})
-    return {key: column.reshape(shape) for key, column in found.items()}
+        records(
+            together.part(rows),
+            chosen,
+            radians=radians,
+            columns={key: x[rows] for key, x in found.items()},
+        )
+    return {key: column.reshape(together.shape) for key, column in found.items()}
 
 
-def together(inputs: Mapping[str, ArrayLike]) -> Sequence[Array]:
-    """Return inputs of `Top` as arrays of one shape, in the order of `TopArrays`.
+class Together:
+    """Inputs of `Top`, numbers or arrays, as arrays of one shape, from which blocks are taken."""
 
-    Raises LagtopError for an unknown input, or for shapes that do not go together.
-    """
-    if unknown := set(inputs) - set(INPUTS):
-        raise LagtopError(f"inputs must be among {' '.join(INPUTS)}, got {min(unknown)}")
-    one_of_each(name for name in inputs if not name.startswith("theta0_"))
-    if missing := from_example(inputs):
-        warn_of(missing, stacklevel=4)
-    given = dict.fromkeys(TopArrays._fields, np.nan) | overridden(Top().inputs(), inputs)
-    doubles = [doubles_of(name, values) for name, values in given.items()]
-    try:
-        arrays = dict(zip(given, np.broadcast_arrays(*doubles), strict=True))
-    except ValueError as error:
-        raise LagtopError(f"the inputs do not go together: {error}") from None
-    if "A_cm" in inputs or "phidot0" in inputs:
-        shape, size = arrays["m"].shape, arrays["m"].size
-        tops = top_arrays({name: x.ravel() for name, x in arrays.items()}, size)
-        return [x.reshape(shape) for x in tops]
-    return list(arrays.values())
+    def __init__(self, inputs: Mapping[str, ArrayLike]) -> None:
+        """Raise LagtopError for an unknown input, or for shapes that do not go together."""
+        if unknown := set(inputs) - set(INPUTS):
+            raise LagtopError(f"inputs must be among {' '.join(INPUTS)}, got {min(unknown)}")
+        one_of_each(name for name in inputs if not name.startswith("theta0_"))
+        if missing := from_example(inputs):
+            warn_of(missing, stacklevel=4)
+        given = overridden(Top().inputs(), inputs)
+        doubles = [doubles_of(name, values) for name, values in given.items()]
+        try:
+            arrays = np.broadcast_arrays(*doubles)
+        except ValueError as error:
+            raise LagtopError(f"the inputs do not go together: {error}") from None
+        self.shape, self.size = arrays[0].shape, arrays[0].size
+        flat: list[Any] = [x if x.ndim == 1 else x.flat for x in arrays]
+        self._flat = dict(zip(given, flat, strict=True))
+
+    def part(self, rows: slice) -> TopArrays:
+        """Return some of the tops; nothing but these rows is copied."""
+        count = len(range(*rows.indices(self.size)))
+        return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
 
 
 def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:
