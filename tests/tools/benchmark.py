@@ -486,7 +486,7 @@ def proofs() -> None:
 
 
 def quotients() -> None:
-    """Form a thousand products and quotients of 60 decimals: the peer of proved numbers."""
+    """Compute a thousand products and quotients of 60 digits: the peer of proved numbers."""
     context = decimal.Context(prec=60)
     x = z = context.sqrt(decimal.Decimal(2))
     for _ in range(1000):
@@ -497,7 +497,7 @@ BEFORE = {"record": (1.78, 2.14), "T_nutation": (0.50, 0.67), "set-up": (1.70, 2
 """Costs at commit 39a276a over those of `quotients` in the same process: a release from rest, and a
 start with both rates.  A bar is such a number times the factor that proofs may cost more."""
 BEFORE_ROW, BEFORE_1000 = 0.79, 424.0
-"""The same of a row of `table --digits 30`, and of the command `solve --digits 1000`."""
+"""Costs at 39a276a, over `quotients`: a row of `table --digits 30`, and `solve --digits 1000`."""
 
 
 def costs_of_proofs() -> None:
