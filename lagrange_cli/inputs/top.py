@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 _EPS = Fraction(1, 1 << 52)
-_LEAST_TILT = 1e-150
+_LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _DIGITS_SHOWN = own_context(50, [])
@@ -215,8 +215,7 @@ def _finite(name: str, value: Any) -> Number:
 def _check_ranges(top: Top) -> None:
     for name in ("m", "A", "C"):
         _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
-        large = float(getattr(top, name)) >= 1 / _LARGEST  # of decimals as of doubles
-        _require(large, name, ">= 1e-100", getattr(top, name), _UNITS)
+        _require(getattr(top, name) >= _SMALLEST, name, ">= 1e-100", getattr(top, name), _UNITS)
     for name in ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"):
         size = abs(getattr(top, name))
         _require(size <= _LARGEST, name, "within 1e100 in size", getattr(top, name), _UNITS)
@@ -228,8 +227,7 @@ def _check_ranges(top: Top) -> None:
         tilt = getattr(top, name)
         if tilt is not None:
             _require(0 <= tilt and _is_at_most(tilt, most), name, f"in [0, {most}]", tilt)
-            large = tilt == 0 or float(tilt) >= _LEAST_TILT
-            _require(large, name, f"0 or at least {_LEAST_TILT}", tilt)
+            _require(tilt == 0 or tilt >= _LEAST_TILT, name, "0 or at least 1e-150", tilt)
 
 
 def _is_at_most(tilt: Number, most: str) -> bool:

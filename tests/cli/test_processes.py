@@ -213,7 +213,7 @@ def test_memory_does_not_grow_with_the_rows_of_a_trajectory(form: str, tmp_path:
             np.save(path, np.loadtxt(path, delimiter=",", skiprows=1))
         used.append(most_memory("compare", str(path), "--columns", "t,theta"))
     assert used[1] < 200
-    assert used[1] < used[0] + 15, used
+    assert used[1] < used[0] + 25, used  # of files of 2 and of 20 MB and more
 
 
 def test_output_to_a_file(tmp_path: Path) -> None:
