@@ -52,7 +52,7 @@ def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     return {key: unit for key, unit in units.items() if unit}
 
 
-def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None = None) -> Findings:
+def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) -> Findings:
     """Return the report on the outcomes of the recordings of a file.
 
     Where inputs have units those of a system are named.
