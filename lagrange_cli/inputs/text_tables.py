@@ -1,6 +1,7 @@
 """Tables as text: numbered lines, comments, delimiters, cells and JSON objects.
 
-Files of tops, times and trajectories are read by these functions, so that all have one grammar.
+The readers of tops, times and trajectories share these, so that their lines have one grammar.
+Only the cells of a trajectory are split elsewhere, mostly by NumPy (see `trajectory_text`).
 """
 
 from __future__ import annotations
