@@ -22,7 +22,7 @@ def test_get_prints_one_bare_value(key: str, lagtop: Lagtop) -> None:
 def test_get_with_digits_and_radians(lagtop: Lagtop) -> None:
     result = lagtop("solve", "--get", "theta_max_rad", "--rad", "--theta0", "1", "--digits", "25")
     table = lagtop("solve", "--rad", "--theta0", "1", "--digits", "25", "--format", "json").stdout
-    assert f'"theta_max_rad": {result.stdout.strip()},' in table
+    assert f'"theta_max_rad":{result.stdout.strip()},' in table
 
 
 def test_get_what_is_not_there(lagtop: Lagtop) -> None:
