@@ -97,7 +97,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         bounds = f"{low:.3f} to {high:.3f}"
         yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {solution.dof} dof."
     unit, scale = "rad" if outcome.radians else "deg", per_radian(radians=outcome.radians)
-    rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.remainders.items())
+    rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
     yield f"{name}Left, rms in {unit}: {rest}."
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:
