@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.numbers import Number
+from ..arithmetic.numbers import Number, is_real
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
@@ -138,6 +138,8 @@ def checked_double(key: str, value: Number) -> float:
     Raises LagtopError beyond all doubles, and for what is no real number.
     """
     try:
+        if not is_real(value):
+            raise TypeError(type(value))
         return float(value)
     except (TypeError, ValueError):
         raise LagtopError(f"{key} must be a real number, got {quoted(value)}", key) from None
