@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, fmpq
 
 from lagrange_cli.arithmetic.ball import Ball
-
-
-@contextmanager
-def arb_bits(bits: int) -> Iterator[None]:
-    """Let Arb work with so many bits for a while."""
-    before, ctx.prec = ctx.prec, bits
-    try:
-        yield
-    finally:
-        ctx.prec = before
 
 
 def exact_arb(value: Decimal | Fraction | float | str) -> arb:

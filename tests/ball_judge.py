@@ -8,8 +8,7 @@ neighbours, or an angle is known to a small part of its unit.  What no precision
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cached_property
 from typing import TypeVar
@@ -17,8 +16,8 @@ from typing import TypeVar
 from balls.angles import State
 from balls.record import Motion, Remainders
 from balls.requested import Requested
-from balls.scene import Number, Scene, Undecided, ball, facts_of, scene_from
-from flint import arb, ctx
+from balls.scene import Number, Scene, Undecided, arb_bits, ball, facts_of, scene_from
+from flint import arb
 
 EPS = 2.0**-52
 FIRST_BITS, MOST_BITS = 160, 20_000
@@ -48,7 +47,7 @@ class Judge:
         """
         bits = first
         while bits <= MOST_BITS:
-            with _precision(bits):
+            with arb_bits(bits):
                 try:
                     if bits not in self._motions:
                         self._motions[bits] = Requested(self.scene, *self._moments)
@@ -120,7 +119,7 @@ class Judge:
     def wrapped_errors(self, t: float, computed: tuple[float, float]) -> list[float]:
         """Return the errors of phi and psi (radians) without whole turns, in units."""
         state, errors = self.at(t), []
-        with _precision(8 * FIRST_BITS):
+        with arb_bits(8 * FIRST_BITS):
             for value, exact, rate in zip(
                 computed,
                 (state.phi, state.psi),
@@ -159,7 +158,7 @@ class Judge:
         exact = self.exact(key)
         if exact is None or not math.isfinite(computed):
             return math.inf
-        with _precision(8 * FIRST_BITS):
+        with arb_bits(8 * FIRST_BITS):
             away = exact - ball(Fraction(computed))
             outward = math.nextafter(computed, math.inf if away > 0 else -math.inf)
             gap = abs(ball(Fraction(outward)) - ball(Fraction(computed)))
@@ -179,7 +178,7 @@ class Judge:
             return record[key] if key in record else motion.requested().get(key)
 
         exact = self._raised(number, good, bits)
-        with _precision(bits):
+        with arb_bits(bits):
             assert exact is not None
             return abs(exact - ball(computed))
 
@@ -188,7 +187,7 @@ class Judge:
         exact = self.record.get(key)
         if exact is None or not math.isfinite(computed):
             return math.inf
-        with _precision(8 * FIRST_BITS):
+        with arb_bits(8 * FIRST_BITS):
             away = abs(exact - ball(Fraction(computed)))
             size = abs(exact) if absolute is None else ball(Fraction(absolute))
             if not size > 0:
@@ -209,7 +208,7 @@ def _with_units(state: State) -> list[tuple[arb, arb]]:
 
 def _errors(computed: tuple[float, ...], pairs: list[tuple[arb, arb]]) -> list[float]:
     """Return |computed - exact| over the unit; a NaN is infinitely wrong."""
-    with _precision(4 * FIRST_BITS):
+    with arb_bits(4 * FIRST_BITS):
         return [
             float((abs(exact - value) / unit).abs_upper()) if math.isfinite(value) else math.inf
             for value, (exact, unit) in zip(computed, pairs, strict=True)
@@ -232,14 +231,3 @@ def _size(scene: Scene) -> float:
     """Return about how many radians a unit of time can be."""
     rates = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate)
     return math.sqrt(scene.a) + float(sum(abs(rate) for rate in rates))
-
-
-@contextmanager
-def _precision(bits: int) -> Iterator[None]:
-    """Work with so many bits for a while."""
-    before = ctx.prec
-    ctx.prec = bits
-    try:
-        yield
-    finally:
-        ctx.prec = before

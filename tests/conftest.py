@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import compileall
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -72,6 +73,20 @@ def assert_one_line(result: Result, code: int, message: str) -> None:
 def process(*args: str, check: bool = True, **extra: Any) -> subprocess.CompletedProcess[bytes]:
     """Run the command as a process of its own."""
     return subprocess.run([*LAGTOP, *args], capture_output=True, check=check, **extra)
+
+
+def is_alive(group: int) -> bool:
+    """Return whether a process group has a process left."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def joined(folder: Path) -> bytes:
+    """Return the parts of a sweep in a folder, one after the other."""
+    return b"".join(part.read_bytes() for part in sorted(folder.glob("part-*")))
 
 
 FORKED = """if True:

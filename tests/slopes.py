@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
 from typing import TypeVar
 
 from balls.angles import State
 from balls.requested import Requested
-from balls.scene import Undecided, scene_from
-from flint import arb, ctx
+from balls.scene import Undecided, arb_bits, scene_from
+from flint import arb
 
 from lagrange_cli import LagtopError, Top, solve
 
@@ -20,19 +19,8 @@ BITS, STEP = 600, Fraction(1, 2**120)
 T = TypeVar("T")
 
 
-@contextmanager
-def many_bits() -> Iterator[None]:
-    """Work with many bits for a while."""
-    before = ctx.prec
-    ctx.prec = BITS
-    try:
-        yield
-    finally:
-        ctx.prec = before
-
-
 def judge_of(top: Top) -> Requested:
-    """Return the judge's motion of a top, to be asked within `many_bits`."""
+    """Return the judge's motion of a top, to be asked within `BITS`."""
     return Requested(scene_from(top.as_dict()), Fraction(top.A), Fraction(top.C))
 
 
@@ -74,7 +62,7 @@ class Slopes:
     ) -> tuple[float, float] | None:
         centre = Fraction(getattr(self.top, name))
         step = STEP * (abs(centre) or 1)
-        with many_bits():
+        with arb_bits(BITS):
             values: list[arb] = []
             for side in (-1, 0, 1):
                 top = self._beside(name, centre + side * step) if side else self.top

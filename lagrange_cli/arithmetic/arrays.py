@@ -107,7 +107,7 @@ class ArrayFunctions(Arrays):
 
 
 class Pairs(Arrays):
-    """The arithmetic of arrays of pairs of doubles, as far as it is needed: one function."""
+    """The arithmetic of arrays of pairs of doubles, as far as it is needed."""
 
     eps, magnitude = 2.0**-104, -31.31
     pi = DoubleDouble(np.array([np.pi]), np.array([1.2246467991473532e-16]))

@@ -167,10 +167,6 @@ class DoubleDouble:
         """Return the numbers times a power of two, exactly."""
         return DoubleDouble(self.high * power, self.low * power)
 
-    def at(self, index: Any) -> DoubleDouble:
-        """Return some of the numbers, by an index of an array."""
-        return DoubleDouble(self.high[index], self.low[index])
-
     @classmethod
     def stacked(cls, rows: Sequence[DoubleDouble]) -> DoubleDouble:
         """Return arrays as the rows of one."""
@@ -183,8 +179,8 @@ class DoubleDouble:
             else DoubleDouble(np.asarray(other, dtype=np.float64))
         )
 
-    def __getitem__(self, rows: Any) -> DoubleDouble:
-        return DoubleDouble(self.high[rows], self.low[rows])
+    def __getitem__(self, index: Any) -> DoubleDouble:
+        return DoubleDouble(self.high[index], self.low[index])
 
     def __add__(self, other: DoubleDouble | float) -> DoubleDouble:
         other = self._like(other)

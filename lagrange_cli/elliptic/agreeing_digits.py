@@ -65,7 +65,7 @@ class AgreeingNumbers:
 def agreed_or_rounded(
     compute: Callable[[ManyDigits], Mapping[str, Any]],
     digits: int | None,
-    known: Collection[str] = (),
+    known: Collection[str],
 ) -> dict[str, Any]:
     """Return numbers as `AgreeingNumbers.texts` does; without `digits`, the nearest doubles."""
     if digits is not None:

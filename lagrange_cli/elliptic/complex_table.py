@@ -170,7 +170,7 @@ class ComplexTable(TableOfFunctions):
                     yield f"{family}{ij}", partial(third, ar, at, kind)
 
 
-def any_constants_record(modulus: ExactComplex, digits: int | None = None) -> dict[str, Value]:
+def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str, Value]:
     """Return the constants of a modulus that is imaginary or above 1, by their two parts."""
 
     def compute(ar: ManyDigits) -> dict[str, Value]:

@@ -100,7 +100,7 @@ def complex_pi(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex
 
 def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Omega_ij at a place."""
-    T, v, u = given.periods.ratio, given.at, at.within(ar)
+    T, v, u = given.periods.ratio, given.at, at.within()
     cell = _Cell(ar, u, given)
     (r, s), (a, b) = map(_coarse_rests, (at, v))
     height, other = (u.y, v.y) if given.periods.circular else (u.x, v.x)
@@ -127,7 +127,7 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
 
 def pi_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Pi_ij at a place."""
-    T, t, u = given.periods.ratio, given.periods.steepness, at.within(ar)
+    T, t, u = given.periods.ratio, given.periods.steepness, at.within()
     cell = _Cell(ar, u, given)
     r, s = _coarse_rests(at)
     height = (u.y if given.periods.circular else u.x).rest

@@ -43,7 +43,7 @@ class Place(NamedTuple):
     x: Coordinate
     y: Coordinate
 
-    def within(self, ar: FunctionArithmetic) -> Place:
+    def within(self) -> Place:
         """Return the place less its whole periods."""
         none = 0 * self.x.whole
         return Place(Coordinate(none, self.x.rest), Coordinate(none, self.y.rest))

@@ -98,7 +98,7 @@ def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[st
     }
 
 
-def constants_record(modulus_input: ModulusInput, digits: int | None = None) -> dict[str, Any]:
+def constants_record(modulus_input: ModulusInput, digits: int | None) -> dict[str, Any]:
     """Return the record, each number the nearest double or to so many significant digits."""
     return ProvedNumbers(digits).of(
         lambda ar: constants_in(ar, modulus_input), dict.fromkeys(modulus_input.zeros(), 0)

@@ -41,7 +41,7 @@ class Attempt(NamedTuple):
     noise: Mapping[str, float]
     """Noise by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Array | None = None
-    """Another top that explains the recording as well, in the order of `parameters.QUANTITIES`."""
+    """Another top that explains the recording as well, in the order of `FIT_QUANTITIES`."""
 
     @property
     def recording(self) -> Recording:

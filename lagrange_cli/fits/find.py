@@ -65,7 +65,7 @@ def _read(name: str, value: Any) -> Any:
         raise LagtopError(f"{name} {error}", name) from None
 
 
-def find_tops(search: Search, count: int | None = None, watch: Watch = iter) -> FoundTops:
+def find_tops(search: Search, count: int | None, watch: Watch = iter) -> FoundTops:
     """Return the tops that keep the conditions.
 
     Raises AbsentError, which says how near the scan came, where there is none.

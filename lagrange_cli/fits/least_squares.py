@@ -42,7 +42,7 @@ class FittedParameters(NamedTuple):
     """Parameters that the data do not determine."""
 
     def quantities(self, i: int) -> tuple[Array, Array]:
-        """Return what recording i depends on, in the order of `parameters.QUANTITIES`.
+        """Return what recording i depends on, in the order of `FIT_QUANTITIES`.
 
         Their covariance follows.
         """

@@ -63,7 +63,7 @@ class Parameters(NamedTuple):
     def quantities(self, values: Array, i: int) -> tuple[Array, Array]:
         """Return the quantities of recording i, and their derivatives by the parameters.
 
-        They are of shape (8,) and (8, parameters), in the order of QUANTITIES.
+        They are of shape (8,) and (8, parameters), in the order of FIT_QUANTITIES.
         """
         found = np.zeros(len(FIT_QUANTITIES))
         slopes = np.zeros((len(FIT_QUANTITIES), len(values)))

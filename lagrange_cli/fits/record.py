@@ -58,7 +58,7 @@ class Outcome:
             determined_products(self.shown, self.known) if all(self.shown.values()) else []
         )
         channels = self.recording.channels
-        self.remainders: dict[str, Residual] = {
+        self.residuals: dict[str, Residual] = {
             channel: residual_of(values)
             for channel, values in zip(channels, found.solution.residuals[index], strict=True)
         }
@@ -88,7 +88,7 @@ class Outcome:
             found.append("the least squares do not converge")
         unit, scale = "rad" if self.radians else "deg", per_radian(radians=self.radians)
         for channel, noise in self.fit.noise[self.index].items():
-            rms = self.remainders[channel].rms
+            rms = self.residuals[channel].rms
             if rms > _MUCH * noise:
                 found.append(
                     f"no motion that was found is like the recording: {channel} is "
@@ -174,7 +174,7 @@ class Outcome:
                     f"chi2/dof = {self.chi2_dof:.3g} is beyond {low:.3g} to {high:.3g}: another "
                     "motion, or another sigma"
                 )
-        for channel, left in self.remainders.items():
+        for channel, left in self.residuals.items():
             if not left.is_noise:
                 found.append(
                     f"what is left of {channel} is no noise: neighbours correlate by "
@@ -184,7 +184,7 @@ class Outcome:
 
     @property
     def _leaves_noise(self) -> bool:
-        return all(left.is_noise for left in self.remainders.values())
+        return all(left.is_noise for left in self.residuals.values())
 
     def _impossible(self) -> Iterator[str]:
         """Yield what no rigid body has, unless the spin is too small to tell."""
@@ -222,7 +222,7 @@ class Outcome:
         }
         degrees = per_radian(radians=self.radians)
         suffix = "rad" if self.radians else "deg"
-        for channel, left in self.remainders.items():
+        for channel, left in self.residuals.items():
             record[f"{channel}_rms_{suffix}"] = left.rms * degrees
             record[f"{channel}_lag1"] = left.lag1
         return record | {

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.numbers import is_real
 from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
@@ -274,11 +273,4 @@ def _spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) ->
         raise LagtopError(
             f"sigma must be of {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
         )
-    return {name: np.full(raw.t.size, _deviation(value)) for name, value in each.items()}
-
-
-def _deviation(value: Any) -> float:
-    """Return a standard deviation.  Raises LagtopError for what is none."""
-    if not is_real(value):
-        raise LagtopError(f"sigma must be a real number, got {quoted(value)}", "sigma")
-    return checked_double("sigma", value)
+    return {name: np.full(raw.t.size, checked_double("sigma", x)) for name, x in each.items()}

@@ -52,7 +52,7 @@ def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     return {key: unit for key, unit in units.items() if unit}
 
 
-def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None = None) -> Findings:
+def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) -> Findings:
     """Return the report on the outcomes of the recordings of a file.
 
     Where inputs have units those of a system are named.
@@ -97,7 +97,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         bounds = f"{low:.3f} to {high:.3f}"
         yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {solution.dof} dof."
     unit, scale = "rad" if outcome.radians else "deg", per_radian(radians=outcome.radians)
-    rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.remainders.items())
+    rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
     yield f"{name}Left, rms in {unit}: {rest}."
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:

@@ -121,7 +121,7 @@ class Scan(NamedTuple):
     """The numbers that have a target value there, in the same shape; NaN for none."""
 
 
-def scan_of(search: Search, count: int | None, watch: Watch = iter) -> Scan:
+def scan_of(search: Search, count: int | None, watch: Watch) -> Scan:
     """Compute the tops on a grid of so many values of each unknown.
 
     Raises LagtopError for a count that is too small, or too large together.

@@ -1,6 +1,7 @@
 """Tables as text: numbered lines, comments, delimiters, cells and JSON objects.
 
-Files of tops, times and trajectories are read by these functions, so that all have one grammar.
+The readers of tops, times and trajectories share these, so that their lines have one grammar.
+Only the cells of a trajectory are split elsewhere, mostly by NumPy (see `trajectory_text`).
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def delimiter_of(header: str) -> str | None:
     return next((x for x in DELIMITERS if x in header), None)
 
 
-def split_cells(line: str, delimiter: str | None = ",") -> list[str]:
+def split_cells(line: str, delimiter: str) -> list[str]:
     """Return the cells of a line of CSV.
 
     A quoted cell ends on its line, or one open quote would swallow the rows that follow.  Raises
@@ -82,7 +83,7 @@ def split_cells(line: str, delimiter: str | None = ",") -> list[str]:
     if '"' not in line:
         return line.split(delimiter)
     try:
-        return next(csv.reader([line], strict=True, delimiter=delimiter or " "))
+        return next(csv.reader([line], strict=True, delimiter=delimiter))
     except csv.Error as error:
         raise LagtopError(f"a row must be CSV, got a wrong quote: {error}") from None
 

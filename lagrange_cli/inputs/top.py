@@ -213,12 +213,12 @@ def _finite(name: str, value: Any) -> Number:
 
 
 def _check_ranges(top: Top) -> None:
-    for name in ("m", "A", "C"):
-        _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
-        _require(getattr(top, name) >= _SMALLEST, name, ">= 1e-100", getattr(top, name), _UNITS)
     for name in ("m", "A", "C", "s", "g", "r0", "thetadot0", "psidot0"):
         size = abs(getattr(top, name))
         _require(size <= _LARGEST, name, "within 1e100 in size", getattr(top, name), _UNITS)
+    for name in ("m", "A", "C"):
+        _require(getattr(top, name) > 0, name, "> 0", getattr(top, name))
+        _require(getattr(top, name) >= _SMALLEST, name, ">= 1e-100", getattr(top, name), _UNITS)
     _require(top.s >= 0, "s", ">= 0", top.s, "for a low centre of mass use 180 - theta0 and -r0")
     _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
     twice = 2 * Fraction(top.A)

@@ -214,8 +214,8 @@ def open_tops(
         return file, _blocks(file, chain(head, lines), size)
     try:
         header = decoded_row(first)
-        delimiter = delimiter_of(header)
-        headings = [heading(cell.strip()) for cell in split_cells(header, delimiter or ",")]
+        delimiter = delimiter_of(header) or ","
+        headings = [heading(cell.strip()) for cell in split_cells(header, delimiter)]
     except LagtopError as error:
         raise DataError(f"{name}, line {start}: {error}") from None
     columns = [column for column, _ in headings]
@@ -231,7 +231,7 @@ def open_tops(
         frozenset(computed),
         set(columns) & set(INPUTS),
         units,
-        delimiter=delimiter or ",",
+        delimiter=delimiter,
     )
     return file, _blocks(file, lines, size)
 

@@ -137,7 +137,7 @@ def _shown(array: ArrayLike) -> str:
 def with_verdicts(
     motion: Motion,
     cases: Sequence[tuple[JudgedRun, ReadTrajectory]],
-    limit: float | None = None,
+    limit: float | None,
     steps: Sequence[float] | None = None,
 ) -> tuple[list[Judgement], Convergence | None]:
     """Return the judgements of trajectories with their verdicts, and how they converge.

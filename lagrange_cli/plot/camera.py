@@ -8,12 +8,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arithmetic.types import Array
-
-Near = NDArray[np.bool_]
-"""One boolean per point: whether it is on the near side."""
+from ..arithmetic.types import Array, Mask
 
 
 class Camera(NamedTuple):
@@ -28,9 +24,9 @@ class Camera(NamedTuple):
         """Return x and y on the page of points of shape (n, 3)."""
         return points @ self.right, points @ self.up
 
-    def faces(self, points: Array) -> Near:
+    def faces(self, points: Array) -> Mask:
         """Return whether points of the sphere, of shape (n, 3), lie on the near side."""
-        near: Near = points @ self.toward >= 0.0
+        near: Mask = points @ self.toward >= 0.0
         return near
 
 
@@ -78,8 +74,8 @@ def _chosen(path: Array, elevation: float, shown: Callable[[Camera], float]) -> 
     return max(cameras, key=lambda camera: round(shown(camera), 2))
 
 
-def runs(near: Near) -> Iterator[tuple[slice, bool]]:
-    """Yield the pieces of a curve on either side; neighbours share the point where they meet."""
+def runs(near: Mask) -> Iterator[tuple[slice, bool]]:
+    """Yield the pieces of a curve on the near side and behind; neighbours share a point."""
     ends = np.flatnonzero(near[1:] != near[:-1]) + 1
     bounds = [0, *ends.tolist(), near.size]
     for first, last in pairwise(bounds):

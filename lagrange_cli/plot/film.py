@@ -144,7 +144,7 @@ def check_film(page: Page, name: str, dpi: float) -> None:
 
 
 def film_bytes(
-    page: Page, name: str, dpi: float, pace: Pace | None = None, progress: Progress = no_progress
+    page: Page, name: str, dpi: float, pace: Pace | None, progress: Progress = no_progress
 ) -> bytes:
     """Return the film as a GIF or an MP4, as `name` ends.  Raises LagtopError as `check_film`."""
     check_film(page, name, dpi)

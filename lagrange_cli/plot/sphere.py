@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from ..arithmetic.types import Array
+from ..arithmetic.types import Array, Mask
 from ..motion.solve import Motion
-from .camera import Camera, Near, best_camera, camera_at, runs
+from .camera import Camera, best_camera, camera_at, runs
 from .curves import highest_times, sampled_columns, span, sphere_span
 from .globe import Limits, draw_globe
 from .kinds import Drawing
@@ -118,7 +118,7 @@ def _fineness(motion: Motion, path: AxisPath) -> float:
     return max(0.35, math.sqrt(min(1.0, USUAL_PERIODS * T / path.t[-1]))) if T else 1.0
 
 
-def _coloured(t: Array, places: Array, near: Near, look: Look, *, side: bool) -> LineCollection:
+def _coloured(t: Array, places: Array, near: Mask, look: Look, *, side: bool) -> LineCollection:
     """Return the parts of a curve on one side of the globe, coloured by time."""
     pieces, times = _pieces(t, places, near, side)
     lines = LineCollection(pieces, cmap=scale(look), capstyle="round")
@@ -127,7 +127,7 @@ def _coloured(t: Array, places: Array, near: Near, look: Look, *, side: bool) ->
     return lines
 
 
-def _pieces(t: Array, places: Array, near: Near, side: bool) -> tuple[list[Array], Array]:
+def _pieces(t: Array, places: Array, near: Mask, side: bool) -> tuple[list[Array], Array]:
     """Return the parts of the curve on one side, cut into pieces of one colour, and their times."""
     step = max((t[-1] - t[0]) / PIECES, 1e-300)
     pieces, times = [], []

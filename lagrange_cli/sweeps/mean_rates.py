@@ -39,7 +39,7 @@ class MeanRates:
         cancels |= size + abs(r0) > _MOST_SIZE * abs(self.spin)
         if cancels.any():
             rows = np.flatnonzero(cancels)
-            few = Gaps(*(x.at(rows) for x in gaps))
+            few = Gaps(*(x[rows] for x in gaps))
             self.precession[rows], self.spin[rows] = _means_in_pairs(r0[rows], few)
 
 
@@ -47,7 +47,7 @@ def _means_in_pairs(r0: Array, gaps: Gaps[DoubleDouble]) -> tuple[Array, Array]:
     """Return the mean rates of precession and spin, computed in pairs."""
     k_prime = (gaps.a_u3_u1 / gaps.a_u3_u2).sqrt()
     means = mean_over(PAIRS, k_prime, *_by_pole(gaps))
-    south, north = means.at(0), means.at(1)
+    south, north = means[0], means[1]
     return (south + north).high, (DoubleDouble(r0) + south - north).high
 
 

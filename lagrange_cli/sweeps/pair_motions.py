@@ -14,11 +14,9 @@ from ..arithmetic.types import Array, Mask
 from ..motion.gaps import Gaps, State, gaps_from_rest
 from ..motion.kinds import Nutating
 from ..motion.regime import Facts, Regime
-from .start_arrays import StartArrays, pair_state
+from .start_arrays import EPS, StartArrays, pair_state
 from .top_arrays import TopArrays
 
-_EPS = 2.0**-100
-"""Relative error of a few operations on pairs."""
 _SMALL = 2.0**-56
 """Error of a phase, or of a constant, that is far below a unit of the angles."""
 
@@ -95,7 +93,7 @@ def released(tops: TopArrays) -> PairMotions:
         )
         motion = Nutating(PAIRS, facts, state, gaps_from_rest(PAIRS, state))
         parts = np.maximum(state.a.high, state.b.high**2 / 2)
-        noise = _EPS * (1 + parts / abs(state.sleep.high))  # lambda - 1 is what cancels
+        noise = EPS * (1 + parts / abs(state.sleep.high))  # lambda - 1 is what cancels
         size = abs(tops.r0) + abs(motion.mean_precession_rate.high)
         return PairMotions(motion, None, noise, size, np.isfinite(noise))
 

@@ -32,6 +32,8 @@ from .top_arrays import TopArrays
 Column = Array | NDArray[np.object_]
 """Numbers, NaN where a regime has none; or texts, None where there is none."""
 
+TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
+"""The columns of texts."""
 BLOCK_ROWS = 1 << 12
 """Tops that are computed together: their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -98,8 +100,7 @@ class Together:
 
 def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:
     """Return columns for so many tops, to be filled."""
-    texts = {*motion_record.TEXT_KEYS, "error"}
-    return {key: np.empty(count, dtype=object if key in texts else np.float64) for key in keys}
+    return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
 
 def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
@@ -150,7 +151,7 @@ class _Block:
         tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
         given = tops._asdict() | tilt
         known = motion_record.record_keys(radians=radians)
-        others = {*given, *motion_record.TEXT_KEYS, "error"}
+        others = {*given, *TEXTS}
         self.texts = [key for key in columns if key in motion_record.TEXT_KEYS]
         self.numbers = [key for key in columns if key in known and key not in others]
         self.requested = [key for key in columns if key not in known and key not in others]

@@ -26,7 +26,7 @@ from ..motion.regime import Facts, Regime
 from .mean_rates import MeanRates
 from .top_arrays import TopArrays
 
-_EPS = 2.0**-100
+EPS = 2.0**-100
 """Relative error of a few operations on pairs."""
 _SETTLED = 2.0**-90
 """Relative error at which the largest root is settled."""
@@ -97,7 +97,7 @@ class StartArrays:
     @property
     def noise(self) -> Array:
         """Bound of the relative errors of the gaps, and of what is made of them."""
-        return self.errors.worst + _EPS
+        return self.errors.worst + EPS
 
     @cached_property
     def precession_size(self) -> Array:
@@ -122,7 +122,7 @@ class StartArrays:
         sure = _is_sure(noise * size, self.means.precession)
         sure &= _is_sure(noise * (size + abs(rough.r0)), self.means.spin)
         at_start: Any = self.fine.spin_rate_start
-        return sure & _is_sure(_EPS * (abs(rough.r0) + abs(rough.state.psi_rate)), at_start.high)
+        return sure & _is_sure(EPS * (abs(rough.r0) + abs(rough.state.psi_rate)), at_start.high)
 
 
 def _is_sure(error: Array, value: Array) -> Mask:
@@ -167,7 +167,7 @@ class _LargestRoot:
     def _left(step: Array, slope: Array, sizes: tuple[Array, Array, Array], x: Array) -> Array:
         """Return a bound of the error after a step: its noise, the slope's, and the curvature."""
         b2, b1, b0 = sizes
-        noise = _EPS * (((x + b2) * x + b1) * x + b0)
+        noise = EPS * (((x + b2) * x + b1) * x + b0)
         steep = 2.0**-49 * ((3 * x + 2 * b2) * x + b1)
         bound: Array = (noise + step * (steep + step * (3 * x + b2))) / slope
         return bound
@@ -196,10 +196,10 @@ class _ErrorBounds:
         momentum, energy = start.momentum, start.energy
         c0 = (start.sin * start.theta_rate) ** 2
         c1_parts = abs(2 * b * momentum) + a * start.sin**2 + abs(2 * start.cos * energy)
-        of_total = (_EPS * c1_parts + 2 * error * (c1_parts + a * c0 / D)) / D
+        of_total = (EPS * c1_parts + 2 * error * (c1_parts + a * c0 / D)) / D
         larger, smaller = np.maximum(x1, x2), np.minimum(x1, x2)
-        of_larger = of_total + larger * (error + _EPS)
-        of_smaller = smaller * (error + _EPS + of_larger / larger)
+        of_larger = of_total + larger * (error + EPS)
+        of_smaller = smaller * (error + EPS + of_larger / larger)
         of_x1 = np.where(x1 >= x2, of_larger, of_smaller)
         of_x2 = np.where(x1 >= x2, of_smaller, of_larger)
         of_D = error * D
@@ -207,18 +207,18 @@ class _ErrorBounds:
 
         def bounds() -> Iterator[Array]:
             yield (of_x1 + of_x2) / doubles.u1_u2
-            yield (_EPS * above + of_x1) / doubles.above_u1
-            yield (_EPS * above + of_x2) / doubles.above_u2
-            yield (_EPS * below + of_x1) / doubles.below_u1
-            yield (_EPS * below + of_x2) / doubles.below_u2
-            yield (of_D + _EPS * D + a * of_x1) / doubles.a_u3_u1
-            yield (of_D + _EPS * D) / doubles.a_u3_above
+            yield (EPS * above + of_x1) / doubles.above_u1
+            yield (EPS * above + of_x2) / doubles.above_u2
+            yield (EPS * below + of_x1) / doubles.below_u1
+            yield (EPS * below + of_x2) / doubles.below_u2
+            yield (of_D + EPS * D + a * of_x1) / doubles.a_u3_u1
+            yield (of_D + EPS * D) / doubles.a_u3_above
 
         self.worst: Array = reduce(np.maximum, bounds())
         positive = reduce(np.minimum, (getattr(doubles, name) for name in _POSITIVE)) > 0
         signs = [
-            (_EPS * self.momenta[0] + abs(b) * of_x1) < _SURE * abs(doubles.momentum_u1),
-            (_EPS * self.momenta[1] + abs(b) * of_x2) < _SURE * abs(doubles.momentum_u2),
+            (EPS * self.momenta[0] + abs(b) * of_x1) < _SURE * abs(doubles.momentum_u1),
+            (EPS * self.momenta[1] + abs(b) * of_x2) < _SURE * abs(doubles.momentum_u2),
         ]
         self.small: Mask = positive & (self.worst < _GOOD) & signs[0] & signs[1]
 

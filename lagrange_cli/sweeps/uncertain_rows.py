@@ -9,17 +9,14 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
-from ..motion.record import TEXT_KEYS
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
-from .records import Column
+from .records import TEXTS, Column
 from .top_arrays import TopArrays
-
-_TEXTS = frozenset({*TEXT_KEYS, "error"})
 
 
 def std_keys(keys: Sequence[str]) -> list[str]:
     """Return the names of the uncertainties of those keys that are numbers."""
-    return [f"{key}_std" for key in keys if key not in _TEXTS]
+    return [f"{key}_std" for key in keys if key not in TEXTS]
 
 
 def std_columns(
@@ -37,11 +34,9 @@ def std_columns(
     for i, error in enumerate(columns["error"]):
         if error:
             continue
-        inputs = {name: x[i] for name, x in zip(tops._fields, tops, strict=True)}
-        top = Top(**{name: x for name, x in inputs.items() if not np.isnan(x)})
         present = [name for name, x in given.items() if not np.isnan(_of_row(x, i))]
         try:
-            uncertain = FirstOrder(top, stds, present)
+            uncertain = FirstOrder(Top(**tops.one(i)), stds, present)
         except LagtopError:
             continue
         record = {key: columns[key][i] for key in columns if f"{key}_std" in found}

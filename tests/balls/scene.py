@@ -17,11 +17,12 @@ A precision that leaves something open raises `Undecided`, and the next one is t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 
 Number = Fraction | float | int | str
 
@@ -117,3 +118,13 @@ def rational(value: Fraction) -> fmpq:
 
 def ball(value: Fraction) -> arb:
     return arb(rational(value))
+
+
+@contextmanager
+def arb_bits(bits: int) -> Iterator[None]:
+    """Let Arb work with so many bits for a while."""
+    before, ctx.prec = ctx.prec, bits
+    try:
+        yield
+    finally:
+        ctx.prec = before

@@ -13,7 +13,8 @@ from typing import Any
 from unittest.mock import patch
 
 import pytest
-from arb_balls import arb_bits, exact_arb, holds
+from arb_balls import exact_arb, holds
+from balls.scene import arb_bits
 from flint import acb, arb
 
 import lagrange_cli.elliptic.third_kind as third_kinds

@@ -103,7 +103,7 @@ def test_residuals_beyond_the_noise_of_any_channel_are_a_failure() -> None:
     t, angles = noisy(MISLED, 1.5, 60, 5)
     found = fit(t, **angles)
     for channel in ("theta", "phi", "psi"):
-        noise = {**found.fit.noise[0], channel: found.remainders[channel].rms / 2.1}
+        noise = {**found.fit.noise[0], channel: found.residuals[channel].rms / 2.1}
         (reason,) = Outcome(found.fit._replace(noise=[noise]), 0).failures()
         assert reason.startswith(f"no motion that was found is like the recording: {channel} is 0.")
 

@@ -3,34 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
 import mpmath
 import oracle
 import pytest
+from chrapan_top import record_of, rows_of
 from conftest import Lagtop
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.bench.reference import Reference
-from lagrange_cli.motion.over_time.proved_table import ProvedTable
-from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
-
-
-def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
-    """Return the record of a top with so many digits."""
-    record: dict[str, Any] = solve(top).record(digits=digits, radians=radians)
-    return record
-
-
-def rows_of(
-    top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
-) -> list[list[Any]]:
-    """Return rows of t and the three angles with so many digits."""
-    table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, radians=radians)
-    return [[number.value for number in table.row(Fraction(t))] for t in times]
 
 
 def same(text: Any, true: Any, digits: int) -> bool:

@@ -8,8 +8,9 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from arb_balls import arb_bits, exact_arb, holds
+from arb_balls import exact_arb, holds
 from ball_judge import Judge
+from balls.scene import arb_bits
 from conftest import Lagtop
 from scenes import EVERY_KIND as SCENES
 from scenes import UNIT

@@ -9,8 +9,9 @@ from typing import Any
 
 import mpmath
 import pytest
-from arb_balls import arb_bits, exact_arb
+from arb_balls import exact_arb
 from ball_judge import Judge
+from balls.scene import arb_bits
 from conftest import Lagtop, assert_one_line
 from flint import arb
 from scenes import EVERY_KIND as SCENES

@@ -11,7 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from arb_balls import arb_bits, arb_of, exact_arb, holds
+from arb_balls import arb_of, exact_arb, holds
+from balls.scene import arb_bits
 from flint import acb, arb
 
 from lagrange_cli.arithmetic.ball import Ball

@@ -17,7 +17,7 @@ from threading import Thread
 from typing import Any
 
 import pytest
-from conftest import LAGTOP, process
+from conftest import LAGTOP, is_alive, joined, process
 from distributed import Client, LocalCluster
 
 from lagrange_cli.errors import UnavailableError
@@ -34,10 +34,6 @@ pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itsel
 def cluster() -> Iterator[LocalCluster]:
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         yield cluster
-
-
-def joined(folder: Path) -> bytes:
-    return b"".join(part.read_bytes() for part in sorted(folder.glob("part-*")))
 
 
 @pytest.mark.slow
@@ -145,18 +141,9 @@ def test_a_cluster_of_its_own_goes_with_it(tmp_path: Path) -> None:
     assert running.returncode == -signal.SIGINT
     assert list(tmp_path.iterdir()) == []
     deadline = time.monotonic() + 30
-    while alive(running.pid) and time.monotonic() < deadline:
+    while is_alive(running.pid) and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert not alive(running.pid)
-
-
-def alive(group: int) -> bool:
-    """Return whether a process group has a process left."""
-    try:
-        os.killpg(group, 0)
-    except ProcessLookupError:
-        return False
-    return True
+    assert not is_alive(running.pid)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from contextlib import closing, contextmanager, nullcontext, suppress
 from pathlib import Path
 
 import pytest
-from conftest import LAGTOP, Lagtop, assert_one_line
+from conftest import LAGTOP, Lagtop, assert_one_line, is_alive
 
 from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
 from lagrange_cli.sweeps.jobs import _Worker, in_order, parse_jobs
@@ -292,12 +292,3 @@ def test_a_helper_that_is_killed(who: str, tmp_path: Path) -> None:
     expected = (-signal.SIGTERM, b"") if who == "resource_tracker" else (69, lost)
     assert (running.returncode, said) == expected
     assert list(tmp_path.iterdir()) == []
-
-
-def is_alive(group: int) -> bool:
-    """Return whether a process group has a process left."""
-    try:
-        os.killpg(group, 0)
-    except ProcessLookupError:
-        return False
-    return True

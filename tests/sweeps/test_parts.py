@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import LAGTOP, Lagtop, assert_one_line
+from conftest import LAGTOP, Lagtop, assert_one_line, joined
 
 from lagrange_cli.errors import CannotWriteError
 from lagrange_cli.inputs.ranges import parse_values
@@ -74,10 +74,6 @@ def test_parts_of_a_longer_sweep_are_not_mixed_in(tmp_path: Path, lagtop: Lagtop
 
 LONG_FILE = "r0\n" + "".join(f"{i + 1}\n" for i in range(9000))
 SHORT_FILE = "".join(line + "\n" for line in LONG_FILE.splitlines()[:5001])
-
-
-def joined(folder: Path) -> bytes:
-    return b"".join(part.read_bytes() for part in sorted(folder.glob("part-*")))
 
 
 def test_a_shorter_file_is_another_sweep(tmp_path: Path, lagtop: Lagtop) -> None:

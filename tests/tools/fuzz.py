@@ -34,10 +34,10 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
-from arb_balls import arb_bits as precision
 from ball_judge import Judge
 from balls.requested import Requested
 from balls.scene import Undecided, ball
+from balls.scene import arb_bits as precision
 from flint import arb
 from fuzz_scenes import KINDS, Scene, as_decimals
 

@@ -6,7 +6,7 @@ Chrapan's sections 3 and 4 are their logarithms), each a theta function times a 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
 One arctangent each gives the tilt and the half sum and half difference of the other two angles.
-Of the half-period representations `series` takes the ones whose zeros are the passes over the
+Of the half-period representations `theta_series` takes the ones whose zeros are the passes over the
 poles: there real and imaginary part vanish each by itself, and nothing cancels.
 
 A time is first reduced, exactly, to whole steps and a phase; then a few multiplications per sample
@@ -215,7 +215,7 @@ def _settle_on_the_pole(arguments: Array, part: Component, x: Array) -> None:
     arguments[vanish] = np.sign(part.imag[0]) * np.sign(x[vanish]) * (np.pi / 2)
 
 
-def arguments_of(parts: Array, out: Array | None = None) -> Array:
+def arguments_of(parts: Array, out: Array) -> Array:
     """Return the arguments of X and Y, whose real parts are not negative, from their parts."""
     arguments: Array = np.divide(parts[1::2], parts[::2], out=out)
     np.arctan(arguments, out=arguments)

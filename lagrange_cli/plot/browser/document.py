@@ -57,7 +57,7 @@ def _filled(text: str, parts: dict[str, str]) -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda name: parts[name[1]], text)
 
 
-def open_page(page: Document, path: str | None = None) -> None:
+def open_page(page: Document, path: str | None) -> None:
     """Open a page that was written to a file, else one of a new file, in the user's browser.
 
     Raises LagtopError where there is no browser.

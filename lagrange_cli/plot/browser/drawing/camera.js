@@ -43,11 +43,11 @@ export class Camera {
   }
 }
 
-export function dot3(p, q) {
+function dot3(p, q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-export function cross(p, q) {
+function cross(p, q) {
   return [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
 }
 

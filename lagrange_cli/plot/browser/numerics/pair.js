@@ -26,7 +26,7 @@ function twoProduct(x, y) {
 }
 
 /** A number of 32 digits.  Its methods take such numbers, or doubles. */
-export class Pair {
+class Pair {
   constructor(high, low = 0) {
     this.high = high + low;
     this.low = low - (this.high - high);
