@@ -149,3 +149,18 @@ def test_far_amplitudes_with_digits(lagtop: Lagtop) -> None:
         turns = 5555555555555555555555555555
         exact = 2 * turns * mpmath.ellipk(m) + mpmath.ellipf(mpmath.radians(100), m)
         assert abs(mpmath.mpf(shown.splitlines()[1].split(",")[1]) / exact - 1) < 1e-44
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_the_double_below_a_quarter_turn_is_below_it(lagtop: Lagtop, sign: str) -> None:
+    """F(phi, 1) = asinh(tan phi), by mpmath."""
+    phi = 1.5707963267948966
+    with mpmath.workdps(50):
+        exact = mpmath.asinh(mpmath.tan(mpmath.mpf(phi)))
+    options = ["--k", 1, "--rad", f"--phi={sign}{phi}", "--format", "csv"]
+    _, row = lagtop("jacobi", *options).stdout.splitlines()
+    assert float(row.split(",")[1]) == float(f"{sign}{float(exact)}")
+    beyond = [*options[:3], f"--phi={sign}1.5707963267948968", *options[4:]]
+    assert lagtop("jacobi", *beyond).stdout.splitlines()[1].split(",")[1] == ""
+    assert lagtop("jacobi", "--rad", "--modular-angle", phi, "--u", 1).exit_code == 0
+    assert lagtop("jacobi", "--rad", "--modular-angle", 1.5707963267948968).exit_code == 2

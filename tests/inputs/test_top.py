@@ -129,3 +129,13 @@ def test_nothing_depends_on_the_decimal_context_of_the_host(kind: str) -> None:
             EvenPoints(Fraction(0), Fraction(1), 10**12)
         assert solve(Top(**inputs)).record() == record
         assert parse_values("log:1:1e4:7").at(np.arange(7)).tolist() == points.tolist()
+
+
+def test_the_limits_of_inputs_are_taken_as_decimals_and_as_doubles() -> None:
+    for tilt in (1e-150, Fraction(1, 10**150)):
+        assert Top(theta0_deg=tilt).theta0_deg == tilt
+    for m in (1e-100, Fraction(1, 10**100)):
+        assert Top(m=m).m == m
+    for wrong in ({"theta0_deg": Fraction(9, 10**151)}, {"m": Fraction(9, 10**101)}):
+        with pytest.raises(LagtopError, match=r"at least 1e-150|>= 1e-100"):
+            Top(**wrong)

@@ -167,3 +167,18 @@ def test_steady_tops(inputs: dict[str, float]) -> None:
     assert not angles.psi.any()
     wrapped = solve(Top(r0=7, **inputs)).angles([1e6], wrap=True)
     assert wrapped.phi[0] == pytest.approx(math.remainder(7e6, 2 * math.pi), abs=1e-9)
+
+
+@pytest.mark.parametrize("thetadot0", [1e-100, 1e-7, -1e-100])
+def test_next_to_a_pole_at_times_that_are_nearly_0(thetadot0: float) -> None:
+    """Where the tilt grows along the direction of psi = 0, by hand phi = psi = r0 t/2.
+
+    On the other side of the pole both are half a turn off.
+    """
+    body = {"m": 1, "A": 2, "C": 2, "s": 1, "g": 0, "r0": 1.5, "theta0_deg": 0}
+    t = math.copysign(1, thetadot0) * np.array([5e-324, 1e-230, -1e-230])
+    angles = solve(Top(**body, thetadot0=thetadot0)).angles(t)
+    assert abs(angles.phi[:2]).max() < 1e-15
+    assert abs(angles.psi[:2]).max() < 1e-15
+    assert abs(angles.phi[2]) == pytest.approx(math.pi)
+    assert angles.psi[2] == pytest.approx(-angles.phi[2])

@@ -137,3 +137,28 @@ def test_without_torque_and_spin_the_other_turning_point_is_opposite(
     assert proved.value == float(known)
     level = exact(Top(**start, theta0_deg=60, psidot0=1))
     assert [known_fraction(level, key) for key in ("u1", "u2")] == [Fraction(1, 2), Fraction(-1, 2)]
+
+
+def test_roots_that_are_fractions_may_be_midway() -> None:
+    """By hand b^2/a = 1/x - x with x = 1 - 2^-54, and u2 = -x is midway between two doubles."""
+    motion = solve(
+        Top(
+            m=134217727,
+            A=207165582859042816,
+            C=23,
+            s=1566469435607129,
+            g=134217729,
+            r0=1566469435607129,
+            theta0_deg=90,
+        )
+    )
+    assert motion.exact.b**2 / motion.exact.a == 1 / (1 - Fraction(1, 2**54)) - 1 + Fraction(
+        1, 2**54
+    )
+    assert motion.u2 == -1
+    # b^2/a = 7/12: the roots are -3/4 and 4/3, and k = 3/5
+    record = solve(Top(**UNIT | {"m": 42, "r0": 7, "theta0_deg": 90})).record(digits=1)
+    assert [record[key] for key in ("u2", "u3", "k")] == ["-0.8", "1.0", "0.6"]
+    # the same roots over 1 + 10^-30 are no fractions with few digits, and need none
+    moved = Top(**UNIT | {"m": 42, "r0": 7 + Fraction(1, 10**30), "theta0_deg": 90})
+    assert solve(moved).record(digits=1)["u2"] == "-0.7"
