@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any
@@ -142,7 +143,8 @@ def doubles_of(name: str, values: ArrayLike) -> Array:
 
     Raises LagtopError for anything but an array of real numbers, and for masked elements.
     """
-    if np.ma.isMaskedArray(values) and np.ma.getmaskarray(values).any():
+    masked = sys.modules.get("numpy.ma")  # start-up: without it no array is masked
+    if masked and masked.isMaskedArray(values) and masked.getmaskarray(values).any():
         raise LagtopError(f"{name} must not be masked: fill it or leave the elements out", name)
     try:
         array = np.asarray(values)

@@ -159,6 +159,6 @@ def test_roots_that_are_fractions_may_be_midway() -> None:
     # b^2/a = 7/12: the roots are -3/4 and 4/3, and k = 3/5
     record = solve(Top(**UNIT | {"m": 42, "r0": 7, "theta0_deg": 90})).record(digits=1)
     assert [record[key] for key in ("u2", "u3", "k")] == ["-0.8", "1.0", "0.6"]
-    # the same roots over 1 + 10^-30 are no fractions with few digits, and need none
-    moved = Top(**UNIT | {"m": 42, "r0": 7 + Fraction(1, 10**30), "theta0_deg": 90})
+    # with another r0 by 10^-30 the root is on one side of the tie
+    moved = Top(**UNIT | {"m": 42, "theta0_deg": 90}, r0=7 + Fraction(1, 10**30))
     assert solve(moved).record(digits=1)["u2"] == "-0.7"
