@@ -8,11 +8,13 @@ digits.  A ball of radius 0 is exact, and stays so through sums and products tha
 from __future__ import annotations
 
 import decimal
+from collections.abc import Callable
 from decimal import Decimal, DecimalException, Inexact
 from functools import cached_property
 from typing import Any
 
 from .decimals import TRAPS, own_context
+from .numbers import power
 
 Truth = Any
 """True, False or OPEN."""
@@ -51,6 +53,23 @@ class Open:
 OPEN = Open()
 
 
+def _sum_by(operation: str) -> Callable[[Ball, Ball | float], Ball]:
+    """Return the method that adds or subtracts: the radii of both add up."""
+
+    def total(self: Ball, other: Ball | float) -> Ball:
+        ar: Ring = self.ar
+        if isinstance(other, Ball):
+            term, radius = other.middle, add_up(self.radius, other.radius)
+        else:
+            term, radius = Decimal(other), self.radius
+        if not radius:
+            return ar.exactly(operation, self.middle, term)
+        middle = getattr(ar, operation)(self.middle, term)
+        return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
+
+    return total
+
+
 class Ball:
     """All numbers at most `radius` away from `middle`; comparisons are True, False or OPEN.
 
@@ -66,27 +85,7 @@ class Ball:
     def __repr__(self) -> str:
         return f"Ball({self.middle} +- {self.radius})"
 
-    def __add__(self, other: Ball | float) -> Ball:
-        ar: Ring = self.ar
-        if isinstance(other, Ball):
-            term, radius = other.middle, add_up(self.radius, other.radius)
-        else:
-            term, radius = Decimal(other), self.radius
-        if not radius:
-            return ar.exactly("add", self.middle, term)
-        middle = ar.add(self.middle, term)
-        return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
-
-    def __sub__(self, other: Ball | float) -> Ball:
-        ar: Ring = self.ar
-        if isinstance(other, Ball):
-            term, radius = other.middle, add_up(self.radius, other.radius)
-        else:
-            term, radius = Decimal(other), self.radius
-        if not radius:
-            return ar.exactly("subtract", self.middle, term)
-        middle = ar.subtract(self.middle, term)
-        return Ball(ar, middle, fma_up(middle.copy_abs(), ar.unit, radius))
+    __add__, __sub__ = _sum_by("add"), _sum_by("subtract")
 
     def __rsub__(self, other: float) -> Ball:
         return -self + other
@@ -139,10 +138,7 @@ class Ball:
         return Ball(self.ar, Decimal(other), ZERO) / self
 
     def __pow__(self, exponent: int) -> Ball:
-        if exponent < 2:
-            return self if exponent else self.ar.exact(1)
-        half = self ** (exponent // 2)
-        return half * half * self if exponent % 2 else half * half
+        return power(self, exponent) if exponent else self.ar.exact(1)
 
     def __neg__(self) -> Ball:
         return Ball(self.ar, self.middle.copy_negate(), self.radius)
