@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import re
 import subprocess
 import sys
+import tarfile
+from functools import partial
+from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
+from conftest import ROOT
 
 import lagrange_cli
 
@@ -26,3 +33,67 @@ def test_the_import_alone_loads_nothing_heavy() -> None:
     code = "import sys, lagrange_cli; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
     assert not {"numpy", "mpmath", "scipy", "click", "rich"} & set(done.stdout.split())
+
+
+def test_lagtop_is_another_name_of_the_package() -> None:
+    code = "import lagtop, lagrange_cli; print(lagtop is lagrange_cli, lagtop.Top().r0)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
+    assert done.stdout == "True 50.0\n"
+
+
+@pytest.fixture(scope="module")
+def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the sdist, and the wheel from it."""
+    folder = tmp_path_factory.mktemp("dist")
+    build = [sys.executable, "-m", "build", "--outdir", str(folder), str(ROOT)]
+    subprocess.run(build, capture_output=True, check=True)
+    return folder
+
+
+@pytest.mark.slow
+def test_the_wheel_works_in_an_empty_folder(distributions: Path, tmp_path: Path) -> None:
+    (wheel,) = distributions.glob("*.whl")
+    site, empty = tmp_path / "site", tmp_path / "empty"
+    with ZipFile(wheel) as archive:
+        archive.extractall(site)
+    empty.mkdir()
+    run = partial(
+        subprocess.run,
+        cwd=empty,
+        env={**os.environ, "PYTHONPATH": str(site), "PYTHONSAFEPATH": "1"},
+        capture_output=True,
+        check=True,
+        text=True,
+    )
+    code = "import lagtop; print(lagtop.__file__)"
+    assert Path(run([sys.executable, "-c", code]).stdout.strip()).is_relative_to(site)
+    solve = [sys.executable, "-m", "lagrange_cli", "solve", "--theta0", "30"]
+    assert run([*solve, "--get", "T_nutation"]).stdout == "0.4292501244785477\n"
+    assert run([*solve[:3], "view", "-o", "page.html"]).returncode == 0
+    assert {path.name for path in empty.iterdir()} == {"page.html"}
+
+
+@pytest.mark.slow
+def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
+    (wheel,), (sdist,) = distributions.glob("*.whl"), distributions.glob("*.tar.gz")
+    with ZipFile(wheel) as archive:
+        files = archive.namelist()
+        (metadata,) = (name for name in files if name.endswith("METADATA"))
+        readme = archive.read(metadata).decode()
+    assert {name.split("/")[0] for name in files if ".dist-info" not in name} == {
+        "lagrange_cli",
+        "lagtop.py",
+    }
+    assert {"lagrange_cli/py.typed", "lagrange_cli/CITATION.cff"} <= set(files)
+    assert "One top: `solve`" in readme
+    assert re.findall(r"\]\((?!https?:)[^)]*\)", readme) == []  # an index has no such files
+    with tarfile.open(sdist) as archive:
+        roots = {name.split("/")[1] for name in archive.getnames() if "/" in name}
+    assert roots - {".gitignore", "PKG-INFO", "pyproject.toml"} == {
+        *("README.md", "lagrange_cli", "sample_inputs", "tests"),
+    }
+
+
+def test_the_citation_names_the_version() -> None:
+    citation = (ROOT / "lagrange_cli" / "CITATION.cff").read_text()
+    assert f"\nversion: {lagrange_cli.__version__}\n" in citation
