@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from ..inputs.names import ANGLES
 from ..motion.solve import Motion
-from ..output.findings import Field, Findings, short
+from ..output.progress import Progress, silent
+from ..output.report import Field, Report, short
 from .integrators import STEPS_PER_SECOND
 from .machine import common_conditions
 from .measure import (
@@ -20,7 +21,7 @@ from .measure import (
     reference_period,
     task,
 )
-from .method import OURS, Method, MethodRow, StepsThrough, is_done, is_out, silent_steps
+from .method import OURS, Method, MethodRow, is_done, is_out
 
 SPANS = [10.0**power + 0.3 for power in range(7)]
 """Spans in nutation periods; none ends at a turning point, where approximations do best."""
@@ -52,17 +53,17 @@ def compare_methods(
     methods: dict[str, Method],
     *,
     limit: float,
-    steps: StepsThrough = silent_steps,
-) -> Findings:
+    progress: Progress = silent,
+) -> Report:
     """Return the report on every method at every setting.  Raises LagtopError as `task` does."""
-    work = task(motion, t_max, count, steps=steps)
+    work = task(motion, t_max, count, progress=progress)
     runs = [(name, method, x) for name, method in methods.items() for x in method.settings]
     found: list[MethodRow] = []
-    for name, method, setting in steps(runs, "methods"):
+    for name, method, setting in progress(runs, "methods"):
         if not (found and found[-1].method == name and is_out(found[-1])):  # said once is enough
             found.append(measure(work, name, method, setting))
     rows = with_front(found)
-    return Findings(conditions(work, limit), METHOD_FIELDS, rows, list(conclusions(rows, methods)))
+    return Report(conditions(work, limit), METHOD_FIELDS, rows, list(conclusions(rows, methods)))
 
 
 def conditions(work: Task, limit: float) -> dict[str, str]:
@@ -89,8 +90,8 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
 
 
 def compare_spans(
-    motion: Motion, count: int, methods: dict[str, Method], *, limit: float, steps: StepsThrough
-) -> Findings:
+    motion: Motion, count: int, methods: dict[str, Method], *, limit: float, progress: Progress
+) -> Report:
     """Return the report on each method at its tightest setting over longer and longer spans.
 
     Raises LagtopError as `task` does.
@@ -101,12 +102,12 @@ def compare_spans(
     ]
     runs = [(name, work) for name in methods for work in spans]
     rows: list[MethodRow] = []
-    for name, work in steps(runs, "methods and spans"):
+    for name, work in progress(runs, "methods and spans"):
         rows.append(_measure(work, name, methods[name], rows))
     last = conditions(spans[-1], limit)
     last["times"] = f"{count} over each span"
     last["reference"] += " over the longest span"
-    return Findings(last, [_field(field) for field in METHOD_FIELDS], rows, _conclusions(rows))
+    return Report(last, [_field(field) for field in METHOD_FIELDS], rows, _conclusions(rows))
 
 
 def _field(field: Field) -> Field:

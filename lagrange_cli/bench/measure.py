@@ -17,6 +17,7 @@ from ..errors import LagtopError, UnavailableError
 from ..inputs.names import ANGLES, check_names
 from ..motion.regime import Regime
 from ..motion.solve import Motion
+from ..output.progress import Progress, silent
 from .closed_forms import CLOSED_FORMS
 from .engines.process import FAMILIES, engines
 from .integrators import integrators
@@ -29,8 +30,6 @@ from .method import (
     MethodRow,
     NotApplicableError,
     SampledAngles,
-    StepsThrough,
-    silent_steps,
 )
 from .reference import ExactAngles, Reference, angle_differences, angle_units
 
@@ -107,7 +106,7 @@ def task(
     count: int,
     *,
     judged: int = JUDGED,
-    steps: StepsThrough = silent_steps,
+    progress: Progress = silent,
 ) -> Task:
     """Return `count` times from 0 to t_max (just t_max for one), with exact angles at a part.
 
@@ -119,7 +118,7 @@ def task(
     motion.sampler().check(times)
     index = np.unique(np.linspace(0, count - 1, min(judged, count)).round().astype(np.int64))
     references = [Reference(motion.top, digits) for digits in (DIGITS, FEWER_DIGITS)]
-    pairs = [[r.at(t) for r in references] for t in steps(times[index].tolist(), "reference")]
+    pairs = [[r.at(t) for r in references] for t in progress(times[index].tolist(), "reference")]
     agreement = max(max(angle_differences(one[:3], other)) for one, other in pairs)
     return Task(motion, times, index, [one for one, _ in pairs], agreement)
 

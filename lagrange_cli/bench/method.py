@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any, NamedTuple
@@ -18,15 +18,6 @@ SampledAngles = Sequence[Any]
 
 AngleFunction = Callable[[Array], SampledAngles]
 """Computes the angles at times that run away from 0."""
-
-
-StepsThrough = Callable[[Sequence[Any], str], Iterable[Any]]
-"""Goes through a sequence, and may show how far it is, under a label."""
-
-
-def silent_steps(items: Sequence[Any], _: str) -> Iterable[Any]:
-    """Return the items as they are; nothing is shown."""
-    return items
 
 
 class NotApplicableError(Exception):

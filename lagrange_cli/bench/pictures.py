@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..output.findings import Findings
+from ..output.report import Report
 from ..output.write import write_bytes
 from ..plot.files import About, figure_bytes
 from ..plot.style import LIGHT, head, styled
@@ -46,7 +46,7 @@ SHAPES = "os^Dv<>pP*Xhd"
 """Marks, which are first filled, and then empty."""
 
 
-def draw_work_precision(findings: Findings, path: str) -> None:
+def draw_work_precision(findings: Report, path: str) -> None:
     """Draw error on x and time on y, both as logarithms, a line for each method, and the front."""
     with styled(LIGHT, LETTERS):
         figure, (axes,) = _figure(1)
@@ -63,7 +63,7 @@ def draw_work_precision(findings: Findings, path: str) -> None:
         _save(figure, path, "Error against run time", findings)
 
 
-def draw_long_spans(findings: Findings, path: str) -> None:
+def draw_long_spans(findings: Report, path: str) -> None:
     """Draw error and time against the span."""
     with styled(LIGHT, LETTERS):
         figure, (above, below) = _figure(2)
@@ -77,7 +77,7 @@ def draw_long_spans(findings: Findings, path: str) -> None:
         _save(figure, path, "Error and time against the span", findings)
 
 
-def draw_stability(findings: Findings, path: str) -> None:
+def draw_stability(findings: Report, path: str) -> None:
     """Draw the worst error of each stratum in units, ours and the others', and their failures."""
     with styled(LIGHT, LETTERS):
         figure, (axes,) = _figure(1)
@@ -166,7 +166,7 @@ def _arrows(axes: Axes, points: Sequence[tuple[float, float]], color: str) -> No
         axes.plot(*zip(*points, strict=True), color=color, **arrow)
 
 
-def _save(figure: Figure, path: str, title: str, findings: Findings) -> None:
+def _save(figure: Figure, path: str, title: str, findings: Report) -> None:
     """Write the figure with its legend; the same findings give the same file."""
     head(figure, title)
     for axes in figure.axes[:1]:

@@ -9,7 +9,8 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from ..inputs.names import ANGLES, check_names
-from ..output.findings import Field, Findings, short
+from ..output.progress import Progress
+from ..output.report import Field, Report, short
 from ..sweeps.jobs import in_order
 from .battery import (
     CONTRACT,
@@ -26,7 +27,7 @@ from .closed_forms import CLOSED_FORMS
 from .hard_scenes import STRATA, hard_scene
 from .integrators import TIGHTEST
 from .machine import common_conditions
-from .method import NotApplicableError, StepsThrough
+from .method import NotApplicableError
 
 TIMES = 2
 """Times anywhere per scene; six more stand next to half, quarter and whole periods."""
@@ -89,11 +90,11 @@ def run_battery(
     strata: Sequence[str],
     samples: int,
     seed: int,
-    steps: StepsThrough,
+    progress: Progress,
     jobs: int = 1,
     *,
     certify: bool = False,
-) -> Findings:
+) -> Report:
     """Return the report on so many scenes of each stratum, judged by so many processes.
 
     With `certify` enclosures are the judge, and errors are proved bounds.  Raises UnavailableError
@@ -104,7 +105,7 @@ def run_battery(
     cases: dict[str, list[Case]] = {name: [] for name in strata}
     scenes = [(name, seed, i) for name in strata for i in range(samples)]
     with closing(in_order(proved if certify else judged, scenes, jobs)) as found:
-        for name, _, _ in steps(scenes, "scenes"):
+        for name, _, _ in progress(scenes, "scenes"):
             cases[name].append(next(found))
     stratum_rows = [
         stratum_row(name, of_stratum, certify=certify) for name, of_stratum in cases.items()
@@ -114,7 +115,7 @@ def run_battery(
     fields_shown = STRATUM_FIELDS
     if certify:
         fields_shown = [PROVED_FIELD if x.key == PROVED_FIELD.key else x for x in STRATUM_FIELDS]
-    return Findings(conditions, fields_shown, stratum_rows, _conclusions(stratum_rows))
+    return Report(conditions, fields_shown, stratum_rows, _conclusions(stratum_rows))
 
 
 def judged(scene: tuple[str, int, int]) -> Case:
@@ -164,7 +165,7 @@ def worst_and_failed(errors: Sequence[float | None]) -> tuple[float | None, int 
     return max(done, default=None), len(known) - len(done)
 
 
-def exceeded(findings: Findings) -> list[str]:
+def exceeded(findings: Report) -> list[str]:
     """Return the strata that exceed the contract, each with its worst case."""
     return [f"{row.stratum}: {row.worst_case}" for row in findings.rows if row.verdict != FINE]
 

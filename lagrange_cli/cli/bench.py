@@ -10,11 +10,11 @@ import click
 from ..errors import LagtopError
 from .command import ExamplesFirst, write_report
 from .options import COUNT, FILE, METHOD_NAMES, NUMBER, exclude, output_options
-from .progress import with_steps
+from .progress import with_progress
 from .top_options import scene_options, solved
 
 if TYPE_CHECKING:
-    from ..output.findings import Findings
+    from ..output.report import Report
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
 PERIODS = 20.3
@@ -51,7 +51,12 @@ def _write_methods(formatter: click.HelpFormatter) -> None:
     "--methods", type=METHOD_NAMES, help="These, with commas between.  [default: all but engines]"
 )
 @click.option(
-    "--limit", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
+    "--timeout",
+    "limit",
+    type=NUMBER,
+    default="3",
+    show_default=True,
+    help="Seconds a run may take.",
 )
 @click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
 @click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
@@ -91,10 +96,10 @@ def command(
     chosen = chosen_methods(methods, float(limit))
     motion = solved(scene, rad, False, options)
     check_scene(motion)
-    how: dict[str, Any] = {"limit": float(limit), "steps": with_steps}
+    how: dict[str, Any] = {"limit": float(limit), "progress": with_progress}
     end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
 
-    def find() -> Findings:
+    def find() -> Report:
         if is_long:
             findings = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
         else:
@@ -112,4 +117,4 @@ def _check(t_max: Fraction | None, count: int | None, limit: Fraction) -> None:
     if count is not None and not 1 <= count <= MOST_TIMES:
         raise LagtopError(f"--n must be in [1, {MOST_TIMES}], got {count}")
     if not limit > 0:
-        raise LagtopError(f"--limit must be > 0, got {float(limit)}")
+        raise LagtopError(f"--timeout must be > 0, got {float(limit)}")

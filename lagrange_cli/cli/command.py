@@ -18,8 +18,8 @@ from ..output.terminal import has_colours, one_line, spelt, view_of
 
 if TYPE_CHECKING:
     from ..motion.quantity import Key
-    from ..output.findings import Findings
     from ..output.layouts import Layout, Line
+    from ..output.report import Report
 
 _COLOURS = {"Error": "red", "Warning": "yellow"}
 
@@ -46,7 +46,7 @@ def say(text: str) -> None:
         die_by(CLOSED_PIPE)
 
 
-def write_report(find: Callable[[], Findings], fmt: str, output: str) -> Findings:
+def write_report(find: Callable[[], Report], fmt: str, output: str) -> Report:
     """Make and write it; of CSV, which holds the rows alone, the conditions go to stderr."""
     from ..output.write import write_findings
 

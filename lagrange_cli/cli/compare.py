@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -19,12 +18,8 @@ from .row_options import reading_options
 from .top_options import INPUT, input_options, solved
 
 if TYPE_CHECKING:
-    from ..inputs.seen import Quantities
     from ..judge.compare import Comparison
-    from ..output.findings import Findings
-
-LONG = 1_000_000
-"""Rows of unknown number, whose progress is shown after a second."""
+    from ..output.report import Report
 
 
 def _write_names(formatter: click.HelpFormatter) -> None:
@@ -46,8 +41,8 @@ def _parse_steps(text: str) -> list[float]:
     examples="""
         lagtop compare mujoco.csv --m 1.587 --A 3.9032e-3 --C 1.7458e-3 --s 0.04 --g 9.81
         lagtop compare sensor.txt --scene top.toml --align axis=y,start --max-error 1e-6
-        lagtop compare h1.csv h2.csv h3.csv --steps 1e-3,5e-4,2.5e-4 --plot errors.svg
-        lagtop compare state.npy --columns t,quaternion,_,_,_ --quaternion xyzw --format json
+        lagtop compare h1.csv h2.csv h3.csv --step-sizes 1e-3,5e-4,2.5e-4 --plot errors.svg
+        lagtop compare state.npy --columns t,quaternion,_,_,_ --quaternion-order xyzw --format json
         lagtop table --t-max 5 --columns t,quaternion | lagtop compare -
     """,
 )
@@ -62,7 +57,7 @@ def _parse_steps(text: str) -> list[float]:
 @input_options(INPUT)
 @reading_options(quaternion=None)
 @click.option(
-    "--rates",
+    "--rates-frame",
     type=click.Choice(["body", "space"]),
     default="body",
     show_default=True,
@@ -77,7 +72,7 @@ def _parse_steps(text: str) -> list[float]:
     "row is at the time 0).",
 )
 @click.option(
-    "--steps",
+    "--step-sizes",
     type=Parsed("numbers", _parse_steps),
     help="Steps of the trajectories, with commas between, for the order of convergence.",
 )
@@ -101,11 +96,11 @@ def command(
     scene: str | None,
     rad: bool,
     columns: list[str] | None,
-    quaternion: str | None,
-    euler: str,
-    rates: str,
+    quaternion_order: str | None,
+    euler_sequence: str,
+    rates_frame: str,
     align: list[str] | None,
-    steps: list[float] | None,
+    step_sizes: list[float] | None,
     max_error: Fraction | None,
     exit_zero: bool,
     plot: str | None,
@@ -133,12 +128,12 @@ def command(
     check_plot(plot, output)
     exclude({"--scene -": scene == "-" or None, "the trajectory -": "-" in trajectories or None})
     limit = None if max_error is None else float(max_error)
-    conventions = Conventions(quaternion, euler, rates, rad).checked()
-    request = ComparisonRequest(columns, conventions, alignment(align or []), limit, steps)
+    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, rad).checked()
+    request = ComparisonRequest(columns, conventions, alignment(align or []), limit, step_sizes)
     motion = solved(scene, rad, False, options)
 
-    def find() -> Findings:
-        comparison = compare_files(motion, trajectories, request, _watched)
+    def find() -> Report:
+        comparison = compare_files(motion, trajectories, request, with_progress)
         if plot:
             _draw(comparison, limit, plot)
         return comparison_report(motion, comparison, request)
@@ -151,10 +146,6 @@ def command(
             "trajectories",
             remedy="use --exit-zero to look only",
         )
-
-
-def _watched(blocks: Iterable[Quantities]) -> Iterator[Quantities]:
-    return with_progress(blocks, 0, LONG, size=lambda block: len(block["t"]))
 
 
 def _draw(comparison: Comparison, limit: float | None, path: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -102,17 +101,11 @@ def _found(
 
     scene = scenes[0] if scenes else None
     search, given = search_of(inputs, conditions, scene=scene, radians=radians)
-    found = find_tops(search, count, _watched)
+    found = find_tops(search, count, with_progress)
     say_missing(given)
     say_unused(given.stds)
     complain(f"{len(found.motions)} found; {found.looked}")
     return found.motions, given.system
-
-
-def _watched(blocks: Iterable[Any]) -> Iterator[Any]:
-    listed = list(blocks)
-    total = sum(block.size for block in listed)
-    return with_progress(listed, total, 1_000_000, size=lambda block: block.size, label="tops")
 
 
 def _inverted(

@@ -13,7 +13,7 @@ from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain, fail_for, write_report
 from .options import FILE, NAMES, Parsed, exclude, extension, output_options
-from .progress import with_steps
+from .progress import with_progress
 from .row_options import reading_options
 from .top_options import INPUT, by_key, input_options, say_unused
 
@@ -97,8 +97,8 @@ def command(
     by: str | None,
     together: bool,
     columns: list[str] | None,
-    quaternion: str,
-    euler: str,
+    quaternion_order: str,
+    euler_sequence: str,
     plot: str | None,
     fmt: str,
     output: str,
@@ -126,7 +126,7 @@ def command(
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
     known, system = _known(scene, fix or [], by_key(options, radians=rad))
-    conventions = Conventions(quaternion, euler, "body", rad).checked()
+    conventions = Conventions(quaternion_order, euler_sequence, "body", rad).checked()
     spread = _in_radians(sigma, rad)
     recordings = read_recordings(recording, Reading(columns, conventions, by, spread))
     scene_path = output if extension(output) == "toml" else None
@@ -153,7 +153,7 @@ def _fitted(
     from ..inputs.files import shown_path
 
     found: list[Outcome] = []
-    for group in with_steps(groups, "fits"):
+    for group in with_progress(groups, "fits"):
         found.extend(outcomes(fit_recordings(group, known, shown_path(source)), radians=radians))
     return found
 

@@ -7,7 +7,6 @@ import re
 import sys
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -59,7 +58,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
         lagtop plot angles phase --r0 20 --dark -o page.pdf
         lagtop plot angles --theta0 '30(1)' --r0 '50.0(5)' -o bands.svg
         lagtop plot map --x r0=5:120:80 --y theta0=2:178:60 --key T_nutation -o map.png
-        lagtop plot sphere --view 40,15 -o from-the-side.pdf
+        lagtop plot sphere --camera 40,15 -o from-the-side.pdf
         lagtop plot --r0 30 --animate top.gif --duration 10 --speed 0.1
     """,
 )
@@ -76,13 +75,13 @@ Needs matplotlib: pip install 'lagtop[plot]'.
 )
 @click.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: over theta0]")
 @click.option(
-    "--range",
+    "--colour-limits",
     "limits",
     metavar="LOW:HIGH",
     help="Ends of the colours of `map`.  [default: all but the outermost 1 % of the values]",
 )
 @click.option(
-    "--view",
+    "--camera",
     metavar="AZ,EL",
     help="Azimuth and elevation of the eye.  [default: whence most of the path is seen]",
 )
@@ -119,7 +118,7 @@ def command(
     x: str | None,
     y: str | None,
     limits: str | None,
-    view: str | None,
+    camera: str | None,
     no_numbers: bool,
     dark: bool,
     size: str | None,
@@ -139,7 +138,7 @@ def command(
     scene, chosen = _scene_and_kinds(words)
     written = _format_of(fmt, output)
     inches = _inches(size)
-    camera, ends = _camera(view, rad), _ends(limits)
+    eye, ends = _camera(camera, rad), _ends(limits)
     pacing = {"fps": fps, "duration": duration, "speed": speed}
     for name, value in pacing.items():
         if value is not None and animate is None:
@@ -159,10 +158,10 @@ def command(
         key=key,
         x=parse_input_range("x", x) if x else None,
         y=parse_input_range("y", y) if y else None,
-        camera=camera,
+        camera=eye,
         limits=ends,
         numbers=not no_numbers,
-        progress=partial(with_progress, long=1000, label="tops"),
+        progress=with_progress,
         stds=angle_stds(found, motion),
     )
     page = Page(motion, chosen, request, chosen_look(dark), inches)
@@ -178,8 +177,7 @@ def command(
     if output is not None:
         write_bytes(output, lambda: page_bytes(page, written, page_dpi))
     if animate is not None:
-        frames = partial(with_progress, long=1, label="frames")
-        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, pace, frames))
+        write_bytes(animate, lambda: film_bytes(page, animate, film_dpi, pace, with_progress))
     if show:
         show_page(page)
 
@@ -231,7 +229,7 @@ def _camera(text: str | None, radians: bool) -> tuple[float, float] | None:
     if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
         turn, quarter, name = ("2π", "π/2", "rad") if radians else ("360", "90", "deg")
         raise LagtopError(
-            f"--view must be AZIMUTH,ELEVATION in [-{turn}, {turn}] and [-{quarter}, {quarter}]"
+            f"--camera must be AZIMUTH,ELEVATION in [-{turn}, {turn}] and [-{quarter}, {quarter}]"
             f" {name}, got {text!r}"
         )
     return azimuth, elevation
@@ -246,5 +244,5 @@ def _ends(text: str | None) -> tuple[float, float] | None:
     except (LagtopError, ValueError):
         low = high = 0.0
     if not low < high:
-        raise LagtopError(f"--range must be LOW:HIGH, two numbers with LOW < HIGH, got {text!r}")
+        raise LagtopError(f"--colour-limits must be LOW:HIGH with LOW < HIGH, got {text!r}")
     return low, high

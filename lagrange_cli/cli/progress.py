@@ -10,10 +10,11 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from threading import Timer
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
+from ..output.progress import Part, one
 from ..output.terminal import Screen
 
 if TYPE_CHECKING:
@@ -22,51 +23,30 @@ if TYPE_CHECKING:
 DELAY = 1.0
 """Seconds of work that nobody needs to be told about."""
 
-Item = TypeVar("Item")
-
 
 def with_progress(
-    parts: Iterable[Item],
-    count: int,
-    long: int,
-    size: Callable[[Any], int] = len,
-    label: str = "rows",
-) -> Iterator[Item]:
-    """Yield the parts as they come, and show how many of `count` rows are done.
-
-    `size` gives the rows of a part; a count of 0 stands for an unknown one.  From `long` rows on,
-    progress is shown from the beginning.
-    """
-    return _watched(parts, label, count or None, size, 0.0 if count >= long else DELAY)
-
-
-def with_count(parts: Iterable[Item], label: str) -> Iterator[Item]:
-    """Yield the parts when their number is unknown, and show how many are done."""
-    return _watched(parts, label, None, lambda _: 1, DELAY)
-
-
-def with_steps(items: Sequence[Item], label: str) -> Iterator[Item]:
-    """Yield the items one by one, and show how many are done."""
-    return _watched(items, label, len(items), lambda _: 1, DELAY)
-
-
-def _watched(
-    parts: Iterable[Item], label: str, total: int | None, size: Callable[[Any], int], delay: float
-) -> Iterator[Item]:
+    parts: Iterable[Part],
+    label: str,
+    total: int | None = None,
+    size: Callable[[Part], int] = one,
+) -> Iterator[Part]:
+    """Yield the parts as they come, and show how much is done; see `output.progress.Progress`."""
     if not sys.stderr.isatty():
         yield from parts
         return
-    with _line(label, total, delay) as line:
+    if total is None and isinstance(parts, Sequence):
+        total = sum(map(size, parts))
+    with _line(label, total) as line:
         for part in parts:
             yield part
             line.advance(size(part))
 
 
 @contextmanager
-def _line(label: str, total: int | None, delay: float) -> Iterator[_Line]:
+def _line(label: str, total: int | None) -> Iterator[_Line]:
     """Show a line while the block runs, and take it away even if an interrupted consumer does not
     come back: a command closes its context before its frames are gone."""
-    line = _Line(label, total, delay)
+    line = _Line(label, total)
     if context := click.get_current_context(silent=True):
         context.call_on_close(line.stop)
     try:
@@ -78,10 +58,10 @@ def _line(label: str, total: int | None, delay: float) -> Iterator[_Line]:
 class _Line:
     """The line of one piece of work."""
 
-    def __init__(self, label: str, total: int | None, delay: float) -> None:
+    def __init__(self, label: str, total: int | None) -> None:
         self.label, self.total, self.done = label, total, 0
         self.progress: Progress | None = None
-        self.timer = Timer(delay, self._show)
+        self.timer = Timer(DELAY, self._show)
         self.timer.daemon = True
         self.timer.start()
 

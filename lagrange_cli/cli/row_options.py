@@ -31,8 +31,7 @@ def write_functions(table: TableOfFunctions, digits: int | None, fmt: str, outpu
     from .progress import with_progress
 
     header, blocks = table.rows(digits)
-    long = table.long[digits is not None]
-    write_table(header, with_progress(blocks, table.count, long), fmt, output)
+    write_table(header, with_progress(blocks, "rows", table.count, len), fmt, output)
 
 
 def jobs_option(command: F) -> F:
@@ -46,7 +45,7 @@ def jobs_option(command: F) -> F:
 
 
 def reading_options(quaternion: str | None) -> Callable[[F], F]:
-    """Add --columns, --quaternion and --euler, with the order of a quaternion unless it is told.
+    """Add the options for the columns of a trajectory.
 
     None is the order that the first row proves.
     """
@@ -54,7 +53,7 @@ def reading_options(quaternion: str | None) -> Callable[[F], F]:
 
     def decorate(command: F) -> F:
         command = click.option(
-            "--euler",
+            "--euler-sequence",
             type=Parsed("sequence", late("inputs.seen", "euler_sequence")),
             default="xyz",
             show_default=True,
@@ -63,7 +62,7 @@ def reading_options(quaternion: str | None) -> Callable[[F], F]:
             "body.",
         )(command)
         command = click.option(
-            "--quaternion",
+            "--quaternion-order",
             type=click.Choice(["wxyz", "xyzw"]),
             default=quaternion,
             help=f"Order of a quaternion whose names do not tell.  [default: {order}]",

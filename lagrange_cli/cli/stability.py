@@ -9,11 +9,11 @@ import click
 from ..errors import LagtopError
 from .command import ExamplesFirst, fail_for, write_report
 from .options import COUNT, FILE, STRATUM_NAMES, exclude, output_options
-from .progress import with_steps
+from .progress import with_progress
 from .row_options import jobs_option
 
 if TYPE_CHECKING:
-    from ..output.findings import Findings
+    from ..output.report import Report
 
 SAMPLES, THOROUGH, MOST_SCENES = 4, 200, 100_000
 SEED = 1952
@@ -78,9 +78,9 @@ def command(
     check_plot(plot, output)
     chosen, count = stability.chosen_strata(strata), samples or (THOROUGH if thorough else SAMPLES)
 
-    def find() -> Findings:
+    def find() -> Report:
         findings = stability.run_battery(
-            chosen, count, seed, with_steps, jobs or 1, certify=certify
+            chosen, count, seed, with_progress, jobs or 1, certify=certify
         )
         if plot:
             draw_stability(findings, plot)

@@ -13,7 +13,7 @@ from ..errors import LagtopError
 from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
 from .options import FILE, KEY_NAMES, Parsed, exclude, output_options
-from .progress import with_count, with_progress
+from .progress import with_progress
 from .row_options import jobs_option
 from .top_options import by_key, input_options, say_missing, say_no_tops, value_type
 
@@ -140,9 +140,9 @@ def command(
         passing = tally.until_error(parts, ended=to_stdout) if fail_fast else tally.passing(parts)
         if todo.size:
             share = todo.size // (shard or (1, 1))[1]
-            passing = with_progress(passing, share, 1_000_000, tally.progress)
+            passing = with_progress(passing, "rows", share, tally.progress)
         else:
-            passing = with_count(passing, "parts")
+            passing = with_progress(passing, "parts")
         if parts_folder:
             parts_folder.write(passing)
         else:

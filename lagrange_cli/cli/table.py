@@ -22,7 +22,7 @@ from .options import (
     exclude,
     output_options,
 )
-from .progress import with_count, with_progress
+from .progress import with_progress
 from .row_options import jobs_option
 from .top_options import (
     TIME,
@@ -44,9 +44,6 @@ if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.value import Value
     from ..motion.solve import Motion
-
-LONG, LONG_IN_DIGITS = 3_000_000, 1000
-"""Rows that are known to take longer than a moment."""
 
 
 @click.command(
@@ -245,7 +242,9 @@ def _write_one(motion: Motion, wish: Wish, found: Given, fmt: str, output: str) 
             units = [found.system.named(unit) for unit in units]
         named = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
         header = [*named, *header[len(named) :]]
-    write_table(header, with_progress(parts, times.count, LONG), fmt, output, times.count)
+    write_table(
+        header, with_progress(parts, "rows", times.count or None, len), fmt, output, times.count
+    )
 
 
 def _write_proved(
@@ -256,7 +255,9 @@ def _write_proved(
 
     times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
     header, parts = ProvedTable(motion, wish.columns, digits, **shown).rows(times, radii=radii)
-    write_table(header, with_progress(parts, times.count, LONG_IN_DIGITS), fmt, output, times.count)
+    write_table(
+        header, with_progress(parts, "rows", times.count or None, len), fmt, output, times.count
+    )
 
 
 def _write_many(
@@ -289,7 +290,7 @@ def _write_many(
     say_missing(given)
     tally = Tally()
     texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))
-    write_text_blocks(fmt, tables.header, with_count(texts, "blocks"), output)
+    write_text_blocks(fmt, tables.header, with_progress(texts, "blocks"), output)
     tally.check()
     if not tally.count:
         say_no_tops(tops)

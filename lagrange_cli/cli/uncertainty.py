@@ -13,7 +13,7 @@ from ..inputs.names import check_names
 from ..motion.quantity import unit_name
 from ..motion.record import NUMBER_KEYS
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
-from ..output.findings import Field, Findings, with_unit
+from ..output.report import Field, Report, with_unit
 from ..output.uncertain_text import uncertain_text
 from .command import complain, in_units, top_layout, units_of
 from .options import exclude
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.solve import Motion
     from ..sweeps.monte_carlo import Propagated, Spread
-
-_LONG = 300_000
-"""Samples that are known to take longer than a moment."""
 
 
 def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> None:
@@ -44,7 +41,7 @@ def asked_report(
     samples: int | None,
     seed: int | None,
     radians: bool,
-) -> Callable[[], Findings]:
+) -> Callable[[], Report]:
     """Return what makes the budget of a key, or else the report on random samples."""
     if key is None:
         return sampled(found, motion, samples=samples or 0, seed=seed, radians=radians)
@@ -102,7 +99,7 @@ class _BudgetLine(NamedTuple):
         return self.std
 
 
-def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
+def budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
     """Return the budget of a key: what each uncertain input contributes, and the key itself.
 
     Raises AbsentError where the motion has no such key, or it has no derivative.
@@ -132,7 +129,7 @@ def budget(found: Given, motion: Motion, key: str, radians: bool) -> Findings:
     lines.append(_BudgetLine(key, value, whole))
     shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
     conclusions = [f"{shown}, to first order; inputs are taken as independent."]
-    return Findings({"key": key}, _budget_fields(units, key), lines, conclusions, units)
+    return Report({"key": key}, _budget_fields(units, key), lines, conclusions, units)
 
 
 def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
@@ -177,7 +174,7 @@ def _budget_fields(units: Mapping[str, str], key: str) -> list[Field]:
 
 def sampled(
     found: Given, motion: Motion, *, samples: int, seed: int | None, radians: bool
-) -> Callable[[], Findings]:
+) -> Callable[[], Report]:
     """Return what makes the report on random samples of the inputs."""
     from ..sweeps import monte_carlo
 
@@ -189,10 +186,7 @@ def sampled(
         if record[name] is not None and (std := uncertain.std(name)) != 0:
             numbers[key] = record[name], std
 
-    def steps(blocks: Iterable[int], count: int) -> Iterable[int]:
-        return with_progress(blocks, count, _LONG, lambda _: monte_carlo.BLOCK, "samples")
-
-    def find() -> Findings:
+    def find() -> Report:
         outcome = monte_carlo.propagate(
             _all_inputs(found, motion),
             found.stds,
@@ -200,7 +194,7 @@ def sampled(
             samples=samples,
             seed=seed,
             radians=radians,
-            steps=steps,
+            progress=with_progress,
         )
         units = _units(found, [spread.key for spread in outcome.spreads])
         return _report(outcome, samples, seed, units)
@@ -220,7 +214,7 @@ def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
 
 def _report(
     outcome: Propagated, samples: int, seed: int | None, units: Mapping[str, str]
-) -> Findings:
+) -> Report:
     from ..sweeps.monte_carlo import FAILS, OPEN
 
     conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})
@@ -235,7 +229,7 @@ def _report(
     numbers = [_Measured(key, heading) for key, heading in _SAMPLED.items()]
     holds = Field("first_order", "first order", is_text=True)
     fields = [_names("key", units), *numbers, holds]
-    return Findings(conditions, fields, outcome.spreads, conclusions, units)
+    return Report(conditions, fields, outcome.spreads, conclusions, units)
 
 
 _SAMPLED = {

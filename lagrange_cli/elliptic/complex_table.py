@@ -54,8 +54,6 @@ class ComplexTable(TableOfFunctions):
     arguments or a parameter beyond 2^50 periods.
     """
 
-    long = (100_000, 300)
-
     def __init__(self, arguments: Arguments, request: FunctionRequest) -> None:
         self.arguments, self.request, self.count = arguments, request, arguments.real.count
 

@@ -54,8 +54,6 @@ class SeriesTable(TableOfFunctions):
     (3.1.5) for am, sn, cn.
     """
 
-    long = (1000, 1000)
-
     def __init__(
         self,
         modulus_input: ModulusInput,

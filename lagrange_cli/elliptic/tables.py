@@ -41,8 +41,6 @@ class TableOfFunctions:
     count: int
     functions: float = math.inf
     """Functions in a row, if short tables are computed as enclosures; else infinite."""
-    long: tuple[int, int] = (3_000_000, 1000)
-    """Numbers of rows, in doubles and in digits, from which on the work takes seconds."""
 
     def rows(self, digits: int | None = None) -> Rows:
         """Return the header, and blocks of rows in doubles or with N significant digits.

@@ -17,9 +17,10 @@ from ..inputs.names import check_names
 from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
 from ..motion.solve import Motion, record_in_range, solve
+from ..output.progress import Progress, silent
 from .newton import solutions
 from .roots import roots
-from .search import Scan, Search, Watch, scan_of, search_of
+from .search import Scan, Search, scan_of, search_of
 
 _SWEPT = 2.0**-48
 """The relative error of a number of a sweep is less."""
@@ -65,12 +66,12 @@ def _read(name: str, value: Any) -> Any:
         raise LagtopError(f"{name} {error}", name) from None
 
 
-def find_tops(search: Search, count: int | None, watch: Watch = iter) -> FoundTops:
+def find_tops(search: Search, count: int | None, progress: Progress = silent) -> FoundTops:
     """Return the tops that keep the conditions.
 
     Raises AbsentError, which says how near the scan came, where there is none.
     """
-    grid = scan_of(search, count, watch)
+    grid = scan_of(search, count, progress)
     if len(search.spans) == 1:
         points = [[x] for x in _roots(search, grid)]
     else:

@@ -11,7 +11,7 @@ from ..arithmetic.angles import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
 from ..motion.record import KEYS
-from ..output.findings import Field, Findings, with_unit
+from ..output.report import Field, Report, with_unit
 from ..output.terminal import one_line
 from ..output.uncertain_text import uncertain_text
 from .record import Outcome, angles_at, chi2_bounds
@@ -52,7 +52,7 @@ def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     return {key: unit for key, unit in units.items() if unit}
 
 
-def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) -> Findings:
+def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) -> Report:
     """Return the report on the outcomes of the recordings of a file.
 
     Where inputs have units those of a system are named.
@@ -60,7 +60,7 @@ def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) 
     lines = [line for outcome in outcomes for line in _lines(outcome, system)]
     fields = _FIELDS if outcomes[0].recording.name else _FIELDS[1:]
     conclusions = [text for outcome in outcomes for text in _conclusions(outcome)]
-    return Findings(_conditions(outcomes, source, system), fields, lines, conclusions)
+    return Report(_conditions(outcomes, source, system), fields, lines, conclusions)
 
 
 def _lines(outcome: Outcome, system: System | None) -> Iterator[ReportRow]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..inputs.input_keys import overridden
 from ..inputs.ranges import Product, Span
 from ..inputs.top import Top
 from ..motion.solve import solve
+from ..output.progress import Progress
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
 from .conditions import Conditions, read_conditions
@@ -23,7 +24,6 @@ COUNTS = {1: 1000, 2: 60, 3: 20}
 """Values of each unknown in a scan, by the number of unknowns."""
 MOST_TOPS = 10_000_000
 
-Watch = Callable[[Iterable[Any]], Iterable[Any]]
 """Passes blocks of tops on, and may show how many have passed."""
 
 
@@ -121,7 +121,7 @@ class Scan(NamedTuple):
     """The numbers that have a target value there, in the same shape; NaN for none."""
 
 
-def scan_of(search: Search, count: int | None, watch: Watch) -> Scan:
+def scan_of(search: Search, count: int | None, progress: Progress) -> Scan:
     """Compute the tops on a grid of so many values of each unknown.
 
     Raises LagtopError for a count that is too small, or too large together.
@@ -134,7 +134,7 @@ def scan_of(search: Search, count: int | None, watch: Watch) -> Scan:
         )
     grid = Product({name: span.points(each) for name, span in search.spans.items()})
     values, numbers = [], []
-    for block in watch([*grid.blocks(BLOCK_ROWS)]):
+    for block in progress([*grid.blocks(BLOCK_ROWS)], "tops", size=lambda block: block.size):
         at = np.stack(list(block.values().values())[::-1], axis=-1)
         values.append(at)
         numbers.append(search.swept(at))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,8 +18,9 @@ from ..inputs.trajectory import Trajectory, open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.over_time.times import times_of
 from ..motion.solve import Motion, solve
+from ..output.progress import Progress, silent
 from .alignment import Alignment, alignment
-from .convergence import Convergence, check_steps, convergence
+from .convergence import Convergence, check_step_sizes, convergence
 from .judgement import LIMIT, JudgedRun, Judgement, ReadTrajectory, judge
 from .mistakes import explanation
 
@@ -41,7 +42,6 @@ VERDICTS = {
     LOST: "a row is not finite",
 }
 """The words with their meanings; of several that apply it is the last one."""
-_Watch = Callable[[Iterable[Quantities]], Iterable[Quantities]]
 """Passes blocks on, and may show how many rows have passed."""
 _OF_THE_FILE = {"t", "angle_rates"}
 """Arguments that a file gives, so that an error about them is one of its data."""
@@ -138,7 +138,7 @@ def with_verdicts(
     motion: Motion,
     cases: Sequence[tuple[JudgedRun, ReadTrajectory]],
     limit: float | None,
-    steps: Sequence[float] | None = None,
+    step_sizes: Sequence[float] | None = None,
 ) -> tuple[list[Judgement], Convergence | None]:
     """Return the judgements of trajectories with their verdicts, and how they converge.
 
@@ -148,9 +148,9 @@ def with_verdicts(
     limit = LIMIT if limit is None else limit
     judgements = [run.judgement for run, _ in cases]
     found = None
-    if steps is not None:
-        check_steps(steps, len(cases))
-        judgements = [replace(x, step=step) for x, step in zip(judgements, steps, strict=True)]
+    if step_sizes is not None:
+        check_step_sizes(step_sizes, len(cases))
+        judgements = [replace(x, step=step) for x, step in zip(judgements, step_sizes, strict=True)]
         found = convergence(judgements)
         judgements = [replace(x, order=found.order if found else None) for x in judgements]
     judgements = [
@@ -191,7 +191,7 @@ class ComparisonRequest(NamedTuple):
     conventions: Conventions = Conventions()
     align: Alignment = Alignment()
     limit: float | None = None
-    steps: Sequence[float] | None = None
+    step_sizes: Sequence[float] | None = None
 
 
 class Comparison(NamedTuple):
@@ -205,7 +205,7 @@ def compare_files(
     motion: Motion,
     paths: Sequence[str],
     request: ComparisonRequest,
-    watch: _Watch = iter,
+    progress: Progress = silent,
 ) -> Comparison:
     """Return the judgements of the trajectories in files, and how they converge.
 
@@ -213,10 +213,10 @@ def compare_files(
     """
     if paths.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")
-    if request.steps is not None:
-        check_steps(request.steps, len(paths))
-    cases = [_judged(motion, path, request, watch) for path in paths]
-    judgements, found = with_verdicts(motion, cases, request.limit, request.steps)
+    if request.step_sizes is not None:
+        check_step_sizes(request.step_sizes, len(paths))
+    cases = [_judged(motion, path, request, progress) for path in paths]
+    judgements, found = with_verdicts(motion, cases, request.limit, request.step_sizes)
     return Comparison(judgements, found)
 
 
@@ -224,11 +224,12 @@ def _judged(
     motion: Motion,
     path: str,
     request: ComparisonRequest,
-    watch: _Watch,
+    progress: Progress,
 ) -> tuple[JudgedRun, ReadTrajectory]:
     with open_trajectory(path, request.columns) as trajectory:
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
-        given = ReadTrajectory(watch(_blocks(trajectory)), said, request.conventions, request.align)
+        blocks = progress(_blocks(trajectory), "rows", size=lambda block: len(block["t"]))
+        given = ReadTrajectory(blocks, said, request.conventions, request.align)
         try:
             run = judge(motion, given)
         except DataError:

@@ -33,15 +33,16 @@ class Convergence(NamedTuple):
     """Greatest error of each trajectory up to then."""
 
 
-def check_steps(steps: Sequence[float], count: int) -> None:
+def check_step_sizes(step_sizes: Sequence[float], count: int) -> None:
     """Raise LagtopError for steps that are not positive or not as many as trajectories."""
-    if len(steps) != count:
+    if len(step_sizes) != count:
         raise LagtopError(
-            f"steps must be as many as trajectories, {count}, got {len(steps)}", "steps"
+            f"step_sizes must be as many as trajectories, {count}, got {len(step_sizes)}",
+            "step_sizes",
         )
-    for step in steps:
+    for step in step_sizes:
         if not step > 0:
-            raise LagtopError(f"steps must be > 0, got {step}", "steps")
+            raise LagtopError(f"step_sizes must be > 0, got {step}", "step_sizes")
 
 
 def convergence(judgements: Sequence[Judgement]) -> Convergence | None:

@@ -45,7 +45,7 @@ class Judgement:
     """The judgement of one trajectory; angles are in radians, and an unknown number is None."""
 
     file: str | None = _field("the file, `-` for standard input")
-    step: float | None = _field("its step, by --steps")
+    step: float | None = _field("its step, by --step-sizes")
     verdict: str = _field("the verdict, in a word", "fine")
     rows: int = _field("the number of rows", 0)
     judged: str = _field("what the error is of: attitude, axis, angles or rates", "")
@@ -87,7 +87,7 @@ class Judgement:
     quaternion_order: str | None = _field(
         "order of the quaternion, where the first row has proved it"
     )
-    order: float | None = _field("order of convergence of all files, by --steps")
+    order: float | None = _field("order of convergence of all files, by --step-sizes")
     explained_by: str | None = _field("the slip that explains the error best")
     explained_error: float | None = _field("greatest error that is left if that slip is undone")
 
@@ -264,5 +264,5 @@ def _proved_order(motion: Motion, given: ReadTrajectory, first: Mapping[str, Arr
     shown = ", ".join(f"{errors[order]:.1e} rad off by {order}" for order in ORDERS)
     raise LagtopError(
         f"the first row does not prove the order of the quaternion ({shown}): give the order "
-        "(--quaternion wxyz or xyzw)"
+        "(--quaternion-order wxyz or xyzw)"
     )

@@ -223,7 +223,9 @@ MISTAKES = [
         _with_quaternion(lambda q: np.roll(q, -1, 1)),
     ),
     Mistake("phi and psi have each other's names", None, _exchanged),
-    Mistake("the angular velocity is in the other frame (--rates)", None, _in_the_other_frame),
+    Mistake(
+        "the angular velocity is in the other frame (--rates-frame)", None, _in_the_other_frame
+    ),
     Mistake("angles in degrees taken as radians, or the reverse", other_unit=True),
     Mistake("spin and precession do not start at 0 (--align start)", alignment=_framed()),
     *(

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..inputs.names import ANGLES
 from ..motion.solve import Motion
-from ..output.findings import Field, Findings, short
+from ..output.report import Field, Report, short
 from ..output.terminal import one_line
 from .compare import ANOTHER, DRIFTS, FINE, LOST, OFF, Comparison, ComparisonRequest
 from .convergence import LEAST_ORDER
@@ -45,21 +45,19 @@ _FIELDS = [
 ]
 
 
-def comparison_report(
-    motion: Motion, comparison: Comparison, request: ComparisonRequest
-) -> Findings:
+def comparison_report(motion: Motion, comparison: Comparison, request: ComparisonRequest) -> Report:
     """Return the report on trajectories."""
     shown = {
         key for key in _SHOWN if any(getattr(x, key) is not None for x in comparison.judgements)
     }
     fields = [field if field.key in shown else field._replace(heading="") for field in _FIELDS]
     conclusions = list(_conclusions(comparison))
-    return Findings(
+    return Report(
         _conditions(motion, comparison, request), fields, comparison.judgements, conclusions
     )
 
 
-def failures(findings: Findings) -> list[str]:
+def failures(findings: Report) -> list[str]:
     """Return the trajectories that are not fine, and why."""
     return [
         f"{_name(x)}: {_sentence(x).removesuffix('.')}" for x in findings.rows if x.verdict != FINE

@@ -18,8 +18,8 @@ from .terminal import View
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .findings import Findings
     from .layouts import Layout
+    from .report import Report
     from .row_texts import Columns
 
 Texts = Sequence[Sequence[str]]
@@ -49,7 +49,7 @@ class Format:
         """Return one record; `layout` gives its groups to the format that needs them."""
         raise NotImplementedError
 
-    def findings(self, findings: Findings, view: View) -> bytes:
+    def findings(self, findings: Report, view: View) -> bytes:
         """Return what a report found."""
         raise NotImplementedError
 
@@ -112,7 +112,7 @@ class Csv(Format):
         cells = ",".join(map(value_text, record.values()))
         return f"{','.join(record)}\n{cells}\n".encode()
 
-    def findings(self, findings: Findings, view: View) -> bytes:
+    def findings(self, findings: Report, view: View) -> bytes:
         """Return the rows alone, with a header."""
         header = [field.key for field in findings.fields]
         lines = [header, *(row.values() for row in findings.values())]
@@ -159,7 +159,7 @@ class Json(Format):
         """Return one object on one line."""
         return f"{_json_value(record)}\n".encode()
 
-    def findings(self, findings: Findings, view: View) -> bytes:
+    def findings(self, findings: Report, view: View) -> bytes:
         """Return one object."""
         return findings.as_json()
 
@@ -222,7 +222,7 @@ class DrawnTable(Format):
 
         return record_table(record, layout(), view)
 
-    def findings(self, findings: Findings, view: View) -> bytes:
+    def findings(self, findings: Report, view: View) -> bytes:
         """Return conditions, rows and conclusions."""
         from .rich_tables import findings_table
 

@@ -22,7 +22,7 @@ from .layouts import Layout, Line
 from .terminal import spelt
 
 if TYPE_CHECKING:
-    from .findings import Findings
+    from .report import Report
     from .terminal import View
 
 _GAP = 3
@@ -130,7 +130,7 @@ def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) 
     return _encoded(_folded(columns[:1], columns[1:], view), view)
 
 
-def findings_table(findings: Findings, view: View) -> bytes:
+def findings_table(findings: Report, view: View) -> bytes:
     """Return the conditions as lines, the rows as a table of short numbers, and the conclusions."""
     shown = [field for field in findings.fields if field.heading]
     columns = [

@@ -15,8 +15,8 @@ from .terminal import view_of
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-    from .findings import Findings
     from .layouts import Layout
+    from .report import Report
     from .row_texts import Columns
 
 MAX_TABLE_ROWS = 10_000
@@ -75,7 +75,7 @@ def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes
     return FORMAT_BY_NAME[fmt].part(names, number, text)
 
 
-def write_findings(find: Callable[[], Findings], fmt: str, path: str) -> Findings:
+def write_findings(find: Callable[[], Report], fmt: str, path: str) -> Report:
     """Write what a report finds, and return it.
 
     The destination is opened before the report is made, which takes long.

@@ -20,13 +20,13 @@ from PIL import Image
 
 from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
+from ..output.progress import Progress, silent
 from .camera import camera_at, runs, side_camera
 from .cone import cone_at
 from .curves import MOST_PERIODS, span, turn_span
 from .globe import Limits, draw_globe
 from .motion_facts import tilt_period
 from .page import Page, check_pixels
-from .request import Progress, no_progress
 from .sphere import axis_path
 from .style import points, scale, styled
 
@@ -144,7 +144,7 @@ def check_film(page: Page, name: str, dpi: float) -> None:
 
 
 def film_bytes(
-    page: Page, name: str, dpi: float, pace: Pace | None, progress: Progress = no_progress
+    page: Page, name: str, dpi: float, pace: Pace | None, progress: Progress = silent
 ) -> bytes:
     """Return the film as a GIF or an MP4, as `name` ends.  Raises LagtopError as `check_film`."""
     check_film(page, name, dpi)
@@ -158,10 +158,9 @@ def film_bytes(
             if isinstance(writer, SmallGifWriter):
                 film.show(pace.frames // 2)
                 writer.colours = film.figure.frame(dpi).quantize(COLOURS)
-            for frames in progress((range(i, i + 1) for i in range(pace.frames)), pace.frames):
-                for i in frames:
-                    film.show(i)
-                    writer.grab_frame()
+            for i in progress(range(pace.frames), "frames"):
+                film.show(i)
+                writer.grab_frame()
         return path.read_bytes()
 
 

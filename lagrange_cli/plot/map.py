@@ -20,9 +20,10 @@ from ..inputs.top import Top
 from ..motion.quantity import Key, unit_name
 from ..motion.record import KEYS, NUMBER_KEYS
 from ..motion.solve import Motion
+from ..output.progress import Progress, silent
 from ..sweeps.records import sweep
 from .kinds import Drawing
-from .request import InputRange, PlotRequest, Progress, no_progress
+from .request import InputRange, PlotRequest
 from .style import Look, mark_start, points, scale
 
 MOST_CELLS = 1_000_000
@@ -59,7 +60,7 @@ def key_map(
     key: str,
     x: InputRange,
     y: InputRange,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
     *,
     radians: bool = False,
 ) -> KeyMap:
@@ -81,7 +82,7 @@ def key_map(
         return motion.top.inputs(radians=radians) | {x_input: x_values, y_input: y_values}
 
     rows = (_values(over(x.values, value), key, radians) for value in y.values.tolist())
-    values = np.stack(list(progress(rows, cells)))
+    values = np.stack(list(progress(rows, "tops", cells, np.size)))
     return KeyMap(key, x, y, values, _sleeping(over(*np.meshgrid(x.values, y.values)), values))
 
 

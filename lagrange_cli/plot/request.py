@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.angles import per_radian
 from ..arithmetic.points import LogPoints
 from ..errors import LagtopError
 from ..inputs.input_keys import NINE, Input
 from ..inputs.ranges import parse_range
+from ..output.progress import Progress, silent
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -18,25 +18,11 @@ if TYPE_CHECKING:
     from ..motion.quantity import Key
     from ..motion.sensitivity.angle_uncertainty import AngleStds
 
-Piece = TypeVar("Piece")
-
 MAP_KEY = "mean_precession_rate"
 """The key that a map shows where none is asked for."""
 
 MOST_VALUES = 2000
 """Most values of an input along one axis of a map."""
-
-
-class Progress(Protocol):
-    """A function that hands on the parts of some long work and may show how far it is."""
-
-    def __call__(self, parts: Iterable[Piece], count: int, /) -> Iterable[Piece]:
-        """Yield the parts as they are computed; `count` is the size of the whole work."""
-
-
-def no_progress(parts: Iterable[Piece], count: int, /) -> Iterable[Piece]:
-    """Return the parts as they are and show nothing."""
-    return parts
 
 
 class InputRange(NamedTuple):
@@ -100,7 +86,7 @@ class PlotRequest(NamedTuple):
     """Ends of the colours of a map; by default all but the outermost values are within."""
     numbers: bool = True
     """Whether the numbers of the scene stand beside several pictures."""
-    progress: Progress = no_progress
+    progress: Progress = silent
     """What may show the progress of a map."""
     stds: AngleStds | None = None
     """Uncertainties of the angles, drawn as bands."""
@@ -144,8 +130,9 @@ class PlotRequest(NamedTuple):
             "--key": self.key if self.key != MAP_KEY else None,
             "--x": self.x and self.x.text(),
             "--y": self.y and self.y.text(),
-            "--view": self.camera and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
-            "--range": self.limits and ":".join(map(repr, self.limits)),
+            "--camera": self.camera
+            and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
+            "--colour-limits": self.limits and ":".join(map(repr, self.limits)),
         }
         flags = ["--rad"] * self.radians + ["--no-numbers"] * (not self.numbers)
         return [f"{name} {text}" for name, text in given.items() if text] + flags

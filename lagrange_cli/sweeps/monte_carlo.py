@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..motion.quantity import unit_name
+from ..output.progress import Progress, silent
 from .records import sweep
 
 QUANTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
@@ -31,7 +32,6 @@ _MISSING = 1e-3
 """Share of samples without a key, from which on its distribution is not that of one motion."""
 _HALF_TURN, _TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}, 2.0
 
-Steps = Callable[[Iterable[int], int], Iterable[int]]
 """Hands on the numbers of the blocks, of so many samples in all, and may show how far it is."""
 
 
@@ -76,7 +76,7 @@ def propagate(
     samples: int,
     seed: int | None = None,
     radians: bool = False,
-    steps: Steps = lambda blocks, _: blocks,
+    progress: Progress = silent,
 ) -> Propagated:
     """Return the distributions of keys of the record, and the regimes of the samples.
 
@@ -92,7 +92,7 @@ def propagate(
     keys = [unit_name(key, radians=radians) for key in numbers]
     columns: dict[str, list[Array]] = {key: [] for key in keys}
     regimes: Counter[str] = Counter()
-    for first in steps(range(0, samples, BLOCK), samples):
+    for first in progress(range(0, samples, BLOCK), "samples", samples, lambda _: BLOCK):
         count = min(BLOCK, samples - first)
         drawn = {name: _drawn(rng, name, inputs[name], std, count) for name, std in stds.items()}
         wanted = [*keys, "regime", "remark", "error"]

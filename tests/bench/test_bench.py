@@ -32,7 +32,7 @@ from lagrange_cli.bench.integrators import integrators
 from lagrange_cli.bench.measure import Task, all_methods, measure, reference_period, task
 from lagrange_cli.bench.method import MethodRow
 from lagrange_cli.bench.pictures import draw_long_spans, draw_work_precision
-from lagrange_cli.output.findings import Findings
+from lagrange_cli.output.report import Report
 
 LOOPING = Top(psidot0=-4)
 METHODS = CLOSED_FORMS | integrators(10)
@@ -232,7 +232,7 @@ BAD = {
     "--n 0": "--n must be in [1, 10000000], got 0",
     "--n 2e7": "--n must be in [1, 10000000], got 20000000",
     "--t-max 0": "--t-max must be other than 0",
-    "--limit 0": "--limit must be > 0, got 0.0",
+    "--timeout 0": "--timeout must be > 0, got 0.0",
     "--plot x.pdf": "--plot must end in .svg or .png, got 'x.pdf'",
     "--long --t-max 1": "--long and --t-max exclude each other",
     "--t-max 1e30": "t must be finite and within 2^50 periods",
@@ -265,8 +265,8 @@ def test_what_cannot_be_written_is_known_before_the_work(lagtop: Lagtop, tmp_pat
 @pytest.mark.slow
 def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
     rows = with_front([row("lagtop", 1e-15, 2.0), row("x-euler", 1e-3, 9.0), row("y", None, None)])
-    found = Findings({"times": "5", "scenes": "3"}, METHOD_FIELDS, rows, [])
-    draws: dict[str, Callable[[Findings, str], None]] = {
+    found = Report({"times": "5", "scenes": "3"}, METHOD_FIELDS, rows, [])
+    draws: dict[str, Callable[[Report, str], None]] = {
         "work": draw_work_precision,
         "drift": draw_long_spans,
     }
@@ -288,7 +288,7 @@ def test_long_view_stops_a_method_that_has_failed(
 ) -> None:
     monkeypatch.setattr(compare_methods, "SPANS", [1.3, 2e4 + 0.3, 1e5 + 0.3])
     names = "lagtop,mean-rates,DOP853-quaternion"
-    line = ["--long", "--n", 50, "--limit", 2]
+    line = ["--long", "--n", 50, "--timeout", 2]
     found = json.loads(lagtop("bench", *line, "--methods", names, "--format", "json").stdout)
     by_method: dict[str, list[Any]] = {name: [] for name in names.split(",")}
     for each in found["rows"]:

@@ -14,7 +14,7 @@ from lagrange_cli.bench.compare_methods import METHOD_FIELDS, with_front
 from lagrange_cli.bench.measure import all_methods
 from lagrange_cli.bench.method import MethodRow
 from lagrange_cli.bench.pictures import HUES, draw_stability, draw_work_precision, method_looks
-from lagrange_cli.output.findings import Findings
+from lagrange_cli.output.report import Report
 from lagrange_cli.plot.style import LIGHT
 
 
@@ -27,7 +27,7 @@ def test_points_beyond_the_edge_have_their_errors_beside_it(tmp_path: Path) -> N
         for i, error in enumerate(found)
     ]
     path = tmp_path / "x.svg"
-    draw_work_precision(Findings({"times": "9"}, METHOD_FIELDS, with_front(rows), []), str(path))
+    draw_work_precision(Report({"times": "9"}, METHOD_FIELDS, with_front(rows), []), str(path))
     text = path.read_text()
     assert text.count("beyond this edge") == 1
     assert ">← 5e-48, 5e-18: beyond this edge<" in text
@@ -50,7 +50,7 @@ def test_failures_are_written_beside_their_stratum(tmp_path: Path) -> None:
         for name, scipy, failed in (("generic", 1e9, 0), ("top pass", None, 3))
     ]
     path = tmp_path / "x.svg"
-    draw_stability(Findings({"scenes": "4 per stratum; odd"}, [], rows, []), str(path))
+    draw_stability(Report({"scenes": "4 per stratum; odd"}, [], rows, []), str(path))
     text = path.read_text()
     assert text.count("× 3/4") == 1
     assert "× 0/4" not in text

@@ -21,12 +21,12 @@ from lagrange_cli import Top, solve
 from lagrange_cli.bench import battery, stability
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.hard_scenes import STRATA, HardScene, hard_scene
-from lagrange_cli.bench.method import silent_steps
 from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.solve import Motion
-from lagrange_cli.output.findings import Findings
+from lagrange_cli.output.progress import silent
+from lagrange_cli.output.report import Report
 
 
 @pytest.mark.slow
@@ -86,8 +86,8 @@ def test_report_is_repeatable_in_every_format(
     lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The battery runs twice with one seed; the formats are written from the second run."""
-    first = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent_steps)
-    second = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent_steps)
+    first = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent)
+    second = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent)
     assert first.rows == second.rows
     monkeypatch.setattr(stability, "run_battery", lambda *_, **__: second)
     picture = tmp_path / "error.svg"
@@ -110,9 +110,9 @@ def test_the_seed_and_the_samples_reach_the_battery(
 ) -> None:
     asked: list[Any] = []
 
-    def no_battery(*how: Any, certify: bool) -> Findings:
+    def no_battery(*how: Any, certify: bool) -> Report:
         asked.append((*how[:3], certify))
-        return Findings({}, stability.STRATUM_FIELDS, [], ["nothing"])
+        return Report({}, stability.STRATUM_FIELDS, [], ["nothing"])
 
     monkeypatch.setattr(stability, "run_battery", no_battery)
     for line in ("--seed 7 --samples 3", "--thorough", "--certify"):

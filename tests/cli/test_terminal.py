@@ -17,8 +17,8 @@ import pytest
 
 from lagrange_cli import Top, solve
 from lagrange_cli.cli.command import top_layout
-from lagrange_cli.output.findings import Field, Findings
 from lagrange_cli.output.formats import FORMAT_BY_NAME
+from lagrange_cli.output.report import Field, Report
 from lagrange_cli.output.terminal import View, view_of
 
 ESCAPE = re.compile("\x1b\\[[?]?([0-9;]*)([A-Za-z])|([\r\n])|([^\x1b\r\n]+)")
@@ -186,7 +186,7 @@ def test_reports_fold_with_the_names_of_their_rows(monkeypatch: pytest.MonkeyPat
         *(Field(key, key * 8) for key in "abcdef"),
     ]
     rows = [SimpleNamespace(method=name, **dict.fromkeys("abcdef", 1.5)) for name in ("x", "y")]
-    findings = Findings({"machine": "word " * 30}, fields, rows, ["word " * 30])
+    findings = Report({"machine": "word " * 30}, fields, rows, ["word " * 30])
     text = FORMAT_BY_NAME["table"].findings(findings, View(40, True)).decode()
     plain = re.sub("\x1b\\[[0-9;]*m", "", text)
     assert max(map(len, plain.splitlines())) <= 40

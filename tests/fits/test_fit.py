@@ -399,7 +399,7 @@ def test_noise_alone_is_no_nutation(lagtop: Lagtop, tmp_path: Path) -> None:
         ("--fix m", 2, "--fix m must be given by an option or by --scene"),
         ("--g 0", 2, "--g must not be 0 in a fit"),
         ("--phidot0 3", 2, "No such option"),
-        ("--euler foo", 2, "--euler must be three axes"),
+        ("--euler-sequence foo", 2, "--euler-sequence must be three axes"),
         ("--A-cm 3", 2, "--A-cm must be given with m and s"),
         ("--by nothing", 2, "--by must name a column"),
         ("--together", 2, "--together needs --by"),

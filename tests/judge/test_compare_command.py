@@ -123,7 +123,7 @@ def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> 
     for top, name in ((TOP, "right"), (wrong, "wrong")):
         for h in steps:
             write(tmp_path / f"{name}-{h}.csv", rk4(Body.of(top), h, 1))
-    how = [*OPTIONS, "--steps", "4e-3,2e-3"]
+    how = [*OPTIONS, "--step-sizes", "4e-3,2e-3"]
     right = lagtop("compare", *sorted(tmp_path.glob("right*"))[::-1], *how, "--format", "json")
     (coarse, fine) = rows_of(right.stdout)
     assert 3.5 < fine["order"] == coarse["order"] < 5
@@ -141,7 +141,7 @@ def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> 
 def test_steps_of_rounded_numbers(lagtop: Lagtop, tmp_path: Path) -> None:
     q = solve(Top()).table(np.linspace(0, 2, 101), ["t", "quaternion"])
     np.savetxt(tmp_path / "q", np.column_stack(list(q.values())), "%.6f", header=" ".join(q))
-    result = lagtop("compare", tmp_path / "q", tmp_path / "q", "--steps", "1e-2,5e-3")
+    result = lagtop("compare", tmp_path / "q", tmp_path / "q", "--step-sizes", "1e-2,5e-3")
     assert "fine, at most" in result.stdout
     assert "does not fall with the step: the numbers may have been rounded." in result.stdout
 
@@ -168,7 +168,7 @@ def test_order_frames_and_units_by_options(lagtop: Lagtop, tmp_path: Path) -> No
     assert "a.npy: fine" in result.stdout
     for rad, angles in (("", turn.as_euler("XYZ", degrees=True)), ("--rad", turn.as_euler("XYZ"))):
         np.save(tmp_path / "b.npy", np.column_stack([t, angles]))
-        how = ["--columns", "t,euler", "--euler", "XYZ", *filter(None, [rad])]
+        how = ["--columns", "t,euler", "--euler-sequence", "XYZ", *filter(None, [rad])]
         assert "b.npy: fine" in lagtop("compare", tmp_path / "b.npy", *OPTIONS, *how).stdout
 
 
@@ -190,7 +190,7 @@ def test_pictures(lagtop: Lagtop, right: Path, coarse: Path, tmp_path: Path) -> 
     assert plain.exit_code == 0
     text = (tmp_path / "a.svg").read_text()
     assert "</svg>" in text
-    lagtop("compare", right, coarse, *how, "--steps", "1e-3,2e-3")
+    lagtop("compare", right, coarse, *how, "--step-sizes", "1e-3,2e-3")
     assert len((tmp_path / "a.svg").read_text()) > len(text)
     assert_one_line(
         lagtop("compare", right, "--plot", "a.pdf"), 2, "--plot must end in .svg or .png"
@@ -221,13 +221,21 @@ def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ([], 2, "Missing argument 'TRAJECTORY...'."),
         (["nowhere.csv"], 65, "nowhere.csv: No such file or directory"),
         (["-", "-"], 2, "standard input can be read once, got - twice"),
-        (["a.csv", "--steps", "1,2"], 2, "--steps must be as many as trajectories, 1, got 2"),
-        (["a.csv", "--steps", "-1"], 2, "--steps must be > 0, got -1.0"),
-        (["a.csv", "--steps", "x"], 2, "--steps must be a finite decimal number, got 'x'"),
+        (
+            ["a.csv", "--step-sizes", "1,2"],
+            2,
+            "--step-sizes must be as many as trajectories, 1, got 2",
+        ),
+        (["a.csv", "--step-sizes", "-1"], 2, "--step-sizes must be > 0, got -1.0"),
+        (
+            ["a.csv", "--step-sizes", "x"],
+            2,
+            "--step-sizes must be a finite decimal number, got 'x'",
+        ),
         (["a.csv", "--max-error", "0"], 2, "--max-error must be > 0, got 0.0"),
         (["a.csv", "--align", "axis=w"], 2, "--align must be among axis=y, up=y, start"),
-        (["a.csv", "--euler", "xxy"], 2, "--euler must be three axes"),
-        (["a.csv", "--quaternion", "xyz"], 2, "Invalid value for '--quaternion'"),
+        (["a.csv", "--euler-sequence", "xxy"], 2, "--euler-sequence must be three axes"),
+        (["a.csv", "--quaternion-order", "xyz"], 2, "Invalid value for '--quaternion-order'"),
         (["a.csv", "--columns", "t,thta"], 2, "--columns must be among t, quaternion"),
         (["a.csv", "--columns", "t"], 2, "--columns must name all 2 columns of a.csv"),
         (["b.csv"], 65, "b.csv, line 2, column 2: theta must be a number, got 'x'"),

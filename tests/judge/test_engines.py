@@ -24,7 +24,7 @@ END = 2.0
 
 def verdicts(paths: list[Path], steps: list[float]) -> list[Judgement]:
     session = compare_files(
-        solve(TOP), [str(path) for path in paths], ComparisonRequest(steps=steps)
+        solve(TOP), [str(path) for path in paths], ComparisonRequest(step_sizes=steps)
     )
     return list(session.judgements)
 

@@ -70,7 +70,7 @@ FILES = {
 }
 OLD = "old content\n"
 ALWAYS = {
-    "bench": "--limit 0.01 --n 3 --methods lagtop,theta-series".split(),
+    "bench": "--timeout 0.01 --n 3 --methods lagtop,theta-series".split(),
     "stability": "--samples 1 --strata fast".split(),
     "plot": "--size 3x2 --dpi 30".split(),
 }
@@ -86,7 +86,7 @@ OFTEN = {
 }
 """Words without which a command does nothing."""
 LEFT_OUT = {
-    "bench": {"--limit", "--n", "--methods", "--long"},
+    "bench": {"--timeout", "--n", "--methods", "--long"},
     "view": {"--open"},
     "stability": {"--samples", "--strata", "--thorough", "--jobs"},
     "plot": {"--size", "--dpi", "--show", "--animate", "--x", "--y"},

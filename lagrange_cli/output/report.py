@@ -1,4 +1,4 @@
-"""Findings of a report: conditions, rows and conclusions."""
+"""Report of a report: conditions, rows and conclusions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Field(NamedTuple):
         return "" if value is None else self.show(value)
 
 
-class Findings(NamedTuple):
+class Report(NamedTuple):
     """What a report has found."""
 
     conditions: dict[str, str]

@@ -1,0 +1,40 @@
+"""The one type of progress: a function that hands on the parts of long work as they are done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Protocol, TypeVar
+
+Part = TypeVar("Part")
+
+
+def one(_: Any) -> int:
+    """Return 1, the size of a part that counts as one item."""
+    return 1
+
+
+class Progress(Protocol):
+    """Shows how much of some work is done while somebody iterates over its parts."""
+
+    def __call__(
+        self,
+        parts: Iterable[Part],
+        label: str,
+        total: int | None = None,
+        size: Callable[[Part], int] = one,
+    ) -> Iterator[Part]:
+        """Yield the parts as they come.
+
+        `size` gives the items of a part, and `total` the items of all parts.  Without a total it is
+        summed over the parts if these are a sequence, and unknown otherwise.
+        """
+
+
+def silent(
+    parts: Iterable[Part],
+    label: str,
+    total: int | None = None,
+    size: Callable[[Part], int] = one,
+) -> Iterator[Part]:
+    """Yield the parts and show nothing."""
+    return iter(parts)
