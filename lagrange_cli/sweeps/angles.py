@@ -18,20 +18,24 @@ from ..motion.regime import Regime
 from ..motion.solve import solve
 from .angle_arrays import ArraySampler, array_sampler
 from .pair_motions import PairMotions, released, started
-from .records import BLOCK_ROWS, Column, Together
+from .records import BLOCK_ROWS, Together
+from .results import Column, Results
 from .top_arrays import TopArrays
 
 
-def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> dict[str, Column]:
+def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Results:
     """Return theta, phi and psi (radians) of many tops at the times t, and `error`.
 
-    Inputs are those of `Top`, numbers or arrays.  The times are a number or one list for all tops,
-    or a list for each of them, in the shape of the inputs together and one more dimension; that is
-    the shape of the angles, and the shape of the inputs that of `error`, which says what is wrong
-    with a top; its angles are NaN.  Angles are as exact as those of `Motion.angles`.  Raises
-    LagtopError for an unknown input, or for shapes that do not go together.
+    Inputs are those of `sweep`.  The times are a number or one list for all tops, or a list for
+    each of them, in the shape of the inputs together and one more dimension; that is the shape of
+    the angles, and the shape of the inputs that of `error`, which says what is wrong with a top;
+    its angles are NaN.  Angles are as exact as those of `Motion.angles`.  Raises LagtopError for an
+    unknown input, or for shapes that do not go together.
     """
     together = Together(inputs)
+    if together.stds:
+        name = min(together.stds)
+        raise LagtopError(f"{name} must be certain: the angles of sweeps have no stds", name)
     tops, shape = together.part(slice(None)), together.shape
     times = times_of(t)
     if times.ndim > 1 and times.shape[:-1] != shape:
@@ -44,7 +48,7 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> di
     found: dict[str, Column] = {
         name: values.reshape(whole) for name, values in zip(ANGLES, angles, strict=True)
     }
-    return found | {"error": error.reshape(shape)}
+    return together.results(found | {"error": error.reshape(shape)}, times)
 
 
 def angles_of(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:

@@ -16,7 +16,8 @@ from ..inputs.ranges import Block
 from ..output.row_texts import Columns
 from ..output.write import block_text
 from .measured_arrays import top_arrays
-from .records import Column, records
+from .records import records
+from .results import Column
 
 if TYPE_CHECKING:
     from ..inputs.units import System

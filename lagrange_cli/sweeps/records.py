@@ -8,13 +8,13 @@ an invalid one gets an `error` and no numbers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..arithmetic.arrays import ARRAYS, doubles_of
+from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.input_keys import from_example, one_of_each, overridden, warn_of
@@ -25,12 +25,11 @@ from ..motion.gaps import gaps_of
 from ..motion.kinds import fast_remark, kind_of, vertical_remark
 from ..motion.regime import FAST, Facts, Regime
 from ..motion.solve import record_in_range, solve
+from .arguments import dimensions_of, read_arguments
 from .measured_arrays import top_arrays
+from .results import Column, Results
 from .start_arrays import StartArrays
 from .top_arrays import TopArrays
-
-Column = Array | NDArray[np.object_]
-"""Numbers, NaN where a regime has none; or texts, None where there is none."""
 
 TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
 """The columns of texts."""
@@ -48,28 +47,34 @@ def record_keys(*, radians: bool = False) -> list[str]:
 
 def sweep(
     *, keys: Sequence[str] | None = None, radians: bool = False, **inputs: ArrayLike
-) -> dict[str, Column]:
+) -> Results:
     """Return the records of many tops: arrays by key, in the shape of the inputs together.
 
-    Inputs are those of `Top`, numbers or arrays.  A number that a regime does not have is NaN, a
-    text None; `error` says what is wrong with a top, which has neither, or with a number beyond the
-    range of doubles, which alone is NaN.  Only `keys` are computed.
+    Inputs are those of `Top`: numbers, arrays, pandas Series, xarray DataArrays (broadcast by the
+    names of their dimensions), pint quantities (converted to SI) or, for single numbers, ufloats,
+    which add `KEY_std`.  A number that a regime does not have is NaN, a text None; `error` says
+    what is wrong with a top, which has neither, or with a number beyond the range of doubles, which
+    alone is NaN.  Only `keys` are computed.
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
     chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
     together = Together(inputs)
     size = together.size
-    found = empty_columns(chosen, size)
+    found = empty_columns(
+        {**dict.fromkeys(chosen), "error": None} if together.stds else chosen, size
+    )
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, first + step)
         records(
             together.part(rows),
-            chosen,
+            list(found),
             radians=radians,
             columns={key: x[rows] for key, x in found.items()},
         )
-    return {key: column.reshape(together.shape) for key, column in found.items()}
+    stds = together.stds_of(found) if together.stds else {}
+    columns = {key: found[key] for key in chosen} | stds
+    return together.results({key: x.reshape(together.shape) for key, x in columns.items()})
 
 
 class Together:
@@ -82,13 +87,17 @@ class Together:
         one_of_each(name for name in inputs if not name.startswith("theta0_"))
         if missing := from_example(inputs):
             warn_of(missing, stacklevel=4)
-        given = overridden(Top().inputs(), inputs)
-        doubles = [doubles_of(name, values) for name, values in given.items()]
+        read = read_arguments(inputs)
+        self.stds, self._given, self._system = read.stds, read.arrays, read.system
+        example = Top().inputs() | (read.system.worked_example() if read.system else {})
+        given = overridden(example, read.arrays)
         try:
-            arrays = np.broadcast_arrays(*doubles)
-        except ValueError as error:
-            raise LagtopError(f"the inputs do not go together: {error}") from None
+            arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in given.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {x.shape}" for name, x in read.arrays.items() if x.ndim)
+            raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
         self.shape, self.size = arrays[0].shape, arrays[0].size
+        self._names = read.dimensions
         flat: list[Any] = [x if x.ndim == 1 else x.flat for x in arrays]
         self._flat = dict(zip(given, flat, strict=True))
 
@@ -97,8 +106,25 @@ class Together:
         count = len(range(*rows.indices(self.size)))
         return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
 
+    def results(self, columns: Mapping[str, Column], t: Array | None = None) -> Results:
+        """Return columns with the inputs that vary, and with the times of a last dimension."""
+        dimensions, coordinates = dimensions_of(self._given, self._names, self.shape)
+        if t is not None and t.ndim:
+            dimensions += ("t" if t.ndim == 1 else "sample",)
+            coordinates["t"] = t if t.ndim > 1 else t.reshape((1,) * len(self.shape) + t.shape)
+        return Results(columns, coordinates, dimensions, self._system)
 
-def empty_columns(keys: Sequence[str], count: int) -> dict[str, Column]:
+    def stds_of(self, columns: Mapping[str, Column]) -> dict[str, Array]:
+        """Return `KEY_std` for each number of the records."""
+        from .uncertain_rows import std_columns
+
+        given = {
+            name: np.broadcast_to(x, self.shape).reshape(-1) for name, x in self._given.items()
+        }
+        return std_columns(columns, self.part(slice(None)), given, self.stds)
+
+
+def empty_columns(keys: Iterable[str], count: int) -> dict[str, Column]:
     """Return columns for so many tops, to be filled."""
     return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 

@@ -10,7 +10,8 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
-from .records import TEXTS, Column
+from .records import TEXTS
+from .results import Column
 from .top_arrays import TopArrays
 
 

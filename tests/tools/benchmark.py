@@ -43,7 +43,8 @@ from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 from lagrange_cli.output.write import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
 from lagrange_cli.sweeps.parts import runs_of
-from lagrange_cli.sweeps.records import BLOCK_ROWS, Column, record_keys, sweep
+from lagrange_cli.sweeps.records import BLOCK_ROWS, record_keys, sweep
+from lagrange_cli.sweeps.results import Column
 
 NUMPY: Any = np._core._multiarray_umath  # type: ignore[attr-defined]
 FEATURES: Mapping[str, bool] = NUMPY.__cpu_features__

@@ -1,0 +1,127 @@
+"""Inputs of many tops from other libraries: labelled, in units, uncertain; as plain arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arithmetic.arrays import doubles_of
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.units import DIMENSIONS, System, factor_of, system_of
+from ..inputs.value import Value
+
+_TILTS = {"theta0_deg": "degree", "theta0_rad": "radian"}
+
+
+class Arguments(NamedTuple):
+    """Inputs of many tops as doubles."""
+
+    arrays: dict[str, Array]
+    stds: dict[str, float]
+    """Standard uncertainties of the inputs that have one."""
+    system: System | None
+    """The system of units that inputs with units are converted to."""
+    dimensions: tuple[str, ...]
+    """Names of dimensions; empty if no input names any."""
+
+
+def read_arguments(inputs: Mapping[str, Any]) -> Arguments:
+    """Return inputs as doubles: arrays, pandas Series, xarray, pint and uncertainties objects.
+
+    Labelled arrays (xarray) are broadcast by the names of their dimensions.  Quantities (pint) are
+    converted to SI.  Raises LagtopError for an input of another kind, and for an input without a
+    unit beside others that have one.
+    """
+    inputs, dimensions = _aligned(inputs)
+    inputs, stds = _nominal(inputs)
+    inputs, stds, system = _in_one_system(inputs, stds)
+    arrays = {name: doubles_of(name, x) for name, x in inputs.items()}
+    return Arguments(arrays, stds, system, dimensions)
+
+
+def _aligned(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Return labelled arrays broadcast against each other, and the names of their dimensions."""
+    labelled = {name: x for name, x in inputs.items() if hasattr(x, "dims") and hasattr(x, "data")}
+    if not labelled:
+        return dict(inputs), ()
+    import xarray  # it is loaded, or there were no such arrays
+
+    for name, x in inputs.items():
+        if name not in labelled and np.ndim(x):
+            raise LagtopError(f"{name} must be a number or have named dimensions as others", name)
+    together = dict(zip(labelled, xarray.broadcast(*labelled.values()), strict=True))
+    some = next(iter(together.values()))
+    return {**inputs, **{name: x.data for name, x in together.items()}}, tuple(map(str, some.dims))
+
+
+def _nominal(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, float]]:
+    """Return numbers without their uncertainties, and these."""
+    uncertain = {name: x for name, x in inputs.items() if hasattr(x, "nominal_value")}
+    stds = {name: float(x.std_dev) for name, x in uncertain.items()}
+    return {**inputs, **{name: x.nominal_value for name, x in uncertain.items()}}, stds
+
+
+def _in_one_system(
+    inputs: Mapping[str, Any], stds: Mapping[str, float]
+) -> tuple[dict[str, Any], dict[str, float], System | None]:
+    """Return inputs and uncertainties in SI units if any input is a quantity of pint."""
+    united = {name: x for name, x in inputs.items() if hasattr(x, "magnitude")}
+    if not united:
+        return dict(inputs), dict(stds), None
+    found, spread = dict(inputs), dict(stds)
+    values = {
+        name: Value(Fraction(1), f"{x.units:C}" if name in united else "")
+        for name, x in inputs.items()
+        if name not in _TILTS and (name in united or np.any(x))
+    }
+    system = system_of(values, None)
+    for name, x in united.items():
+        if name in _TILTS:
+            found[name] = x.m_as(_TILTS[name])
+            continue
+        assert system is not None
+        factor = factor_of(name, values[name]) / system.factor(DIMENSIONS[name])
+        found[name] = _scaled(x.magnitude, factor)
+        if hasattr(x.magnitude, "nominal_value"):
+            spread[name] = float(x.magnitude.std_dev) * float(abs(factor))
+    return found, spread, system
+
+
+def _scaled(magnitude: Any, factor: Fraction) -> ArrayLike:
+    """Return numbers in another unit, a single one rounded once."""
+    magnitude = getattr(magnitude, "nominal_value", magnitude)
+    if isinstance(magnitude, int | float):
+        return float(Fraction(magnitude) * factor)
+    return np.asarray(magnitude) * float(factor)
+
+
+def dimensions_of(
+    arrays: Mapping[str, Array], names: Sequence[str], shape: tuple[int, ...]
+) -> tuple[tuple[str, ...], dict[str, Array]]:
+    """Return a name for each dimension, and the inputs that vary with all dimensions.
+
+    A dimension along which one input alone varies has the name of that input.
+    """
+    full = {name: x.reshape((1,) * (len(shape) - x.ndim) + x.shape) for name, x in arrays.items()}
+    varying = {name: x for name, x in full.items() if x.size > 1}
+    if names:
+        return tuple(names), {name: _without_repeats(x) for name, x in varying.items()}
+    found = []
+    for axis, size in enumerate(shape):
+        alone = [name for name, x in varying.items() if x.size == x.shape[axis] == size]
+        default = "top" if len(shape) == 1 else f"top_{axis}"
+        found.append(alone[0] if len(alone) == 1 else default)
+    return tuple(found), varying
+
+
+def _without_repeats(values: Array) -> Array:
+    """Return an array with dimensions of size 1 where a broadcast repeats its elements."""
+    for axis, stride in enumerate(values.strides):
+        if not stride:
+            values = values.take([0], axis)
+    return values

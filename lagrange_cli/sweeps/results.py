@@ -1,0 +1,113 @@
+"""Results of many tops: arrays by name, which pandas, polars, xarray and notebooks take over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arithmetic.types import Array
+from ..errors import UnavailableError
+from ..inputs.units import System
+from ..motion.record import KEYS, requested_keys
+
+Column = Array | NDArray[np.object_]
+"""Numbers, NaN if a regime has none; or texts, None if there is none."""
+_ROWS_SHOWN = 20
+
+
+class Results(dict[str, Column]):
+    """Arrays by name: a dict of columns that knows the inputs that vary along each dimension.
+
+    The first dimensions are those of the inputs together; the times of `sweep_angles` are the last.
+    """
+
+    def __init__(
+        self,
+        columns: Mapping[str, Column],
+        coordinates: Mapping[str, Array],
+        dimensions: Sequence[str],
+        system: System | None = None,
+    ) -> None:
+        """Take columns, and inputs by name with their own shapes, one name per dimension."""
+        super().__init__(columns)
+        self.coordinates = dict(coordinates)
+        self.dimensions = tuple(dimensions)
+        self._system = system
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame with a row per top (and time), inputs that vary first.
+
+        Raises UnavailableError if pandas is not installed.
+        """
+        return _library("pandas").DataFrame(self._rows())
+
+    def to_polars(self) -> Any:
+        """Return a polars DataFrame with a row per top (and time), inputs that vary first.
+
+        Raises UnavailableError if polars is not installed.
+        """
+        texts = {name: x.tolist() if x.dtype == object else x for name, x in self._rows().items()}
+        return _library("polars").DataFrame(texts)
+
+    def to_xarray(self) -> Any:
+        """Return an xarray Dataset whose dimensions and coordinates are named after the inputs.
+
+        Units are attributes.  Raises UnavailableError if xarray is not installed.
+        """
+        dimensions, coordinates = self.dimensions, {}
+        for name, values in self.coordinates.items():
+            axes = [axis for axis, size in enumerate(values.shape) if size > 1]
+            shape = [values.shape[axis] for axis in axes]
+            names = [dimensions[axis] for axis in axes]
+            coordinates[name] = (names, values.reshape(shape), self._attributes(name))
+        variables = {
+            name: (dimensions[: x.ndim], x, self._attributes(name))
+            for name, x in self.items()
+            if name not in coordinates
+        }
+        return _library("xarray").Dataset(variables, coordinates)
+
+    def _rows(self) -> dict[str, NDArray[Any]]:
+        """Return all columns with one element per row."""
+        shape = max((x.shape for x in self.values()), key=len, default=())
+        inputs = {name: x for name, x in self.coordinates.items() if name not in self}
+        return {
+            name: np.broadcast_to(x.reshape(x.shape + (1,) * (len(shape) - x.ndim)), shape).reshape(
+                -1
+            )
+            for name, x in (inputs | self).items()
+        }
+
+    def _attributes(self, name: str) -> dict[str, str]:
+        """Return the unit of a column, if it has one."""
+        key = KEYS.get(name.replace("_rad", "_deg")) or requested_keys().get(name)
+        unit = key.unit if key else ""
+        if unit == "angle":
+            unit = "rad" if name.endswith("_rad") else "deg"
+        return {"units": self._system.named(unit) if self._system else unit} if unit else {}
+
+    def _repr_html_(self) -> str:
+        """Return the first rows as a table for a notebook."""
+        rows = self._rows()
+        count = max((len(x) for x in rows.values()), default=0)
+        head = "".join(f"<th>{escape(name)}</th>" for name in rows)
+        lines = zip(*(x[:_ROWS_SHOWN].tolist() for x in rows.values()), strict=True)
+        body = "".join(
+            f"<tr>{''.join(f'<td>{escape(str(x))}</td>' for x in line)}</tr>" for line in lines
+        )
+        more = f" of {count}" if count > _ROWS_SHOWN else ""
+        caption = f"<caption>{min(count, _ROWS_SHOWN)}{more} rows</caption>"
+        return f"<table>{caption}<tr>{head}</tr>{body}</table>"
+
+
+def _library(name: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError:
+        why = f"{name} is not installed: pip install {name}"
+        raise UnavailableError(why) from None
