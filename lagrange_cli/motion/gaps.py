@@ -8,19 +8,14 @@ continues him to starts that are not at rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import R, absolute
 from ..arithmetic.values import Over, Values
-from .cubic_roots import two_roots
 from .regime import Exact, Facts
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
-
-FindRoot = Callable[..., R]
-"""A function of an arithmetic, c2, c1, c0 and a number above: see `gaps_from_start`."""
 
 
 class State(Values, Over[R]):
@@ -93,14 +88,11 @@ class Gaps(Values, Over[R]):
 def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
     """Return constants and start of one top in an arithmetic."""
     a, b, r0 = exact.a, exact.b, exact.r0
-    tilt = exact.cosine.tilt(ar)
-    below, cos, above = (
-        2 * tilt.cos_half * tilt.cos_half,
-        tilt.cos,
-        2 * tilt.sin_half * tilt.sin_half,
-    )
-    u = exact.cosine.rational
-    if u is not None:
+    tilt, u = exact.cosine.tilt(ar), exact.cosine.rational
+    if u is None:
+        cos_half, sin_half = tilt.cos_half, tilt.sin_half
+        below, cos, above = 2 * cos_half * cos_half, tilt.cos, 2 * sin_half * sin_half
+    else:
         below, cos, above = ar.convert(1 + u), ar.convert(u), ar.convert(1 - u)
     return State(
         a=ar.convert(a),
@@ -118,23 +110,6 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
         theta_rate=ar.convert(exact.theta_rate),
         psi_rate=ar.convert(exact.psi_rate),
     )
-
-
-def gaps_of(
-    ar: Arithmetic[R], facts: Facts, state: State[R], find_root: FindRoot[R] | None = None
-) -> Gaps[R]:
-    """Return the gaps of any top; `find_root` gives the largest root of a cubic.
-
-    A release from rest and a steady motion do without it.
-    """
-    if released(facts):
-        return gaps_from_rest(ar, state)
-    return gaps_from_start(ar, state, facts, find_root)
-
-
-def released(facts: Facts) -> bool:
-    """Return whether a top starts at rest and falls, so that nothing cancels in its gaps."""
-    return facts.at_rest and not (facts.steady or facts.regime == "separatrix")
 
 
 def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
@@ -177,75 +152,25 @@ def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
     )
 
 
-def gaps_from_start(
-    ar: Arithmetic[R], start: State[R], facts: Facts, find_root: FindRoot[R] | None
-) -> Gaps[R]:
-    """Return the gaps of any start: the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0 in x = u - u0.
-
-    D = a (u3 - u0) is its largest root times a; the other two solve a quadratic equation whose
-    discriminant is a sum of positive terms.  A gap that is exactly 0 is put in as 0.  `find_root`
-    gives the largest root of x^3 + c2 x^2 + c1 x + c0 from c2, c1, c0 and a number above it.
-    """
-    a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
-    zero = 0 * u0
-    momentum, (c0, c1, c2) = start.momentum, cubic(start)
-    a_c0 = a * c0
-    separatrix = facts.regime == "separatrix"
-    if separatrix or facts.upper_root == 3:
-        D = a * above
-    elif facts.steady:
-        D = -c2
-    else:
-        assert find_root is not None
-        D = find_root(ar, c2, a * c1, a * a_c0, start.energy + b * b + 2 * a)
-    if facts.steady:
-        x1, x2 = zero, zero
-    elif separatrix:
-        x1, x2 = above, -c0 / (D * above)
-    else:
-        x1, x2 = two_roots(ar, (c1 + a_c0 / D) / D, -c0 / D)
-    x1 = above if facts.upper_root == 1 else x1
-    x2 = -below if facts.over_bottom else x2
-    return Gaps(
-        u1_u=x1,
-        u_u2=-x2,
-        u1_u2=x1 - x2,
-        below_u1=below + x1,
-        below_u2=zero if facts.over_bottom else below + x2,
-        above_u1=zero if separatrix or facts.upper_root == 1 else above - x1,
-        above_u2=above - x2,
-        a_u3_u=D,
-        a_u3_u1=zero if separatrix else D - a * x1,
-        a_u3_u2=D - a * x2,
-        a_u3_above=zero if separatrix or facts.upper_root == 3 else D - a * above,
-        a_below_u3=D + a * below,
-        momentum_u1=zero
-        if facts.cusp or facts.upper_root == 1 or separatrix
-        else momentum - b * x1,
-        momentum_u2=zero if facts.over_bottom else momentum - b * x2,
-        beta_plus_b=zero if facts.over_bottom else below * (start.psi_rate * above + b),
-        beta_minus_b=zero
-        if facts.upper_root or separatrix
-        else above * (start.psi_rate * below - b),
-    )
-
-
-def cubic(start: State[R]) -> tuple[R, R, R]:
-    """Return c0, c1, c2 of the cubic (4,9) in x = u - u0, which is a x^3 + c2 x^2 + c1 x + c0."""
-    a, b, u0, energy = start.a, start.b, start.cos, start.energy
-    along = start.sin * start.theta_rate
-    c1 = 2 * b * start.momentum - a * start.sin * start.sin - 2 * u0 * energy
-    return along * along, c1, 2 * a * u0 - energy - b * b
+def zero_gaps(facts: Facts) -> set[str]:
+    """Return the names of the gaps that are exactly 0, but for a release from rest."""
+    touches = facts.regime == "separatrix"
+    upright = touches or facts.upper_root == 1
+    zeros = {
+        "u1_u2": facts.steady,
+        "above_u1": upright,
+        "below_u2": facts.over_bottom,
+        "a_u3_u1": touches,
+        "a_u3_above": touches or facts.upper_root == 3,
+        "momentum_u1": upright or facts.cusp,
+        "momentum_u2": facts.over_bottom,
+        "beta_plus_b": facts.over_bottom,
+        "beta_minus_b": touches or facts.upper_root,
+    }
+    return {name for name, is_zero in zeros.items() if is_zero}
 
 
 def are_told_apart(facts: Facts, gaps: Gaps[Any]) -> bool:
     """Return whether every gap that is not exactly 0 has come out positive."""
-    touches = facts.regime == "separatrix"
-    zeros = {
-        "u1_u2": facts.steady,
-        "above_u1": facts.upper_root == 1 or touches,
-        "below_u2": facts.over_bottom,
-        "a_u3_u1": touches,
-        "a_u3_above": facts.upper_root == 3 or touches,
-    }
-    return facts.steady or all(zero or getattr(gaps, name) > 0 for name, zero in zeros.items())
+    positive = {"u1_u2", "above_u1", "below_u2", "a_u3_u1", "a_u3_above"} - zero_gaps(facts)
+    return facts.steady or all(getattr(gaps, name) > 0 for name in positive)

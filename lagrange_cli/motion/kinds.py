@@ -11,16 +11,13 @@ from typing import Any, TypeAlias
 
 from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.numbers import R
-from .moduli import Moduli
 from .quantity import quantity
 from .regime import Facts, Regime
-from .spin_precession import SpinPrecession, turn_time
+from .spin_precession import SpinPrecession
 
 
 class Nutating(SpinPrecession[R]):
     """A top whose tilt goes to and fro between u1 and u2."""
-
-    lacks: frozenset[str] = frozenset()
 
     def remark(self, *, radians: bool = False) -> str | None:
         """Return a line on a fast top, with its nutation in degrees or `radians`.
@@ -63,18 +60,13 @@ class Nutating(SpinPrecession[R]):
         return self.mean_precession_rate / self.elementary_rate - 1
 
 
-class Constant(Moduli[R]):
+class Constant(SpinPrecession[R]):
     """A motion at constant tilt, with constant rates of spin and precession."""
 
     lacks = frozenset("amplitude_deg alpha u_quarter spin_rate_half precession_rate_half".split())
-    path: str | None = None
-
-    def remark(self, *, radians: bool = False) -> str | None:
-        """Return None: there is nothing to add."""
-        return None
 
     @quantity
-    def T_nutation(self) -> R | None:
+    def T_nutation(self) -> Any:
         """The period (5,1) of a small nutation; None where nothing moves."""
         moves = self.argument_rate > 0
         if not self.ar.anywhere(moves):
@@ -86,7 +78,7 @@ class Constant(Moduli[R]):
         """The tilt, in degrees."""
         return 2 * self.ar.atan2(self.state.sin_half, self.state.cos_half) / self.degree
 
-    @property
+    @quantity
     def theta_max_deg(self) -> R:
         """The tilt, in degrees."""
         return self.theta_min_deg
@@ -94,34 +86,17 @@ class Constant(Moduli[R]):
     @quantity
     def mean_spin_rate(self) -> R:
         """The spin rate (4,8), which is constant; on the vertical all rotation counts as spin."""
-        if self.facts.pole:
-            return self.r0
-        return self.r0 - self.state.psi_rate * self.state.cos
+        return self.r0 if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
-    @property
-    def spin_rate_start(self) -> R:
+    @quantity
+    def spin_rate_start(self) -> R | None:
         """The spin rate, which is constant."""
         return self.mean_spin_rate
 
-    @property
+    @quantity
     def mean_precession_rate(self) -> R:
         """The precession rate, which is constant."""
         return self.state.psi_rate
-
-    @property
-    def precession_rate_start(self) -> R:
-        """The precession rate, which is constant."""
-        return self.mean_precession_rate
-
-    @quantity
-    def T_spin(self) -> R | None:
-        """One turn at the spin rate (section 8)."""
-        return turn_time(self.ar, self.mean_spin_rate)
-
-    @quantity
-    def T_precession(self) -> R | None:
-        """One turn at the precession rate (section 8)."""
-        return turn_time(self.ar, self.mean_precession_rate)
 
 
 class Steady(Constant[R]):

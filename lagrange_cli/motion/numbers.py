@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arithmetic.ball import Ball, TooFewDigitsError
 from ..arithmetic.balls import balls
+from ..arithmetic.numbers import R
 from ..arithmetic.rounding import Settled, decided, rounding_of, settled
 from ..inputs.top import Top
-from .cubic_roots import largest_root
-from .gaps import are_told_apart, gaps_of, state
+from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
 from .kinds import Kind, kind_of, middle_of
 from .record import NUMBER_KEYS, number_key
-from .regime import Exact, Regime
+from .regime import Exact, Facts, Regime
 
 if TYPE_CHECKING:
     from .over_time.samplers import Sampler
@@ -26,6 +26,15 @@ S = TypeVar("S")
 _ROOTS = ("u1", "u2", "u3")
 SAMPLER_DIGITS = 40
 """Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
+
+
+def gaps_of(ar: Any, facts: Facts, start: State[R], find_root: Any = None) -> Gaps[R]:
+    """Return the gaps of any top; `find_root` is explained at `gaps_from_start`."""
+    if facts.falls:
+        return gaps_from_rest(ar, start)
+    from .any_start import gaps_from_start  # start-up: not for a release from rest
+
+    return gaps_from_start(ar, start, facts, find_root)
 
 
 class Numbers:
@@ -151,7 +160,7 @@ class Numbers:
         if digits not in self._kinds:
             ar, facts = balls(digits), self.exact.facts
             start = state(ar, self.exact)
-            gaps = gaps_of(ar, facts, start, largest_root)
+            gaps = gaps_of(ar, facts, start)
             if not are_told_apart(facts, gaps):
                 raise TooFewDigitsError
             self._kinds[digits] = self.kind_class(ar, facts, start, gaps)

@@ -73,6 +73,11 @@ class Facts(Values):
     """The precession is pseudo-regular: released from rest, with (C r0)^2 >= 100 A m g s."""
 
     @property
+    def falls(self) -> bool:
+        """The top starts at rest and nutates, so that nothing cancels in its gaps."""
+        return self.at_rest and not (self.steady or self.regime is Regime.SEPARATRIX)
+
+    @property
     def over_top(self) -> bool:
         """The axis comes to the upper pole or, on the separatrix, tends to it: beta = b."""
         return bool(self.upper_root) or self.regime is Regime.SEPARATRIX

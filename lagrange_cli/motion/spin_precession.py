@@ -25,6 +25,13 @@ if TYPE_CHECKING:
 class SpinPrecession(Nutation[R]):
     """The numbers of sections 6 and 7 of a motion, under their keys; None where it has none."""
 
+    lacks: frozenset[str] = frozenset()
+    """The keys that a kind of motion does not have."""
+
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return a line on what is special, with angles in degrees or `radians`, or None."""
+        return None
+
     @quantity
     def half_turn_rate(self) -> R:
         """Half a turn per nutation period."""
@@ -149,10 +156,10 @@ class SpinPrecession(Nutation[R]):
     def path(self) -> str | None:
         """Path of the axis by where the precession stands still: at u1, within, or nowhere."""
         facts, gaps = self.facts, self.gaps
+        if facts.plane or facts.steady:
+            return None
         if facts.cusp:
             return "cusped"
-        if facts.plane:
-            return None
         return "looping" if self.b * gaps.momentum_u1 < 0 < self.b * gaps.momentum_u2 else "wavy"
 
 

@@ -21,8 +21,8 @@ from ..inputs.input_keys import from_example, one_of_each, overridden, warn_of
 from ..inputs.names import check_names
 from ..inputs.top import INPUTS, Top
 from ..motion import record as motion_record
-from ..motion.gaps import gaps_of
 from ..motion.kinds import fast_remark, kind_of, vertical_remark
+from ..motion.numbers import gaps_of
 from ..motion.regime import FAST, Facts, Regime
 from ..motion.solve import record_in_range, solve
 from .arguments import dimensions_of, read_arguments

@@ -20,7 +20,8 @@ from ..arithmetic.arrays import ARRAYS, PAIRS
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.numbers import polynomial
 from ..arithmetic.types import Array, Mask
-from ..motion.gaps import Gaps, State, gaps_from_start
+from ..motion.any_start import gaps_from_start
+from ..motion.gaps import Gaps, State
 from ..motion.kinds import Nutating
 from ..motion.regime import Facts, Regime
 from .mean_rates import MeanRates

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.balls import balls
-from lagrange_cli.motion.cubic_roots import largest_root
+from lagrange_cli.motion.any_start import largest_root
 
 
 def test_the_largest_root_is_enclosed_or_too_few_digits_are_said() -> None:

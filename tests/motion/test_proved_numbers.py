@@ -19,7 +19,7 @@ from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.balls import balls
 from lagrange_cli.errors import OutOfRangeWarning
-from lagrange_cli.motion import cubic_roots
+from lagrange_cli.motion import any_start
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 
 BODY = "--m 1 --A 1 --C 1 --s 1 --g 1".split()
@@ -180,13 +180,13 @@ def test_the_root_is_proved_to_be_the_largest(
     ar = balls(60)
     cubic = [ar.convert(x) for x in (-8, 17, -10, 100)]
     with arb_bits(300):
-        assert holds(cubic_roots.largest_root(ar, *cubic), exact_arb(5))
-        monkeypatch.setattr(cubic_roots, "near_largest_root", lambda *_: Decimal(near))
+        assert holds(any_start.largest_root(ar, *cubic), exact_arb(5))
+        monkeypatch.setattr(any_start, "near_largest_root", lambda *_: Decimal(near))
         if proved:
-            assert holds(cubic_roots.largest_root(ar, *cubic), exact_arb(5))
+            assert holds(any_start.largest_root(ar, *cubic), exact_arb(5))
         else:
             with pytest.raises(TooFewDigitsError):
-                cubic_roots.largest_root(ar, *cubic)
+                any_start.largest_root(ar, *cubic)
 
 
 @pytest.mark.parametrize("theta0", ["0.00001", "1.570796326794", "1.5707963267948966192", "3.1415"])

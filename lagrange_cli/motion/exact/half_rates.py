@@ -15,7 +15,7 @@ from ...arithmetic.ball import TooFewDigitsError
 from ...arithmetic.balls import balls
 from ...arithmetic.exact_cosine import Polynomial, U, value_at
 from ...arithmetic.rounding import FIRST_DIGITS, decided
-from ..cubic_roots import largest_root
+from ..any_start import largest_root
 from ..regime import Exact
 
 HALF_RATES = ("spin_rate_half", "precession_rate_half")

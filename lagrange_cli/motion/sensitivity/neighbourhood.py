@@ -14,8 +14,8 @@ from ...arithmetic.ball import Ball, TooFewDigitsError
 from ...arithmetic.balls import balls
 from ...arithmetic.duals import Dual, Duals, independent
 from ...arithmetic.values import Values
-from ..cubic_roots import largest_root
-from ..gaps import Gaps, State, are_told_apart, gaps_from_start, state
+from ..any_start import gaps_from_start, largest_root
+from ..gaps import Gaps, State, are_told_apart, state
 from ..regime import Exact, Facts, Regime
 
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
@@ -50,7 +50,7 @@ def neighbourhood(exact: Exact, digits: int) -> Neighbourhood:
     ar = Duals(balls(digits))
     moved = dual_state(ar, exact)
     begin = moved.replace(a=ar.convert(0)) if facts.free else moved
-    gaps = dual_gaps(ar, begin, facts)
+    gaps = gaps_from_start(ar, begin, facts, dual_root)
     if not are_told_apart(facts, gaps):
         raise TooFewDigitsError
     return Neighbourhood(ar, facts, begin, gaps, moved, frozenset(broken_by(exact)))
@@ -119,17 +119,6 @@ def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
         theta_rate=theta_rate,
         psi_rate=psi_rate,
     )
-
-
-def dual_gaps(ar: Duals, begin: State[Dual], facts: Facts) -> Gaps[Dual]:
-    """Return the gaps with their derivatives, those that stay 0 all around as constants."""
-    gaps = gaps_from_start(ar, begin, facts, dual_root)
-    zeros = {
-        "below_u2": facts.over_bottom,
-        "above_u1": facts.upper_root == 1,
-        "a_u3_above": facts.upper_root == 3,
-    }
-    return gaps.replace(**{name: ar.convert(0) for name, zero in zeros.items() if zero})
 
 
 def generic_gaps(near: Neighbourhood) -> Gaps[Dual]:

@@ -19,8 +19,9 @@ from ...arithmetic.rounding import decided, rounded
 from ...arithmetic.values import Values
 from ...inputs.names import check_names
 from ...inputs.top import Top
+from ..any_start import cubic
 from ..exact.rational_keys import is_endless
-from ..gaps import Gaps, cubic
+from ..gaps import Gaps
 from ..kinds import Steady, kind_of
 from ..quantity import quantity
 from ..record import NUMBER_KEYS

@@ -16,7 +16,8 @@ from ...arithmetic.duals import Dual
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.sums_of_doubles import Pair, pair
 from ...arithmetic.types import Array
-from ..gaps import State, cubic
+from ..any_start import cubic
+from ..gaps import State
 from .neighbourhood import PARAMETERS, Neighbourhood
 
 _SMALL = 0.5
