@@ -36,10 +36,10 @@ def alignments_table() -> list[str]:
     return _table("word", "what is done", ((f"`{word}`", text) for word, text in WORDS.items()))
 
 
-def slips_table() -> list[str]:
-    """Return the table of the slips."""
-    names = dict.fromkeys(slip.name for slip in MISTAKES)
-    return ["| slip |", "|---|", *(f"| {name} |" for name in names)]
+def mistakes_table() -> list[str]:
+    """Return the table of the common mistakes."""
+    names = dict.fromkeys(x.name for x in MISTAKES)
+    return ["| mistake |", "|---|", *(f"| {name} |" for name in names)]
 
 
-JUDGE_TABLES = (columns_table, keys_table, verdicts_table, alignments_table, slips_table)
+JUDGE_TABLES = (columns_table, keys_table, verdicts_table, alignments_table, mistakes_table)

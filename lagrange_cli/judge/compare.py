@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import quoted
+from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
 from ..inputs.seen import Conventions, Quantities
 from ..inputs.top import Top
-from ..inputs.trajectory import Trajectory, open_trajectory
+from ..inputs.trajectory import open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.over_time.times import times_of
 from ..motion.solve import Motion, solve
@@ -27,17 +27,11 @@ from .mistakes import explanation
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-FINE, DRIFTS, OFF, ANOTHER, LOST = (
-    "fine",
-    "drifts",
-    "off from the start",
-    "another top",
-    "lost",
-)
+FINE, DRIFTS, OFF, ANOTHER, LOST = "fine", "drifts", "off from the start", "another top", "lost"
 VERDICTS = {
     FINE: "the error stays below the limit, 1e-3 rad or --max-error",
     DRIFTS: "it starts right, and the error grows beyond the limit",
-    ANOTHER: "it is beyond the limit and does not fall with the step, or a usual slip explains it",
+    ANOTHER: "the error exceeds the limit and does not fall with the step, or a mistake explains it",
     OFF: "the first row is beyond the limit already: another start, or other frames",
     LOST: "a row is not finite",
 }
@@ -69,15 +63,15 @@ def compare(
     max_error: float = LIMIT,
     step: float | None = None,
 ) -> Judgement:
-    """Return the judgement of a trajectory at the times t, of n rows.
+    """Compare a trajectory of n rows, at the times t, with the exact motion of a top.
 
-    Given are any of: quaternion (n, 4) from body to space, matrix (n, 3, 3) or (n, 9), the angles
-    theta, phi, psi (n,), three angles about coordinate axes (n, 3) by a sequence in scipy's
-    notation, a rotation vector (n, 3), the figure axis (n, 3), the position of the mass centre from
-    the pivot (n, 3), angular velocity (n, 3) in the frame of the `body` or of `space`, and the
-    rates of theta, phi, psi (n, 3).  Angles are in radians.  `align` names what is done to the
-    trajectory first, as in `lagtop compare`.  Up to `max_error` radians it is fine.  `step` is kept
-    in the judgement, for `convergence` of several.
+    Pass any of: quaternion (n, 4) from body to space, matrix (n, 3, 3) or (n, 9), the angles theta,
+    phi, psi (n,), three angles about coordinate axes (n, 3) by a sequence in scipy's notation, a
+    rotation vector (n, 3), the figure axis (n, 3), the position of the centre of mass from the
+    pivot (n, 3), angular velocity (n, 3) in the frame of the `body` or of `space`, and the rates of
+    theta, phi, psi (n, 3).  Angles are in radians; a masked element is a missing number.  `align`
+    changes the trajectory first, as in `lagtop compare`.  A trajectory is fine up to `max_error`
+    radians.  `step` is kept in the judgement, for the `convergence` of several.
 
     Raises LagtopError for a bad argument, and for times that are not finite, turn back or repeat.
     """
@@ -105,33 +99,20 @@ def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
         raise LagtopError("t must be finite and go on in one direction, each time once", "t")
     block = {"t": times}
     for key, array in arrays.items():
-        size = QUANTITIES[key].size
-        try:
-            block[key] = _real(array).reshape(len(times), size)
-        except (TypeError, ValueError, OverflowError):
+        numbers, size = doubles_of(key, _unmasked(array)), QUANTITIES[key].size
+        if numbers.size != len(times) * size:
             wanted = f"real numbers of shape ({len(times)}, {size})"
-            raise LagtopError(f"{key} must be {wanted}, got {_shown(array)}", key) from None
+            raise LagtopError(f"{key} must be {wanted}, got the shape {numbers.shape}", key)
+        block[key] = numbers.reshape(len(times), size)
     return block
 
 
-def _real(array: ArrayLike) -> Array:
-    """Return an array of real numbers, NaN where it is masked.
-
-    Raises TypeError, ValueError or OverflowError for anything else.
-    """
-    values: Any = np.ma.asarray(array)
-    if values.dtype.kind not in "iufO":
-        raise TypeError(values.dtype)
-    with np.errstate(over="ignore"):  # of long doubles
-        numbers: Array = values.astype(np.float64).filled(np.nan)
-    return numbers
-
-
-def _shown(array: ArrayLike) -> str:
-    """Return the type and the shape of an array, or a short text of what is none."""
-    if isinstance(array, np.ndarray):
-        return f"{array.dtype} of shape {array.shape}"
-    return quoted(array)
+def _unmasked(array: ArrayLike) -> ArrayLike:
+    """Return an array with NaN for its masked elements."""
+    if isinstance(array, np.ma.MaskedArray) and array.dtype.kind in "iuf":
+        numbers: Array = np.ma.filled(array.astype(np.float64), np.nan)
+        return numbers
+    return array
 
 
 def with_verdicts(
@@ -140,10 +121,11 @@ def with_verdicts(
     limit: float | None,
     step_sizes: Sequence[float] | None = None,
 ) -> tuple[list[Judgement], Convergence | None]:
-    """Return the judgements of trajectories with their verdicts, and how they converge.
+    """Return the judgements of trajectories with their verdicts, and their convergence.
 
-    A mistake is looked for if a trajectory is beyond the limit, but not if the error falls with the
-    step: then the top is the right one.  Raises LagtopError for bad steps.
+    The limit is LIMIT by default.  Mistakes are tried if a trajectory is beyond the limit, but not
+    if the error falls with the step: then the top is the right one.  Raises LagtopError for bad
+    steps.
     """
     limit = LIMIT if limit is None else limit
     judgements = [run.judgement for run, _ in cases]
@@ -202,12 +184,9 @@ class Comparison(NamedTuple):
 
 
 def compare_files(
-    motion: Motion,
-    paths: Sequence[str],
-    request: ComparisonRequest,
-    progress: Progress = silent,
+    motion: Motion, paths: Sequence[str], request: ComparisonRequest, progress: Progress = silent
 ) -> Comparison:
-    """Return the judgements of the trajectories in files, and how they converge.
+    """Compare the trajectories in files with a motion.
 
     Raises LagtopError for a bad request, DataError for a file that cannot be read or is bad.
     """
@@ -216,19 +195,16 @@ def compare_files(
     if request.step_sizes is not None:
         check_step_sizes(request.step_sizes, len(paths))
     cases = [_judged(motion, path, request, progress) for path in paths]
-    judgements, found = with_verdicts(motion, cases, request.limit, request.step_sizes)
-    return Comparison(judgements, found)
+    return Comparison(*with_verdicts(motion, cases, request.limit, request.step_sizes))
 
 
 def _judged(
-    motion: Motion,
-    path: str,
-    request: ComparisonRequest,
-    progress: Progress,
+    motion: Motion, path: str, request: ComparisonRequest, progress: Progress
 ) -> tuple[JudgedRun, ReadTrajectory]:
     with open_trajectory(path, request.columns) as trajectory:
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
-        blocks = progress(_blocks(trajectory), "rows", size=lambda block: len(block["t"]))
+        rows = (block for block, _ in trajectory.blocks())
+        blocks = progress(rows, "rows", size=lambda block: len(block["t"]))
         given = ReadTrajectory(blocks, said, request.conventions, request.align)
         try:
             run = judge(motion, given)
@@ -241,8 +217,3 @@ def _judged(
             raise kind(f"{shown_path(path)}: {error}") from None
     named = replace(run.judgement, file=utf8_path(path))
     return run._replace(judgement=named), given
-
-
-def _blocks(trajectory: Trajectory) -> Iterator[Quantities]:
-    for block, _ in trajectory.blocks():
-        yield block

@@ -16,8 +16,7 @@ from ..inputs.names import ANGLES
 from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
-from .deviations import Deviations
-from .tally import Extremes, Kept, LineFit, Passages
+from .deviations import Deviations, Extremes, Kept, LineFit, Passages
 
 LIMIT = 1e-3
 """The error in radians (rad) up to which a trajectory is fine by default."""
@@ -67,9 +66,9 @@ class Judgement:
     theta_drift: float | None = _field("growth of the tilt's difference per period, fitted")
     phi_drift: float | None = _field("growth of the spin's difference per period, fitted")
     psi_drift: float | None = _field("growth of the precession's difference per period, fitted")
-    theta_rest: float | None = _field("what does not grow: root mean square about the fitted line")
-    phi_rest: float | None = _field("the like for the spin")
-    psi_rest: float | None = _field("the like for the precession")
+    theta_rest: float | None = _field("root mean square of that difference about the line")
+    phi_rest: float | None = _field("the same of the spin")
+    psi_rest: float | None = _field("the same of the precession")
     period: float | None = _field(
         "the period: that of the nutation, or else of the spin, or else 1"
     )
@@ -85,11 +84,11 @@ class Judgement:
     t_past_1: float | None = _field("beyond 1 rad")
     lost_at: float | None = _field("time of the first row that is not finite")
     quaternion_order: str | None = _field(
-        "order of the quaternion, where the first row has proved it"
+        "order of the quaternion, if it was found from the first row"
     )
     order: float | None = _field("order of convergence of all files, by --step-sizes")
-    explained_by: str | None = _field("the slip that explains the error best")
-    explained_error: float | None = _field("greatest error that is left if that slip is undone")
+    explained_by: str | None = _field("the mistake that explains the error best")
+    explained_error: float | None = _field("greatest error with that mistake corrected")
 
     error_start: float = field(default=math.nan, compare=False)
     """Error at the first row."""

@@ -93,8 +93,8 @@ def _moment_moved(sign: int) -> Callable[[Top], Top]:
     )
 
 
-def _spin_times(factor: float) -> Callable[[Top], Top]:
-    return lambda top: top.replace(r0=float(top.r0) * factor)
+def _spin_times(name: str, factor: float) -> Mistake:
+    return Mistake(name, lambda top: top.replace(r0=float(top.r0) * factor))
 
 
 def _tilt_of(top: Top, side: int) -> Top:
@@ -140,16 +140,12 @@ def _spun_less(rate: float) -> Callable[[Seen], Seen]:
     return changed
 
 
-def _turned(space: Array, body: Array) -> Callable[[Seen], Seen]:
-    return lambda seen: seen.turned(space, body)
-
-
-def _with_quaternion(change: Callable[[Array], Array]) -> Callable[[Seen], Seen]:
+def _with_quaternion(name: str, change: Callable[[Array], Array]) -> Mistake:
     def changed(seen: Seen) -> Seen:
         q = seen.quaternion
         return seen if q is None else replace(seen, quaternion=change(q))
 
-    return changed
+    return Mistake(name, seen=changed)
 
 
 def _exchanged(seen: Seen) -> Seen:
@@ -162,21 +158,19 @@ def _exchanged(seen: Seen) -> Seen:
     return replace(seen, angles={names[key]: x for key, x in seen.angles.items()})
 
 
-def _in_the_other_frame(seen: Seen) -> Seen:
-    return replace(seen, body_rates=seen.space_rates, space_rates=seen.body_rates)
-
-
-def _framed(axis: str = "z", up: str = "z") -> Callable[[Alignment], Alignment]:
-    """Return the alignment with these frames, and with the angles counted from the first row."""
+def _framed(name: str, *, axis: str = "z", up: str = "z") -> Mistake:
+    """Return the mistake of frames with these axes, with the angles counted from the first row."""
 
     def aligned(alignment: Alignment) -> Alignment:
         if alignment.hides_frames:
             raise LagtopError("the frames come from the first row")
         return alignment._replace(start=True, axis=axis, up=up)
 
-    return aligned
+    words = [f"{key}={x}" for key, x in (("axis", axis), ("up", up)) if x != "z"]
+    return Mistake(f"{name} (--align {','.join([*words, 'start'])})", alignment=aligned)
 
 
+_SIDES = ("x", "y", "-z")
 MISTAKES = [
     Mistake(
         "A: the moment about the pivot taken as about the mass centre (A + m s^2)", _moment_moved(1)
@@ -186,66 +180,40 @@ MISTAKES = [
         _moment_moved(-1),
     ),
     Mistake("A and C exchanged", _exchanged_moments, excess=_spin_of_exchanged_moments),
-    Mistake("r0 with the wrong sign", _spin_times(-1)),
-    Mistake("r0 in radians taken as degrees", _spin_times(math.pi / 180)),
-    Mistake("r0 in degrees taken as radians", _spin_times(180 / math.pi)),
-    Mistake("r0 in radians taken as turns a minute", _spin_times(math.pi / 30)),
-    Mistake("r0 in turns a minute taken as radians", _spin_times(30 / math.pi)),
+    _spin_times("r0 with the wrong sign", -1),
+    _spin_times("r0 in radians taken as degrees", math.pi / 180),
+    _spin_times("r0 in degrees taken as radians", 180 / math.pi),
+    _spin_times("r0 in radians taken as turns a minute", math.pi / 30),
+    _spin_times("r0 in turns a minute taken as radians", 30 / math.pi),
     Mistake("theta0 in radians taken as degrees", lambda top: top.replace(theta0_deg=_tilt(top))),
     Mistake("theta0 in degrees taken as radians", lambda top: _tilt_of(top, 1)),
     Mistake(
         "theta0 in degrees taken as radians",
         lambda top: _tilt_of(top, -1),
-        _turned(HALF_TURN_Z, HALF_TURN_Z),
+        lambda seen: seen.turned(HALF_TURN_Z, HALF_TURN_Z),
     ),
     Mistake("g left out", lambda top: top.replace(g=0)),
     Mistake(
         "g upwards",
         _upside_down,
-        _turned(
+        lambda seen: seen.turned(
             rotations.product(rotations.conjugate(HALF_TURN_Z), HALF_TURN_X),
             rotations.conjugate(HALF_TURN_Z),
         ),
     ),
+    _with_quaternion("the quaternion is the conjugate, from space to body", rotations.conjugate),
+    _with_quaternion("the quaternion is xyzw and was read as wxyz", lambda q: np.roll(q, 1, 1)),
+    _with_quaternion("the quaternion is wxyz and was read as xyzw", lambda q: np.roll(q, -1, 1)),
+    Mistake("phi and psi have each other's names", seen=_exchanged),
     Mistake(
-        "the quaternion is the conjugate, from space to body",
-        None,
-        _with_quaternion(rotations.conjugate),
-    ),
-    Mistake(
-        "the quaternion is xyzw and was read as wxyz",
-        None,
-        _with_quaternion(lambda q: np.roll(q, 1, 1)),
-    ),
-    Mistake(
-        "the quaternion is wxyz and was read as xyzw",
-        None,
-        _with_quaternion(lambda q: np.roll(q, -1, 1)),
-    ),
-    Mistake("phi and psi have each other's names", None, _exchanged),
-    Mistake(
-        "the angular velocity is in the other frame (--rates-frame)", None, _in_the_other_frame
+        "the angular velocity is in the other frame (--rates-frame)",
+        seen=lambda x: replace(x, body_rates=x.space_rates, space_rates=x.body_rates),
     ),
     Mistake("angles in degrees taken as radians, or the reverse", other_unit=True),
-    Mistake("spin and precession do not start at 0 (--align start)", alignment=_framed()),
-    *(
-        Mistake(
-            f"the figure axis is the body's {axis} axis (--align axis={axis},start)",
-            alignment=_framed(axis=axis),
-        )
-        for axis in ("x", "y", "-z")
-    ),
-    *(
-        Mistake(f"up is the {up} axis of space (--align up={up},start)", alignment=_framed(up=up))
-        for up in ("x", "y", "-z")
-    ),
-    *(
-        Mistake(
-            f"the figure axis and up are the {axis} axes (--align axis={axis},up={axis},start)",
-            alignment=_framed(axis=axis, up=axis),
-        )
-        for axis in ("x", "y", "-z")
-    ),
+    _framed("spin and precession do not start at 0"),
+    *(_framed(f"the figure axis is the body's {x} axis", axis=x) for x in _SIDES),
+    *(_framed(f"up is the {x} axis of space", up=x) for x in _SIDES),
+    *(_framed(f"the figure axis and up are the {x} axes", axis=x, up=x) for x in _SIDES),
 ]
 """Mistakes that are possible with any top."""
 

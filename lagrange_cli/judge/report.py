@@ -130,13 +130,13 @@ def _drift(judgement: Judgement) -> str:
 
 
 def _explanations(judgements: Sequence[Judgement]) -> Iterator[str]:
-    """Yield what explains the trajectories, of the one that it explains best."""
+    """Yield the most likely cause of the errors, from the trajectory that it explains best."""
     explained = [x for x in judgements if x.explained_by is not None]
     if explained:
         best = min(explained, key=lambda x: x.explained_error or 0.0)
         yield (
-            f"What explains it best: {best.explained_by}; with that undone {_name(best)} is at "
-            f"most {best.explained_error:.1e} rad off."
+            f"Most likely cause: {best.explained_by}.  With this corrected, the error of "
+            f"{_name(best)} is at most {best.explained_error:.1e} rad."
         )
     elif any(x.verdict in {ANOTHER, DRIFTS, OFF} for x in judgements):
-        yield "None of the usual slips explains it."
+        yield "None of the common mistakes explains it."

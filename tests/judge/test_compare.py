@@ -15,8 +15,8 @@ from lagrange_cli.inputs.seen import Conventions
 from lagrange_cli.judge.alignment import Alignment
 from lagrange_cli.judge.compare import with_verdicts
 from lagrange_cli.judge.convergence import convergence
+from lagrange_cli.judge.deviations import MOST_KEPT, Kept
 from lagrange_cli.judge.judgement import ReadTrajectory, judge
-from lagrange_cli.judge.tally import MOST_KEPT, Kept
 
 TOP = Top(thetadot0=1, psidot0=3)
 T = np.linspace(0, 2, 201)
@@ -554,10 +554,9 @@ def test_rows_that_are_kept_are_spread_evenly(block: int) -> None:
         ({}, "compare must be given an attitude"),
         ({"quaternion": Q[:5]}, r"quaternion must be real numbers of shape \(201, 4\)"),
         ({"angle_rates": RATES}, "angle_rates must come with an attitude or a part of it"),
-        ({"theta": ["1"] * 201}, r"theta must be real numbers of shape \(201, 1\), got \['1'"),
-        ({"theta": T > 1}, r"theta must be real numbers .* got bool of shape \(201,\)"),
-        ({"theta": 1j * T}, r"theta must be real numbers .* got complex128 of shape"),
-        ({"theta": ["x"] * 201}, r"theta must be real numbers of shape \(201, 1\)"),
+        ({"theta": ["1"] * 201}, r"theta must be real numbers, got \['1'"),
+        ({"theta": T > 1}, r"theta must be real numbers, got array\(\[False"),
+        ({"theta": 1j * T}, r"theta must be real numbers, got array\(\[0.*j"),
         ({"quaternion": Q, "quaternion_order": "zyxw"}, "quaternion_order must be wxyz or xyzw"),
         ({"quaternion": Q, "euler_sequence": "xxz"}, "euler_sequence must be three axes"),
         ({"quaternion": Q, "euler_sequence": "xYz"}, "euler_sequence must be three axes"),

@@ -64,7 +64,7 @@ def test_formats_say_the_same(lagtop: Lagtop, right: Path, coarse: Path) -> None
         ]
     table = shown["table"].stdout
     assert "coarse.csv: drifts, at most 7.5e-01 rad off; psi drifts" in table
-    assert "None of the usual slips explains it." in table
+    assert "None of the common mistakes explains it." in table
     assert "scene      --m 1587.0" in table
     assert "lost at" not in table
 
@@ -130,12 +130,12 @@ def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> 
     assert [row["step"] for row in (coarse, fine)] == steps
     told = lagtop("compare", *sorted(tmp_path.glob("right*"))[::-1], *how, "--format", "table")
     assert "the step to the power of" in told.stdout
-    assert "slips" not in told.stdout
+    assert "common mistakes" not in told.stdout
     result = lagtop("compare", *sorted(tmp_path.glob("wrong*"))[::-1], *how)
     assert (
         "The error does not fall with the step: this is the motion of another top." in result.stdout
     )
-    assert "taken as about the mass centre (A + m s^2); with that undone" in result.stdout
+    assert "taken as about the mass centre (A + m s^2).  With this corrected" in result.stdout
 
 
 def test_steps_of_rounded_numbers(lagtop: Lagtop, tmp_path: Path) -> None:
