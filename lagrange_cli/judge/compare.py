@@ -31,12 +31,11 @@ FINE, DRIFTS, OFF, ANOTHER, LOST = "fine", "drifts", "off from the start", "anot
 VERDICTS = {
     FINE: "the error stays below the limit, 1e-3 rad or --max-error",
     DRIFTS: "it starts right, and the error grows beyond the limit",
-    ANOTHER: "the error exceeds the limit and does not fall with the step, or a mistake explains it",
+    ANOTHER: "the error exceeds the limit and does not fall with the step, or a mistake causes it",
     OFF: "the first row is beyond the limit already: another start, or other frames",
     LOST: "a row is not finite",
 }
 """The words with their meanings; of several that apply it is the last one."""
-"""Passes blocks on, and may show how many rows have passed."""
 _OF_THE_FILE = {"t", "angle_rates"}
 """Arguments that a file gives, so that an error about them is one of its data."""
 

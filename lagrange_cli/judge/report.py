@@ -135,7 +135,7 @@ def _explanations(judgements: Sequence[Judgement]) -> Iterator[str]:
     if explained:
         best = min(explained, key=lambda x: x.explained_error or 0.0)
         yield (
-            f"Most likely cause: {best.explained_by}. With this corrected, the error of "
+            f"Most likely cause: {best.explained_by}. Without it, the error of "
             f"{_name(best)} is at most {best.explained_error:.1e} rad."
         )
     elif any(x.verdict in {ANOTHER, DRIFTS, OFF} for x in judgements):

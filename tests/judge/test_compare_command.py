@@ -135,7 +135,7 @@ def test_steps_and_the_motion_of_another_top(lagtop: Lagtop, tmp_path: Path) -> 
     assert (
         "The error does not fall with the step: this is the motion of another top." in result.stdout
     )
-    assert "taken as about the mass centre (A + m s^2). With this corrected" in result.stdout
+    assert "taken as about the mass centre (A + m s^2). Without it" in result.stdout
 
 
 def test_steps_of_rounded_numbers(lagtop: Lagtop, tmp_path: Path) -> None:
