@@ -28,6 +28,7 @@ READMES = sorted(
     if not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
 )
 """Every README of the project, also those of the rooms."""
+PAGES = [*READMES, *sorted((ROOT / "sample_inputs" / "tutorials").glob("*.md"))]
 
 NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?")
 
@@ -55,7 +56,7 @@ def run(command: str) -> str:
 
 
 def name(path: Path) -> str:
-    """Return the path of a README inside the project."""
+    """Return the path of a page inside the project."""
     return str(path.relative_to(ROOT))
 
 
@@ -67,7 +68,7 @@ def prose(text: str) -> list[str]:
 
 SESSIONS = [
     pytest.param(command, shown, id=f"{name(path)}: {command}"[:120])
-    for path in READMES
+    for path in PAGES
     for command, shown in sessions(path.read_text())
 ]
 
@@ -84,11 +85,11 @@ def test_session(command: str, shown: str) -> None:
 
 def test_there_are_sessions() -> None:
     assert README in READMES
-    assert len(READMES) >= 2
+    assert len(PAGES) >= 2
     assert len(SESSIONS) >= 10
 
 
-@pytest.mark.parametrize("path", READMES, ids=name)
+@pytest.mark.parametrize("path", PAGES, ids=name)
 def test_python_session(path: Path) -> None:
     result = doctest.testfile(str(path), module_relative=False)
     assert result.attempted >= (5 if path == README else 0)
@@ -172,14 +173,14 @@ def test_lines_of_the_readme_are_short() -> None:
     assert len(long) <= 1
 
 
-@pytest.mark.parametrize("path", [path for path in READMES if path != README], ids=name)
+@pytest.mark.parametrize("path", [path for path in PAGES if path != README], ids=name)
 def test_prose_of_the_other_readmes_is_short(path: Path) -> None:
     assert [line for line in prose(path.read_text()) if len(line) > 100] == []
 
 
 def rewrite() -> None:
-    """Put the real outputs, and the tables that are made, into every README."""
-    for path in READMES:
+    """Put the real outputs, and the tables that are made, into every page."""
+    for path in PAGES:
         text = path.read_text()
         for command, shown in sessions(text):
             text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
