@@ -13,12 +13,19 @@ m, A, C, s, g, r0, tilt = 1587.0, 39032.0, 17458.0, 4.0, 981.0, 50.0, np.radians
 def slope(state):
     """Return the time derivative of the quaternion and of the angular velocity in the body."""
     w, x, y, z, p, q, r = state
-    turn = 0.5 * np.array(
-        [-x * p - y * q - z * r, w * p + y * r - z * q, w * q + z * p - x * r, w * r + x * q - y * p]
+    turn = np.array(
+        [
+            -x * p - y * q - z * r,
+            w * p + y * r - z * q,
+            w * q + z * p - x * r,
+            w * r + x * q - y * p,
+        ]
     )
     up_x, up_y = 2 * (x * z - w * y), 2 * (y * z + w * x)  # the vertical, seen from the body
     torque_p, torque_q = m * g * s * up_y, -m * g * s * up_x
-    return np.array([*turn, (torque_p - (C - A) * q * r) / A, (torque_q + (C - A) * p * r) / A, 0])
+    return np.array(
+        [*(turn / 2), (torque_p - (C - A) * q * r) / A, (torque_q + (C - A) * p * r) / A, 0]
+    )
 
 
 def step(state, dt):
