@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import pytest
 
-from lagrange_cli.arithmetic.many_digits import ManyDigits
+from lagrange_cli.elliptic.many_digits import ManyDigits
 
 ar = ManyDigits(60)
 """Arithmetic of the identities, apart from every other context."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import cast
 
-from lagrange_cli.arithmetic.exact_complex import ExactComplex
+from lagrange_cli.arithmetic.points import ExactComplex
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.elliptic.modulus_input import ModulusInput
 from lagrange_cli.elliptic.request import FunctionRequest

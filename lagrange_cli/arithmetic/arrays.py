@@ -1,23 +1,30 @@
-"""Arrays of real numbers, given in Python; arithmetics of arrays: doubles, and pairs of doubles.
+"""Arrays of doubles: their arithmetics, a block of elements at a time, in the order of a parity.
 
 `ARRAYS` is what the functions of `elliptic` take for NumPy arrays; it says nothing of overflow and
 0/0, whatever the host's `numpy.errstate` is.
+
+The arrays of the steps of a computation stay in the cache and are used again and again: memory that
+is new costs more than most steps that write to it.  The system hands it out in pages, each of them
+cleared when it is first touched, and takes it back when an array is freed.
 """
 
 from __future__ import annotations
 
 import sys
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from fractions import Fraction
+from itertools import accumulate, pairwise
+from math import prod
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LagtopError
 from .double_double import DoubleDouble
-from .scalars import Unenclosed
-from .sums_of_doubles import pair
+from .numbers import Unenclosed
+from .rounding import pair
 from .text import quoted
 from .types import Array
 
@@ -29,6 +36,11 @@ class Arrays(Unenclosed):
     eps, magnitude = 2.0**-52, -15.65
     pi: Any = np.pi
     nan: Any = np.nan
+    sqrt: Any = staticmethod(np.sqrt)
+    sin = staticmethod(np.sin)
+    cos = staticmethod(np.cos)
+    atan2: Any = staticmethod(np.arctan2)
+    where: Any = staticmethod(np.where)
 
     @staticmethod
     def working() -> AbstractContextManager[object]:
@@ -39,31 +51,6 @@ class Arrays(Unenclosed):
     def convert(value: float | Fraction) -> Any:
         """Return the double nearest to an exact value."""
         return float(value)
-
-    @staticmethod
-    def sqrt(x: Any) -> Any:
-        """Return the square roots."""
-        return np.sqrt(x)
-
-    @staticmethod
-    def sin(x: Any) -> Any:
-        """Return the sines."""
-        return np.sin(x)
-
-    @staticmethod
-    def cos(x: Any) -> Any:
-        """Return the cosines."""
-        return np.cos(x)
-
-    @staticmethod
-    def atan2(y: Any, x: Any) -> Any:
-        """Return the angles of the points (x, y)."""
-        return np.arctan2(y, x)
-
-    @staticmethod
-    def where(condition: Any, yes: Any, no: Any) -> Any:
-        """Choose element by element."""
-        return np.where(condition, yes, no)
 
     @staticmethod
     def anywhere(condition: Any) -> bool:
@@ -129,10 +116,7 @@ class Pairs(Arrays):
         """Return the angles of the points (x, y), as good as doubles are."""
         return DoubleDouble(np.arctan2(y.high, x.high))
 
-    @staticmethod
-    def where(condition: Any, yes: Any, no: Any) -> Any:
-        """Choose element by element."""
-        return DoubleDouble.choose(condition, yes, no)
+    where = staticmethod(DoubleDouble.choose)
 
 
 ARRAYS, PAIRS = ArrayFunctions(), Pairs()
@@ -154,3 +138,71 @@ def doubles_of(name: str, values: ArrayLike) -> Array:
             return array.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError):
         raise LagtopError(f"{name} must be real numbers, got {quoted(values)}", name) from None
+
+
+BLOCK = 16384
+"""Elements of an array that are computed together."""
+ROWS = 16
+"""Arrays of a workspace."""
+_IDLE: list[Array] = []
+"""Workspaces that nobody uses; taking one out and putting one in are safe in threads."""
+
+
+def blocks(size: int) -> Iterator[slice]:
+    """Yield slices that cover an array of so many elements; one slice where it is empty."""
+    return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
+
+
+@contextmanager
+def workspace(*shape: int) -> Iterator[Array]:
+    """Yield `ROWS` arrays of one shape, of at most a block of elements; their content is arbitrary.
+
+    None of them may be used after the `with`.
+    """
+    try:
+        whole = _IDLE.pop()
+    except IndexError:
+        whole = np.empty((ROWS, BLOCK))
+    try:
+        yield whole[:, : prod(shape)].reshape(ROWS, *shape)
+    finally:
+        _IDLE.append(whole)
+
+
+Order = NDArray[np.intp] | list[slice]
+"""Where the elements are, one by one or in runs."""
+_RUN = 250
+"""Elements in a row, on average, from which on it costs less to copy the runs as wholes."""
+
+
+def order_by_parity(whole: Array) -> tuple[int, Order | None]:
+    """Return how many whole numbers are even, and their order; None if all have one parity."""
+    ends = np.flatnonzero(whole[1:] != whole[:-1]) + 1
+    if ends.size * _RUN > whole.size:
+        half = 0.5 * whole
+        odd = half != np.rint(half)
+        even = np.flatnonzero(~odd)
+        return even.size, np.concatenate([even, np.flatnonzero(odd)])
+    runs: list[list[slice]] = [[], []]
+    for start, stop in pairwise([0, *ends.tolist(), whole.size]):
+        if start < stop:
+            runs[int(whole[start]) % 2].append(slice(start, stop))
+    return sum(run.stop - run.start for run in runs[0]), runs[0] + runs[1] if all(runs) else None
+
+
+def taken(values: Array, order: Order, out: Array) -> Array:
+    """Write values in the order."""
+    if isinstance(order, list):
+        return np.concatenate([values[run] for run in order], out=out)
+    return np.take(values, order, out=out, mode="clip")  # all are in range
+
+
+def placed(values: Array, order: Order, out: Array) -> Array:
+    """Write values that are in the order to their places."""
+    if isinstance(order, list):
+        ends = accumulate((run.stop - run.start for run in order), initial=0)
+        for run, (start, stop) in zip(order, pairwise(ends), strict=True):
+            out[run] = values[start:stop]
+    else:
+        out[order] = values
+    return out

@@ -30,7 +30,7 @@ from .ball import (
     multiply_up,
 )
 from .decimals import Decimals, decimals, pi_to
-from .scalars import Scalars
+from .numbers import Scalars
 
 _MARGIN = 6
 """Digits of elementary functions beyond those of the balls, besides the digits of that number."""
@@ -62,8 +62,15 @@ class Balls(Ring, Scalars):
         """The number pi."""
         return self.about(self._context.plus(pi_to(self.digits + 2)), 2)
 
-    def convert(self, value: float | Fraction) -> Ball:
-        """Return a ball that holds an exact value."""
+    @property
+    def inf(self) -> Ball:
+        """What stands for infinity: a ball that says nothing."""
+        return self.unbounded
+
+    def convert(self, value: Ball | float | Fraction) -> Ball:
+        """Return a ball that holds an exact value, or a ball as it is."""
+        if isinstance(value, Ball):
+            return value
         exact = Fraction(value)
         return self.exactly("divide", Decimal(exact.numerator), Decimal(exact.denominator))
 
@@ -113,19 +120,6 @@ class Balls(Ring, Scalars):
         except DecimalException:  # beyond all exponents
             return self.unbounded
 
-    def chained(self, function: Callable[[Decimal], Decimal], x: Ball, inverse: Ball) -> Ball:
-        """Return a function of x whose slope is 1 over a number `inverse` that falls with it."""
-        if not inverse.least > 0:
-            return self.unbounded
-        return self._value(function, x.middle).enlarged(divide_up(x.radius, inverse.least))
-
-    def _spread(self, value: Ball, factor: int, slope: Decimal, radius: Decimal) -> Ball:
-        """Return a function of a ball from its value, a bound of its slope and the radius."""
-        try:
-            return value.enlarged(multiply_up(multiply_up(factor, slope), radius))
-        except DecimalException:
-            return self.unbounded
-
     def sin(self, x: Ball) -> Ball:
         """Return the sine of x."""
         return self._turned(x, 0)
@@ -148,24 +142,56 @@ class Balls(Ring, Scalars):
 
     def exp(self, x: Ball) -> Ball:
         """Return e to the power x; e^r - 1 <= 2 r for r <= 1."""
-        if not x.radius <= 1:
-            return self.unbounded
-        value = self._value(self.plain.exp, x.middle)
-        return self._spread(value, 2, value.greatest, x.radius)
+        return self._growing(self.plain.exp, x, 2)
 
     def sinh(self, x: Ball) -> Ball:
         """Return the hyperbolic sine of x; its slope is cosh x <= 1 + |sinh x|."""
-        if not x.radius <= 1:
-            return self.unbounded
-        value = self._value(self.plain.sinh, x.middle)
-        return self._spread(value, 3, add_up(1, value.greatest), x.radius)
+        return self._growing(self.plain.sinh, x, 3, more=1)
 
     def cosh(self, x: Ball) -> Ball:
         """Return the hyperbolic cosine of x; its slope is less than itself."""
+        return self._growing(self.plain.cosh, x, 3)
+
+    def _growing(
+        self, function: Callable[[Decimal], Decimal], x: Ball, factor: int, more: int = 0
+    ) -> Ball:
+        """Return a function of x whose slope, within 1 of x, is at most its size and `more`,
+        times a factor."""
         if not x.radius <= 1:
             return self.unbounded
-        value = self._value(self.plain.cosh, x.middle)
-        return self._spread(value, 3, value.greatest, x.radius)
+        value = self._value(function, x.middle)
+        try:
+            slope = multiply_up(factor, add_up(more, value.greatest))
+            return value.enlarged(multiply_up(slope, x.radius))
+        except DecimalException:
+            return self.unbounded
+
+    def expm1(self, x: Ball) -> Ball:
+        """Return e to the power x, less 1."""
+        return 2 * self.sinh(x / 2) * self.exp(x / 2)
+
+    def tanh(self, x: Ball) -> Ball:
+        """Return the hyperbolic tangent of x."""
+        twice = self.expm1(2 * x)
+        return twice / (twice + 2)
+
+    def log(self, x: Ball) -> Ball:
+        """Return the natural logarithm of x > 0."""
+        return self._logarithm(self.plain.log, x, x)
+
+    def log1p(self, x: Ball) -> Ball:
+        """Return the natural logarithm of 1 + x, for x > -1."""
+        return self._logarithm(self.plain.log1p, x, 1 + x)
+
+    def _logarithm(self, function: Callable[[Decimal], Decimal], x: Ball, of: Ball) -> Ball:
+        """Return a function of x whose slope is 1 over the number that is `of` x."""
+        if not of.least > 0:
+            return self.unbounded
+        return self._value(function, x.middle).enlarged(divide_up(x.radius, of.least))
+
+    def atanh(self, x: Ball) -> Ball:
+        """Return the number whose hyperbolic tangent is x."""
+        return self.log1p(2 * x / (1 - x)) / 2
 
     def asinh(self, x: Ball) -> Ball:
         """Return the inverse hyperbolic sine of x, to so many digits behind the point."""
@@ -188,6 +214,10 @@ class Balls(Ring, Scalars):
         moved = fma_up(x.greatest, s, multiply_up(y.greatest, r))
         value = self._value(self.plain.atan2, y.middle, x.middle)
         return value.enlarged(divide_up(moved, square))
+
+    def atan(self, x: Ball) -> Ball:
+        """Return the arc whose tangent is x."""
+        return self.atan2(x, self.exact(1))
 
     def nint(self, x: Ball) -> int:
         """Return an integer within 3/4 of all of x.
@@ -242,6 +272,20 @@ class Balls(Ring, Scalars):
     def fixed(x: Ball) -> Ball:
         """Return x as a constant."""
         return x
+
+    @staticmethod
+    def sign(x: Ball) -> int:
+        """Return 1, 0 or -1 with the sign of x.  Raises TooFewDigitsError if it is open."""
+        return 0 if not x else 1 if x > 0 else -1
+
+    @staticmethod
+    def re(x: Ball) -> Ball:
+        """Return the real part, the number itself."""
+        return x
+
+    def im(self, x: Ball) -> Ball:
+        """Return the imaginary part, 0."""
+        return self.exact(0)
 
 
 @lru_cache(maxsize=64)

@@ -12,7 +12,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from .scalars import Scalars, Unenclosed
+from .numbers import Scalars, Unenclosed
 
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
 TRAPS: list[type[decimal.DecimalException]] = [
@@ -51,16 +51,13 @@ class Decimals(Scalars, Unenclosed):
 
     def __init__(self, digits: int = 40) -> None:
         self.digits, self.magnitude = digits, 1 - digits
+        self.eps = Decimal((0, (1,), 1 - digits))
+        """Distance from 1 to the next number."""
         self._context = own_context(digits, TRAPS)
 
     def working(self) -> AbstractContextManager[object]:
         """Return a context manager that sets the precision of this thread."""
         return decimal.localcontext(self._context)
-
-    @cached_property
-    def eps(self) -> Decimal:
-        """Distance from 1 to the next number."""
-        return Decimal(10) ** (1 - self.digits)
 
     @cached_property
     def pi(self) -> Decimal:
@@ -94,12 +91,7 @@ class Decimals(Scalars, Unenclosed):
         for _ in range(4):
             x = x + (x * x + y * y).sqrt()
         tangent = y / x if y else y
-        square, power, total, n = -tangent * tangent, tangent, tangent, 1
-        least = self.eps * abs(tangent) / 200
-        while abs(power) > least:
-            power, n = power * square, n + 2
-            total += power / n
-        return 16 * total
+        return 16 * self._odd_powers(tangent, -tangent * tangent)
 
     @staticmethod
     def exp(x: Decimal) -> Decimal:
@@ -116,12 +108,7 @@ class Decimals(Scalars, Unenclosed):
         if abs(x) > Decimal("0.1"):
             return (1 + x).ln()
         y = x / (2 + x)
-        square, power, total, n = y * y, y, y, 1
-        least = self.eps * abs(y) / 200
-        while abs(power) > least:
-            power, n = power * square, n + 2
-            total += power / n
-        return 2 * total
+        return 2 * self._odd_powers(y, y * y)
 
     def sinh(self, x: Decimal) -> Decimal:
         """Return the hyperbolic sine of x, near 0 by its Taylor series."""
@@ -149,6 +136,14 @@ class Decimals(Scalars, Unenclosed):
     def where(condition: bool, yes: Decimal | int, no: Decimal | int) -> Decimal:
         """Return one of two numbers."""
         return Decimal(yes) if condition else Decimal(no)
+
+    def _odd_powers(self, x: Decimal, ratio: Decimal) -> Decimal:
+        """Return x (1 + r/3 + r^2/5 + ...) of the ratio r."""
+        power, total, n, least = x, x, 1, self.eps * abs(x) / 200
+        while abs(power) > least:
+            power, n = power * ratio, n + 2
+            total += power / n
+        return total
 
     def _alternating(self, term: Decimal, ratio: Decimal, n: int) -> Decimal:
         """Return a sum of terms, each ratio/((n + 1)(n + 2)) times the one before."""

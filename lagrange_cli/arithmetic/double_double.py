@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .sums_of_doubles import Pair, Triple
+from .rounding import Pair, Triple
 from .types import Array, Mask
 
 _SPLITTER = 2.0**27 + 1

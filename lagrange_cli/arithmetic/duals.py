@@ -15,7 +15,7 @@ from typing import Any
 from .ball import OPEN, Ball
 from .balls import Balls
 from .decimals import Decimals
-from .scalars import Scalars
+from .numbers import Scalars
 
 Plain = Any
 """A number of the arithmetic that duals are over."""
@@ -60,9 +60,8 @@ class Dual:
 
     def _times(self, factor: Plain) -> Dual:
         """Return the product with a constant."""
-        if self.partials is None or is_zero(factor):
-            return Dual(self.value * factor)
-        return Dual(self.value * factor, [x * factor for x in self.partials])
+        value = self.value * factor
+        return Dual(value) if is_zero(factor) else _chained(self, value, factor)
 
     def __neg__(self) -> Dual:
         return Dual(-self.value, None if self.partials is None else [-x for x in self.partials])
@@ -97,10 +96,7 @@ class Dual:
 
     def __rtruediv__(self, other: int) -> Dual:
         inverse = 1 / self.value
-        if self.partials is None:
-            return Dual(other * inverse)
-        factor = -other * inverse * inverse
-        return Dual(other * inverse, [factor * x for x in self.partials])
+        return _chained(self, other * inverse, -other * inverse * inverse)
 
     def __bool__(self) -> bool:
         return bool(self.value)
@@ -201,16 +197,12 @@ class Duals(Scalars):
         angle = self.plain.atan2(y.value, x.value)
         square = x.value * x.value + y.value * y.value
         along, across = x.value / square, -y.value / square
-        return Dual(angle) + (self._slope(y, along) + self._slope(x, across))
-
-    def _slope(self, x: Dual, factor: Plain) -> Dual:
-        """Return a number of value 0 with the partials of x times a factor."""
-        return _chained(x, self.plain.convert(0), factor)
+        none = self.plain.convert(0)
+        return Dual(angle) + (_chained(y, none, along) + _chained(x, none, across))
 
     def nint(self, x: Dual) -> int:
         """Return the integer nearest to x."""
-        nearest: int = self.plain.nint(x.value)
-        return nearest
+        return int(self.plain.nint(x.value))
 
     def widened(
         self,

@@ -3,23 +3,24 @@
 The inputs of a scene are rational numbers, so most questions about its motion ("is the precession
 steady?", "does the axis meet the pole?") ask for the sign of a polynomial with rational
 coefficients at u = cos(theta0).  A sign that is not 0 shows itself in enough digits; a zero has to
-be proved.  The cosine of an angle of k/n turns is algebraic of known degree: the polynomial
-vanishes there just if the cyclotomic polynomial of n divides it.  The cosine of any other angle in
+be proved.  The cosine of an angle of k/n turns is algebraic of known degree, and the polynomial is
+one of a root of unity.  The cosine of any other angle in
 radians is transcendental (Lindemann), so that only the zero polynomial vanishes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import lru_cache, reduce
+from functools import partial
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 from .ball import Ball
 from .balls import Balls, balls
 from .decimals import pi_to
-from .numbers import R
+from .numbers import R, polynomial
 from .rounding import decided
 from .values import Over, Values
 
@@ -33,55 +34,50 @@ _SMALL = 1e-250
 
 
 class Polynomial:
-    """A polynomial with rational coefficients, the lowest power first."""
+    """A polynomial with rational coefficients, the lowest power first.
+
+    Sums and products are those with polynomials or rational numbers.
+    """
 
     __slots__ = ("coefficients",)
 
     def __init__(self, *coefficients: Fraction | int) -> None:
         self.coefficients = coefficients
 
+    def __call__(self, x: Any, convert: Callable[[Fraction], Any] = Fraction) -> Any:
+        """Return the value at x, the coefficients being converted to numbers like it."""
+        return polynomial([convert(Fraction(c)) for c in self.coefficients], x)
+
     def __add__(self, other: object) -> Polynomial:
-        """Return the sum with a polynomial or a rational number."""
-        p, q = self.coefficients, _polynomial(other).coefficients
-        if len(p) < len(q):
-            p, q = q, p
-        return Polynomial(*(x + y for x, y in zip(p, q, strict=False)), *p[len(q) :])
+        return Polynomial(*map(sum, zip_longest(self.coefficients, _terms(other), fillvalue=0)))
 
     def __mul__(self, other: object) -> Polynomial:
-        """Return the product with a polynomial or a rational number."""
-        p, q = self.coefficients, _polynomial(other).coefficients
-        product: list[Fraction | int] = [0] * (len(p) + len(q) - 1)
-        for i, x in enumerate(p):
-            for j, y in enumerate(q):
+        terms = _terms(other)
+        product: list[Fraction | int] = [0] * (len(self.coefficients) + len(terms) - 1)
+        for i, x in enumerate(self.coefficients):
+            for j, y in enumerate(terms):
                 product[i + j] += x * y
         return Polynomial(*product)
 
-    def __rmul__(self, other: object) -> Polynomial:
-        """Return the product with a rational number."""
-        return self * other
+    __radd__, __rmul__ = __add__, __mul__
 
     def __sub__(self, other: object) -> Polynomial:
-        """Return the difference from a polynomial or a rational number."""
-        return self + _polynomial(other) * -1
+        return self + Polynomial(*_terms(other)) * -1
 
     def __rsub__(self, other: object) -> Polynomial:
-        """Return the difference of a rational number and the polynomial."""
-        return _polynomial(other) - self
-
-    def __radd__(self, other: object) -> Polynomial:
-        """Return the sum with a rational number."""
-        return self + other
+        return self * -1 + other
 
 
 U = Polynomial(0, 1)
 """The cosine itself."""
 
 
-def _polynomial(value: object) -> Polynomial:
+def _terms(value: object) -> tuple[Fraction | int, ...]:
+    """Return the coefficients of a polynomial or of a rational number."""
     if isinstance(value, Polynomial):
-        return value
+        return value.coefficients
     assert isinstance(value, int | Fraction)
-    return Polynomial(value)
+    return (value,)
 
 
 class Tilt(Values, Over[R]):
@@ -112,65 +108,61 @@ class Cosine(Values):
         twice = None if self.degrees is None else known.get(self.degrees)
         return None if twice is None else Fraction(twice, 2)
 
-    def vanishes(self, polynomial: Polynomial) -> bool:
+    def vanishes(self, P: Polynomial) -> bool:
         """Return whether a polynomial is exactly 0 here."""
-        return self._clear_sign(polynomial) is None and self._vanishes(polynomial)
+        return self._clear_sign(P) is None and self._vanishes(P)
 
-    def fraction(self, polynomial: Polynomial) -> Fraction | None:
+    def fraction(self, P: Polynomial) -> Fraction | None:
         """Return a polynomial here where it is known as a fraction: 0, a constant, or of one."""
-        constant, *others = polynomial.coefficients
+        constant, *others = P.coefficients
         if not any(others):
             return Fraction(constant)
         if self.rational is not None:
-            return Fraction(value_at([Fraction(x) for x in polynomial.coefficients], self.rational))
-        return Fraction(0) if self.vanishes(polynomial) else None
+            return Fraction(P(self.rational))
+        return Fraction(0) if self.vanishes(P) else None
 
-    def sign(self, polynomial: Polynomial) -> int:
+    def sign(self, P: Polynomial) -> int:
         """Return the sign of a polynomial, -1, 0 or 1."""
-        sign = self._clear_sign(polynomial)
+        sign = self._clear_sign(P)
         if sign is None:
-            sign = 0 if self._vanishes(polynomial) else self._sign_in_balls(polynomial)
+            sign = (
+                0
+                if self._vanishes(P)
+                else decided("a polynomial in cos(theta0)", partial(self._sign_in_balls, P))
+            )
         return sign
 
-    def _clear_sign(self, polynomial: Polynomial) -> int | None:
+    def _clear_sign(self, P: Polynomial) -> int | None:
         """Return the sign where doubles are enough to see it."""
         try:
-            coefficients = [float(x) for x in polynomial.coefficients]
-            size = sum(map(abs, coefficients))
-            value = value_at(coefficients, math.cos(self._in_radians()))
+            size = sum(abs(float(x)) for x in P.coefficients)
+            value = P(math.cos(self._in_radians()), float)
         except OverflowError:
             return None
         if not abs(value) > _CERTAIN * size or size < _SMALL:
             return None
         return 1 if value > 0 else -1
 
-    def _vanishes(self, polynomial: Polynomial) -> bool:
-        coefficients = [Fraction(x) for x in polynomial.coefficients]
+    def _vanishes(self, P: Polynomial) -> bool:
+        coefficients = [Fraction(x) for x in P.coefficients]
         while coefficients and not coefficients[-1]:
             coefficients.pop()
         if not coefficients:
             return True
-        rational = self.rational
-        if rational is not None:
-            return not value_at(coefficients, rational)
+        if self.rational is not None:
+            return not P(self.rational)
         if self.degrees is None or len(coefficients) == 1:
             return False
         n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
-        if n > 8 * degree * degree:  # phi(n) >= sqrt(n/2): its degree is too high
-            return False
-        return not any(x != 0 for x in _remainder(_in_roots_of_unity(coefficients), cyclotomic(n)))
+        # phi(n) >= sqrt(n/2): beyond, the degree of the cosine is too high
+        return n <= 8 * degree * degree and _vanishes_at_root_of_unity(coefficients, n)
 
-    def _sign_in_balls(self, polynomial: Polynomial) -> int:
-        def sign(digits: int) -> int:
-            return 1 if self.at(balls(digits), polynomial) > 0 else -1
+    def _sign_in_balls(self, P: Polynomial, digits: int) -> int:
+        return 1 if self.at(balls(digits), P) > 0 else -1
 
-        return decided("a polynomial in cos(theta0)", sign)
-
-    def at(self, ar: Balls, polynomial: Polynomial) -> Ball:
+    def at(self, ar: Balls, P: Polynomial) -> Ball:
         """Return the value of a polynomial in balls."""
-        value: Ball = value_at(
-            [ar.convert(Fraction(x)) for x in polynomial.coefficients], self.value(ar)
-        )
+        value: Ball = P(self.value(ar), ar.convert)
         return value
 
     def _in_radians(self) -> float:
@@ -218,45 +210,17 @@ def _below_quarters(ar: Arithmetic[R], quarters: int, theta: Fraction) -> R:
     return ar.widened(gap, lambda: (gap,), lambda gap: gap * ar.eps)
 
 
-def value_at(coefficients: Sequence[Any], x: Any) -> Any:
-    """Return the polynomial with these coefficients, the lowest power first, at x."""
-    return reduce(lambda value, coefficient: value * x + coefficient, reversed(coefficients))
+def _vanishes_at_root_of_unity(coefficients: Sequence[Fraction], n: int) -> bool:
+    """Return whether P((z + 1/z)/2) is 0 where z is a primitive n-th root of unity.
 
-
-def _in_roots_of_unity(coefficients: Sequence[Fraction]) -> list[Fraction]:
-    """Return z^d P((z + 1/z)/2) for a polynomial P of degree d."""
-    degree = len(coefficients) - 1
-    half, total, power = Polynomial(Fraction(1, 2), 0, Fraction(1, 2)), Polynomial(0), Polynomial(1)
-    for j, coefficient in enumerate(coefficients):
-        shift = Polynomial(*[0] * (degree - j), coefficient)
-        total, power = total + power * shift, power * half
-    return [Fraction(x) for x in total.coefficients]
-
-
-@lru_cache(maxsize=256)
-def cyclotomic(n: int) -> tuple[Fraction, ...]:
-    """Return the cyclotomic polynomial of n, the lowest power first: x^n - 1 over those of the
-    proper divisors of n."""
-    quotient = [Fraction(-1)] + [Fraction(0)] * (n - 1) + [Fraction(1)]
-    for divisor in range(1, n):
-        if n % divisor == 0:
-            quotient = _divided(quotient, cyclotomic(divisor))[0]
-    return tuple(quotient)
-
-
-def _remainder(dividend: Sequence[Fraction], divisor: Sequence[Fraction]) -> list[Fraction]:
-    return _divided(dividend, divisor)[1]
-
-
-def _divided(
-    dividend: Sequence[Fraction], divisor: Sequence[Fraction]
-) -> tuple[list[Fraction], list[Fraction]]:
-    """Return quotient and remainder by a polynomial whose leading coefficient is 1."""
-    rest, size = list(dividend), len(divisor) - 1
-    quotient = [Fraction(0)] * max(len(rest) - size, 1)
-    for i in range(len(rest) - 1, size - 1, -1):
-        quotient[i - size] = factor = rest[i]
-        if factor:
-            for j, coefficient in enumerate(divisor):
-                rest[i - size + j] -= factor * coefficient
-    return quotient, rest[:size]
+    Modulo z^n - 1 this is a number for each power of z.  The factors z^(n/p) - 1, p the primes that
+    divide n, vanish at all n-th roots of unity but the primitive ones.
+    """
+    cyclic = [Fraction(0)] * n
+    for degree, coefficient in enumerate(coefficients):
+        for i in range(degree + 1):
+            cyclic[(degree - 2 * i) % n] += coefficient * Fraction(math.comb(degree, i), 2**degree)
+    for p in range(2, n + 1):
+        if n % p == 0 and all(p % q for q in range(2, p)):
+            cyclic = [cyclic[i - n // p] - x for i, x in enumerate(cyclic)]
+    return not any(cyclic)

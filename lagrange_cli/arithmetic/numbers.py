@@ -1,12 +1,13 @@
-"""Numbers of any arithmetic: what formulas need of them, and how formulas are evaluated.
+"""Numbers of any arithmetic: what formulas need of them, and the arithmetic of plain floats.
 
-What their arithmetic offers is said in `protocol`, which a record is computed without.
+What an arithmetic offers is said in `protocol`, which a record is computed without.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from fractions import Fraction
 from functools import lru_cache, wraps
 from operator import index
@@ -43,6 +44,7 @@ R = TypeVar("R", bound="Real")
 """The numbers of the arithmetic in use."""
 F = TypeVar("F", bound=Callable[..., Any])
 """A formula f(ar, ...)."""
+T = TypeVar("T")
 
 
 def is_real(value: object) -> bool:
@@ -63,6 +65,16 @@ def unrounded(value: Any, nearest: float) -> Number:
     if exact == nearest or not hasattr(exact, "as_integer_ratio"):
         return nearest
     return Fraction(*exact.as_integer_ratio())
+
+
+def per_radian(*, radians: bool) -> float:
+    """Return how many of the unit of angles in use, radians or degrees, a radian is."""
+    return 1.0 if radians else 180 / math.pi
+
+
+def unit_in_radians(*, radians: bool) -> float:
+    """Return how many radians the unit of angles in use, a radian or a degree, is."""
+    return 1.0 if radians else math.pi / 180
 
 
 def absolute(x: R) -> R:
@@ -89,12 +101,15 @@ def root_of_epsilon(ar: Any, over: int, degree: int) -> Any:
 
 
 def polynomial(coefficients: Sequence[Any], x: Any) -> Any:
-    """Return the value at an array x of two coefficients at least, the lowest power first."""
-    value = coefficients[-1] * x
-    for coefficient in coefficients[-2:0:-1]:
-        value += coefficient
+    """Return the value of a polynomial at a number or an array x, the lowest power first."""
+    constant, *others = coefficients
+    if not others:
+        return constant
+    value = others.pop() * x
+    while others:
+        value += others.pop()
         value *= x
-    value += coefficients[0]
+    value += constant
     return value
 
 
@@ -110,3 +125,61 @@ def in_arithmetic(function: F) -> F:
             return function(ar, *arguments, **named)
 
     return cast(F, evaluate)
+
+
+class Unenclosed:
+    """An arithmetic whose numbers have no radii, so that what iterations leave out is ignored."""
+
+    def widened(
+        self,
+        x: T,
+        small: Callable[[], tuple[Any, ...]],
+        bound: Callable[..., Any],
+        *,
+        values_only: bool = False,
+    ) -> T:
+        """Return x: what an iteration leaves out is below the last digit."""
+        return x
+
+    def either(self, condition: Any) -> Any:
+        """Return a condition on which only the way to the result depends."""
+        return condition
+
+    def fixed(self, x: T) -> T:
+        """Return x as a constant."""
+        return x
+
+
+class Scalars:
+    """An arithmetic of single numbers, in which a condition is true or false."""
+
+    is_array = False
+
+    def working(self) -> AbstractContextManager[object]:
+        """Return a context manager that has nothing to do: the numbers know their precision."""
+        return nullcontext()
+
+    def where(self, condition: Any, yes: Any, no: Any) -> Any:
+        """Return one of two numbers."""
+        return yes if condition else no
+
+    def anywhere(self, condition: Any) -> bool:
+        """Return whether a condition holds; that of balls may raise TooFewDigitsError."""
+        return bool(condition)
+
+    everywhere = anywhere
+
+
+class Doubles(Scalars, Unenclosed):
+    """The arithmetic of floats."""
+
+    eps, magnitude = 2.0**-52, -15.65
+    pi, nan = math.pi, math.nan
+    convert = staticmethod(float)
+    sqrt = staticmethod(math.sqrt)
+    sin = staticmethod(math.sin)
+    cos = staticmethod(math.cos)
+    atan2 = staticmethod(math.atan2)
+
+
+DOUBLES = Doubles()

@@ -1,13 +1,14 @@
-"""Points on a line, evenly or logarithmically spaced or listed, kept exact and rounded once."""
+"""Numbers that are kept exact and rounded once: points on a line, and complex numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import LagtopError
+from .text import is_decimal, parse_number
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,7 +27,6 @@ MAX_PERIODS = 2.0**50
 MAX_TIME = 1e290
 """Room for the exact product of a time and a rate."""
 
-
 _DIGITS_OF_LOG_POINTS = Context(
     prec=30, rounding=ROUND_HALF_EVEN, Emin=-9999, Emax=9999, capitals=1, clamp=0, traps=[]
 )
@@ -43,8 +43,8 @@ class Points:
         raise NotImplementedError
 
     def decimals(self) -> Iterator[Fraction]:
-        """Yield every point exactly."""
-        raise NotImplementedError
+        """Yield every point exactly, or as the double that stands for it if it is no fraction."""
+        return (Fraction(x) for block in self.blocks() for x in block.tolist())
 
     def bounds(self) -> list[float]:
         """Return the two outermost points, or nothing where they are not known yet."""
@@ -68,13 +68,6 @@ class Points:
 class EvenPoints(Points):
     """The points start + i step for i from 0 to count - 1."""
 
-    def __str__(self) -> str:
-        return f"{self.start}:{self.start + (self.count - 1) * self.step}:{self.count}"
-
-    def scaled(self, factor: Fraction) -> Points:
-        """Return the points times a factor."""
-        return EvenPoints(self.start * factor, self.step * factor, self.count)
-
     def __init__(self, start: Fraction, step: Fraction, count: int) -> None:
         """Raise LagtopError where there would be more than 1e9 points."""
         if count > MOST_POINTS:
@@ -85,6 +78,13 @@ class EvenPoints(Points):
             )
         self.start, self.step, self.count = start, step, count
 
+    def __str__(self) -> str:
+        return f"{self.start}:{self.start + (self.count - 1) * self.step}:{self.count}"
+
+    def scaled(self, factor: Fraction) -> Points:
+        """Return the points times a factor."""
+        return EvenPoints(self.start * factor, self.step * factor, self.count)
+
     def at(self, index: Index) -> Array:
         """Return start + i step for every i of `index`, each rounded once.
 
@@ -94,7 +94,7 @@ class EvenPoints(Points):
         import numpy as np
 
         from .double_double import two_product, two_sum
-        from .sums_of_doubles import pair
+        from .rounding import pair
 
         start, step = pair(self.start), pair(self.step)
         i = index.astype(np.float64)
@@ -120,6 +120,9 @@ class EvenPoints(Points):
 class LogPoints(Points):
     """Points from one end to the other, neither of them 0, with equal ratios between neighbours."""
 
+    def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
+        self.first, self.last, self.count = first, last, count
+
     def __str__(self) -> str:
         return f"log:{self.first}:{self.last}:{self.count}"
 
@@ -127,27 +130,24 @@ class LogPoints(Points):
         """Return the points times a factor > 0."""
         return LogPoints(self.first * factor, self.last * factor, self.count)
 
-    def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
-        self.first, self.last, self.count = first, last, count
-
     def at(self, index: Index) -> Array:
         """Return first (last/first)^(i/(count - 1)) for every i, computed in 30 digits."""
         import numpy as np
 
         distinct, where = np.unique(index, return_inverse=True)
         with localcontext(_DIGITS_OF_LOG_POINTS):
-            first, last = _decimal(self.first), _decimal(self.last)
+            first, last = (x.numerator / Decimal(x.denominator) for x in (self.first, self.last))
             growth = (last / first).ln() / max(self.count - 1, 1)
             values = [float(first * (growth * i).exp()) for i in distinct.tolist()]
         return np.array(values)[where]
 
-    def decimals(self) -> Iterator[Fraction]:
-        """Yield every point as the double that stands for it: the exact ones are no fractions."""
-        return (Fraction(x) for block in self.blocks() for x in block.tolist())
-
 
 class ListedPoints(Points):
     """Points that are listed one by one."""
+
+    def __init__(self, exact: list[Fraction]) -> None:
+        self.exact, self.count = exact, len(exact)
+        self.values = [float(point) for point in exact]
 
     def __str__(self) -> str:
         return ",".join(map(str, self.exact))
@@ -155,10 +155,6 @@ class ListedPoints(Points):
     def scaled(self, factor: Fraction) -> Points:
         """Return the points times a factor."""
         return ListedPoints([point * factor for point in self.exact])
-
-    def __init__(self, exact: list[Fraction]) -> None:
-        self.exact, self.count = exact, len(exact)
-        self.values = [float(point) for point in exact]
 
     def at(self, index: Index) -> Array:
         """Return the doubles nearest to the points with these indices."""
@@ -186,5 +182,50 @@ def check_reach(name: str, points: Points, limit: float) -> None:
         )
 
 
-def _decimal(value: Fraction) -> Decimal:
-    return value.numerator / Decimal(value.denominator)
+class ExactComplex(NamedTuple):
+    """A complex number with two exact parts."""
+
+    real: Fraction
+    imag: Fraction = Fraction(0)
+
+    def __str__(self) -> str:
+        """Return the number as it can be typed."""
+        real, imag = f"{float(self.real)}", f"{float(self.imag):+}i"
+        if not self.imag:
+            return real
+        return imag.removeprefix("+") if not self.real else real + imag
+
+    def nearest(self) -> ExactComplex:
+        """Return the number whose parts are the nearest doubles."""
+        return ExactComplex(Fraction(float(self.real)), Fraction(float(self.imag)))
+
+    def __complex__(self) -> complex:
+        """Return the nearest complex double."""
+        return complex(float(self.real), float(self.imag))
+
+
+def parse_complex(text: str) -> ExactComplex:
+    """Return the exact value of `0.3`, `0.7i`, `i` or `0.3-0.7i`.
+
+    Raises LagtopError, with the remedy, for anything else and for parts that no double can hold.
+    """
+    text = text.strip()
+    real, imag = _part_texts(text)
+    if looks_complex(text) and not (is_decimal(real) and is_decimal(imag)):
+        raise LagtopError(f"must be a finite number, complex as 0.3+0.7i, got {text!r}")
+    return ExactComplex(parse_number(real), parse_number(imag))
+
+
+def looks_complex(text: str) -> bool:
+    """Return whether a text has a letter for the imaginary unit, right or wrong."""
+    return not set("ijIJ").isdisjoint(text)
+
+
+def _part_texts(text: str) -> tuple[str, str]:
+    """Return the texts of the real and of the imaginary part, as they stand."""
+    if not text.endswith("i"):
+        return text, "0"
+    signs = [i for i, sign in enumerate(text) if sign in "+-" and text[i - 1 : i] not in {"e", "E"}]
+    split = signs[-1] if signs else 0
+    imag = text[split:-1]
+    return text[:split] or "0", f"{imag}1" if imag in {"", "+", "-"} else imag

@@ -1,4 +1,7 @@
-"""Proved roundings: more digits, until both ends of an enclosure are rounded alike (Ziv 1991)."""
+"""Proved roundings: more digits, until both ends of an enclosure are rounded alike (Ziv 1991).
+
+A number is rounded to a double, to digits, or to a sum of two or three doubles.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,15 @@ import math
 from collections.abc import Callable, Iterator
 from decimal import ROUND_UP, Decimal
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..errors import LagtopError, OutOfRangeError
 from .ball import Ball, TooFewDigitsError
 from .decimals import own_context
 from .text import NumberText
+
+if TYPE_CHECKING:
+    from .types import Array
 
 S = TypeVar("S")
 
@@ -19,7 +25,6 @@ FIRST_DIGITS, MOST_DIGITS = 32, 4_500
 """Digits of the first enclosure of a double, and digits beyond which a question stays open."""
 _GUARD = 10
 """Digits that an enclosure of N digits has besides."""
-_INFINITE = float("inf")
 _OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])
 _OUTWARDS.rounding = _SHORT.rounding = ROUND_UP
 _A_HAIR_MORE = Decimal("1.000000000001")
@@ -121,12 +126,7 @@ def rounded(what: str, enclosure: Callable[[int], Ball]) -> float:
 
     def nearest(digits: int) -> float:
         ball = enclosure(digits)
-        if ball.is_nan:
-            return math.nan
-        low, high = map(float, ball.ends())
-        if low != high:
-            raise TooFewDigitsError
-        return low + 0.0  # never -0.0
+        return math.nan if ball.is_nan else float(ball) + 0.0  # never -0.0
 
     return decided(what, nearest)
 
@@ -139,7 +139,7 @@ def nearest_double(name: str) -> Callable[[DecimalOrFraction], float]:
 
     def rounding(value: DecimalOrFraction) -> float:
         nearest = float(value)
-        if not abs(nearest) < _INFINITE:
+        if math.isinf(nearest):
             raise OutOfRangeError(
                 f"{name} must be within 1.8e308 in size, got {value:.3e}: change the units"
             )
@@ -186,3 +186,37 @@ def _distance(end: DecimalOrFraction, value: float | NumberText) -> Decimal:
         return _OUTWARDS.subtract(end, Decimal(value)).copy_abs()
     away = abs(end - Fraction(value))
     return _OUTWARDS.divide(Decimal(away.numerator), Decimal(away.denominator))
+
+
+class Pair(NamedTuple):
+    """A number, or an array of numbers, to twice the precision of doubles."""
+
+    high: float | Array
+    low: float | Array
+
+
+class Triple(NamedTuple):
+    """A number to three times the precision."""
+
+    high: float | Array
+    middle: float | Array
+    low: float | Array
+
+
+def pair(value: Any) -> Pair:
+    """Return a number of many digits, or a fraction, as two doubles.
+
+    Raises TooFewDigitsError for a ball that does not know them.
+    """
+    high = float(value)
+    return Pair(high, float(_less(value, high)))
+
+
+def triple(value: Any) -> Triple:
+    """Return a number of many digits as three doubles."""
+    high, middle = pair(value)
+    return Triple(high, middle, float(_less(_less(value, float(high)), float(middle))))
+
+
+def _less(value: Any, part: float) -> Any:
+    return value - (part if isinstance(value, Ball) else type(value)(part))

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import ListedPoints
-from ..arithmetic.scalars import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 from ..motion.over_time.table import rows

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.scalars import DOUBLES
+from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.types import Array
+from ..elliptic.many_digits import ManyDigits
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..motion.solve import solve

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.scalars import DOUBLES
+from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.rotations import angles_of
 from ..inputs.top import Top

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..arithmetic.exact_complex import ExactComplex, parse_complex
+from ..arithmetic.points import ExactComplex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import ETA
 from ..output.write import write_record

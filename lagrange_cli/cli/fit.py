@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..arithmetic.angles import unit_in_radians
+from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
 from .command import ExamplesFirst, complain, fail_for, write_report

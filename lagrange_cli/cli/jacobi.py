@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..arithmetic.exact_complex import ExactComplex, looks_complex, parse_complex
+from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..errors import LagtopError
 from ..output.layouts import JACOBI
 from ..output.write import write_record

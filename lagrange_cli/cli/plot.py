@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..arithmetic.angles import unit_in_radians
+from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import check_names

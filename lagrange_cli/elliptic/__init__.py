@@ -1,8 +1,8 @@
 """The functions of both sources: elliptic integrals, Jacobi's functions, theta functions and nomes.
 
 Every function takes the arithmetic as its first argument: `arithmetic.arrays.ARRAYS` for NumPy
-arrays, or `arithmetic.many_digits.ManyDigits(n)`, an mpmath context (any number of digits; complex
-arguments); those of `complete` and R_F also `arithmetic.decimals` and `arithmetic.scalars.DOUBLES`.
+arrays, or `elliptic.many_digits.ManyDigits(n)`, an mpmath context (any number of digits; complex
+arguments); those of `complete` and R_F also `arithmetic.decimals` and `arithmetic.numbers.DOUBLES`.
 Conventions: modulus k, complement k', parameter m = k^2, nome q = exp(-pi K'/K), always named in
 the call (`modulus(ARRAYS, k_prime=1e-9)`), so that they cannot be confused.  The complement is
 passed in beside the modulus; 1 - k^2 is never formed, so nothing is lost as k -> 1.

@@ -6,7 +6,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ..arithmetic.ball_functions import BallFunctions
+from ..arithmetic.balls import Balls
 from ..arithmetic.exact_cosine import below_quarters
 from ..arithmetic.points import MAX_PERIODS, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
@@ -43,7 +43,7 @@ class AmplitudeTable(RealTable):
         """Raise LagtopError for a modulus out of range."""
         self.modulus.check()
 
-    def constants(self, ar: BallFunctions) -> Modulus:
+    def constants(self, ar: Balls) -> Modulus:
         """Return the modulus in balls."""
         return self.modulus.in_digits(ar)
 

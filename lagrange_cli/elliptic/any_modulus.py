@@ -14,14 +14,14 @@ from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.exact_complex import ExactComplex
+from ..arithmetic.points import ExactComplex
 from ..arithmetic.protocol import Value
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
 from .modulus import Modulus, constants, exact_modulus
 
 if TYPE_CHECKING:  # mpmath is loaded for complex numbers only
-    from ..arithmetic.many_digits import ManyDigits
+    from .many_digits import ManyDigits
 
 
 class ModulusKind(Enum):

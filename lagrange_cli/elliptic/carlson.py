@@ -46,7 +46,7 @@ def blockwise(function: F) -> F:
 def _in_blocks(function: Callable[..., Any], ar: Any, arguments: tuple[Any, ...]) -> Any:
     import numpy as np
 
-    from ..arithmetic.blocks import BLOCK, blocks
+    from ..arithmetic.arrays import BLOCK, blocks
     from ..arithmetic.double_double import DoubleDouble
 
     if any(isinstance(x, DoubleDouble) for x in arguments):

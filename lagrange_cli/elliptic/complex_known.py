@@ -9,11 +9,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..arithmetic.exact_complex import ExactComplex
-from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.points import ExactComplex
 from ..arithmetic.protocol import Value
 from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
+from .many_digits import ManyDigits
 from .modulus_input import ModulusInput
 from .request import FunctionRequest
 

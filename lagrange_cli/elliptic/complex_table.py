@@ -7,18 +7,16 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.exact_complex import ExactComplex
-from ..arithmetic.many_digits import ManyDigits
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, check_reach
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, check_reach
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
-from .agreeing_digits import AgreeingNumbers, agreed_or_rounded
 from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
 from .complex_known import known_parts
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .jacobi import complex_jacobi
 from .lattice import Lattice, Place, lattice, place_of
+from .many_digits import AgreeingNumbers, ManyDigits
 from .modulus_input import ModulusInput
 from .request import THETA, THIRD, Arguments, FunctionRequest
 from .tables import TableOfFunctions
@@ -178,10 +176,12 @@ def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str,
         columns = {"k": k, "k_prime": k_prime, "nome": q, "K": K, "K_prime": K_prime}
         return _both(ar, columns | {"E": E, "E_prime": E_prime})
 
-    real = "k_re k_prime_im nome_im K_im E_im" if modulus.imag else "k_im k_prime_re"
-    return agreed_or_rounded(
-        compute, digits, f"{real} {'' if modulus.imag else 'K_prime_im E_prime_im'}".split()
-    )
+    if digits is None:
+        return {name: float(x) for name, x in compute(ManyDigits()).items()}
+    zeros = "k_re k_prime_im nome_im K_im E_im"
+    if not modulus.imag:
+        zeros = "k_im k_prime_re K_prime_im E_prime_im"
+    return AgreeingNumbers(digits).texts(compute, zeros.split())
 
 
 def _both(ar: ComplexArithmetic, columns: dict[str, Value]) -> dict[str, Value]:

@@ -10,13 +10,13 @@ from cell to cell are exponentials of polynomials, which are written out.
 from __future__ import annotations
 
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
 from .cell_series import Base, cell_series
 from .lattice import Fine, Lattice, Place, coarse, coordinate_of, fine_whole, lattice, place_of
+from .many_digits import ManyDigits
 from .modulus import Modulus, in_many_digits
 from .periods import NAMES, Complex
 

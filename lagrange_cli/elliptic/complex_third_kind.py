@@ -19,12 +19,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from .any_modulus import ModulusKind
 from .complex_theta import base_at, fine_size, inner_name, rises, slope_in_cell
 from .lattice import Coordinate, Fine, Lattice, Place, coarse, place_of
+from .many_digits import ManyDigits
 from .periods import Complex
 
 

@@ -7,12 +7,11 @@ from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.ball_functions import BallFunctions, ball_functions
+from ..arithmetic.balls import Balls, balls
+from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.rounding import decided
-from ..arithmetic.scalars import DOUBLES
-from ..arithmetic.sums_of_doubles import Pair, pair
+from ..arithmetic.rounding import Pair, decided, pair
 from .complete import complete_k
 from .eta import Band, EtaConstants, band_of, eta_constants, modulus_in_use
 from .jacobi import jacobi, jacobi_at
@@ -65,7 +64,7 @@ class EtaTable(RealTable):
         """Raise LagtopError unless the motion is periodic."""
         self.quadrature.check()
 
-    def constants(self, ar: BallFunctions) -> EtaMotion:
+    def constants(self, ar: Balls) -> EtaMotion:
         """Return the motion in balls."""
         c, band = eta_constants(ar, self.quadrature), band_of(ar, self.quadrature)
         c3, quarter = ar.convert(self.c3), complete_k(ar, modulus_in_use(c, band).k_prime)
@@ -82,7 +81,7 @@ class EtaTable(RealTable):
         from ..arithmetic.double_double import reduce_phase
 
         def rounded(digits: int) -> tuple[EtaConstants, Pair, float, float]:
-            ar = ball_functions(digits)
+            ar = balls(digits)
             exact = eta_constants(ar, self.quadrature)
             offset = ar.convert(self.c3) / exact.period
             whole = ar.nint(offset)

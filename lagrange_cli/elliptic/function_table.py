@@ -7,12 +7,11 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.ball_functions import BallFunctions, ball_functions
+from ..arithmetic.balls import Balls, balls
+from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.rounding import decided
-from ..arithmetic.scalars import DOUBLES
-from ..arithmetic.sums_of_doubles import pair
+from ..arithmetic.rounding import decided, pair
 from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
@@ -82,7 +81,7 @@ class FunctionTable(RealTable):
         if "k_prime" in self.modulus.zeros():
             raise LagtopError("u must be a number, without K, for k = 1, where K is infinite", "u")
 
-    def constants(self, ar: BallFunctions) -> FunctionConstants:
+    def constants(self, ar: Balls) -> FunctionConstants:
         """Return the constants of the modulus and the parameter."""
         request, exact = self.request, self.modulus.in_digits(ar)
         endless = "k_prime" in self.modulus.zeros() and request.families == ("am",)
@@ -100,7 +99,7 @@ class FunctionTable(RealTable):
         modulus = self.modulus.in_doubles()
         return decided(
             "the constants of these functions",
-            lambda digits: self.constants(ball_functions(digits)).rounded(modulus),
+            lambda digits: self.constants(balls(digits)).rounded(modulus),
         )
 
     def columns(

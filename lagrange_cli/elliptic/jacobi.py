@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
-from ..arithmetic.sums_of_doubles import triple
+from ..arithmetic.rounding import triple
 from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
 from .modulus import Modulus

@@ -12,12 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import blocks
+from ..arithmetic.arrays import ARRAYS, blocks
 from ..arithmetic.double_double import reduce_phase, sqrt_pair, two_product, two_sum
 from ..arithmetic.numbers import polynomial
 from ..arithmetic.protocol import Value
-from ..arithmetic.sums_of_doubles import Pair
+from ..arithmetic.rounding import Pair
 from ..arithmetic.types import Array
 from .complete import nome
 from .modulus import Modulus

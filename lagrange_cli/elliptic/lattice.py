@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arithmetic.double_double import DoubleDouble
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.sums_of_doubles import Triple, triple
+from ..arithmetic.rounding import Triple, triple
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
+from .many_digits import ManyDigits
 from .periods import Complex, reduced
 
 Fine = Value

@@ -5,10 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.ball_functions import ball_functions
+from ..arithmetic.balls import balls
 from ..arithmetic.exact_cosine import Cosine, below_quarters
-from ..arithmetic.rounding import decided
-from ..arithmetic.sums_of_doubles import pair
+from ..arithmetic.rounding import decided, pair
 from ..errors import LagtopError
 from .modulus import Modulus, constants, exact_modulus, modulus
 from .proved_numbers import ProvedNumbers
@@ -67,7 +66,7 @@ class ModulusInput(NamedTuple):
         """
 
         def rounded(digits: int) -> Modulus:
-            exact = self.in_digits(ball_functions(digits))
+            exact = self.in_digits(balls(digits))
             return Modulus(float(exact.k), *pair(exact.k_prime))
 
         found = decided(self.name, rounded)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..arithmetic.protocol import FunctionArithmetic, Value
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
-    from ..arithmetic.sums_of_doubles import Triple
+    from ..arithmetic.rounding import Triple
     from ..arithmetic.types import Array
 
 NAMES = ("01", "00", "11", "10")

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..arithmetic.ball import Ball, TooFewDigitsError
-from ..arithmetic.ball_functions import BallFunctions, ball_functions
+from ..arithmetic.balls import Balls, balls
 from ..arithmetic.rounding import MOST_DIGITS, alike, precisions, text_of
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
@@ -29,7 +29,7 @@ class ProvedNumbers:
 
     def of(
         self,
-        compute: Callable[[BallFunctions], Mapping[str, Any]],
+        compute: Callable[[Balls], Mapping[str, Any]],
         known: Mapping[str, float] = MappingProxyType({}),
         more: int = 0,
     ) -> dict[str, Any]:
@@ -43,7 +43,7 @@ class ProvedNumbers:
             if working > self.most + more:
                 raise TooFewDigitsError
             with suppress(TooFewDigitsError):
-                values = compute(ball_functions(working))
+                values = compute(balls(working))
                 for name in values.keys() - found.keys():
                     value = None if values[name] is None else known.get(name, values[name])
                     with suppress(TooFewDigitsError):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.exact_complex import ExactComplex
+from ..arithmetic.points import ExactComplex
 from .modulus_input import ModulusInput
 
 if TYPE_CHECKING:

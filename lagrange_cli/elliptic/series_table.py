@@ -7,13 +7,13 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.many_digits import ManyDigits
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import Value
 from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import jacobi
+from .many_digits import ManyDigits
 from .modulus import Modulus
 from .modulus_input import ModulusInput
 from .nome_series import (

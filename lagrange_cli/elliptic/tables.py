@@ -20,7 +20,7 @@ from ..arithmetic.protocol import FunctionArithmetic, Value
 from .proved_numbers import ProvedNumbers
 
 if TYPE_CHECKING:
-    from ..arithmetic.ball_functions import BallFunctions
+    from ..arithmetic.balls import Balls
     from ..arithmetic.points import Points
     from ..arithmetic.text import NumberText
     from ..arithmetic.types import Array
@@ -89,7 +89,7 @@ class RealTable(TableOfFunctions):
     def check(self) -> None:
         """Raise LagtopError for inputs that no number of digits can help."""
 
-    def constants(self, ar: BallFunctions) -> Any:
+    def constants(self, ar: Balls) -> Any:
         """Return all that does not depend on the point, in balls."""
         raise NotImplementedError
 
@@ -127,7 +127,7 @@ class RealTable(TableOfFunctions):
             x = Fraction(float(point)) if digits is None and self.rounds else point
             known = table.known(x)
 
-            def compute(ar: BallFunctions) -> dict[str, Value]:
+            def compute(ar: Balls) -> dict[str, Value]:
                 return table.columns(ar, ar.convert(x), constants(ar), known)
 
             return numbers.texts(compute, known, table.digits_lost(x))

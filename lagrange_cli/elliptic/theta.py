@@ -16,11 +16,10 @@ import math
 from typing import NamedTuple
 
 from ..arithmetic.ball import TooFewDigitsError
-from ..arithmetic.ball_functions import ball_functions
+from ..arithmetic.balls import balls
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.rounding import decided
-from ..arithmetic.sums_of_doubles import Triple, triple
+from ..arithmetic.rounding import Triple, decided, triple
 from ..errors import LagtopError
 from .complete import complete_k, nome
 from .modulus import Modulus, in_many_digits
@@ -93,7 +92,7 @@ def rounded_series(modulus: Modulus) -> ThetaSeries:
     """Return the constants for a modulus in doubles, rounded from balls."""
 
     def series(digits: int) -> ThetaSeries:
-        ar = ball_functions(digits)
+        ar = balls(digits)
         return series_in_doubles(series_constants(ar, in_many_digits(ar, modulus)))
 
     return decided("the constants of the modulus", series)

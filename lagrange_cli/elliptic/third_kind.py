@@ -16,12 +16,11 @@ import math
 from functools import partial
 from typing import Any
 
-from ..arithmetic.ball_functions import ball_functions
-from ..arithmetic.numbers import in_arithmetic
+from ..arithmetic.balls import balls
+from ..arithmetic.numbers import DOUBLES, in_arithmetic
 from ..arithmetic.points import MAX_PERIODS
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
-from ..arithmetic.scalars import DOUBLES
 from ..errors import LagtopError
 from .complete import complete_k
 from .modulus import Modulus, in_many_digits
@@ -143,7 +142,7 @@ def rounded_kind(ij: str, size: float, modulus: Modulus, *, imaginary: bool) -> 
     """Return Omega_ij and Pi_ij of a parameter and a modulus in doubles, rounded from balls."""
 
     def kind(digits: int) -> ThirdKind:
-        ar = ball_functions(digits)
+        ar = balls(digits)
         exact = in_many_digits(ar, modulus)
         return third_kind(ar, ij, ar.convert(float(size)), exact, imaginary=imaginary).rounded()
 

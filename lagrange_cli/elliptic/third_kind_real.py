@@ -12,7 +12,7 @@ from typing import Any, Self
 
 from ..arithmetic.ball import Ball
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.sums_of_doubles import pair
+from ..arithmetic.rounding import pair
 from .periods import Periods
 from .theta import widened_by
 

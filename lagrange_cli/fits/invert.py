@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from ..arithmetic.angles import unit_in_radians
+from ..arithmetic.numbers import unit_in_radians
 from ..errors import AbsentError, LagtopError
 from ..inputs.top import Top
 from ..motion.quantity import unit_name

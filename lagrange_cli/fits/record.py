@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.angles import per_radian
+from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
 from .fit import Fit
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products

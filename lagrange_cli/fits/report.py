@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.angles import per_radian
+from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
 from ..motion.record import KEYS

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.angles import per_radian
 from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.numbers import per_radian
 from ..arithmetic.protocol import Value
 from ..arithmetic.types import Array
 from ..elliptic.complete import complete_k, period_mean

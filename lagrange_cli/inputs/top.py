@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from ..arithmetic.decimals import own_context
 from ..arithmetic.exact_cosine import Cosine, Tilt, below_quarters
-from ..arithmetic.numbers import Number, R, is_real, unrounded
-from ..arithmetic.scalars import DOUBLES
+from ..arithmetic.numbers import DOUBLES, Number, R, is_real, unrounded
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError

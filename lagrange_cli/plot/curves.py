@@ -13,8 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.numbers import Number
-from ..arithmetic.scalars import DOUBLES
+from ..arithmetic.numbers import DOUBLES, Number
 from ..arithmetic.types import Array
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.complete import complete_k

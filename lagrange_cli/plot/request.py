@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.angles import per_radian
+from ..arithmetic.numbers import per_radian
 from ..arithmetic.points import LogPoints
 from ..errors import LagtopError
 from ..inputs.input_keys import NINE, Input

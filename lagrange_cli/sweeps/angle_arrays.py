@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..arithmetic.arrays import PAIRS
 from ..arithmetic.double_double import DoubleDouble, Period, period_of, whole_periods
-from ..arithmetic.sums_of_doubles import Pair, Triple
+from ..arithmetic.rounding import Pair, Triple
 from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine

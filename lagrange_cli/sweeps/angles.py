@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.arrays import ARRAYS
-from ..arithmetic.blocks import BLOCK, blocks, workspace
+from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, workspace
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.names import ANGLES

@@ -14,10 +14,9 @@ from balls.scene import arb_bits
 from flint import arb
 
 from lagrange_cli.arithmetic.ball import OPEN, Ball, TooFewDigitsError, UndefinedError
-from lagrange_cli.arithmetic.ball_functions import BallFunctions, ball_functions
 from lagrange_cli.arithmetic.balls import Balls, balls
 
-AR = ball_functions(40)
+AR = balls(40)
 
 
 def random_ball(rng: random.Random, ar: Balls = AR) -> Ball:
@@ -83,7 +82,7 @@ def test_functions_of_exact_numbers_have_nearly_all_digits(name: str) -> None:
     """An enclosure that says nothing would hold everything."""
     rng = random.Random(name)
     for digits in (20, 40, 300):
-        ar = ball_functions(digits)
+        ar = balls(digits)
         for _ in range(50):
             x = ar.convert(Fraction(rng.randrange(10, 90), 100))
             value = getattr(ar, name)(x)
@@ -278,12 +277,12 @@ def test_a_bound_widens_and_one_that_diverges_says_nothing() -> None:
 
 
 def test_balls_owe_nothing_to_the_context_of_the_host() -> None:
-    def numbers(ar: BallFunctions) -> list[str]:
+    def numbers(ar: Balls) -> list[str]:
         x = ar.convert(0.7)
         values = [getattr(ar, name)(x / 3) for name in FUNCTIONS]
         return [str(y) for y in (*values, x * x - x / 7, ar.atan2(x, -x), ar.pi)]
 
-    usual = numbers(BallFunctions(30))
+    usual = numbers(Balls(30))
     with localcontext() as context:
         context.prec, context.traps = 1, dict.fromkeys(context.traps, True)
-        assert numbers(BallFunctions(30)) == usual
+        assert numbers(Balls(30)) == usual

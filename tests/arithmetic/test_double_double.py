@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from lagrange_cli.arithmetic.arrays import order_by_parity, placed, taken
 from lagrange_cli.arithmetic.double_double import (
     MANY,
     Period,
@@ -16,8 +17,7 @@ from lagrange_cli.arithmetic.double_double import (
     period_of,
     whole_periods,
 )
-from lagrange_cli.arithmetic.order import order_by_parity, placed, taken
-from lagrange_cli.arithmetic.sums_of_doubles import Pair, pair, triple
+from lagrange_cli.arithmetic.rounding import Pair, pair, triple
 from lagrange_cli.arithmetic.types import Array
 
 

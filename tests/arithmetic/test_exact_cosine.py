@@ -8,7 +8,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from lagrange_cli.arithmetic.exact_cosine import Cosine, Polynomial, U, cyclotomic
+from lagrange_cli.arithmetic.exact_cosine import Cosine, Polynomial, U
 
 MINIMAL = {
     "36": (-1, -2, 4),
@@ -140,14 +140,6 @@ def test_the_cosine_of_radians_is_transcendental() -> None:
 def test_niven(degrees: int, value: float) -> None:
     assert at_degrees(degrees).rational == Fraction(value)
     assert at_degrees(degrees + Fraction("1e-30") if degrees < 180 else 179).rational is None
-
-
-def test_cyclotomic_polynomials() -> None:
-    assert list(map(int, cyclotomic(1))) == [-1, 1]
-    assert list(map(int, cyclotomic(6))) == [1, -1, 1]
-    assert list(map(int, cyclotomic(12))) == [1, 0, -1, 0, 1]
-    assert list(map(int, cyclotomic(15))) == [1, -1, 0, 1, -1, 1, 0, -1, 1]
-    assert -2 in cyclotomic(105)
 
 
 def test_polynomials_add_and_multiply() -> None:

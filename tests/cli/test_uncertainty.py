@@ -13,7 +13,7 @@ import pytest
 from conftest import Lagtop, assert_one_line
 
 from lagrange_cli import Top, solve
-from lagrange_cli.arithmetic.scalars import DOUBLES
+from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.inputs.value import parse_value
 from lagrange_cli.motion.sensitivity.uncertainty import by_given
 from lagrange_cli.output.uncertain_text import uncertain_text

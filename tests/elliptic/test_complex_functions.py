@@ -15,12 +15,12 @@ from function_judge import INDEX, ComplexJudge, complex_units
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.elliptic.any_modulus import any_constants, any_modulus
 from lagrange_cli.elliptic.complex_theta import complex_theta, complex_zeta
 from lagrange_cli.elliptic.complex_third_kind import complex_omega, complex_pi, parameter
 from lagrange_cli.elliptic.jacobi import complex_jacobi
 from lagrange_cli.elliptic.lattice import lattice
+from lagrange_cli.elliptic.many_digits import ManyDigits
 
 AR = ManyDigits(50)
 THIRD = ("01", "00", "11")

@@ -13,7 +13,7 @@ from conftest import Lagtop
 from function_judge import ComplexJudge, complex_units
 
 from lagrange_cli import LagtopError
-from lagrange_cli.arithmetic.exact_complex import parse_complex
+from lagrange_cli.arithmetic.points import parse_complex
 
 EVERYTHING = "--am --theta --zeta --omega --pi --param 0.2+0.7i --format json"
 

@@ -10,10 +10,10 @@ import pytest
 from scenes import EPS
 
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.arithmetic.scalars import DOUBLES
+from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.elliptic.carlson import carlson_rf
 from lagrange_cli.elliptic.complete import complete_e, complete_k, nome, period_mean
+from lagrange_cli.elliptic.many_digits import ManyDigits
 
 _RANDOM = random.Random(4)
 COMPLEMENTS = [10 ** _RANDOM.uniform(-14, 0) for _ in range(100)] + [

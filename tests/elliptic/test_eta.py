@@ -16,11 +16,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
-from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.eta import eta_constants, record
 from lagrange_cli.elliptic.eta_table import EtaTable
+from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.elliptic.quadrature import Quadrature
 
 

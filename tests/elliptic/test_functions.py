@@ -16,11 +16,11 @@ from scenes import EPS
 
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.bench.reference import error_in_units
 from lagrange_cli.elliptic.carlson import carlson_rc, carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import complete_k
 from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.elliptic.modulus import Modulus, constants, modulus
 from lagrange_cli.elliptic.theta import theta, zeta
 from lagrange_cli.elliptic.third_kind import omega

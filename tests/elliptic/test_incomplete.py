@@ -16,7 +16,6 @@ from flint import acb, arb, ctx
 from function_judge import EPS, ball
 
 from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.many_digits import ManyDigits
 from lagrange_cli.elliptic.incomplete import (
     e_of,
     f_of,
@@ -25,6 +24,7 @@ from lagrange_cli.elliptic.incomplete import (
     incomplete_e,
     incomplete_f,
 )
+from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.elliptic.modulus import modulus
 
 

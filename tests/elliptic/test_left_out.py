@@ -19,7 +19,7 @@ from flint import acb, arb
 
 import lagrange_cli.elliptic.third_kind as third_kinds
 from lagrange_cli.arithmetic.ball import Ball
-from lagrange_cli.arithmetic.ball_functions import BallFunctions
+from lagrange_cli.arithmetic.balls import Balls
 from lagrange_cli.arithmetic.duals import Dual, Duals, independent
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.complete import agm, complete_e, complete_k, nome, period_mean
@@ -39,11 +39,11 @@ STOPS = (1, 2, 3, 6, 15, 36, 90)
 SERIES_STOPS = STOPS[2:]
 """Where series are cut short: their steepness has to be known."""
 
-FULL = BallFunctions(DIGITS)
+FULL = Balls(DIGITS)
 """Constants of series have all digits: their bounds would hide those of the series."""
 
 
-class Unwidened(BallFunctions):
+class Unwidened(Balls):
     """Balls that forget what an iteration leaves out."""
 
     def widened(self, x: Ball, *_: Any, **__: Any) -> Ball:
@@ -51,7 +51,7 @@ class Unwidened(BallFunctions):
 
 
 def missed(
-    compute: Callable[[BallFunctions], Sequence[Ball]],
+    compute: Callable[[Balls], Sequence[Ball]],
     exact: Sequence[arb],
     sharp: Callable[[int, Decimal], bool],
     stops: Sequence[int] = STOPS,
@@ -61,7 +61,7 @@ def missed(
     With it they hold the truth, and `sharp` says whether their largest radius is small enough.
     """
     for stop in stops:
-        found = compute(BallFunctions(DIGITS, stop))
+        found = compute(Balls(DIGITS, stop))
         assert all(map(holds, found, exact)), stop
         assert sharp(stop, max(x.radius for x in found)), stop  # or the bound would be no bound
     short = (compute(Unwidened(DIGITS, stop)) for stop in stops)
@@ -222,7 +222,7 @@ def test_a_theta_series_cut_short_holds_the_truth(name: str, ij: str) -> None:
     """Without the bound the series misses the truth."""
     function, truth = (theta_at, theta_of) if name == "theta" else (zeta_at, zeta_of)
 
-    def computed(ar: BallFunctions, k: str, x: str) -> list[Ball]:
+    def computed(ar: Balls, k: str, x: str) -> list[Ball]:
         series = series_for(FULL, exact_modulus(FULL, Fraction(k)))
         return [function(ar, ij, whole_and_rest(ar, ar.convert(Fraction(x))), series)]
 
@@ -235,7 +235,7 @@ def test_a_theta_series_cut_short_holds_the_truth(name: str, ij: str) -> None:
     assert count >= 3
 
 
-def kind_at(ar: BallFunctions, ij: str, k: str, y: str, *, imaginary: bool) -> Any:
+def kind_at(ar: Balls, ij: str, k: str, y: str, *, imaginary: bool) -> Any:
     exact = exact_modulus(FULL, Fraction(k))
     v = FULL.convert(Fraction(y)) * 2 * complete_k(FULL, exact.k_prime)
     series = series_for(FULL, exact)
@@ -250,7 +250,7 @@ def test_omega_cut_short_holds_the_truth(k: str, ij: str, imaginary: bool) -> No
     """Without the bound the series misses the truth."""
     truth, count = imaginary_omega_of if imaginary else omega_of, 0
 
-    def computed(ar: BallFunctions, x: str, y: str) -> list[Ball]:
+    def computed(ar: Balls, x: str, y: str) -> list[Ball]:
         given = kind_at(ar, ij, k, y, imaginary=imaginary)
         found = given.omega(ar, whole_and_rest(ar, ar.convert(Fraction(x))))
         return [ar.sin(found) / ar.cos(found) if imaginary else found]
@@ -272,7 +272,7 @@ def test_what_pi_grows_by_in_a_period_holds_the_truth(k: str, ij: str, imaginary
     with arb_bits(2000):
         for y in ("0.05", "0.17"):
             for stop in SERIES_STOPS:
-                ar = BallFunctions(DIGITS, stop)
+                ar = Balls(DIGITS, stop)
                 kind = kind_at(ar, ij, k, y, imaginary=imaginary)
                 found = kind.growth * kind.sign
                 if imaginary:
@@ -316,13 +316,13 @@ def test_an_iteration_cut_short_holds_the_truth(name: str) -> None:
     count = 0
     with arb_bits(1000):
         for texts in cases:
-            ar = BallFunctions(DIGITS)
+            ar = Balls(DIGITS)
             exact, whole = truth(*map(exact_arb, texts)), computed(ar, *balls_of(ar, texts))
             size = whole.greatest
             assert holds(whole, exact), texts
             assert whole.radius <= size * Decimal(10) ** (12 - DIGITS), texts
 
-            def compute(ar: BallFunctions) -> list[Ball]:
+            def compute(ar: Balls) -> list[Ball]:
                 return [computed(ar, *balls_of(ar, texts))]  # noqa: B023
 
             def sharp(stop: int, radius: Decimal) -> bool:
@@ -342,13 +342,13 @@ def test_derivatives_of_an_iteration_cut_short_hold_the_truth(name: str) -> None
             point = [*map(exact_arb, texts)]
             slopes = [slope_of(partial(along, truth, point, i), at) for i, at in enumerate(point)]
             for stop in STOPS:
-                for kind in (BallFunctions, Unwidened):
+                for kind in (Balls, Unwidened):
                     ar = Duals(kind(DIGITS, stop))
                     if kind is Unwidened:
                         ar.widened = lambda x, *_, **__: x  # type: ignore[method-assign]
                     found: Dual = computed(ar, *independent(balls_of(ar.plain, texts)))
                     right = all(map(holds, found.partials or (), slopes))
-                    if kind is BallFunctions:
+                    if kind is Balls:
                         assert right, (texts, stop)
                         size = max(x.radius for x in found.partials or ())
                         most = 1 + max(abs(exact) for exact in slopes)

@@ -10,7 +10,7 @@ import mpmath
 import pytest
 from conftest import Lagtop
 
-from lagrange_cli.arithmetic.many_digits import ManyDigits
+from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.elliptic.nome_series import (
     am_bound,

@@ -11,7 +11,7 @@ import pytest
 from scenes import NAMED, period, random_scene, random_times
 
 from lagrange_cli import LagtopError, Motion, Top, solve
-from lagrange_cli.arithmetic.blocks import BLOCK
+from lagrange_cli.arithmetic.arrays import BLOCK
 
 
 def worst(scene: dict[str, float], motion: Motion, times: list[float]) -> float:

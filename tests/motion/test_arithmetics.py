@@ -13,8 +13,8 @@ from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.arrays import PAIRS
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.arithmetic.double_double import DoubleDouble
-from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.arithmetic.scalars import DOUBLES
+from lagrange_cli.arithmetic.numbers import DOUBLES
+from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.motion.any_start import gaps_from_start
 from lagrange_cli.motion.gaps import State, gaps_from_rest, state
 from lagrange_cli.motion.kinds import kind_of

@@ -10,7 +10,7 @@ import pytest
 from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
-from lagrange_cli.arithmetic.blocks import ROWS, workspace
+from lagrange_cli.arithmetic.arrays import ROWS, workspace
 from lagrange_cli.motion.over_time import samplers
 from lagrange_cli.motion.over_time.columns import COLUMNS, chosen_columns, name_of
 from lagrange_cli.motion.over_time.sample import samples

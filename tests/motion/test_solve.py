@@ -15,8 +15,8 @@ from scenes import EPS, NAMED, random_scene
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.arithmetic.decimals import decimals
-from lagrange_cli.arithmetic.many_digits import ManyDigits
-from lagrange_cli.arithmetic.scalars import DOUBLES
+from lagrange_cli.arithmetic.numbers import DOUBLES
+from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.motion.gaps import State, gaps_from_rest, state
 from lagrange_cli.motion.kinds import kind_of
 from lagrange_cli.motion.record import NUMBER_KEYS

@@ -29,8 +29,7 @@ import orjson
 from scipy import special
 
 from lagrange_cli import Top, solve
-from lagrange_cli.arithmetic.arrays import ARRAYS
-from lagrange_cli.arithmetic.blocks import BLOCK
+from lagrange_cli.arithmetic.arrays import ARRAYS, BLOCK
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.integrators import integrators

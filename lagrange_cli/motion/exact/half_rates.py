@@ -13,7 +13,8 @@ from functools import lru_cache
 
 from ...arithmetic.ball import TooFewDigitsError
 from ...arithmetic.balls import balls
-from ...arithmetic.exact_cosine import Polynomial, U, value_at
+from ...arithmetic.exact_cosine import Polynomial, U
+from ...arithmetic.numbers import polynomial
 from ...arithmetic.rounding import FIRST_DIGITS, decided
 from ..any_start import largest_root
 from ..regime import Exact
@@ -74,7 +75,7 @@ def _zeros_possible(exact: Exact, P: InU3, cubic: InU3, digits: int) -> list[boo
     total, product = -c2 - u3, -c0 / u3
     spread = ar.sqrt(total * total - 4 * product)
     terms = [exact.cosine.at(ar, x) for x in P]
-    values = (value_at(terms, u) for u in (u3, (total + spread) / 2, (total - spread) / 2))
+    values = (polynomial(terms, u) for u in (u3, (total + spread) / 2, (total - spread) / 2))
     return [(abs(value) > 0) is not True for value in values]
 
 

@@ -22,7 +22,7 @@ from ...arithmetic.double_double import (
 )
 from ...arithmetic.numbers import R
 from ...arithmetic.protocol import Arithmetic
-from ...arithmetic.sums_of_doubles import Pair, Triple, pair, triple
+from ...arithmetic.rounding import Pair, Triple, pair, triple
 from ...arithmetic.types import Array
 
 _PI = Pair(math.pi, 1.2246467991473532e-16)

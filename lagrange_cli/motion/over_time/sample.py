@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arithmetic.arrays import ARRAYS
-from ...arithmetic.blocks import BLOCK, blocks, workspace
+from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, workspace
 from ...arithmetic.types import Array
 from ..numbers import Numbers
 from .attitude import Attitude, needed

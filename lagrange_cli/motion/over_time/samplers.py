@@ -24,10 +24,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arithmetic.arrays import ARRAYS
-from ...arithmetic.blocks import BLOCK, blocks, workspace
+from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, order_by_parity, placed, taken, workspace
 from ...arithmetic.double_double import Period, whole_periods
-from ...arithmetic.order import order_by_parity, placed, taken
 from ...arithmetic.types import Array
 from .attitude import Attitude, Growths, Spinor, Times
 from .columns import NOTHING, TILT, TURN, Needs

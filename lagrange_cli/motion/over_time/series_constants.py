@@ -155,7 +155,7 @@ def sampler_of(motion: Kind[Decimal]) -> Sampler:
 def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     """Return the sampler of a nutating top."""
     from ...arithmetic.double_double import period_of
-    from ...arithmetic.sums_of_doubles import pair
+    from ...arithmetic.rounding import pair
     from .attitude import growths
     from .samplers import ThetaSampler
 

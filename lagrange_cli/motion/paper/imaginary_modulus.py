@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...arithmetic.many_digits import ManyDigits
 from ...elliptic.incomplete import incomplete_f
 from ...elliptic.jacobi import jacobi
+from ...elliptic.many_digits import ManyDigits
 from ...elliptic.modulus import constants, modulus
 from ...elliptic.third_kind import pi_function
 from ...errors import LagtopError

@@ -14,10 +14,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arithmetic.angles import unit_in_radians
-from ...arithmetic.arrays import ARRAYS
+from ...arithmetic.arrays import ARRAYS, blocks
 from ...arithmetic.ball import TooFewDigitsError
-from ...arithmetic.blocks import blocks
+from ...arithmetic.numbers import unit_in_radians
 from ...arithmetic.rounding import decided
 from ...arithmetic.types import Array
 from ...inputs.names import check_names

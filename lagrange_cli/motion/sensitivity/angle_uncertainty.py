@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from ...arithmetic.arrays import ARRAYS
-from ...arithmetic.scalars import DOUBLES
+from ...arithmetic.numbers import DOUBLES
 from ...arithmetic.types import Array
 from ...inputs.names import ANGLES
 from ..regime import Exact

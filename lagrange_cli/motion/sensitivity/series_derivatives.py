@@ -16,7 +16,7 @@ import numpy as np
 from ...arithmetic.double_double import period_of, whole_periods
 from ...arithmetic.duals import Dual
 from ...arithmetic.points import MAX_PERIODS
-from ...arithmetic.sums_of_doubles import pair
+from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
 from ..kinds import Nutating
 from ..over_time.attitude import Growths, Times, growths

@@ -14,7 +14,7 @@ import numpy as np
 from ...arithmetic.double_double import reduce_phase
 from ...arithmetic.duals import Dual
 from ...arithmetic.points import MAX_PERIODS
-from ...arithmetic.sums_of_doubles import Pair, pair
+from ...arithmetic.rounding import Pair, pair
 from ...arithmetic.types import Array
 from ..any_start import cubic
 from ..gaps import State

@@ -1,8 +1,8 @@
-"""Digits of functions of complex numbers, on which two precisions of mpmath agree.
+"""Many digits of functions of complex numbers, on which two precisions of mpmath agree.
 
 This is no proof: the same cancellation may spoil both.  They must agree on eight digits more than
 are printed, and a computed 0 or pole counts as too few digits: it has to be known from its formula.
-Real functions are proved (see `proved_numbers`).
+Real functions are proved (see `tables.ProvedNumbers`).
 """
 
 from __future__ import annotations
@@ -11,13 +11,32 @@ from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from typing import Any
 
+from mpmath.ctx_mp import MPContext
+
 from ..arithmetic.ball import TooFewDigitsError
-from ..arithmetic.many_digits import ManyDigits
+from ..arithmetic.numbers import Scalars, Unenclosed
 from ..arithmetic.text import NumberText
 from ..errors import LagtopError
 
 _GUARD = 8
 """Digits that must agree beyond those that are printed."""
+
+
+class ManyDigits(Scalars, Unenclosed, MPContext):  # type: ignore[misc]
+    """The arithmetic of mpmath: any number of digits, complex numbers, and special functions.
+
+    It is a context of its own: nobody else's precision is touched.  By default it has the digits
+    for constants that are rounded to doubles; 34 would do, the rest is margin.
+    """
+
+    def __init__(self, digits: int = 50) -> None:
+        super().__init__()
+        self.dps = digits
+
+    @property
+    def magnitude(self) -> float:
+        """The decimal logarithm of eps."""
+        return 1.0 - float(self.dps)
 
 
 class AgreeingNumbers:
@@ -60,18 +79,6 @@ class AgreeingNumbers:
                 return {name: _text(ar, x, self.digits) for name, x in values.items()}
             previous = texts
         raise LagtopError(f"{self.digits} digits did not settle with {most} to work with")
-
-
-def agreed_or_rounded(
-    compute: Callable[[ManyDigits], Mapping[str, Any]],
-    digits: int | None,
-    known: Collection[str],
-) -> dict[str, Any]:
-    """Return numbers as `AgreeingNumbers.texts` does; without `digits`, the nearest doubles."""
-    if digits is not None:
-        return AgreeingNumbers(digits).texts(compute, known)
-    exact = compute(ManyDigits())
-    return {name: x if x is None or isinstance(x, str) else float(x) for name, x in exact.items()}
 
 
 def _unproved(ar: ManyDigits, value: Any) -> bool:
