@@ -19,7 +19,7 @@ from .top_options import by_key, input_options, say_missing, say_no_tops, value_
 
 if TYPE_CHECKING:
     from ..inputs.value import Value
-    from ..sweeps.parts import Make
+    from ..sweeps.plan import Make
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -103,8 +103,7 @@ def command(
     from ..output.parquet import check_parquet
     from ..sweeps.cluster import computed, connected
     from ..sweeps.folder import Folder
-    from ..sweeps.parts import Tally, shard_of
-    from ..sweeps.plan import plan
+    from ..sweeps.plan import Tally, plan, shard_of
 
     exclude({"--jobs": jobs, "--dask": cluster})
     exclude({"--parts": folder, "--output": None if output == "-" else output})

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import LagtopError
-from ..inputs.top import Top
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
 from .options import (
@@ -43,6 +42,7 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..inputs.given import Given
     from ..inputs.value import Value
+    from ..motion.over_time.table import TableRequest
     from ..motion.solve import Motion
 
 
@@ -118,7 +118,7 @@ def command(
     Uncertain inputs (see there too) add the standard uncertainties of the angles, theta_deg_std and
     so on, as the last columns.
     """
-    from ..motion.over_time.table import DEFAULT_COLUMNS, DEFAULT_ROWS
+    from ..motion.over_time.table import DEFAULT_COLUMNS, DEFAULT_ROWS, TableRequest
 
     options, interval = in_seconds(options, t_min=t_min, t_max=t_max, dt=dt)
     exclude({"--n": count, "--dt": dt})
@@ -131,12 +131,11 @@ def command(
     for name, value in {"--t-max": t_max, "--t-min": t_min, "--n": count, "--dt": dt}.items():
         exclude({"--times": times, name: value})
     _check_format(fmt, times, tops, digits, certify)
-    wish = Wish(
+    request = TableRequest(
         _listed(times, tops, fmt) or partial(_grid, n=count, **interval),
         DEFAULT_COLUMNS if columns is None else columns,
         rad,
         wrap,
-        jobs or 1,
         count or (None if dt or times else DEFAULT_ROWS),
         tops is not None and (times is not None or t_max is not None),
     )
@@ -147,11 +146,11 @@ def command(
             exclude({name: value, "uncertain inputs": found.stds or None})
         with blaming(times):
             if certify or digits is not None:
-                _write_proved(motion, wish, digits, certify, fmt, output)
+                _write_proved(motion, request, digits, certify, fmt, output)
             else:
-                _write_one(motion, wish, found, fmt, output)
+                _write_one(motion, request, found, fmt, output)
     else:
-        _write_many(tops, scene, options, wish, fmt, output)
+        _write_many(tops, scene, options, request, jobs or 1, fmt, output)
 
 
 def _check_format(
@@ -170,29 +169,6 @@ def _check_format(
         from ..output.parquet import check_parquet
 
         check_parquet()
-
-
-class Wish(NamedTuple):
-    """What to tabulate of every top."""
-
-    times: Callable[[Motion], Points]
-    columns: Sequence[str]
-    radians: bool
-    wrap: bool
-    jobs: int
-    rows_per_top: int | None
-    """Their number, where the options tell it."""
-    same: bool
-    """Whether all tops have the same times."""
-
-    def same_times(self) -> Points | None:
-        """Return the times of all tops, if there are any that do not hang on the motion."""
-        from ..motion.solve import solve
-
-        try:
-            return self.times(solve(Top())) if self.same else None
-        except LagtopError:  # every row says so
-            return None
 
 
 def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion], Points] | None:
@@ -220,24 +196,21 @@ def _grid(motion: Motion, **interval: Any) -> Points:
     return grid(motion, **interval)
 
 
-def _times(motion: Motion, wish: Wish, fmt: str) -> Points:
+def _times(motion: Motion, request: TableRequest, fmt: str) -> Points:
     """Return the times of a table.  Raises LagtopError for more rows than can be drawn."""
-    times = wish.times(motion)
+    times = request.times(motion)
     if fmt == "table" and times.count > MAX_TABLE_ROWS:
         raise LagtopError(f"--format table shows at most {MAX_TABLE_ROWS} rows, got {times.count}")
     return times
 
 
-def _write_one(motion: Motion, wish: Wish, found: Given, fmt: str, output: str) -> None:
+def _write_one(motion: Motion, request: TableRequest, found: Given, fmt: str, output: str) -> None:
     from ..motion.over_time.columns import chosen_columns
-    from ..motion.over_time.table import rows
 
-    times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
-    stds = angle_stds(found, motion)
-    spread = stds.at if stds else None
-    header, parts = rows(motion, times, wish.columns, stds=spread, **shown)
+    times, stds = _times(motion, request, fmt), angle_stds(found, motion)
+    header, parts = request.rows(motion, times, stds.at if stds else None)
     if fmt == "table":
-        units = [part.unit for part in chosen_columns(wish.columns)]
+        units = [part.unit for part in chosen_columns(request.columns)]
         if found.system is not None:
             units = [found.system.named(unit) for unit in units]
         named = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
@@ -248,13 +221,13 @@ def _write_one(motion: Motion, wish: Wish, found: Given, fmt: str, output: str) 
 
 
 def _write_proved(
-    motion: Motion, wish: Wish, digits: int | None, radii: bool, fmt: str, output: str
+    motion: Motion, request: TableRequest, digits: int | None, radii: bool, fmt: str, output: str
 ) -> None:
     """Write a table whose numbers are rounded from enclosures."""
     from ..motion.over_time.proved_table import ProvedTable
 
-    times, shown = _times(motion, wish, fmt), {"radians": wish.radians, "wrap": wish.wrap}
-    header, parts = ProvedTable(motion, wish.columns, digits, **shown).rows(times, radii=radii)
+    times, shown = _times(motion, request, fmt), {"radians": request.radians, "wrap": request.wrap}
+    header, parts = ProvedTable(motion, request.columns, digits, **shown).rows(times, radii=radii)
     write_table(
         header, with_progress(parts, "rows", times.count or None, len), fmt, output, times.count
     )
@@ -264,32 +237,21 @@ def _write_many(
     tops: str,
     scene: str | None,
     options: Mapping[str, Any],
-    wish: Wish,
+    request: TableRequest,
+    jobs: int,
     fmt: str,
     output: str,
 ) -> None:
-    from ..sweeps.parts import Tally
+    from ..sweeps.plan import Tally
     from ..sweeps.tables import open_tables
 
-    inputs = by_key(options, radians=wish.radians)
+    inputs = by_key(options, radians=request.radians)
     system = inputs.pop("units", None)
-    tables, lines, given = open_tables(
-        tops,
-        scene,
-        inputs,
-        wish.columns,
-        wish.times,
-        radians=wish.radians,
-        wrap=wish.wrap,
-        fmt=fmt,
-        rows_per_top=wish.rows_per_top,
-        same=wish.same_times(),
-        system=system,
-    )
+    tables, lines, given = open_tables(tops, scene, inputs, request, fmt=fmt, system=system)
     exclude({"--tops": tops, "uncertain inputs": given.stds or None})
     say_missing(given)
     tally = Tally()
-    texts = (part.text for part in tally.passing(tables.computed(lines, wish.jobs)))
+    texts = (part.text for part in tally.passing(tables.computed(lines, jobs)))
     write_text_blocks(fmt, tables.header, with_progress(texts, "blocks"), output)
     tally.check()
     if not tally.count:

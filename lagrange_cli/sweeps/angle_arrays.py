@@ -1,23 +1,24 @@
-"""Angles of many tops over time: the constants of their theta series as arrays, and the sampling.
+"""Angles of many tops over time: motions in pairs of doubles, and their theta series as arrays.
 
 The constants are computed in pairs of doubles by the formulas of `motion`, and rounded once.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import reduce
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import PAIRS
 from ..arithmetic.double_double import DoubleDouble, Period, period_of, whole_periods
+from ..arithmetic.points import MAX_TIME
 from ..arithmetic.rounding import Pair, Triple
 from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
+from ..motion.gaps import Gaps, State, gaps_from_rest
 from ..motion.kinds import Nutating
 from ..motion.over_time.attitude import Attitude, Growth, Growths, Spinor, Times
 from ..motion.over_time.samplers import arguments_of, moduli_of, tilt_of, unwound
@@ -29,11 +30,90 @@ from ..motion.over_time.theta_series import (
     circular_series,
     hyperbolic_series,
 )
-from .pair_motions import PairMotions, Start
+from ..motion.regime import Regime
+from .start_arrays import EPS, FACTS, StartArrays
+from .top_arrays import TopArrays, facts_at_rest
+
+_SMALL = 2.0**-56
+"""Error of a phase, or of a constant, that is far below a unit of the angles."""
 
 
-@dataclass(frozen=True)
-class ArraySampler:
+class Start(NamedTuple):
+    """Where tops are at t = 0, by sn^2 and cn^2 of their argument w there."""
+
+    sn2: DoubleDouble
+    cn2: DoubleDouble
+    direction: Array
+    """Sign of the nutation rate."""
+
+
+class PairMotions(NamedTuple):
+    """Motions of many nutating tops in pairs of doubles, and how far they can be trusted."""
+
+    motion: Nutating[DoubleDouble]
+    start: Start | None
+    """None where all tops start at the top of the nutation."""
+    noise: Array
+    """Bound of the relative errors of the gaps."""
+    rate_size: Array
+    """Size of what is added up to give the mean rates."""
+    sure: Mask
+
+    def part(self, rows: NDArray[np.intp]) -> PairMotions:
+        """Return some of the motions, with what is known of them."""
+        whole, facts = self.motion, self.motion.facts
+        signs = {name: getattr(facts, name)[rows] for name in ("sign_plus", "sign_minus")}
+        state, gaps = State(*(x[rows] for x in whole.state)), Gaps(*(x[rows] for x in whole.gaps))
+        motion = Nutating(whole.ar, facts.replace(**signs), state, gaps)
+        known = {name: x[rows] for name, x in vars(whole).items() if isinstance(x, DoubleDouble)}
+        vars(motion).update(known)
+        return PairMotions(motion, *_rows_of(list(self[1:]), rows))
+
+    def hyperbolic(self) -> Mask:
+        """Return where K > K', so that the series run in the nome of the complement."""
+        return self.motion.m.high > 0.5
+
+    def reach(self) -> Array:
+        """Return the longest times at which the angles are trusted; NaN where none is."""
+        with PAIRS.working():
+            period = self.motion.T_nutation.high
+            reach = _SMALL / self.noise / (self.rate_size + 8 / period)
+            usable = self.sure & (self.noise < _SMALL) & np.isfinite(reach) & (period > 0)
+            return np.where(usable, np.minimum(reach, MAX_TIME), np.nan)
+
+
+def released_motions(tops: TopArrays) -> PairMotions:
+    """Return the motions of regular tops released from rest."""
+    with PAIRS.working():
+        state, facts = tops.pair_state(), facts_at_rest(Regime.REGULAR, tops.r0)
+        sign = DoubleDouble(facts.sign_plus)
+        facts = facts.replace(sign_plus=sign, sign_minus=-sign)
+        motion = Nutating(PAIRS, facts, state, gaps_from_rest(PAIRS, state))
+        parts = np.maximum(state.a.high, state.b.high**2 / 2)
+        noise = EPS * (1 + parts / abs(state.sleep.high))  # lambda - 1 is what cancels
+        size = abs(tops.r0) + abs(motion.mean_precession_rate.high)
+        return PairMotions(motion, None, noise, size, np.isfinite(noise))
+
+
+def moving_motions(tops: TopArrays) -> PairMotions:
+    """Return the motions of tops that start with any rates."""
+    starts = StartArrays(tops)
+    with PAIRS.working():
+        state, gaps = starts.fine.state, starts.fine.gaps
+        signs, sure = {}, starts.small
+        terms = 2 * (abs(state.psi_rate.high) + abs(state.b.high))
+        for name, momentum in (("plus", gaps.beta_plus_b), ("minus", gaps.beta_minus_b)):
+            signs[f"sign_{name}"] = DoubleDouble(np.where(momentum.high < 0, -1.0, 1.0))
+            sure = sure & (abs(momentum.high) > _SMALL * terms)
+        motion = Nutating(PAIRS, FACTS.replace(**signs), state, gaps)
+        # sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)), (4,22)
+        sn2, cn2 = gaps.u1_u * gaps.a_u3_u2, gaps.a_u3_u1 * gaps.u_u2
+        size = starts.precession_size + abs(state.r0.high)
+        start = Start(sn2, cn2, np.where(state.theta_rate.high < 0, -1.0, 1.0))
+        return PairMotions(motion, start, starts.noise, size, sure)
+
+
+class ArraySampler(NamedTuple):
     """The theta series of many tops that all run in the same nome; each constant is a column."""
 
     step: Period
@@ -53,8 +133,7 @@ class ArraySampler:
 
     def part(self, rows: slice) -> ArraySampler:
         """Return the constants of some tops."""
-        constants = {name: _mapped(x, rows) for name, x in vars(self).items()}
-        return ArraySampler(**constants)
+        return ArraySampler(*_rows_of(list(self), rows))
 
     def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
         """Return the attitude at times, a row per top, in a workspace of that shape."""
@@ -199,12 +278,12 @@ def _rounded(frame: Frame) -> Frame:
     return Frame(component(frame.x), component(frame.y), [])
 
 
-def _mapped(value: Any, rows: slice) -> Any:
+def _rows_of(value: Any, rows: Any) -> Any:
     """Return nested constants of some tops."""
-    if isinstance(value, np.ndarray):
+    if isinstance(value, np.ndarray | DoubleDouble):
         return value[rows]
     if isinstance(value, list):
-        return [_mapped(x, rows) for x in value]
+        return [_rows_of(x, rows) for x in value]
     if isinstance(value, tuple):
-        return type(value)(*(_mapped(x, rows) for x in value))
+        return type(value)(*(_rows_of(x, rows) for x in value))
     return value

@@ -15,10 +15,16 @@ from ..inputs.top import Top
 from ..motion.over_time.times import times_of
 from ..motion.regime import Regime
 from ..motion.solve import solve
-from .angle_arrays import ArraySampler, array_sampler
-from .pair_motions import PairMotions, released, started
-from .records import BLOCK_ROWS, Together
-from .results import Column, Results
+from .angle_arrays import (
+    ArraySampler,
+    PairMotions,
+    array_sampler,
+    moving_motions,
+    released_motions,
+)
+from .arguments import Together
+from .records import BLOCK_ROWS
+from .results import ResultColumn, Results
 from .top_arrays import TopArrays
 
 
@@ -43,25 +49,25 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Re
     count = whole[-1] if times.ndim else 1
     rows = times.reshape(-1, count) if count else np.empty((1, 0))
     rows = np.broadcast_to(rows, (tops.m.size, count))
-    angles, error = angles_of(tops, rows, wrap=wrap)
-    found: dict[str, Column] = {
+    angles, error = angles_of_tops(tops, rows, wrap=wrap)
+    found: dict[str, ResultColumn] = {
         name: values.reshape(whole) for name, values in zip(ANGLES, angles, strict=True)
     }
     return together.results(found | {"error": error.reshape(shape)}, times)
 
 
-def angles_of(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:
+def angles_of_tops(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:
     """Return theta, phi and psi of each top at its row of times, and what is wrong with it."""
     angles = np.full((len(ANGLES), *t.shape), np.nan)
     error = np.full(tops.m.size, None)
     with ARRAYS.working():
         for first in range(0, tops.m.size, BLOCK_ROWS):
             some = slice(first, first + BLOCK_ROWS)
-            _fill(tops.part(some), _Wish(t[some], wrap, angles[:, some]), error[some])
+            _fill(tops.part(some), _Block(t[some], wrap, angles[:, some]), error[some])
     return angles, error
 
 
-class _Wish(NamedTuple):
+class _Block(NamedTuple):
     """The times of a block of tops, a row each, and where their angles go."""
 
     t: Array
@@ -69,45 +75,45 @@ class _Wish(NamedTuple):
     angles: Array
 
 
-def _fill(tops: TopArrays, wish: _Wish, error: NDArray[np.object_]) -> None:
+def _fill(tops: TopArrays, block: _Block, error: NDArray[np.object_]) -> None:
     """Write the angles of a block of tops, and what is wrong with them."""
     left = np.ones(tops.m.size, dtype=np.bool_)
     at_rest = tops.regimes().get(Regime.REGULAR, ~left)
-    for make, chosen in ((released, at_rest), (started, tops.moving())):
+    for make, chosen in ((released_motions, at_rest), (moving_motions, tops.moving())):
         index = np.flatnonzero(chosen)
         if index.size:
-            trusted = _fill_arrays(make(tops.part(index)), index, wish)
+            trusted = _fill_arrays(make(tops.part(index)), index, block)
             left[index[trusted]] = False
     for row in np.flatnonzero(left).tolist():
         try:
             motion = solve(Top(**tops.one(row)))
-            wish.angles[:, row] = motion.angles(wish.t[row], wrap=wish.wrap)
+            block.angles[:, row] = motion.angles(block.t[row], wrap=block.wrap)
         except LagtopError as refused:
             error[row] = str(refused)
 
 
-def _fill_arrays(motions: PairMotions, index: NDArray[np.intp], wish: _Wish) -> Mask:
+def _fill_arrays(motions: PairMotions, index: NDArray[np.intp], block: _Block) -> Mask:
     """Write the angles of the motions that can be trusted, in their rows; return which they are."""
-    farthest = np.abs(wish.t[index]).max(axis=1, initial=0.0)
+    farthest = np.abs(block.t[index]).max(axis=1, initial=0.0)
     trusted: Mask = farthest <= motions.reach()
     for hyperbolic in (False, True):
         some = np.flatnonzero(trusted & (motions.hyperbolic() == hyperbolic))
         if some.size:
             sampler = array_sampler(motions.part(some), hyperbolic=hyperbolic)
-            _sample(sampler, index[some], wish)
+            _sample(sampler, index[some], block)
     return trusted
 
 
-def _sample(sampler: ArraySampler, index: NDArray[np.intp], wish: _Wish) -> None:
+def _sample(sampler: ArraySampler, index: NDArray[np.intp], block: _Block) -> None:
     """Write the angles of the tops of a sampler, as many samples at once as make a block."""
-    count, farthest = wish.t.shape[1], float(np.abs(wish.t[index]).max(initial=0.0))
+    count, farthest = block.t.shape[1], float(np.abs(block.t[index]).max(initial=0.0))
     step = max(1, BLOCK // max(count, 1))
     for first in range(0, index.size, step):
         rows, part = index[first : first + step], sampler.part(slice(first, first + step))
         for columns in blocks(count):
-            times = wish.t[rows, columns]
+            times = block.t[rows, columns]
             with workspace(*times.shape) as space:
                 at = part.attitude(times, farthest, space)
-                wish.angles[0, rows, columns] = at.theta()
-                wish.angles[1, rows, columns] = at.phi(wrap=wish.wrap)
-                wish.angles[2, rows, columns] = at.psi(wrap=wish.wrap)
+                block.angles[0, rows, columns] = at.theta()
+                block.angles[1, rows, columns] = at.phi(wrap=block.wrap)
+                block.angles[2, rows, columns] = at.psi(wrap=block.wrap)

@@ -1,4 +1,7 @@
-"""Inputs of many tops from other libraries: labelled, in units, uncertain; as plain arrays."""
+"""Inputs of many tops as arrays: numbers, arrays, and those of other libraries.
+
+These may be labelled, in units, or uncertain.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,59 @@ from numpy.typing import ArrayLike
 from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.input_keys import from_example, one_of_each, overridden, warn_of
+from ..inputs.top import INPUTS, Top
 from ..inputs.units import DIMENSIONS, System, factor_of, system_of
 from ..inputs.value import Value
+from .results import ResultColumn, Results, std_columns
+from .top_arrays import TopArrays, top_arrays
 
 _TILTS = {"theta0_deg": "degree", "theta0_rad": "radian"}
+
+
+class Together:
+    """Inputs of `Top`, numbers or arrays, as arrays of one shape, from which blocks are taken."""
+
+    def __init__(self, inputs: Mapping[str, ArrayLike]) -> None:
+        """Raise LagtopError for an unknown input, or for shapes that do not go together."""
+        if unknown := set(inputs) - set(INPUTS):
+            raise LagtopError(f"inputs must be among {' '.join(INPUTS)}, got {min(unknown)}")
+        one_of_each(name for name in inputs if not name.startswith("theta0_"))
+        if missing := from_example(inputs):
+            warn_of(missing, stacklevel=4)
+        read = read_arguments(inputs)
+        self.stds, self._given, self._system = read.stds, read.arrays, read.system
+        example = Top().inputs() | (read.system.worked_example() if read.system else {})
+        given = overridden(example, read.arrays)
+        try:
+            arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in given.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {x.shape}" for name, x in read.arrays.items() if x.ndim)
+            raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
+        self.shape, self.size = arrays[0].shape, arrays[0].size
+        self._names = read.dimensions
+        flat: list[Any] = [x if x.ndim == 1 else x.flat for x in arrays]
+        self._flat = dict(zip(given, flat, strict=True))
+
+    def part(self, rows: slice) -> TopArrays:
+        """Return some of the tops; nothing but these rows is copied."""
+        count = len(range(*rows.indices(self.size)))
+        return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
+
+    def results(self, columns: Mapping[str, ResultColumn], t: Array | None = None) -> Results:
+        """Return columns with the inputs that vary, and with the times of a last dimension."""
+        dimensions, coordinates = dimensions_of(self._given, self._names, self.shape)
+        if t is not None and t.ndim:
+            dimensions += ("t" if t.ndim == 1 else "sample",)
+            coordinates["t"] = t if t.ndim > 1 else t.reshape((1,) * len(self.shape) + t.shape)
+        return Results(columns, coordinates, dimensions, self._system)
+
+    def stds_of(self, columns: Mapping[str, ResultColumn]) -> dict[str, Array]:
+        """Return `KEY_std` for each number of the records."""
+        given = {
+            name: np.broadcast_to(x, self.shape).reshape(-1) for name, x in self._given.items()
+        }
+        return std_columns(columns, self.part(slice(None)), given, self.stds)
 
 
 class Arguments(NamedTuple):

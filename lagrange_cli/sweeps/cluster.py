@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from .. import __version__
 from ..errors import LagtopError, UnavailableError
 from .jobs import in_order, interrupts_blocked, safe_path
-from .parts import Make, NumberedBlock, Part
+from .plan import Make, NumberedBlock, Part
 
 if TYPE_CHECKING:
     from distributed import Client, Future

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from ..errors import CannotWriteError
 from ..output.destination import opened
 from ..output.write import part_file
-from .parts import Make, NumberedBlock, Part, Sweep, Tally
+from .plan import Make, NumberedBlock, Part, Sweep, Tally
 
 DESCRIPTION = "sweep.json"
 _TEMPORARY = ".lagtop-"

@@ -21,7 +21,7 @@ from .records import sweep
 
 QUANTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
 """Percents; the ends are those of the interval that covers 95 %."""
-BLOCK = 1 << 14
+SAMPLES_AT_ONCE = 1 << 14
 """Samples that are computed together."""
 MOST_SAMPLES = 1_000_000
 LEAST_SAMPLES = 100
@@ -31,8 +31,6 @@ HOLDS, OPEN, FAILS = "holds", "open: more samples", "does not hold"
 _MISSING = 1e-3
 """Share of samples without a key, from which on its distribution is not that of one motion."""
 _HALF_TURN, _TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}, 2.0
-
-"""Hands on the numbers of the blocks, of so many samples in all, and may show how far it is."""
 
 
 class Spread(NamedTuple):
@@ -92,8 +90,10 @@ def propagate(
     keys = [unit_name(key, radians=radians) for key in numbers]
     columns: dict[str, list[Array]] = {key: [] for key in keys}
     regimes: Counter[str] = Counter()
-    for first in progress(range(0, samples, BLOCK), "samples", samples, lambda _: BLOCK):
-        count = min(BLOCK, samples - first)
+    for first in progress(
+        range(0, samples, SAMPLES_AT_ONCE), "samples", samples, lambda _: SAMPLES_AT_ONCE
+    ):
+        count = min(SAMPLES_AT_ONCE, samples - first)
         drawn = {name: _drawn(rng, name, inputs[name], std, count) for name, std in stds.items()}
         wanted = [*keys, "regime", "remark", "error"]
         tops: dict[str, Any] = {**inputs, **drawn}

@@ -1,26 +1,102 @@
-"""What a sweep is to do: from a scene, from ranges of inputs, and from a file of tops."""
+"""A sweep: what is to be done, from a scene, ranges and a file of tops, and its parts.
+
+A part is a block of tops that any process can compute, in any order.  Its bytes depend on nothing
+but its number, so a run on one machine writes what all parts hold in their order, wherever each of
+them was made.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from hashlib import file_digest
 from io import BufferedIOBase
-from typing import Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+import numpy as np
 
 from .. import __version__
 from ..arithmetic.points import Points
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
 from ..inputs.files import reading, shown_path, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
-from ..inputs.ranges import Product
+from ..inputs.ranges import Block, Product
 from ..inputs.text_tables import NumberedLines
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value
-from .parts import NumberedBlock, Sweep
-from .records import BLOCK_ROWS, check_keys, record_keys
+from ..output.row_texts import Columns
+from ..output.write import block_text
+from .records import BLOCK_ROWS, check_keys, column_keys, records
+from .results import ResultColumn, std_columns, std_keys
+from .top_arrays import top_arrays
+
+if TYPE_CHECKING:
+    from ..inputs.units import System
+
+NumberedBlock = tuple[int, Block]
+"""The number of a part, and the tops that it is made of."""
+Make = Callable[[NumberedBlock], "Part"]
+"""What computes a part; a worker that is sent it must be able to unpickle it."""
+
+
+class Part(NamedTuple):
+    """One part, computed."""
+
+    number: int
+    text: bytes
+    size: int
+    """The number of tops."""
+    failed: int
+    """The number of tops that have an error."""
+    first_error: str
+    is_written: bool = False
+    """Whether the worker that computed it wrote it into its folder, and sent no text back."""
+
+
+class Sweep(NamedTuple):
+    """What to do with every part: what to compute of it and how to write it."""
+
+    header: Sequence[str]
+    """The names of the columns that are written: what is carried through, and the keys."""
+    shared: Mapping[str, float]
+    """Inputs of all tops that have none of their own."""
+    keys: Sequence[str]
+    radians: bool
+    fmt: str
+    until_error: bool = False
+    """Whether the rows of a part end before the first top that has an error."""
+    stds: Sequence[tuple[str, float]] = ()
+    """Standard uncertainties of inputs that all tops share, by name."""
+    system: System | None = None
+    """The units of the output, which remarks name, where inputs have units."""
+
+    @property
+    def computed_keys(self) -> list[str]:
+        """The keys, and after them their uncertainties."""
+        return [*self.keys, *(std_keys(self.keys) if self.stds else [])]
+
+    def part(self, numbered: NumberedBlock) -> Part:
+        """Compute one part."""
+        number, block = numbered
+        given = block.arrays(self.shared)
+        tops = top_arrays(given.inputs, given.size)
+        columns = records(tops, [*self.keys, "error"], radians=self.radians, errors=given.errors)
+        errors = [(row, error) for row, error in enumerate(columns["error"]) if error]
+        if given.lines is not None:
+            errors = [(row, f"line {given.lines[row]}: {error}") for row, error in errors]
+        for row, error in errors:
+            columns["error"][row] = error
+        if self.system and "remark" in columns:
+            columns["remark"][:] = [x and self.system.in_words(x) for x in columns["remark"]]
+        rows = slice(errors[0][0] if errors and self.until_error else given.size)
+        carried = [column[rows] for column in given.carried]
+        if self.stds:
+            columns |= std_columns(columns, tops, given.inputs, dict(self.stds))
+        computed = runs_of([columns[key][rows] for key in self.computed_keys])
+        text = block_text([*carried, *computed], self.header, self.fmt)
+        return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
 
 
 class Plan(NamedTuple):
@@ -59,22 +135,27 @@ def plan(
     if len(scenes) > 1 or len(tables) > 1:
         raise LagtopError(f"a sweep has one scene and one file of tops, got {' '.join(files)}")
     scene = scenes[0] if scenes else None
-    chosen = list(
-        check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
-    )
+    chosen = list(check_keys(keys, radians=radians))
     wanted = Sweep((), {}, chosen, radians, fmt, until_error)
     if not tables:
-        return _of_grid(wanted, axes, scene, system)
+        return _of_grid(wanted, gather(axes, scene, system=system))
     if ranges := ranges_of({name: as_value(x).number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
-    return _of_file(wanted, tables[0], axes, scene, system, described=described)
+    stream, digest = _digested(tables[0]) if described else (None, "")
+    computed = {*column_keys(), *column_keys(radians=True), *chosen}
+    file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
+    found, source = file.among(axes, scene, system)
+    shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
+    stds = {name: std for name, std in found.stds.items() if name not in file.named}
+    wanted = wanted._replace(keys=list(dict.fromkeys([*chosen, "error"])))
+    sweep = _with_inputs(wanted, found, shared, stds, source.carried)
+    blocks = (block._replace(file=source) for block in lines)
+    description = _described(sweep, inputs=shared, file=digest, parts=None)
+    return Plan(sweep, enumerate(blocks), 0, description, found, tables[0])
 
 
-def _of_grid(
-    wanted: Sweep, axes: Mapping[str, Value | Points], scene: str | None, system: str | None
-) -> Plan:
+def _of_grid(wanted: Sweep, found: Given) -> Plan:
     """Return the plan for all tops of a grid."""
-    found = gather(axes, scene, system=system)
     points = {name: x for name, x in found.inputs.items() if isinstance(x, Points)}
     grid = Product(points)
     grid.check()
@@ -82,31 +163,9 @@ def _of_grid(
     shared = shared_inputs(found, varying=ranges)
     sweep = _with_inputs(wanted, found, shared, found.stds)
     inputs = shared | {name: str(axis) for name, axis in ranges.items()}
-    told = _told_of(sweep, inputs, file=None, parts=-(-grid.size // BLOCK_ROWS))
-    return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, told, found)
-
-
-def _of_file(
-    wanted: Sweep,
-    path: str,
-    axes: Mapping[str, Value | Points],
-    scene: str | None,
-    system: str | None,
-    *,
-    described: bool,
-) -> Plan:
-    """Return the plan for the tops of a file; a column tells the errors of its rows."""
-    stream, digest = _digested(path) if described else (None, "")
-    computed = {*record_keys(), *record_keys(radians=True), *wanted.keys}
-    file, lines = open_tops(path, computed, BLOCK_ROWS, stream)
-    found, source = file.among(axes, scene, system)
-    shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
-    stds = {name: std for name, std in found.stds.items() if name not in file.named}
-    wanted = wanted._replace(keys=list(dict.fromkeys([*wanted.keys, "error"])))
-    sweep = _with_inputs(wanted, found, shared, stds, source.carried)
-    told = _told_of(sweep, shared, file=digest, parts=None)
-    blocks = (block._replace(file=source) for block in lines)
-    return Plan(sweep, enumerate(blocks), 0, told, found, path)
+    parts = -(-grid.size // BLOCK_ROWS)
+    description = _described(sweep, inputs=inputs, file=None, parts=parts)
+    return Plan(sweep, enumerate(grid.blocks(BLOCK_ROWS)), grid.size, description, found)
 
 
 def _with_inputs(
@@ -121,12 +180,10 @@ def _with_inputs(
     return sweep._replace(header=[*carried, *sweep.computed_keys])
 
 
-def _told_of(
-    sweep: Sweep, inputs: Mapping[str, Any], *, file: str | None, parts: int | None
-) -> dict[str, Any]:
-    """Return what decides about the bytes of the parts; some of it only where it is there."""
+def _described(sweep: Sweep, **decides: Any) -> dict[str, Any]:
+    """Return what decides about the bytes of the parts; some of it only if it is given."""
     told: dict[str, Any] = {"lagtop": __version__, "format": sweep.fmt, "radians": sweep.radians}
-    told |= {"keys": sweep.keys, "inputs": inputs, "file": file, "parts": parts}
+    told |= {"keys": sweep.keys, **decides}
     told |= {"uncertainties": dict(sweep.stds)} if sweep.stds else {}
     return told | ({"units": [sweep.system.mass, sweep.system.length]} if sweep.system else {})
 
@@ -167,3 +224,75 @@ def _digest(stream: BufferedIOBase) -> str:
     digest = file_digest(stream, "sha256").hexdigest()
     stream.seek(0)
     return f"sha256:{digest}"
+
+
+def runs_of(columns: Iterable[ResultColumn]) -> Columns:
+    """Return neighbouring columns of numbers as one array of rows, and texts as lists."""
+    runs: list[Any] = []
+    numbers: list[ResultColumn] = []
+    for column in columns:
+        if column.dtype == np.float64:
+            numbers.append(column)
+            continue
+        if numbers:
+            runs.append(np.stack(numbers, axis=1))
+            numbers = []
+        runs.append(column.tolist())
+    return [*runs, np.stack(numbers, axis=1)] if numbers else runs
+
+
+def shard_of(
+    blocks: Iterable[NumberedBlock], shard: tuple[int, int] | None
+) -> Iterator[NumberedBlock]:
+    """Return every N-th block from the I-th on, for the shard (I, N), or all blocks."""
+    first, step = shard or (1, 1)
+    return (block for block in blocks if block[0] % step == first - 1)
+
+
+class Tally:
+    """A count of the tops that have an error, taken as the parts pass by."""
+
+    def __init__(self, *, fail_fast: bool = False) -> None:
+        self.fail_fast = fail_fast
+        self.count = self.failed = self.shown = 0
+        self.first: tuple[int, str] | None = None
+        """The part with the first error, and that error."""
+
+    def add(self, part: Part) -> None:
+        """Count one part."""
+        self.count, self.failed = self.count + part.size, self.failed + part.failed
+        if part.failed:
+            found = part.number, part.first_error
+            self.first = min(self.first, found) if self.first else found
+
+    def passing(self, parts: Iterable[Part]) -> Iterator[Part]:
+        """Yield the parts, counted."""
+        for part in parts:
+            self.add(part)
+            yield part
+
+    def until_error(self, parts: Iterable[Part], *, ended: bool) -> Iterator[Part]:
+        """Yield the parts, counted, to the first error and no further.
+
+        There the parts end, or SomeFailedError is raised before the part with the error.
+        """
+        for part in self.passing(parts):
+            if not ended:
+                self.check()
+            yield part
+            if self.failed:
+                return
+
+    def progress(self, _: Part) -> int:
+        """Return the number of tops that were counted since the last call."""
+        more, self.shown = self.count - self.shown, self.count
+        return more
+
+    def check(self) -> None:
+        """Raise SomeFailedError if there was any error."""
+        if self.first and self.fail_fast:
+            raise SomeFailedError(self.first[1])
+        if self.first:
+            raise SomeFailedError(
+                f"{self.failed} of {self.count} tops have an error; the first: {self.first[1]}"
+            )

@@ -8,7 +8,7 @@ an invalid one gets an `error` and no numbers.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,22 +17,18 @@ from numpy.typing import ArrayLike
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
-from ..inputs.input_keys import from_example, one_of_each, overridden, warn_of
 from ..inputs.names import check_names
-from ..inputs.top import INPUTS, Top
+from ..inputs.top import Top
 from ..motion import record as motion_record
 from ..motion.kinds import fast_remark, kind_of, vertical_remark
 from ..motion.numbers import gaps_of
-from ..motion.regime import FAST, Facts, Regime
+from ..motion.regime import FAST, Regime
 from ..motion.solve import record_in_range, solve
-from .arguments import dimensions_of, read_arguments
-from .measured_arrays import top_arrays
-from .results import Column, Results
+from .arguments import Together
+from .results import TEXTS, ResultColumn, Results
 from .start_arrays import StartArrays
-from .top_arrays import TopArrays
+from .top_arrays import TopArrays, facts_at_rest
 
-TEXTS = frozenset({*motion_record.TEXT_KEYS, "error"})
-"""The columns of texts."""
 BLOCK_ROWS = 1 << 12
 """Tops that are computed together: their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
@@ -40,7 +36,7 @@ _SHARE, _LEAST_ROWS = 80, 512
 1.25 times its result."""
 
 
-def record_keys(*, radians: bool = False) -> list[str]:
+def column_keys(*, radians: bool = False) -> list[str]:
     """Return the keys of a record, and `error`."""
     return [*motion_record.record_keys(radians=radians), "error"]
 
@@ -57,12 +53,10 @@ def sweep(
     alone is NaN.  Only `keys` are computed.
     Raises LagtopError for an unknown input or key, or for shapes that do not go together.
     """
-    chosen = check_keys(record_keys(radians=radians) if keys is None else keys, radians=radians)
+    chosen = check_keys(keys, radians=radians)
     together = Together(inputs)
     size = together.size
-    found = empty_columns(
-        {**dict.fromkeys(chosen), "error": None} if together.stds else chosen, size
-    )
+    found = _empty_columns([*dict.fromkeys([*chosen, "error"])] if together.stds else chosen, size)
     step = min(max(size * len(chosen) // _SHARE, _LEAST_ROWS), BLOCK_ROWS)
     for first in range(0, max(size, 1), step):
         rows = slice(first, first + step)
@@ -77,61 +71,19 @@ def sweep(
     return together.results({key: x.reshape(together.shape) for key, x in columns.items()})
 
 
-class Together:
-    """Inputs of `Top`, numbers or arrays, as arrays of one shape, from which blocks are taken."""
-
-    def __init__(self, inputs: Mapping[str, ArrayLike]) -> None:
-        """Raise LagtopError for an unknown input, or for shapes that do not go together."""
-        if unknown := set(inputs) - set(INPUTS):
-            raise LagtopError(f"inputs must be among {' '.join(INPUTS)}, got {min(unknown)}")
-        one_of_each(name for name in inputs if not name.startswith("theta0_"))
-        if missing := from_example(inputs):
-            warn_of(missing, stacklevel=4)
-        read = read_arguments(inputs)
-        self.stds, self._given, self._system = read.stds, read.arrays, read.system
-        example = Top().inputs() | (read.system.worked_example() if read.system else {})
-        given = overridden(example, read.arrays)
-        try:
-            arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in given.values()))
-        except ValueError:
-            shapes = ", ".join(f"{name} {x.shape}" for name, x in read.arrays.items() if x.ndim)
-            raise LagtopError(f"inputs must broadcast together, got the shapes {shapes}") from None
-        self.shape, self.size = arrays[0].shape, arrays[0].size
-        self._names = read.dimensions
-        flat: list[Any] = [x if x.ndim == 1 else x.flat for x in arrays]
-        self._flat = dict(zip(given, flat, strict=True))
-
-    def part(self, rows: slice) -> TopArrays:
-        """Return some of the tops; nothing but these rows is copied."""
-        count = len(range(*rows.indices(self.size)))
-        return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
-
-    def results(self, columns: Mapping[str, Column], t: Array | None = None) -> Results:
-        """Return columns with the inputs that vary, and with the times of a last dimension."""
-        dimensions, coordinates = dimensions_of(self._given, self._names, self.shape)
-        if t is not None and t.ndim:
-            dimensions += ("t" if t.ndim == 1 else "sample",)
-            coordinates["t"] = t if t.ndim > 1 else t.reshape((1,) * len(self.shape) + t.shape)
-        return Results(columns, coordinates, dimensions, self._system)
-
-    def stds_of(self, columns: Mapping[str, Column]) -> dict[str, Array]:
-        """Return `KEY_std` for each number of the records."""
-        from .uncertain_rows import std_columns
-
-        given = {
-            name: np.broadcast_to(x, self.shape).reshape(-1) for name, x in self._given.items()
-        }
-        return std_columns(columns, self.part(slice(None)), given, self.stds)
-
-
-def empty_columns(keys: Iterable[str], count: int) -> dict[str, Column]:
+def _empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
     """Return columns for so many tops, to be filled."""
     return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
 
-def check_keys(keys: Sequence[str], *, radians: bool = False) -> Sequence[str]:
-    """Return the keys.  Raises LagtopError for one that no motion has, or that comes twice."""
-    known = record_keys(radians=radians)
+def check_keys(keys: Sequence[str] | None, *, radians: bool = False) -> Sequence[str]:
+    """Return the keys, by default all of a record and `error`.
+
+    Raises LagtopError for one that no motion has, or that comes twice.
+    """
+    known = column_keys(radians=radians)
+    if keys is None:
+        return known
     if isinstance(keys, Sequence) and not set(keys) <= set(known):
         known = [*motion_record.all_keys(radians=radians), "error"]
     return check_names("keys", keys, known)
@@ -143,15 +95,15 @@ def records(
     *,
     radians: bool = False,
     errors: Mapping[int, str] | None = None,
-    columns: dict[str, Column] | None = None,
-) -> dict[str, Column]:
+    columns: dict[str, ResultColumn] | None = None,
+) -> dict[str, ResultColumn]:
     """Return the columns of a block of tops; rows that have an error already stay empty.
 
-    They are new, or those of `empty_columns` that are given.  Nothing depends on the
+    They are new, or those of `_empty_columns` that are given.  Nothing depends on the
     `numpy.errstate` of the caller.
     """
     with ARRAYS.working():
-        columns = empty_columns(keys, tops.m.size) if columns is None else columns
+        columns = _empty_columns(keys, tops.m.size) if columns is None else columns
         block = _Block(tops, columns, radians)
         left = np.ones(tops.m.shape, dtype=np.bool_)
         for row, error in (errors or {}).items():
@@ -171,7 +123,7 @@ def records(
 class _Block:
     """The columns of a block of tops, while they are being filled."""
 
-    def __init__(self, tops: TopArrays, columns: Mapping[str, Column], radians: bool) -> None:
+    def __init__(self, tops: TopArrays, columns: Mapping[str, ResultColumn], radians: bool) -> None:
         self.tops, self.radians = tops, radians
         self.columns = {"error": np.empty(tops.m.size, dtype=object), **columns}
         tilt = {f"theta0_{'rad' if radians else 'deg'}": tops.tilt_in(radians)}
@@ -188,17 +140,13 @@ class _Block:
         """Fill the rows of one regime, all released from rest, by the formulas over doubles."""
         chosen = slice(None) if rows.all() else rows
         tops = self.tops.part(chosen)
-        facts, state = _facts(regime, tops.r0), tops.state()
+        facts, state = facts_at_rest(regime, tops.r0), tops.state()
         gaps = gaps_of(ARRAYS, facts, state)
         motion = kind_of(facts)(ARRAYS, facts, state, gaps)
-        for key in self.numbers:
-            if key.startswith("theta_min"):  # the start
-                self.columns[key][chosen] = tops.tilt_in(self.radians)
-                continue
-            name = key.replace("_rad", "_deg")
-            value = None if name in motion.lacks else getattr(motion, name)
-            if value is not None:
-                self.columns[key][chosen] = np.radians(value) if key != name else value
+        lacks = {*motion.lacks, "theta_min_deg"}  # the least tilt is the start
+        self._write_numbers(chosen, lambda x: None if x in lacks else getattr(motion, x))
+        for key in (key for key in self.numbers if key.startswith("theta_min")):
+            self.columns[key][chosen] = tops.tilt_in(self.radians)
         remarks: Sequence[str | None] | None = None
         if regime in {Regime.SLEEPING, Regime.HANGING}:
             remarks = [vertical_remark(regime, stable) for stable in state.sleep >= 0]
@@ -208,6 +156,13 @@ class _Block:
         for key, texts in (("regime", regime.value), ("path", path), ("remark", remarks)):
             if key in self.texts:
                 self.columns[key][chosen] = texts
+
+    def _write_numbers(self, rows: Any, number: Callable[[str], Array | None]) -> None:
+        """Write the numbers of some rows, from a function of the key with angles in degrees."""
+        for key in self.numbers:
+            value = number(key.replace("_rad", "_deg"))
+            if value is not None:
+                self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
 
     def _fast_remarks(self, tops: TopArrays, motion: Any) -> list[str | None]:
         """Return what `solve` says of each pseudo-regular precession among tops."""
@@ -239,11 +194,12 @@ class _Block:
             self.columns["regime"][chosen] = regimes[(tops.r0[fine] == 0).astype(np.intp)]
         if "path" in self.texts:
             self.columns["path"][chosen] = motions.paths()[fine]
-        for key in self.numbers:
-            value = motions.number(key.replace("_rad", "_deg"))
-            if value is not None:
-                value = np.radians(value) if key.endswith("_rad") else value
-                self.columns[key][chosen] = value[fine]
+
+        def trusted_number(name: str) -> Array | None:
+            value = motions.number(name)
+            return None if value is None else value[fine]
+
+        self._write_numbers(chosen, trusted_number)
         return left & ~moving
 
     def solve(self, row: int, keys: Sequence[str]) -> None:
@@ -261,24 +217,3 @@ class _Block:
         for key in keys:
             if record[key] is not None:
                 self.columns[key][row] = record[key]
-
-
-def _facts(regime: Regime, r0: Array) -> Facts:
-    """Return what the regime of tops released from rest says of all of them."""
-    stays = regime not in {Regime.REGULAR, Regime.NO_SPIN}
-    pole = {Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0)
-    plane = regime is Regime.NO_SPIN
-    sign = np.where(r0 < 0, -1, 1)
-    return Facts(
-        regime=regime,
-        at_rest=True,
-        steady=stays,
-        free=regime is Regime.TORQUE_FREE,
-        spins=regime is Regime.REGULAR,
-        pole=pole,
-        upper_root=3 if plane else 0,
-        over_bottom=plane,
-        cusp=regime is Regime.REGULAR,
-        sign_plus=sign,
-        sign_minus=1 if plane else -sign,
-    )

@@ -11,16 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
-from ..errors import UnavailableError
+from ..errors import LagtopError, UnavailableError
+from ..inputs.top import Top
 from ..inputs.units import System
-from ..motion.record import KEYS, requested_keys
+from ..motion.record import KEYS, TEXT_KEYS, requested_keys
+from .top_arrays import TopArrays
 
-Column = Array | NDArray[np.object_]
+ResultColumn = Array | NDArray[np.object_]
 """Numbers, NaN if a regime has none; or texts, None if there is none."""
+TEXTS = frozenset({*TEXT_KEYS, "error"})
+"""The columns of texts."""
 _ROWS_SHOWN = 20
 
 
-class Results(dict[str, Column]):
+class Results(dict[str, ResultColumn]):
     """Arrays by name: a dict of columns that knows the inputs that vary along each dimension.
 
     The first dimensions are those of the inputs together; the times of `sweep_angles` are the last.
@@ -28,7 +32,7 @@ class Results(dict[str, Column]):
 
     def __init__(
         self,
-        columns: Mapping[str, Column],
+        columns: Mapping[str, ResultColumn],
         coordinates: Mapping[str, Array],
         dimensions: Sequence[str],
         system: System | None = None,
@@ -111,3 +115,41 @@ def _library(name: str) -> Any:
     except ImportError:
         why = f"{name} is not installed: pip install {name}"
         raise UnavailableError(why) from None
+
+
+def std_keys(keys: Sequence[str]) -> list[str]:
+    """Return the names of the uncertainties of those keys that are numbers."""
+    return [f"{key}_std" for key in keys if key not in TEXTS]
+
+
+def std_columns(
+    columns: Mapping[str, ResultColumn],
+    tops: TopArrays,
+    given: Mapping[str, Array | float],
+    stds: dict[str, float],
+) -> dict[str, Array]:
+    """Return `KEY_std` for each number of some records, NaN where there is none.
+
+    `given` has the inputs as they were given, NaN where a top has none.
+    """
+    from ..motion.sensitivity.uncertainty import FirstOrder, stds_of  # for start-up
+
+    names = std_keys(list(columns))
+    found = {name: np.full(len(columns["error"]), np.nan) for name in names}
+    for i, error in enumerate(columns["error"]):
+        if error:
+            continue
+        present = [name for name, x in given.items() if not np.isnan(_of_row(x, i))]
+        try:
+            uncertain = FirstOrder(Top(**tops.one(i)), stds, present)
+        except LagtopError:
+            continue
+        record = {key: columns[key][i] for key in columns if f"{key}_std" in found}
+        for name, std in stds_of(record, uncertain).items():
+            if std is not None:
+                found[name][i] = std
+    return found
+
+
+def _of_row(values: Array | float, row: int) -> float:
+    return float(values[row] if isinstance(values, np.ndarray) and values.ndim else values)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from typing import Any, NamedTuple
 
@@ -14,15 +14,13 @@ from ..errors import LagtopError
 from ..inputs.given import Given
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
-from ..motion.over_time.columns import headings
-from ..motion.over_time.table import DEFAULT_COLUMNS, rows
-from ..motion.solve import Motion, solve
+from ..motion.over_time.table import DEFAULT_COLUMNS, TableRequest
+from ..motion.solve import solve
 from ..output.write import block_text
-from .angles import angles_of
+from .angles import angles_of_tops
 from .jobs import in_order
-from .measured_arrays import top_arrays
-from .parts import Part
-from .plan import shared_inputs
+from .plan import Part, shared_inputs
+from .top_arrays import top_arrays
 
 _TOPS_AT_ONCE = 1024
 _ROWS_PER_TASK = 50_000
@@ -37,63 +35,56 @@ class Tables(NamedTuple):
     source: TopsFile
     shared: Mapping[str, float]
     """Inputs of all tops that have none of their own."""
-    columns: Sequence[str]
-    times: Callable[[Motion], Points]
-    """The times for a motion."""
-    radians: bool
-    wrap: bool
+    request: TableRequest
     fmt: str
     same: Array | None = None
-    """The times of all tops, where these are few and do not hang on the motion."""
+    """The times of all tops, where these are few and do not depend on the motion."""
 
     @property
     def header(self) -> list[str]:
         """The names of what is carried (or `line`, if nothing is), of the columns, and `error`."""
-        carried = self.source.carried or ["line"]
-        return [*carried, *headings(self.columns, radians=self.radians), "error"]
+        return [*(self.source.carried or ["line"]), *self.request.headings(), "error"]
 
     def parts(self, lines: Lines) -> Iterator[Part]:
         """Yield blocks of rows as text; a top that has no table has one row with its error."""
-        angles_alone = set(self.columns) <= set(DEFAULT_COLUMNS)
+        angles_alone = set(self.request.columns) <= set(DEFAULT_COLUMNS)
         if self.same is not None and angles_alone and lines.size >= _WORTH_ARRAYS:
             yield from self._angles(lines, self.same)
-            return
-        for row in lines.rows():
-            yield from self._table(row)
-
-    def listed(self, lines: Lines) -> list[Part]:
-        """Return the parts of some lines together, as another process has to."""
-        return list(self.parts(lines))
+        else:
+            yield from chain.from_iterable(map(self._table, lines.rows()))
 
     def computed(self, lines: Iterable[Lines], jobs: int) -> Iterator[Part]:
         """Yield the parts of all lines in their order, computed by so many processes."""
-        work = self.parts if jobs == 1 else self.listed
+        work = self.parts if jobs == 1 else self._listed
         return chain.from_iterable(in_order(work, lines, jobs))
+
+    def _listed(self, lines: Lines) -> list[Part]:
+        """Return the parts of some lines together, as another process has to."""
+        return list(self.parts(lines))
 
     def _angles(self, lines: Lines, times: Array) -> Iterator[Part]:
         """Yield tables of angles, computed for all tops at once."""
         given = lines.arrays(self.shared)
         tops = top_arrays(given.inputs, given.size)
-        rows = np.broadcast_to(times, (tops.m.size, times.size))
-        angles, errors = angles_of(tops, rows, wrap=self.wrap)
-        if not self.radians:
+        each = np.broadcast_to(times, (tops.m.size, times.size))
+        angles, errors = angles_of_tops(tops, each, wrap=self.request.wrap)
+        if not self.request.radians:
             np.degrees(angles, out=angles)
         for i, row in enumerate(lines.rows()):
             if error := row.error or errors[i]:
                 yield self._refused(row, error)
                 continue
             found = dict(zip(DEFAULT_COLUMNS, (times, *angles[:, i]), strict=True))
-            block = np.stack([found[name] for name in self.columns], axis=1)
+            block = np.stack([found[name] for name in self.request.columns], axis=1)
             yield Part(0, self._text(row, block, None), 1, 0, "")
 
     def _table(self, row: TopRow) -> Iterator[Part]:
+        """Yield the table of one top."""
         try:
             if row.error:
                 raise LagtopError(row.error)
             motion = solve(Top(**row.completed(self.shared)))
-            _, blocks = rows(
-                motion, self.times(motion), self.columns, radians=self.radians, wrap=self.wrap
-            )
+            _, blocks = self.request.rows(motion, self.request.times(motion))
         except LagtopError as error:
             yield self._refused(row, str(error))
             return
@@ -103,12 +94,11 @@ class Tables(NamedTuple):
     def _refused(self, row: TopRow, error: str) -> Part:
         """Return the one row of a top that has no table."""
         reason = f"line {row.line}: {error}"
-        nothing = np.full((1, len(headings(self.columns))), np.nan)
+        nothing = np.full((1, len(self.request.headings())), np.nan)
         return Part(0, self._text(row, nothing, reason), 1, 1, reason)
 
     def _text(self, row: TopRow, block: Array, error: str | None) -> bytes:
-        carried = row.carried or [row.line]
-        same = [[value] * len(block) for value in carried]
+        same = [[value] * len(block) for value in row.carried or [row.line]]
         return block_text([*same, block, [error] * len(block)], self.header, self.fmt)
 
 
@@ -116,28 +106,30 @@ def open_tables(
     path: str,
     scene: str | None,
     inputs: Mapping[str, Any],
-    columns: Sequence[str],
-    times: Callable[[Motion], Points],
+    request: TableRequest,
     *,
-    radians: bool,
-    wrap: bool,
     fmt: str,
-    rows_per_top: int | None = None,
-    same: Points | None = None,
-    system: str | None = None,
+    system: str | None,
 ) -> tuple[Tables, Iterator[Lines], Given]:
     """Return the tables of the tops in a file, its lines a few at a time, and what is shared.
 
-    What a row lacks comes from `inputs` by key, and from a scene file.  The lines are fewer where a
-    top has many rows, or nobody knows how many.  `same` are the times where they are those of all
-    tops.  Raises DataError for a file that cannot be read, LagtopError for bad inputs.
+    Inputs missing from a row come from `inputs` by key, and from a scene file.  The lines are fewer
+    where a top has many rows, or nobody knows how many.  Raises DataError for a file that cannot be
+    read, LagtopError for bad inputs.
     """
-    at_once = 1 if not rows_per_top else min(max(_ROWS_PER_TASK // rows_per_top, 1), _TOPS_AT_ONCE)
-    file, lines = open_tops(path, [*headings(columns, radians=radians), "error"], at_once)
-    block = (
-        None if same is None or same.count > _ROWS_PER_TASK else np.concatenate([*same.blocks()])
-    )
+    count, same = request.rows_per_top, _same_times(request)
+    at_once = 1 if not count else min(max(_ROWS_PER_TASK // count, 1), _TOPS_AT_ONCE)
+    file, lines = open_tops(path, [*request.headings(), "error"], at_once)
+    few = same is not None and same.count <= _ROWS_PER_TASK
+    times = np.concatenate([*same.blocks()]) if same is not None and few else None
     given, source = file.among(inputs, scene, system)
-    shared = shared_inputs(given)
-    tables = Tables(source, shared, columns, times, radians, wrap, fmt, block)
+    tables = Tables(source, shared_inputs(given), request, fmt, times)
     return tables, (some._replace(file=source) for some in lines), given
+
+
+def _same_times(request: TableRequest) -> Points | None:
+    """Return the times of all tops, if there are any that do not depend on the motion."""
+    try:
+        return request.times(solve(Top())) if request.same else None
+    except LagtopError:  # every row says so
+        return None

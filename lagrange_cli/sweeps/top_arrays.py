@@ -1,26 +1,37 @@
 """Many tops at once: arrays in place of the numbers of a `Top`.
 
 What `motion.gaps` and `Top.tilt` form from exact fractions is formed here from pairs of doubles and
-rounded once, so that the formulas start from the same numbers.
+rounded once, so that the formulas start from the same numbers.  Inputs as they are measured, A_cm
+and phidot0, are made into A and r0 likewise; fractions decide where a cancellation could show.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from fractions import Fraction
+from math import factorial
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arithmetic.arrays import PAIRS
 from ..arithmetic.double_double import DoubleDouble, two_sum
 from ..arithmetic.exact_cosine import Tilt
+from ..arithmetic.numbers import polynomial
 from ..arithmetic.types import Array, Mask
+from ..inputs.measured import spin
 from ..motion.gaps import State
-from ..motion.regime import FAST, Regime, regimes
+from ..motion.regime import FAST, Facts, Regime, regimes
 
 _LARGE, _SMALL = 1e30, 1e-30
 """Between these sizes no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _LEAST_DISTANCE = 2.0**-45
 """Distance of lambda from 1 from which on a pair of doubles gives lambda - 1 to its last bit."""
+_RATIONAL = (60, 90, 120)
+"""Tilts in degrees whose cosines are rational, where a sum may be 0 or a tie."""
+_LITTLE_LEFT = 1e-10
+"""Share of the parts below which a sum has lost digits of its pairs."""
 
 
 class TopArrays(NamedTuple):
@@ -60,8 +71,7 @@ class TopArrays(NamedTuple):
 
         The others start with other rates, are out of range or invalid; they belong to none here.
         """
-        with np.errstate(all="ignore"):  # of wrong inputs too
-            usual = self._usual()
+        usual = self._usual() & (self.thetadot0 == 0) & (self.psidot0 == 0)
         none = np.zeros_like(usual)
         named = regimes(
             upright=(self.theta0_deg == 0) | (self.theta0_rad == 0),
@@ -76,65 +86,58 @@ class TopArrays(NamedTuple):
 
     def moving(self) -> Mask:
         """Return the tops of usual sizes, with a torque, off the vertical, that start moving."""
-        with np.errstate(all="ignore"):
-            usual = self._usual_sizes() & (self.g > 0) & (self.s > 0)
-            for rate in (self.thetadot0, self.psidot0):
-                usual &= (rate == 0) | (abs(rate) >= _SMALL) & (abs(rate) <= _LARGE)
-            tilt = np.where(np.isnan(self.theta0_deg), self.theta0_rad, self.theta0_deg)
-            usual &= (tilt != 0) & (self.theta0_deg != 180)
-            usual &= (self.thetadot0 != 0) | (self.psidot0 != 0)
-            return usual
-
-    def arc_from_pole(self) -> tuple[DoubleDouble, Mask]:
-        """Return the angle from the nearer pole in radians, and whether that is the lower one."""
-        in_radians = ~np.isnan(self.theta0_rad)
-        down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
-        degrees = np.where(down, 180 - self.theta0_deg, self.theta0_deg)
-        arc = DoubleDouble(degrees) * _DEGREE
-        if not in_radians.any():
-            return arc, down
-        given = DoubleDouble(np.where(in_radians, self.theta0_rad, 0.0))
-        other = DoubleDouble(np.full_like(given.high, 180.0)) * _DEGREE - given
-        high = np.where(in_radians, np.where(down, other.high, given.high), arc.high)
-        low = np.where(in_radians, np.where(down, other.low, given.low), arc.low)
-        return DoubleDouble(high, low), down
+        moving = self._usual() & (self.g > 0) & (self.s > 0)
+        moving &= (self.theta0_deg != 0) & (self.theta0_rad != 0) & (self.theta0_deg != 180)
+        moving &= (self.thetadot0 != 0) | (self.psidot0 != 0)
+        return moving
 
     def _usual(self) -> Mask:
-        usual = self._usual_sizes()
-        usual &= (self.thetadot0 == 0) & (self.psidot0 == 0)
-        return usual
+        """Return the valid tops of usual sizes, not next to the threshold of sleeping."""
+        with np.errstate(all="ignore"):  # of wrong inputs too
+            usual: Mask = 2 * self.A >= self.C
+            for x in (self.m, self.A, self.C):
+                usual &= (x >= _SMALL) & (x <= _LARGE)
+            for x in (self.s, self.g, abs(self.r0), abs(self.thetadot0), abs(self.psidot0)):
+                usual &= (x == 0) | (x >= _SMALL) & (x <= _LARGE)
+            one_tilt = np.zeros_like(usual)
+            for tilt, other, most in (
+                (self.theta0_deg, self.theta0_rad, 180),
+                (self.theta0_rad, self.theta0_deg, np.pi),
+            ):
+                one_tilt |= np.isnan(other) & ((tilt == 0) | (tilt >= _SMALL) & (tilt <= most))
+            torque = self.m * self.g * self.s
+            lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
+            usual &= (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
+            usual &= one_tilt & ~(abs(lam - 1) < 2 * _LEAST_DISTANCE)
+            return usual
 
-    def _usual_sizes(self) -> Mask:
-        usual: Mask = 2 * self.A >= self.C
-        for x in (self.m, self.A, self.C):
-            usual &= (x >= _SMALL) & (x <= _LARGE)
-        for x in (self.s, self.g, abs(self.r0)):
-            usual &= (x == 0) | (x >= _SMALL) & (x <= _LARGE)
-        tilts = ((self.theta0_deg, self.theta0_rad, 180), (self.theta0_rad, self.theta0_deg, np.pi))
-        one_tilt = np.zeros_like(usual)
-        for tilt, other, most in tilts:
-            one_tilt |= np.isnan(other) & ((tilt == 0) | (tilt >= _SMALL) & (tilt <= most))
-        torque = self.m * self.g * self.s
-        lam = (self.C * self.r0) ** 2 / (4 * self.A * torque)
-        ratio = (torque == 0) | (lam == 0) | (lam >= _SMALL**2) & (lam <= _LARGE**2)
-        far = ~(abs(lam - 1) < 2 * _LEAST_DISTANCE)
-        usual &= one_tilt & ratio & far
-        return usual
+    def fast(self) -> Mask:
+        """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
+        a, b, *_ = self._constants().values()
+        threshold = DoubleDouble(np.full_like(self.m, float(FAST)))
+        fast: Mask = (b * b - a * threshold).high >= 0
+        return fast
 
-    def state(self) -> State[Array]:
-        """Return constants and start of tops released from rest, each rounded once."""
+    def _constants(self) -> dict[str, DoubleDouble]:
+        """Return the constants of the motion by their names in `State`."""
         m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
         a, b = (m * g * s / A).scaled(2), C * r0 / A
         more = DoubleDouble(*two_sum(2 * self.A, -self.C))
+        return {
+            "a": a,
+            "b": b,
+            "r0": r0,
+            "sleep": (b * b).scaled(0.5) - a,
+            "spin_drift": (r0 * more / A).scaled(0.5),
+            "pole_drift": r0 - b,
+        }
+
+    def state(self) -> State[Array]:
+        """Return constants and start of tops released from rest, each rounded once."""
         sin, cos, sin_half, cos_half = self.tilt()
         zero = np.zeros_like(sin)
         return State(
-            a=a.high,
-            b=b.high,
-            r0=self.r0,
-            sleep=((b * b).scaled(0.5) - a).high,
-            spin_drift=(r0 * more / A).high / 2,
-            pole_drift=(r0 - b).high,
+            **{name: x.high for name, x in self._constants().items()},
             sin=sin,
             cos=cos,
             sin_half=sin_half,
@@ -145,41 +148,129 @@ class TopArrays(NamedTuple):
             psi_rate=zero,
         )
 
-    def fast(self) -> Mask:
-        """Return which tops released from rest precess pseudo-regularly, b^2 >= 50 a."""
-        m, A, C, s, g, r0 = (DoubleDouble(x) for x in self[:6])
-        b, threshold = C * r0 / A, DoubleDouble(np.full_like(self.m, float(FAST)))
-        fast: Mask = (b * b - (m * g * s / A).scaled(2) * threshold).high >= 0
-        return fast
+    def pair_state(self) -> State[DoubleDouble]:
+        """Return constants and start of tops in pairs of doubles."""
+        sine, cosine = self._half_tilt()
+        return State(
+            **self._constants(),
+            sin=(sine * cosine).scaled(2),
+            cos=(cosine - sine) * (cosine + sine),
+            sin_half=sine,
+            cos_half=cosine,
+            below=(cosine * cosine).scaled(2),
+            above=(sine * sine).scaled(2),
+            theta_rate=DoubleDouble(self.thetadot0),
+            psi_rate=DoubleDouble(self.psidot0),
+        )
 
     def tilt(self) -> Tilt[Array]:
         """Return sines and cosines of theta0 and theta0/2, each with full relative accuracy."""
-        in_radians = ~np.isnan(self.theta0_rad)
-        if in_radians.all():
-            return _tilt_of_radians(self.theta0_rad)
-        tilt = _tilt_of_degrees(self.theta0_deg)
+        tilt, rad = _tilt_of_degrees(self.theta0_deg), self.theta0_rad
+        in_radians = ~np.isnan(rad)
         if not in_radians.any():
             return tilt
-        other = _tilt_of_radians(self.theta0_rad)
-        return Tilt(*(np.where(in_radians, x, y) for x, y in zip(other, tilt, strict=True)))
+        given = np.sin(rad), np.cos(rad), np.sin(rad / 2), np.cos(rad / 2)
+        return Tilt(*(np.where(in_radians, x, y) for x, y in zip(given, tilt, strict=True)))
 
-
-def _tilt_of_radians(tilt: Array) -> Tilt[Array]:
-    return Tilt(np.sin(tilt), np.cos(tilt), np.sin(tilt / 2), np.cos(tilt / 2))
+    def _half_tilt(self) -> tuple[DoubleDouble, DoubleDouble]:
+        """Return sine and cosine of theta0/2 in pairs, from the nearer pole."""
+        in_radians = ~np.isnan(self.theta0_rad)
+        down = np.where(in_radians, self.theta0_rad > np.pi / 2, self.theta0_deg > 90)
+        nearer = DoubleDouble(np.where(down, 180 - self.theta0_deg, self.theta0_deg)) * _DEGREE
+        if in_radians.any():
+            given = DoubleDouble(np.where(in_radians, self.theta0_rad, 0.0))
+            other = DoubleDouble(np.full_like(given.high, 180.0)) * _DEGREE - given
+            given = DoubleDouble.choose(down, other, given)
+            nearer = DoubleDouble.choose(in_radians, given, nearer)
+        sine = _sine(nearer.scaled(0.5))
+        cosine = (1.0 - sine * sine).sqrt()
+        return DoubleDouble.choose(down, cosine, sine), DoubleDouble.choose(down, sine, cosine)
 
 
 def _tilt_of_degrees(tilt: Array) -> Tilt[Array]:
+    """Return sines and cosines: those of a pair high + low are sin(high) + low cos(high)."""
     nearer = np.minimum(tilt, 180 - tilt)
-    arc, rest = _in_radians(DoubleDouble(nearer))
-    sin, sin_half, cos_half = np.sin(arc), np.sin(arc / 2), np.cos(arc / 2)
-    up, up_rest = _in_radians(DoubleDouble(*two_sum(90.0, -nearer)))
-    cos = np.sin(up) + up_rest * sin
-    sin += rest * cos
-    near, far = sin_half + rest / 2 * cos_half, cos_half - rest / 2 * sin_half
+    arc, up = DoubleDouble(nearer) * _DEGREE, DoubleDouble(*two_sum(90.0, -nearer)) * _DEGREE
+    sin, sin_half, cos_half = np.sin(arc.high), np.sin(arc.high / 2), np.cos(arc.high / 2)
+    cos = np.sin(up.high) + up.low * sin
+    sin += arc.low * cos
+    near, far = sin_half + arc.low / 2 * cos_half, cos_half - arc.low / 2 * sin_half
     low = tilt > 90
     return Tilt(sin, np.where(low, -cos, cos), np.where(low, far, near), np.where(low, near, far))
 
 
-def _in_radians(degrees: DoubleDouble) -> tuple[Array, Array]:
-    arc = degrees * _DEGREE
-    return arc.high, arc.low
+def _sine(x: DoubleDouble) -> DoubleDouble:
+    """Return the sine by its Taylor series, for |x| <= pi/4; small terms need doubles only."""
+    square = x * x
+    total = DoubleDouble(polynomial([x.high for x in _SINE_TAIL], square.high))
+    for coefficient in reversed(_SINE):
+        total = total * square + coefficient
+    return total * x
+
+
+_TERMS = [PAIRS.convert(Fraction((-1) ** n, factorial(2 * n + 1))) for n in range(15)]
+_SINE, _SINE_TAIL = _TERMS[:8], _TERMS[8:]
+"""Coefficients of the sine; from x^17 on they are below eps of the first."""
+
+
+def facts_at_rest(regime: Regime, r0: Array) -> Facts:
+    """Return what the regime of tops released from rest says of all of them."""
+    plane = regime is Regime.NO_SPIN
+    sign = np.where(r0 < 0, -1.0, 1.0)
+    return Facts(
+        regime=regime,
+        at_rest=True,
+        steady=regime not in {Regime.REGULAR, Regime.NO_SPIN},
+        free=regime is Regime.TORQUE_FREE,
+        spins=regime is Regime.REGULAR,
+        pole={Regime.SLEEPING: 1, Regime.HANGING: -1}.get(regime, 0),
+        upper_root=3 if plane else 0,
+        over_bottom=plane,
+        cusp=regime is Regime.REGULAR,
+        sign_plus=sign,
+        sign_minus=1 if plane else -sign,
+    )
+
+
+def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
+    """Return the inputs of tops, numbers or arrays, as arrays; A_cm and phidot0 are resolved.
+
+    An input that is not there is NaN.
+    """
+
+    def filled(name: str) -> Array:
+        values = inputs.get(name)
+        return np.broadcast_to(np.float64(np.nan if values is None else values), (size,))
+
+    tops = TopArrays(*map(filled, TopArrays._fields))
+    A_cm, phi_rate = filled("A_cm"), filled("phidot0")
+    if not np.isnan(A_cm).all():
+        tops = tops._replace(A=_moments(tops, A_cm))
+    if not np.isnan(phi_rate).all():
+        tops = tops._replace(r0=_spins(tops, phi_rate))
+    return tops
+
+
+def _moments(tops: TopArrays, A_cm: Array) -> Array:
+    """Return A_cm + m s^2 (Steiner's theorem), or A where there is no A_cm.
+
+    A negative A_cm is left as it is, for the guards of a top to refuse.
+    """
+    with np.errstate(all="ignore"):
+        s, total = DoubleDouble(tops.s), DoubleDouble(A_cm)
+        total = total + DoubleDouble(tops.m) * (s * s)
+        moment = np.where(A_cm < 0, A_cm, total.high)
+    return np.where(np.isnan(A_cm), tops.A, moment)
+
+
+def _spins(tops: TopArrays, phi_rate: Array) -> Array:
+    """Return phi' + psi' cos(theta0) (4,1), or r0 where there is no phi'."""
+    psi_rate = tops.psidot0
+    with np.errstate(all="ignore"):
+        precession = DoubleDouble(psi_rate) * tops.pair_state().cos
+        spins = np.where(psi_rate == 0, phi_rate, (DoubleDouble(phi_rate) + precession).high)
+        unsure = ~(abs(spins) > _LITTLE_LEFT * abs(phi_rate)) | np.isin(tops.theta0_deg, _RATIONAL)
+        unsure &= (psi_rate != 0) & np.isfinite(phi_rate) & np.isfinite(psi_rate)
+    for row in np.flatnonzero(unsure).tolist():
+        spins[row] = spin(tops.one(row) | {"phidot0": float(phi_rate[row])})
+    return np.where(np.isnan(phi_rate), tops.r0, spins)

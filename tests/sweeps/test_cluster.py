@@ -24,8 +24,7 @@ from lagrange_cli.errors import UnavailableError
 from lagrange_cli.inputs.ranges import parse_values
 from lagrange_cli.sweeps.cluster import Computed, compute, computed, connected
 from lagrange_cli.sweeps.folder import Folder
-from lagrange_cli.sweeps.parts import Part
-from lagrange_cli.sweeps.plan import plan
+from lagrange_cli.sweeps.plan import Part, plan
 
 pytestmark = pytest.mark.filterwarnings("default")  # whatever the cluster itself does
 

@@ -30,7 +30,7 @@ from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import Regime
 from lagrange_cli.motion.regime import exact as exact_of
 from lagrange_cli.sweeps import records as sweeps
-from lagrange_cli.sweeps.records import record_keys, sweep
+from lagrange_cli.sweeps.records import column_keys, sweep
 from lagrange_cli.sweeps.start_arrays import StartArrays
 from lagrange_cli.sweeps.top_arrays import TopArrays
 
@@ -154,7 +154,7 @@ def test_no_top_of_a_usual_grid_is_solved_alone() -> None:
         }
     )
     assert tops.moving().all()
-    assert StartArrays(tops).trusted(record_keys()).all()
+    assert StartArrays(tops).trusted(column_keys()).all()
 
 
 def test_few_tops_of_a_grid_need_the_exact_way() -> None:
@@ -321,7 +321,7 @@ def test_formats_carry_the_same_doubles(style: str, lagtop: Lagtop) -> None:
     )
     assert len(rows) == 14
     for i, row in enumerate(rows):
-        assert list(row) == record_keys()
+        assert list(row) == column_keys()
         for key, value in row.items():
             wanted = exact[key][i]
             if isinstance(wanted, float) and not math.isnan(wanted):

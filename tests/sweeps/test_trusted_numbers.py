@@ -168,10 +168,10 @@ def test_bounds_of_gaps_hold_and_are_close() -> None:
     """The judge is mpmath; bounds that are too wide would leave most of these tops to `solve`."""
     given = starts_next_to_the_pole(400) | {"theta0_rad": np.full(400, np.nan)}
     starts = StartArrays(TopArrays(*(given[name] for name in TopArrays._fields)))
-    assert starts.errors.small.mean() > 0.9
-    gaps, worst = starts.fine.gaps, starts.errors.worst
+    assert starts.small.mean() > 0.9
+    gaps, worst = starts.fine.gaps, starts.noise
     with mpmath.workdps(90):
-        for i in np.flatnonzero(starts.errors.small)[:60]:
+        for i in np.flatnonzero(starts.small)[:60]:
             a, u2, u1, u3 = roots_of({name: values[i] for name, values in given.items()})
             exact = {
                 "u1_u2": u1 - u2,

@@ -41,9 +41,9 @@ from lagrange_cli.motion.over_time.proved_table import ProvedTable
 from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 from lagrange_cli.output.write import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
-from lagrange_cli.sweeps.parts import runs_of
-from lagrange_cli.sweeps.records import BLOCK_ROWS, record_keys, sweep
-from lagrange_cli.sweeps.results import Column
+from lagrange_cli.sweeps.plan import runs_of
+from lagrange_cli.sweeps.records import BLOCK_ROWS, column_keys, sweep
+from lagrange_cli.sweeps.results import ResultColumn
 
 NUMPY: Any = np._core._multiarray_umath  # type: ignore[attr-defined]
 FEATURES: Mapping[str, bool] = NUMPY.__cpu_features__
@@ -106,7 +106,7 @@ def floor(t: Array) -> None:
             np.arctan2(x, 1.5)
 
 
-def integrals(record: dict[str, Column]) -> None:
+def integrals(record: dict[str, ResultColumn]) -> None:
     """Compute what the record of a top needs at least of scipy.special, block by block."""
     k, k_prime, u3 = (np.asarray(record[key], dtype=float) for key in ("k", "k_prime", "u3"))
     mc, amplitude = k_prime * k_prime, np.radians(record["amplitude_deg"])
@@ -171,7 +171,7 @@ def shown(title: str, costs: Mapping[str, float], peer: str) -> None:
 def text(rng: np.random.Generator) -> None:
     """Compare the text of rows with orjson's of their numbers: CSV <= 2, ndjson <= 5."""
     inputs = {name: rng.uniform(10, 170, BLOCK_ROWS) for name in ("r0", "theta0_deg")}
-    keys = record_keys()[:-1]
+    keys = column_keys()[:-1]
     record = sweep(r0=inputs["r0"], theta0_deg=inputs["theta0_deg"], keys=keys)
     numbers = [key for key in keys if record[key].dtype == np.float64]
     tables = {"a sweep, all keys": keys, "four numbers": numbers[-4:], "one number": numbers[-1:]}

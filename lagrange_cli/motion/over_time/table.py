@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...arithmetic.points import EvenPoints, Points
 from ...errors import LagtopError
@@ -98,6 +98,30 @@ def rows(
                 yield block
 
     return [*header, *names], blocks()
+
+
+class TableRequest(NamedTuple):
+    """What to tabulate of every top."""
+
+    times: Callable[[Any], Points]
+    """Returns the times for a motion."""
+    columns: Sequence[str]
+    radians: bool
+    wrap: bool
+    rows_per_top: int | None
+    """Their number, where the options tell it."""
+    same: bool
+    """Whether all tops have the same times."""
+
+    def headings(self) -> list[str]:
+        """Return the names of the columns, with the units of angles."""
+        return headings(self.columns, radians=self.radians)
+
+    def rows(
+        self, motion: Numbers, times: Points, stds: Callable[[Array], Array] | None = None
+    ) -> tuple[list[str], Iterator[Array]]:
+        """Return the header and blocks of rows of one motion, as `rows` does."""
+        return rows(motion, times, self.columns, radians=self.radians, wrap=self.wrap, stds=stds)
 
 
 def table(
