@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .errors import LagtopError, MixedBodyWarning
-    from .fits.arrays import fit
     from .fits.find import find
+    from .fits.fit import fit
     from .inputs.given import read_scene
     from .inputs.top import Top
     from .judge.compare import compare
@@ -49,7 +49,7 @@ _MODULES = {
     "angle_sensitivities": "motion.sensitivity.angle_sensitivities",
     "compare": "judge.compare",
     "find": "fits.find",
-    "fit": "fits.arrays",
+    "fit": "fits.fit",
     "read_scene": "inputs.given",
     "sensitivities": "motion.sensitivity.sensitivities",
     "solve": "motion.solve",

@@ -66,7 +66,7 @@ class Attempt(NamedTuple):
 
     def explains(self) -> bool:
         """Return whether no residual exceeds what harmonics leave of its channel, but by chance."""
-        left = dict(zip(self.recording.channels, self.solution.residuals[0], strict=True))
+        left = self.solution.residuals[0]
         return all(
             np.isfinite(left[channel]).any()
             and float(np.sqrt(np.nanmean(left[channel] ** 2))) < _MUCH * noise

@@ -1,4 +1,8 @@
-"""`find`: tops whose records have target values."""
+"""`find`: tops whose records have target values.
+
+One unknown is a root between values of a scan.  Several are found by Newton's method within their
+ranges, from the best points of the scan.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +22,23 @@ from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
 from ..motion.solve import Motion, record_in_range, solve
 from ..output.progress import Progress, silent
-from .newton import solutions
 from .roots import roots
 from .search import Scan, Search, scan_of, search_of
 
 _SWEPT = 2.0**-48
 """The relative error of a number of a sweep is less."""
+_MOST_STARTS = 16
+_NEWTON_STEPS = 6
+_APART = 1e-9
+"""Solutions that differ by less, over the range, are one."""
+_PLATEAU = 3
+"""Solutions that are no single points, from which on there are more than can be listed."""
+_STILL = 1e-7
+"""Parts of the steepest slope that are none: what differences may be off, and more."""
+_BITS = 4.0
+"""How many last bits of the unknowns, and of the number itself, a number may be off."""
+_STEP = 1e-5
+"""Steps over the range of an unknown: the error of a central difference is about their square."""
 
 
 class FoundTops(NamedTuple):
@@ -72,10 +87,7 @@ def find_tops(search: Search, count: int | None, progress: Progress = silent) ->
     Raises AbsentError, which says how near the scan came, where there is none.
     """
     grid = scan_of(search, count, progress)
-    if len(search.spans) == 1:
-        points = [[x] for x in _roots(search, grid)]
-    else:
-        points = solutions(search, grid)
+    points = _roots(search, grid) if len(search.spans) == 1 else _solutions(search, grid)
     motions, broken = [], None
     for point in points:
         motion = solve(search.top(point))
@@ -90,7 +102,7 @@ def find_tops(search: Search, count: int | None, progress: Progress = silent) ->
     return FoundTops(motions, looked)
 
 
-def _roots(search: Search, grid: Scan) -> list[float]:
+def _roots(search: Search, grid: Scan) -> list[list[float]]:
     target, x = float(search.targets[0]), grid.values[:, 0]
 
     def off(at: float) -> float:
@@ -98,7 +110,7 @@ def _roots(search: Search, grid: Scan) -> list[float]:
 
     y = grid.numbers[:, 0] - target
     _refuse_plateaus(search, x, y, off)
-    return roots(off, x, y, target)
+    return [[root] for root in roots(off, x, y, target)]
 
 
 def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], float]) -> None:
@@ -160,3 +172,113 @@ def _short(value: float, wanted: float) -> str:
     """Return a number in six digits, or in all if six are those of the target."""
     text = f"{value:.6g}"
     return double_text(value) if text == f"{wanted:.6g}" else text
+
+
+def _solutions(search: Search, grid: Scan) -> list[list[float]]:
+    """Return the values of the unknowns at which all numbers have their target values.
+
+    Raises LagtopError where these are not single points: where the numbers stay as they are along
+    some direction at as many of them as a plateau takes.
+    """
+    found: list[Array] = []
+    loose: list[list[str]] = []
+    width = search.ends[1] - search.ends[0]
+    for start in _starts(search, grid):
+        point = _settled(search, _descended(search, grid, start))
+        if point is not None and all(
+            np.max(np.abs(point - other) / width) > _APART for other in found
+        ):
+            found.append(point)
+            loose += [names] if (names := _loose(search, grid, point)) else []
+            if len(loose) == _PLATEAU:
+                raise LagtopError(
+                    f"the conditions leave {' and '.join(loose[0])} open: many have "
+                    f"{search.target_text()}; take another condition, or another unknown"
+                )
+    return sorted(point.tolist() for point in found)
+
+
+def _loose(search: Search, grid: Scan, point: Array) -> list[str]:
+    """Return the unknowns that can change together while the numbers stay, to first order."""
+    width = search.ends[1] - search.ends[0]
+    slopes = number_slopes(search, point) * width / _sizes(search, grid)[:, np.newaxis]
+    if not np.isfinite(slopes).all():
+        return []
+    _, sizes, directions = np.linalg.svd(slopes)
+    still = directions[sizes <= _STILL * sizes[0]]
+    moving = np.abs(still).max(axis=0, initial=0.0) > _STILL
+    return [name for name, moves in zip(search.spans, moving.tolist(), strict=True) if moves]
+
+
+def _sizes(search: Search, grid: Scan) -> Array:
+    """Return what each number is measured by: how much it varies in the scan."""
+    spread = np.nanstd(np.where(np.isfinite(grid.numbers), grid.numbers, np.nan), axis=0)
+    return np.where(spread > 0, spread, np.maximum(np.abs(search.targets), 1e-300))
+
+
+def _starts(search: Search, grid: Scan) -> list[Array]:
+    """Return the points of the grid that are nearer than all their neighbours, the best first."""
+    off = (grid.numbers - search.targets) / _sizes(search, grid)
+    size = np.linalg.norm(off, axis=1)
+    size = np.where(np.isfinite(size), size, np.inf).reshape(grid.shape)
+    best, padded = np.isfinite(size), np.pad(size, 1, constant_values=np.inf)
+    for axis in range(size.ndim):
+        for shift in (1, -1):
+            best &= size <= np.roll(padded, shift, axis)[(slice(1, -1),) * size.ndim]
+    rows = np.flatnonzero(best.ravel())
+    order = np.argsort(size.ravel()[rows], kind="stable")[:_MOST_STARTS]
+    return [grid.values[row] for row in rows[order]]
+
+
+def _descended(search: Search, grid: Scan, start: Array) -> Array:
+    """Return where the least squares of what is missing lead to from a point."""
+    from scipy.optimize import least_squares
+
+    sizes, (low, high) = _sizes(search, grid), search.ends
+    width = high - low
+
+    def missing(x: Array) -> Array:
+        off = (search.swept(low + width * x[np.newaxis])[0] - search.targets) / sizes
+        return np.where(np.isfinite(off), off, 1e6)
+
+    def slopes(x: Array) -> Array:
+        scaled: Array = number_slopes(search, low + width * x) * width / sizes[:, np.newaxis]
+        return scaled
+
+    inside = np.clip((start - low) / width, 1e-9, 1 - 1e-9)
+    tight = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "max_nfev": 60}
+    ended = least_squares(missing, inside, slopes, bounds=(0, 1), **tight)
+    return np.asarray(low + width * ended.x)
+
+
+def _settled(search: Search, point: Array) -> Array | None:
+    """Return a point that Newton's method with the numbers of `solve` brings to its last bits.
+
+    None where it is no solution: where the numbers are off by more than roundings explain.
+    """
+    best, least = None, np.inf
+    for _ in range(_NEWTON_STEPS):
+        slopes = number_slopes(search, point)
+        off = search.numbers(point.tolist()) - search.targets
+        if not (np.isfinite(off).all() and np.isfinite(slopes).all()):
+            break
+        rounding = np.abs(slopes) @ np.spacing(np.abs(point)) + np.spacing(np.abs(search.targets))
+        size = float(np.max(np.abs(off) / rounding))
+        if size < least:
+            best, least = point, size
+        if size == 0:
+            break
+        step = np.linalg.lstsq(slopes, -off, rcond=None)[0]
+        point = np.clip(point + step, *search.ends)
+    return best if least <= _BITS else None
+
+
+def number_slopes(search: Search, point: Array) -> Array:
+    """Return the derivatives of the numbers, a row each, by the unknowns: central differences."""
+    low, high = search.ends
+    steps = np.diag(_STEP * (high - low))
+    above, below = np.minimum(point + steps, high), np.maximum(point - steps, low)
+    found = search.swept(np.concatenate([above, below]))
+    change = found[: len(point)] - found[len(point) :]
+    slopes: Array = (change / np.diag(above - below)[:, np.newaxis]).T
+    return slopes

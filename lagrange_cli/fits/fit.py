@@ -3,69 +3,69 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from types import NoneType
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.arrays import ARRAYS, doubles_of
 from ..arithmetic.types import Array
+from ..errors import LagtopError, check_type
+from ..inputs.names import ANGLES
+from ..inputs.seen import Conventions
 from .attempts import Attempt, best_attempt, sigma_of
-from .least_squares import FittedParameters, Problem, sigma_left
-from .parameters import FIT_QUANTITIES, Parameters, parameters_of
-from .recording import Recording
+from .least_squares import LEAST_SIGMA, FittedParameters, Problem
+from .parameters import FIT_QUANTITIES, Parameters, known_inputs, parameters_of
+from .record import Fit, Outcome, outcomes
+from .recording import Reading, Recording, Source, recording_of
 
+_IN_RADIANS = Conventions("wxyz", radians=True)
 _STEADY, _REWEIGHTINGS = 0.01, 6
-"""Standard deviations that change by a smaller part are those of the residuals, and the most
-changes that are made.
-"""
-
-
-class Fit(NamedTuple):
-    """The motion that leaves least of some recordings of one body."""
-
-    recordings: Sequence[Recording]
-    """Recordings as they were understood: psi may be counted the other way."""
-    solution: FittedParameters
-    sigma_known: bool
-    """Whether the standard deviations were given; else they are those of the residuals."""
-    mirrored: Sequence[bool]
-    """Whether psi had to be counted the other way."""
-    noise: Sequence[Mapping[str, float]]
-    """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
-    rival: Array | None = None
-    """Another top that explains the only recording as well, as of `FittedParameters.quantities`."""
+"""Standard deviations are taken from the residuals until chi^2/dof is so near to 1, or so often."""
 
 
 def fit_recordings(
     recordings: Sequence[Recording], known: Mapping[str, float], where: str = "data"
 ) -> Fit:
-    """Return the top whose motions leave least of some recordings; all are of one body.
+    """Fit one body to some recordings by least squares.
 
-    `known` are inputs by key, theta0 in radians; nothing else is taken for known.  Raises
-    LagtopError, DataError for recordings that cannot be fitted.
+    `known` are inputs by key, theta0 in radians.  Raises LagtopError, DataError for recordings that
+    cannot be fitted.
     """
     with ARRAYS.working():
         return _fitted(recordings, known, where)
 
 
 def _fitted(recordings: Sequence[Recording], known: Mapping[str, float], where: str) -> Fit:
-    alone = [best_attempt(recording, known, _named(where, recording)) for recording in recordings]
-    understood = [one.recording for one in alone]
-    noise, mirrored = [one.noise for one in alone], [one.mirrored for one in alone]
-    solution, rival = alone[0].solution, alone[0].rival
+    names = [f"{where}, {x.name}" if x.name else where for x in recordings]
+    alone = [best_attempt(x, known, name) for x, name in zip(recordings, names, strict=True)]
+    noise, recordings = [one.noise for one in alone], [one.recording for one in alone]
+    problem, solution, rival = alone[0].problem, alone[0].solution, alone[0].rival
     if len(alone) > 1:
-        together, rival = parameters_of(known, understood), None
-        problem = Problem(understood, [*map(sigma_of, understood, noise)], together)
+        sigma, together = [*map(sigma_of, recordings, noise)], parameters_of(known, recordings)
+        problem, rival = Problem(recordings, sigma, together), None
         solution = problem.solve(_joined(together, alone))
-    sigma_known = bool(understood[0].sigma)
-    found = Fit(understood, solution, sigma_known, mirrored, noise, rival)
-    if not sigma_known:
-        found = _reweighted(found)
-    return _far_enough(found) if len(alone) == 1 else found
+    sigma_known = bool(recordings[0].sigma)
+    for _ in range(0 if sigma_known else _REWEIGHTINGS):
+        problem = Problem(recordings, sigma_left(solution), problem.parameters)
+        solution = problem.solve(solution.values)
+        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
+            break
+    if len(alone) == 1:
+        solution = problem.with_reach(solution)
+    return Fit(recordings, solution, sigma_known, [one.mirrored for one in alone], noise, rival)
 
 
-def _named(where: str, recording: Recording) -> str:
-    return f"{where}, {recording.name}" if recording.name else where
+def sigma_left(solution: FittedParameters) -> list[dict[str, Array]]:
+    """Return the standard deviations of residuals, by recording: one for each channel of all."""
+    rest = solution.residuals
+    count = sum(int(np.isfinite(values).sum()) for one in rest for values in one.values())
+    share = count / max(solution.dof, 1)
+    sigma: dict[str, float] = {}
+    for channel in {channel: None for one in rest for channel in one}:
+        joined = np.concatenate([one[channel] for one in rest if channel in one])
+        sigma[channel] = max(float(np.sqrt(np.nanmean(joined**2) * share)), LEAST_SIGMA)
+    return [{name: np.full(x.size, sigma[name]) for name, x in one.items()} for one in rest]
 
 
 def _joined(together: Parameters, alone: Sequence[Attempt]) -> Array:
@@ -83,21 +83,61 @@ def _joined(together: Parameters, alone: Sequence[Attempt]) -> Array:
     return np.array(values)
 
 
-def _reweighted(found: Fit) -> Fit:
-    """Return a fit with the standard deviations of its residuals."""
-    recordings, solution = found.recordings, found.solution
-    for _ in range(_REWEIGHTINGS):
-        sigma = sigma_left(solution, recordings)
-        solution = Problem(recordings, sigma, solution.parameters).solve(solution.values)
-        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
-            break
-    return found._replace(solution=solution)
+def fit(
+    t: ArrayLike,
+    *,
+    theta: ArrayLike | None = None,
+    phi: ArrayLike | None = None,
+    psi: ArrayLike | None = None,
+    axis: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    sigma: Mapping[str, float] | float | None = None,
+    known: Mapping[str, float] | None = None,
+) -> Outcome:
+    """Fit a top to a recording; the results are in `record()`.
+
+    Times have the shape (n,), angles too (radians, within whole turns, NaN where missing).  Instead
+    of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
+    space, shape (n, 4).  `sigma` are standard deviations in radians, one or by channel; they are
+    estimated from the residuals by default.  `known` are known inputs by key.  Raises LagtopError,
+    DataError for a recording that cannot be fitted.
+    """
+    check_type("known", known, Mapping, NoneType)
+    times = _numbers("t", t, ())
+    given = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
+    arrays = {
+        name: _numbers(name, x, {"axis": (3,), "quaternion": (4,)}.get(name, ()))
+        for name, x in given.items()
+        if x is not None
+    }
+    for name, x in arrays.items():
+        if len(x) != times.size:
+            raise LagtopError(f"{name} must have {times.size} rows as t has, got {len(x)}", name)
+    if not np.isfinite(times).all():
+        raise LagtopError("t must be finite numbers", "t")
+    if (back := np.flatnonzero(np.diff(times) < 0)).size:
+        before, after = times[back[0] : back[0] + 2].tolist()
+        raise LagtopError(f"t must not turn back, got {after} after {before}", "t")
+    _check_alone(arrays)
+    rows = {"t": times, **arrays}
+    columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
+    source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
+    recording = recording_of("", source, columns)
+    return outcomes(fit_recordings([recording], known_inputs(known or {})))[0]
 
 
-def _far_enough(found: Fit) -> Fit:
-    """Return the fit of one recording with uncertainties that hold for three of them."""
-    recordings, solution = found.recordings, found.solution
-    known = [recording.sigma for recording in recordings]
-    sigma = known if found.sigma_known else sigma_left(solution, recordings)
-    problem = Problem(recordings, sigma, solution.parameters)
-    return found._replace(solution=problem.with_reach(solution))
+def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return real numbers as an array of rows of this shape.  Raises LagtopError."""
+    array = doubles_of(name, values)
+    if array.shape[1:] != shape or array.ndim != 1 + len(shape):
+        wanted = ", ".join(["n", *map(str, shape)])
+        raise LagtopError(f"{name} must have the shape ({wanted}), got {array.shape}", name)
+    return array
+
+
+def _check_alone(arrays: Mapping[str, Array]) -> None:
+    """Raise LagtopError unless there are angles only, or a single array of another quantity."""
+    angles = sum(name in ANGLES for name in arrays)
+    if len(arrays) != max(angles, 1):
+        shown = ", ".join(arrays) or "nothing"
+        raise LagtopError(f"fit takes angles, or an axis, or a quaternion, got {shown}")

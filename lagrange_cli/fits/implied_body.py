@@ -1,8 +1,8 @@
 """The body that a motion implies: its inputs, and products of those not determined separately.
 
-A motion shows a = 2mgs/A (4,4) and b = C r0/A (4,5), and r0 where the spin is seen.  Their
-logarithms are linear in those of the six inputs; what is not known by itself is left as a product
-of powers.
+A motion shows a = 2mgs/A (4,4) and b = C r0/A (4,5), and r0 if the spin is seen.  Their logarithms
+are linear in those of the six inputs: the equations are brought to echelon form, and an input that
+is not determined alone remains in a product of powers.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 BODY_INPUTS = ("C", "r0", "m", "s", "g", "A")
-"""The inputs of a body and its spin; what stands first is expressed by what stands last."""
+"""The inputs of a body and its spin; the first ones are expressed by the last ones."""
 _EXPONENTS: Mapping[str, Mapping[str, int]] = {
     "a": {"m": 1, "s": 1, "g": 1, "A": -1},
     "b": {"C": 1, "r0": 1, "A": -1},
@@ -50,56 +50,39 @@ def determined_products(
     `seen` are a, b and, where it is seen, r0; none of them is 0.
     """
     unknown = [name for name in BODY_INPUTS if name not in known]
+    others = [*seen, *known]
     rows = []
-    for number, value in seen.items():
-        powers = [Fraction(_EXPONENTS[number].get(name, 0)) for name in unknown]
-        shares = [Fraction(int(other == number)) for other in seen]
-        size = abs(value / 2 if number == "a" else value)
-        logarithm = math.log(size) - sum(
-            n * math.log(abs(known[name]))
-            for name, n in _EXPONENTS[number].items()
-            if name in known
-        )
-        rows.append((powers, shares, logarithm))
+    for number in seen:
+        powers = _EXPONENTS[number]
+        right = [Fraction(x == number) - (powers.get(x, 0) if x in known else 0) for x in others]
+        rows.append([*(Fraction(powers.get(x, 0)) for x in unknown), *right])
+    sizes = [abs(x / 2 if name == "a" else x) for name, x in {**seen, **known}.items()]
     products = []
-    for powers, shares, logarithm in _reduced(rows, len(unknown)):
-        named = {name: n for name, n in zip(unknown, powers, strict=True) if n}
+    for row in _reduced(rows, len(unknown)):
+        named = {name: n for name, n in zip(unknown, row, strict=False) if n}
+        shares = dict(zip(others, row[len(unknown) :], strict=True))
+        size = math.prod(x ** float(n) for x, n in zip(sizes, shares.values(), strict=True))
         sign = math.copysign(1.0, seen["b"]) if named.get("r0") else 1.0
-        parts = {number: n for number, n in zip(seen, shares, strict=True) if n}
-        products.append(DeterminedProduct(named, sign * math.exp(logarithm), parts))
+        parts = {number: shares[number] for number in seen if shares[number]}
+        products.append(DeterminedProduct(named, sign * size, parts))
     return products
 
 
-Row = tuple[list[Fraction], list[Fraction], float]
-
-
-def _reduced(rows: list[Row], width: int) -> list[Row]:
-    """Return the rows in echelon form, each with a first power of 1, without those of no input."""
-    done: list[Row] = []
-    left = list(rows)
+def _reduced(rows: list[list[Fraction]], width: int) -> list[list[Fraction]]:
+    """Return rows in echelon form of the first columns, without those that are 0 there."""
+    done: list[list[Fraction]] = []
     for column in range(width):
-        pivot = next((row for row in left if row[0][column]), None)
+        pivot = next((row for row in rows if row[column]), None)
         if pivot is None:
             continue
-        left.remove(pivot)
-        pivot = _scaled(pivot, 1 / pivot[0][column])
-        left = [_less(row, pivot, row[0][column]) for row in left]
-        done = [_less(row, pivot, row[0][column]) for row in done] + [pivot]
+        one = [x / pivot[column] for x in pivot]
+        rest = [row for row in rows if row is not pivot]
+        rows, done = (
+            [[x - row[column] * y for x, y in zip(row, one, strict=True)] for row in part]
+            for part in (rest, done)
+        )
+        done.append(one)
     return done
-
-
-def _scaled(row: Row, factor: Fraction) -> Row:
-    powers, shares, logarithm = row
-    return [factor * x for x in powers], [factor * x for x in shares], float(factor) * logarithm
-
-
-def _less(row: Row, other: Row, times: Fraction) -> Row:
-    """Return a row less so many times another."""
-    return (
-        [x - times * y for x, y in zip(row[0], other[0], strict=True)],
-        [x - times * y for x, y in zip(row[1], other[1], strict=True)],
-        row[2] - float(times) * other[2],
-    )
 
 
 def completed_body(
@@ -107,8 +90,8 @@ def completed_body(
 ) -> dict[str, float]:
     """Return all six inputs of a body that moves so; one that is not determined is 1, or C = A.
 
-    A determined product stands in its first input; m and s that are known as a product are shared
-    out so that m s^2 = A/10, as of a body that can be built.
+    The first input of a determined product takes its value.  A product of m and s is shared out so
+    that m s^2 = A/10, as of a body that can be built.
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
     inputs = {name: others.get(name, 1.0) for name in BODY_INPUTS} | dict(known)

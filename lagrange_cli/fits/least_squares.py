@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,12 @@ _REACH, _BENT = 3.0, 0.2
 _MOST_STRETCHES, _MOST_HELD, _HOLD = 10, 20, 100.0
 """Stretches to find three standard deviations, steps of each, and how tightly each end is held."""
 _N = len(STATE)
+_BEYOND = 0.00135
+"""Probability beyond each bound of chi^2: that of three standard deviations."""
+_DEVIATIONS = 3.0
+"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
+_ROUNDING = 1e-11
+"""Radians that are left of data without noise."""
 
 
 class FittedParameters(NamedTuple):
@@ -35,8 +42,8 @@ class FittedParameters(NamedTuple):
     covariance: Array
     chi2: float
     dof: int
-    residuals: Sequence[Array]
-    """Residuals of each recording in radians, shape (channels, times)."""
+    residuals: Sequence[Mapping[str, Array]]
+    """Residuals of each recording by channel, in radians; NaN where a number is missing."""
     converged: bool
     unknown: Sequence[str]
     """Parameters that the data do not determine."""
@@ -65,7 +72,7 @@ class Problem:
             for recording, spread in zip(recordings, sigma, strict=True)
         ]
         self.by = Coordinates([name for name, _ in parameters.names])
-        self._last: tuple[Array, Array, Array, list[Array]] | None = None
+        self._last: tuple[Array, Array, Array, list[dict[str, Array]]] | None = None
 
     def solve(self, start: Array, steps: int = MOST_STEPS) -> FittedParameters:
         """Return the parameters that leave least, from a start, after so many steps at most.
@@ -166,27 +173,27 @@ class Problem:
         high = [{"theta0": np.pi - 1e-9}.get(name, np.inf) for name in names]
         return np.array(low), np.array(high)
 
-    def _at(self, values: Array) -> tuple[Array, Array, list[Array]]:
+    def _at(self, values: Array) -> tuple[Array, Array, list[dict[str, Array]]]:
         """Return weighted residuals, their derivatives, and the residuals in radians."""
         if self._last is None or not np.array_equal(self._last[0], values):
             self._last = (values.copy(), *self._computed(values))
         return self._last[1:]
 
-    def _computed(self, values: Array) -> tuple[Array, Array, list[Array]]:
+    def _computed(self, values: Array) -> tuple[Array, Array, list[dict[str, Array]]]:
         whole, slopes, left = [], [], []
         for i, (recording, sigma) in enumerate(zip(self.recordings, self.sigma, strict=True)):
-            quantities, by_parameter = self.parameters.quantities(values, i)
             known = np.isfinite(sigma) & recording.known
-            rest = _left(recording, quantities, by_parameter)
+            rest = _left(recording, *self.parameters.quantities(values, i))
             if rest is None:
                 whole.append(np.full(int(known.sum()), _FAR))
                 slopes.append(np.zeros((int(known.sum()), values.size)))
-                left.append(np.full(sigma.shape, np.nan))
-                continue
-            residual, change = rest
-            whole.append((residual.values / sigma)[known])
-            slopes.append(np.nan_to_num((change / sigma[..., np.newaxis])[known]))
-            left.append(np.where(known, residual.values, np.nan))
+                rows = np.full(sigma.shape, np.nan)
+            else:
+                residual, change = rest
+                whole.append((residual.values / sigma)[known])
+                slopes.append(np.nan_to_num((change / sigma[..., np.newaxis])[known]))
+                rows = np.where(known, residual.values, np.nan)
+            left.append(dict(zip(recording.channels, rows, strict=True)))
         return np.concatenate(whole), np.concatenate(slopes), left
 
 
@@ -254,20 +261,36 @@ class _Inverse:
         return [*dict.fromkeys(name for name, x in zip(names, shares, strict=True) if x > 0.05)]
 
 
-def sigma_left(solution: FittedParameters, recordings: Sequence[Recording]) -> list[dict[str, Any]]:
-    """Return standard deviations from residuals: one for each channel of all recordings."""
-    channels: dict[str, list[Array]] = {}
-    for recording, left in zip(recordings, solution.residuals, strict=True):
-        for channel, values in zip(recording.channels, left, strict=True):
-            channels.setdefault(channel, []).append(values[np.isfinite(values)])
-    joined = {channel: np.concatenate(values) for channel, values in channels.items()}
-    count = sum(values.size for values in joined.values())
-    share = count / max(solution.dof, 1)
-    rms = {
-        channel: max(float(np.sqrt(np.mean(values**2) * share)), 1e-15)
-        for channel, values in joined.items()
-    }
-    return [
-        {channel: np.full(recording.t.size, rms[channel]) for channel in recording.channels}
-        for recording in recordings
-    ]
+class Residual(NamedTuple):
+    """The residuals of one channel."""
+
+    rows: int
+    rms: float
+    """Root of the mean square, in radians."""
+    lag1: float
+    """Correlation of the residuals with those a row later."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the correlation is within three standard deviations of 0; roundings count too."""
+        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
+
+
+def residual_of(values: Array) -> Residual:
+    """Return what the residuals of one channel are like; NaN is missing."""
+    known = values[np.isfinite(values)]
+    total = float(np.sum(known * known))
+    if not total:
+        return Residual(known.size, 0.0, 0.0)
+    return Residual(
+        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
+    )
+
+
+def chi2_bounds(dof: int) -> tuple[float, float]:
+    """Return the bounds that chi^2/dof keeps within but for one time in 370."""
+    from scipy.special import gammaincinv
+
+    half = dof / 2
+    low, high = (float(gammaincinv(half, p)) / half for p in (_BEYOND, 1 - _BEYOND))
+    return low, high

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from ..arithmetic.types import Array
 from ..errors import DataError
 from .harmonics import Harmonics, frequency_of, harmonics_of, turning_rate
+from .invert import TurningPoints
 from .recording import Recording
-from .turning_points import TurningPoints
 
 _MOST_ROWS = 3000
 """Rows that are enough to start from; of more, so many are drawn."""

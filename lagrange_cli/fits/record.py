@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
-from .fit import Fit
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
+from .least_squares import FittedParameters, chi2_bounds, residual_of
 from .model import STATE, motion_angles
 from .parameters import FIT_QUANTITIES
+from .recording import Recording
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
@@ -32,12 +33,22 @@ MEANINGS = {
     "psi_zero": "psi of the data there",
     "phi_zero": "phi of the data there",
 }
-_BEYOND = 0.00135
-"""Probability beyond each bound of chi^2: that of three standard deviations."""
-_DEVIATIONS = 3.0
-"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
-_ROUNDING = 1e-11
-"""Radians that are left of data without noise."""
+
+
+class Fit(NamedTuple):
+    """The motion that leaves least of some recordings of one body."""
+
+    recordings: Sequence[Recording]
+    """Recordings as they were understood: psi may be counted the other way."""
+    solution: FittedParameters
+    sigma_known: bool
+    """Whether the standard deviations were given; else they are those of the residuals."""
+    mirrored: Sequence[bool]
+    """Whether psi had to be counted the other way."""
+    noise: Sequence[Mapping[str, float]]
+    """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
+    rival: Array | None = None
+    """Another top that explains the only recording as well, as of `FittedParameters.quantities`."""
 
 
 class Outcome:
@@ -57,11 +68,8 @@ class Outcome:
         self.determined = (
             determined_products(self.shown, self.known) if all(self.shown.values()) else []
         )
-        channels = self.recording.channels
-        self.residuals: dict[str, Residual] = {
-            channel: residual_of(values)
-            for channel, values in zip(channels, found.solution.residuals[index], strict=True)
-        }
+        rows = found.solution.residuals[index]
+        self.residuals = {channel: residual_of(values) for channel, values in rows.items()}
 
     @property
     def chi2_dof(self) -> float:
@@ -258,38 +266,3 @@ def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
         "phi": phi + spin + values["phi_zero"],
         "psi": psi + values["psi_zero"],
     }
-
-
-class Residual(NamedTuple):
-    """The residuals of one channel."""
-
-    rows: int
-    rms: float
-    """Root of the mean square, in radians."""
-    lag1: float
-    """Correlation of the residuals with those a row later."""
-
-    @property
-    def is_noise(self) -> bool:
-        """Whether the correlation is within three standard deviations of 0; roundings count too."""
-        return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
-
-
-def residual_of(values: Array) -> Residual:
-    """Return what the residuals of one channel are like; NaN is missing."""
-    known = values[np.isfinite(values)]
-    total = float(np.sum(known * known))
-    if not total:
-        return Residual(known.size, 0.0, 0.0)
-    return Residual(
-        known.size, math.sqrt(total / known.size), float(np.sum(known[1:] * known[:-1])) / total
-    )
-
-
-def chi2_bounds(dof: int) -> tuple[float, float]:
-    """Return the bounds that chi^2/dof keeps within but for one time in 370."""
-    from scipy.special import gammaincinv
-
-    half = dof / 2
-    low, high = (float(gammaincinv(half, p)) / half for p in (_BEYOND, 1 - _BEYOND))
-    return low, high

@@ -14,7 +14,8 @@ from ..motion.record import KEYS
 from ..output.report import Field, Report, with_unit
 from ..output.terminal import one_line
 from ..output.uncertain_text import uncertain_text
-from .record import Outcome, angles_at, chi2_bounds
+from .least_squares import chi2_bounds
+from .record import Outcome, angles_at
 
 if TYPE_CHECKING:
     from ..inputs.units import System

@@ -1,30 +1,117 @@
-"""The unknown inputs of a search, their ranges, and a scan over them."""
+"""A search: its conditions such as `T_precession=2`, its unknown inputs, and a scan over these."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import double_text
+from ..arithmetic.text import double_text, parse_number, quoted, shortened
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import overridden
+from ..inputs.names import check_names
 from ..inputs.ranges import Product, Span
 from ..inputs.top import Top
+from ..motion.quantity import unit_name
+from ..motion.record import all_keys
+from ..motion.regime import Regime
 from ..motion.solve import solve
 from ..output.progress import Progress
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
-from .conditions import Conditions, read_conditions
 
 COUNTS = {1: 1000, 2: 60, 3: 20}
 """Values of each unknown in a scan, by the number of unknowns."""
 MOST_TOPS = 10_000_000
+_WORDS = {"regime": [regime.value for regime in Regime], "path": ["cusped", "looping", "wavy"]}
+"""The keys that hold a word, and the words."""
+_BOUNDS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
-"""Passes blocks of tops on, and may show how many have passed."""
+
+class Inequality(NamedTuple):
+    """A number that must not be beyond another one."""
+
+    key: str
+    relation: str
+    limit: float
+
+    def holds(self, record: Mapping[str, Any]) -> bool:
+        """Return whether a record keeps the bound; a number that it does not have does not."""
+        value = record[self.key]
+        return value is not None and _BOUNDS[self.relation](value, self.limit)
+
+    def __str__(self) -> str:
+        return f"{self.key}{self.relation}{self.limit:g}"
+
+
+class Conditions(NamedTuple):
+    """Conditions on the record of a top."""
+
+    numbers: Mapping[str, float]
+    """Target values by key."""
+    words: Mapping[str, str]
+    bounds: list[Inequality]
+
+    @property
+    def keys(self) -> list[str]:
+        """All keys that are spoken of, once."""
+        return list(dict.fromkeys([*self.numbers, *self.words, *(x.key for x in self.bounds)]))
+
+    def broken_by(self, record: Mapping[str, Any]) -> str | None:
+        """Return the first word or bound that a record does not keep, or None."""
+        for key, word in self.words.items():
+            if record[key] != word:
+                return f"{key}={word}"
+        return next((str(bound) for bound in self.bounds if not bound.holds(record)), None)
+
+
+def read_conditions(texts: Iterable[str], *, radians: bool = False) -> Conditions:
+    """Return what `KEY=VALUE` and `KEY<VALUE` say; an angle may leave out its unit.
+
+    Raises LagtopError for an unknown key, and for a value that it cannot have.
+    """
+    numbers: dict[str, float] = {}
+    words: dict[str, str] = {}
+    bounds = []
+    for text in texts:
+        match = re.fullmatch(r"\s*(\w+)\s*(<=|>=|<|>|=)\s*(.+?)\s*", text)
+        if not match:
+            raise LagtopError(f"a condition must be KEY=VALUE or KEY<VALUE, got {quoted(text)}")
+        key, relation, value = _known_key(match[1], radians), match[2], match[3]
+        if key in numbers or key in words:
+            raise LagtopError(f"a condition must name each key once, got {key} twice")
+        if key in _WORDS:
+            words[key] = _word(key, relation, value)
+        elif relation == "=":
+            numbers[key] = _number(key, value)
+        else:
+            bounds.append(Inequality(key, relation, _number(key, value)))
+    return Conditions(numbers, words, bounds)
+
+
+def _known_key(name: str, radians: bool) -> str:
+    known = all_keys(radians=radians)
+    with_unit = unit_name(f"{name}_deg", radians=radians)
+    return with_unit if with_unit in known else check_names("a condition", [name], known)[0]
+
+
+def _word(key: str, relation: str, value: str) -> str:
+    if relation != "=" or value not in _WORDS[key]:
+        wanted = ", ".join(_WORDS[key])
+        raise LagtopError(f"{key}= must be one of {wanted}, got {relation}{shortened(value)}")
+    return value
+
+
+def _number(key: str, value: str) -> float:
+    try:
+        return float(parse_number(value))
+    except LagtopError as error:
+        raise LagtopError(f"the value of {key} {error}") from None
 
 
 class Search(NamedTuple):

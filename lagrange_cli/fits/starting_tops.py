@@ -19,10 +19,10 @@ from ..elliptic.complete import complete_k
 from ..elliptic.jacobi_arrays import jacobi_of_arrays
 from ..elliptic.modulus import modulus
 from .harmonics import Harmonics, frame_of, slowest_spin, turning_rate
+from .invert import SIGNS, Candidates, TurningPoints, candidates, with_mean_rate
 from .model import motion_angles, residuals
 from .nutation import Shown, Turns
 from .recording import Recording
-from .turning_points import SIGNS, Candidates, TurningPoints, candidates, with_mean_rate
 
 _MOST_STATES = {False: 12, True: 60}
 """Tops that are tried if the tilt is not recorded, in a narrow and in a wide search."""

@@ -19,13 +19,11 @@ from conftest import Lagtop, assert_one_line
 from scipy.integrate import solve_ivp
 
 from lagrange_cli import LagtopError, MixedBodyWarning, Top, solve
-from lagrange_cli.fits.conditions import read_conditions
-from lagrange_cli.fits.find import find
+from lagrange_cli.fits.find import find, number_slopes
 from lagrange_cli.fits.implied_body import BODY_INPUTS, completed_body, determined_products
 from lagrange_cli.fits.invert import invert
-from lagrange_cli.fits.newton import number_slopes
 from lagrange_cli.fits.roots import crossing, middle, roots
-from lagrange_cli.fits.search import Search
+from lagrange_cli.fits.search import Search, read_conditions
 from lagrange_cli.inputs.ranges import parse_span
 
 

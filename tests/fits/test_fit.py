@@ -19,12 +19,12 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Top, fit, read_scene, solve
 from lagrange_cli.fits import fit as fits
-from lagrange_cli.fits.least_squares import Problem
+from lagrange_cli.fits.invert import TurningPoints, candidates, top_of
+from lagrange_cli.fits.least_squares import Problem, chi2_bounds
 from lagrange_cli.fits.model import residuals
 from lagrange_cli.fits.parameters import FIT_QUANTITIES, parameters_of
-from lagrange_cli.fits.record import FAILED, Outcome, chi2_bounds, outcomes
+from lagrange_cli.fits.record import FAILED, Outcome, outcomes
 from lagrange_cli.fits.recording import Reading, Recording, read_recordings
-from lagrange_cli.fits.turning_points import TurningPoints, candidates, top_of
 
 NOISE = math.radians(0.5)
 SAMPLE = recordings.PATH

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from test_fit import angles_of, motion_of
 
 from lagrange_cli import Top, fit
-from lagrange_cli.fits.record import Residual, residual_of
+from lagrange_cli.fits.least_squares import Residual, residual_of
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_deviations_from_residuals_count_degrees_of_freedom(rows: int) -> None:
     found = fit(t, theta=theta, known=known)
     freedom = given.fit.solution.dof
     assert freedom == rows - len(given.fit.solution.parameters.names) < rows
-    left = given.fit.solution.residuals[0][0]
+    left = given.fit.solution.residuals[0]["theta"]
     assert given.chi2_dof == pytest.approx(float(np.sum(left**2)) / 0.02**2 / freedom, rel=1e-6)
     for name in ("a", "b", "theta0"):
         if given.deviations[name]:

@@ -10,8 +10,7 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import Top, solve
-from lagrange_cli.fits.invert import invert
-from lagrange_cli.fits.turning_points import mean_inverse
+from lagrange_cli.fits.invert import invert, mean_inverse
 
 EPS = 2.0**-52
 
