@@ -21,7 +21,7 @@ from ..motion.quantity import Key, unit_name
 from ..motion.record import KEYS, NUMBER_KEYS
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
-from ..sweeps.records import sweep
+from ..sweeps.records import BLOCK_ROWS, sweep
 from .kinds import Drawing
 from .request import InputRange, PlotRequest
 from .style import Look, mark_start, points, scale
@@ -50,7 +50,7 @@ def default_ranges(top: Top, *, radians: bool = False) -> tuple[InputRange, Inpu
     columns, rows = DEFAULT_COUNTS
     threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
     most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
-    spins = np.linspace(most / columns, most, columns)
+    spins = (np.arange(columns) + 0.5) * most / columns  # none is the threshold itself
     tilts = np.linspace(2.0, 178.0, rows)
     return InputRange("r0", spins), InputRange("theta0", np.radians(tilts) if radians else tilts)
 
@@ -78,18 +78,20 @@ def key_map(
     tilt = unit_name("theta0_deg", radians=radians)
     x_input, y_input = (tilt if axis.name == "theta0" else axis.name for axis in (x, y))
 
-    def over(x_values: Array, y_values: Array | float) -> dict[str, Any]:
+    def over(x_values: Array, y_values: Array) -> dict[str, Any]:
         return motion.top.inputs(radians=radians) | {x_input: x_values, y_input: y_values}
 
-    rows = (_values(over(x.values, value), key, radians) for value in y.values.tolist())
-    values = np.stack(list(progress(rows, "tops", cells, np.size)))
+    rows = max(BLOCK_ROWS // x.values.size, 1)
+    blocks = (y.values[first : first + rows, None] for first in range(0, y.values.size, rows))
+    parts = (_values(over(x.values, block), key, radians).ravel() for block in blocks)
+    values = np.concatenate(list(progress(parts, "tops", cells, np.size))).reshape(-1, x.values.size)
     return KeyMap(key, x, y, values, _sleeping(over(*np.meshgrid(x.values, y.values)), values))
 
 
 def _values(inputs: dict[str, Any], key: str, radians: bool) -> Array:
-    """Return the key at each top of one row.  Raises LagtopError where one cannot be."""
+    """Return the key at each top.  Raises LagtopError where one cannot be."""
     records = sweep(keys=[key, "error"], radians=radians, **inputs)
-    for error in filter(None, records["error"]):
+    for error in filter(None, records["error"].flat):
         raise LagtopError(error)
     return np.asarray(records[key], dtype=np.float64)
 
