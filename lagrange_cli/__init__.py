@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .motion.sensitivity.angle_sensitivities import angle_sensitivities
     from .motion.sensitivity.sensitivities import sensitivities
     from .motion.solve import Motion, solve
-    from .plot.browser.document import view
+    from .plot.browser import view
     from .sweeps.angles import sweep_angles
     from .sweeps.records import sweep
 
@@ -55,7 +55,7 @@ _MODULES = {
     "solve": "motion.solve",
     "sweep": "sweeps.records",
     "sweep_angles": "sweeps.angles",
-    "view": "plot.browser.document",
+    "view": "plot.browser",
 }
 """The module of each name, which is imported when the name is asked for."""
 

@@ -10,8 +10,8 @@ from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.inputs.given import read_scene
+from lagrange_cli.plot.kinds import PlotRequest
 from lagrange_cli.plot.page import Page, draw_page
-from lagrange_cli.plot.request import PlotRequest
 from lagrange_cli.plot.style import LIGHT, styled
 
 REGIMES: dict[str, dict[str, float]] = {

@@ -18,7 +18,7 @@ from ..inputs.names import check_names
 from ..output.terminal import is_terminal
 from ..output.write import write_bytes
 from ..plot.files import require_matplotlib
-from ..plot.kinds import KINDS, ON_THE_SHEET, SHEET, help_lines
+from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
 from ..plot.style import chosen_look
 from .command import ExamplesFirst
 from .options import FILE, NUMBER, PICTURES
@@ -36,6 +36,7 @@ from .top_options import (
 
 if TYPE_CHECKING:
     from ..inputs.value import Value
+    from ..plot.map import InputRange
 
 FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
@@ -65,9 +66,7 @@ Needs matplotlib: pip install 'lagtop[plot]'.
 @click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml|-] [KIND]...")
 @input_options(UNCERTAIN)
 @click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
-@click.option(
-    "--key", default="mean_precession_rate", show_default=True, help="Key of the record for `map`."
-)
+@click.option("--key", default=MAP_KEY, show_default=True, help="Key of the record for `map`.")
 @click.option(
     "--x",
     metavar="RANGE",
@@ -146,7 +145,6 @@ def command(
     require_matplotlib()
     from ..plot.curves import checked_span
     from ..plot.page import Page, page_bytes, show_page
-    from ..plot.request import PlotRequest, parse_input_range
 
     options, times = in_seconds(options, t_max=t_max)
     found = inputs_of(scene, rad, options)
@@ -156,8 +154,8 @@ def command(
         radians=rad,
         system=found.system,
         key=key,
-        x=parse_input_range("x", x) if x else None,
-        y=parse_input_range("y", y) if y else None,
+        x=_input_range("x", x),
+        y=_input_range("y", y),
         camera=eye,
         limits=ends,
         numbers=not no_numbers,
@@ -233,6 +231,15 @@ def _camera(text: str | None, radians: bool) -> tuple[float, float] | None:
             f" {name}, got {text!r}"
         )
     return azimuth, elevation
+
+
+def _input_range(name: str, text: str | None) -> InputRange | None:
+    """Return an axis of a map."""
+    if text is None:
+        return None
+    from ..plot.map import parse_input_range  # with the colour bars, which others do without
+
+    return parse_input_range(name, text)
 
 
 def _ends(text: str | None) -> tuple[float, float] | None:

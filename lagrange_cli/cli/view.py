@@ -45,7 +45,7 @@ def command(
     suffix = PurePath(output or "").suffix
     if suffix.lower() not in {"", ".html", ".htm"}:
         raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
-    from ..plot.browser.document import open_page, view
+    from ..plot.browser import open_page, view
 
     found = inputs_of(scene, rad, options)
     say_unused(found.stds)

@@ -1,31 +1,111 @@
-"""Pictures of motions: files, films, a page for the browser, and drawings on axes of your own."""
+"""Pictures of motions: files, films, a page for the browser, and drawings on axes of your own.
 
-from typing import TYPE_CHECKING, Any
+The functions here draw one kind of picture each, on axes of your own, in your own style.  They take
+an `Axes` of matplotlib, or a sequence of as many as the kind has, and make a new figure if none is
+given.  `t_max` is the last time, `radians` the unit of angles, `dark` selects colours for dark
+paper.  They raise LagtopError for a time out of range, and if there is nothing to draw.
+
+matplotlib and NumPy are imported when a function is called: this file is loaded by every command.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, Unpack
 
 if TYPE_CHECKING:
-    from .on_axes import (
-        draw_angles,
-        draw_cubic,
-        draw_map,
-        draw_phase,
-        draw_remainders,
-        draw_sphere,
-    )
+    from matplotlib.axes import Axes
 
-__all__ = [
-    "draw_angles",
-    "draw_cubic",
-    "draw_map",
-    "draw_phase",
-    "draw_remainders",
-    "draw_sphere",
-]
+    from ..motion.solve import Motion
+
+    Places: TypeAlias = Axes | Sequence[Axes] | None
 
 
-def __getattr__(name: str) -> Any:
-    """Return a function that draws; matplotlib is loaded only now."""
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from . import on_axes
+class OverTime(TypedDict, total=False):
+    """Options of a picture over time."""
 
-    return getattr(on_axes, name)
+    t_max: float | None
+    radians: bool
+    dark: bool
+
+
+def draw_sphere(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
+    """Draw the path of the figure axis on the unit sphere, and return the axes."""
+    return _drawn("sphere", motion, ax, **shown)
+
+
+def draw_angles(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
+    """Draw tilt, spin and precession over time on three axes, and return these."""
+    return _drawn("angles", motion, ax, **shown)
+
+
+def draw_remainders(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
+    """Draw the periodic parts of spin and precession on two axes, and return these."""
+    return _drawn("remainders", motion, ax, **shown)
+
+
+def draw_cubic(motion: Motion, ax: Places = None, *, dark: bool = False) -> list[Axes]:
+    """Draw f(u) with its roots and the band of the motion, and return the axes."""
+    return _drawn("cubic", motion, ax, dark=dark)
+
+
+def draw_phase(
+    motion: Motion, ax: Places = None, *, radians: bool = False, dark: bool = False
+) -> list[Axes]:
+    """Draw tilt rate against tilt, and the separatrix, and return the axes."""
+    return _drawn("phase", motion, ax, radians=radians, dark=dark)
+
+
+def draw_map(
+    motion: Motion,
+    ax: Places = None,
+    *,
+    key: str = "mean_precession_rate",
+    x: str | None = None,
+    y: str | None = None,
+    dark: bool = False,
+) -> list[Axes]:
+    """Draw a key of the record over two inputs, and return the axes.
+
+    Ranges are texts such as `r0=5:120:80`.
+    """
+    from .map import parse_input_range
+
+    over = [parse_input_range(name, text) if text else None for name, text in (("x", x), ("y", y))]
+    return _drawn("map", motion, ax, key=key, x=over[0], y=over[1], dark=dark)
+
+
+def _drawn(
+    name: str,
+    motion: Motion,
+    ax: Places,
+    *,
+    t_max: float | None = None,
+    dark: bool = False,
+    **wanted: Any,
+) -> list[Axes]:
+    """Draw a kind of picture, and return the axes it is on: those given, or new ones."""
+    from matplotlib.axes import Axes
+
+    from ..errors import LagtopError
+    from .curves import checked_span
+    from .kinds import KINDS, PlotRequest
+    from .style import chosen_look, points
+
+    kind, request = KINDS[name], PlotRequest(t_max=checked_span(motion, t_max), **wanted)
+    if ax is None:
+        from matplotlib import pyplot
+
+        places = pyplot.subplots(kind.axes, sharex=True, squeeze=False, layout="constrained")[1]
+        axes = list(places.flat)
+    else:
+        axes = [ax] if isinstance(ax, Axes) else list(ax)
+    if len(axes) != kind.axes:
+        raise LagtopError(f"ax must be {kind.axes} axes, got {len(axes)}", "ax")
+    drawing = kind.drawing(motion, request)
+    used = len(drawing.heights)
+    drawing.draw(axes[:used], chosen_look(dark))
+    axes[0].set_title(drawing.title, pad=points(18))  # above names at the top of the axes
+    for empty in axes[used:]:
+        empty.set_axis_off()
+    return axes

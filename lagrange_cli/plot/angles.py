@@ -1,4 +1,4 @@
-"""The picture `angles`: tilt, spin and precession over time."""
+"""The pictures over time: `angles`, and the periodic parts of spin and precession, `remainders`."""
 
 from __future__ import annotations
 
@@ -10,16 +10,15 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..arithmetic.types import Array
+from ..errors import NothingToDrawError
 from ..motion.regime import Regime
 from ..motion.solve import Motion
-from .curves import sampled_columns, span
-from .kinds import Drawing
-from .motion_facts import tilt_period
-from .request import PlotRequest
+from .curves import sampled_columns, span, tilt_period
+from .kinds import Drawing, PlotRequest
 from .style import Look, points, short_text
 
 
-def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+def angles_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the angles; where the axis stays vertical there is no precession to draw."""
     all_is_spin = motion.regime in (Regime.SLEEPING, Regime.HANGING)
     t_max = request.t_max or span(motion, 3)
@@ -40,7 +39,7 @@ def drawing(motion: Motion, request: PlotRequest) -> Drawing:
                 mean = _draw_mean(ax, t, angle, rate, request=request, look=look)
                 note = "; all is spin: there is no precession" * all_is_spin
                 ax.set_title(mean + note, fontsize="small", color=look.quiet)
-        finish_time_axes(axes, motion, t, request)
+        _finish_time_axes(axes, motion, t, request)
 
     title = "Tilt ϑ, spin φ, precession ψ; dashed: mean rate"
     title += "; bands: ±1σ" * (request.stds is not None)
@@ -60,7 +59,28 @@ def _draw_mean(
     return text
 
 
-def finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array, request: PlotRequest) -> None:
+def remainders_drawing(motion: Motion, request: PlotRequest) -> Drawing:
+    """Compute the periodic parts of spin (6,4) and precession (7,4).
+
+    Raises NothingToDrawError if the tilt has no period, so that both are 0 or undefined.
+    """
+    if tilt_period(motion) is None or motion.mean_precession_rate is None:
+        reason = "never comes back" if motion.regime is Regime.SEPARATRIX else "stays as it is"
+        raise NothingToDrawError(f"no remainders: the tilt {reason} ({motion.regime.value})")
+    t, *parts = sampled_columns(motion, request.t_max or span(motion, 2), ["dphi", "dpsi"]).values()
+
+    def draw(axes: Sequence[Axes], look: Look) -> None:
+        """Draw each periodic part about 0."""
+        for ax, symbol, part, colour in zip(axes, "φψ", parts, look.lines[1:], strict=True):
+            ax.axhline(0.0, color=look.quiet, lw=points(0.9))
+            ax.plot(t, part * request.per_radian, color=colour)
+            ax.set_ylabel(f"Δ{symbol} ({request.angle_unit})")
+        _finish_time_axes(axes, motion, t, request)
+
+    return Drawing("Periodic parts of spin and precession, (6,4), (7,4)", draw, (1.0, 1.0))
+
+
+def _finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array, request: PlotRequest) -> None:
     """Write the time below; mark nutation periods above and by thin lines through all panels."""
     axes[-1].set_xlabel(request.time_label)
     axes[-1].locator_params(axis="x", nbins=6)  # small steps have long labels

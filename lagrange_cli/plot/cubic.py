@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .kinds import Drawing
-from .request import PlotRequest
+from .kinds import Drawing, PlotRequest
 from .style import Look, number_from_left_to_right, number_text, points
 
 NEAR = 1.5
@@ -76,7 +75,7 @@ def cubic_curve(motion: Motion) -> Cubic:
     return Cubic(u, f, u1, u2, u3)
 
 
-def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+def cubic_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the cubic."""
     cubic = cubic_curve(motion)
 

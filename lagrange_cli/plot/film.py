@@ -21,11 +21,9 @@ from PIL import Image
 from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
-from .camera import camera_at, runs, side_camera
-from .cone import cone_at
-from .curves import MOST_PERIODS, span, turn_span
+from .camera import camera_at, cone_at, runs, side_camera
+from .curves import MOST_PERIODS, span, tilt_period, turn_span
 from .globe import Limits, draw_globe
-from .motion_facts import tilt_period
 from .page import Page, check_pixels
 from .sphere import axis_path
 from .style import points, scale, styled

@@ -11,7 +11,7 @@ from matplotlib.patches import Circle
 
 from ..arithmetic.types import Array
 from .camera import Camera, runs
-from .request import PlotRequest
+from .kinds import PlotRequest
 from .style import Look, points, short_text
 
 TIP, NAME = 1.24, 0.1

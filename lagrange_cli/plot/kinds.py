@@ -1,21 +1,105 @@
 """The kinds of picture: one row per kind, from which the command, its help and the page are made.
 
-A kind is one file of this subpackage, named like the kind.  Its function `drawing` computes the
-picture, and returns it ready to be drawn on axes, those of a page as well as those of a user.
+Each kind has a function `NAME_drawing(motion, request)` in a file of this subpackage.  It computes
+the picture, and returns it ready to be drawn on axes, those of a page as well as those of a user.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..arithmetic.numbers import per_radian
+from ..output.progress import Progress, silent
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ..inputs.input_keys import Input
+    from ..inputs.units import System
+    from ..motion.quantity import Key
+    from ..motion.sensitivity.angle_uncertainty import AngleStds
     from ..motion.solve import Motion
-    from .request import PlotRequest
+    from .map import InputRange
     from .style import Look
+
+MAP_KEY = "mean_precession_rate"
+"""The key that a map shows by default."""
+
+
+class PlotRequest(NamedTuple):
+    """What a picture of a motion should show."""
+
+    t_max: float | None = None
+    """Last time of the pictures over time; by default each picture takes what suits it."""
+    radians: bool = False
+    """Whether angles are shown in radians and not in degrees."""
+    key: str = MAP_KEY
+    """Key of the record that a map shows."""
+    x: InputRange | None = None
+    """Horizontal axis of a map; by default the spin."""
+    y: InputRange | None = None
+    """Vertical axis of a map; by default the tilt."""
+    system: System | None = None
+    """The units of the inputs, if these have units."""
+    camera: tuple[float, float] | None = None
+    """Azimuth and elevation (radians) of the camera; by default where it sees most of a path."""
+    limits: tuple[float, float] | None = None
+    """Ends of the colours of a map; by default all but the outermost values are within."""
+    numbers: bool = True
+    """Whether the numbers of the scene stand beside several pictures."""
+    progress: Progress = silent
+    """Shows the progress of a map."""
+    stds: AngleStds | None = None
+    """Uncertainties of the angles, drawn as bands."""
+
+    def unit(self, unit: str) -> str:
+        """Return a unit such as `rad/time` with the names of the units of the inputs."""
+        return self.system.named(unit) if self.system else unit
+
+    def in_words(self, remark: str) -> str:
+        """Return a remark on the motion with the names of the units of the inputs."""
+        return self.system.in_words(remark) if self.system else remark
+
+    def label(self, text: str) -> str:
+        """Return a label whose unit stands between brackets, in the units of the inputs."""
+        return re.sub(r"\((.*?)\)", lambda inside: f"({self.unit(inside[1])})", text)
+
+    @property
+    def time_label(self) -> str:
+        """The label of an axis of time."""
+        unit = self.unit("time")
+        return f"time t ({'unit of the inputs' if unit == 'time' else unit})"
+
+    def unit_of(self, key: Key | Input) -> str:
+        """Return the unit of a key of the record or an input, in the units in use."""
+        return self.angle_unit if key.unit == "angle" else self.unit(key.unit)
+
+    @property
+    def angle_unit(self) -> str:
+        """The name of the unit of angles, as it stands on an axis."""
+        return "rad" if self.radians else "deg"
+
+    @property
+    def per_radian(self) -> float:
+        """The size of one radian in the unit of angles."""
+        return per_radian(radians=self.radians)
+
+    def options(self) -> list[str]:
+        """Return what differs from the defaults, as options of the command."""
+        given = {
+            "--t-max": self.t_max and repr(self.t_max),
+            "--key": self.key if self.key != MAP_KEY else None,
+            "--x": self.x and self.x.text(),
+            "--y": self.y and self.y.text(),
+            "--camera": self.camera
+            and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
+            "--colour-limits": self.limits and ":".join(map(repr, self.limits)),
+        }
+        flags = ["--rad"] * self.radians + ["--no-numbers"] * (not self.numbers)
+        return [f"{name} {text}" for name, text in given.items() if text] + flags
 
 
 class Drawing(NamedTuple):
@@ -36,27 +120,30 @@ class PictureKind(NamedTuple):
     """One line for the help of the command."""
     size: tuple[float, float]
     """Width and height (inches) of a page with this picture alone."""
-    on_sheet: bool
+    on_sheet: bool = False
     """Whether the picture is on the sheet, which the command draws by default."""
     axes: int = 1
     """Number of axes of a user that the picture takes; several share the time."""
+    file: str = ""
+    """File that computes the picture; by default the one of its name."""
 
     def drawing(self, motion: Motion, request: PlotRequest) -> Drawing:
         """Compute the picture; its file, and with it matplotlib, is loaded only now.
 
         Raises LagtopError for a bad request, and NothingToDrawError.
         """
-        drawing: Drawing = import_module(f".{self.name}", __package__).drawing(motion, request)
+        file = import_module(f".{self.file or self.name}", __package__)
+        drawing: Drawing = getattr(file, f"{self.name}_drawing")(motion, request)
         return drawing
 
 
 _ROWS = [
     PictureKind("sphere", "the path of the figure axis on the unit sphere", (6.4, 6.0), True),
     PictureKind("angles", "tilt, spin and precession over time", (7.0, 6.0), True, 3),
-    PictureKind("remainders", "periodic parts of spin and precession", (7, 5), True, 2),
+    PictureKind("remainders", "periodic parts of spin and precession", (7, 5), True, 2, "angles"),
     PictureKind("cubic", "f(u), its roots, and the band of the motion", (6.8, 5.0), True),
-    PictureKind("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0), False),
-    PictureKind("map", "a key of the record over two inputs", (6.8, 5.0), False),
+    PictureKind("phase", "tilt rate against tilt, and the separatrix", (6.8, 5.0)),
+    PictureKind("map", "a key of the record over two inputs", (6.8, 5.0)),
 ]
 
 KINDS = {kind.name: kind for kind in _ROWS}

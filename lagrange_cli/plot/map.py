@@ -12,25 +12,69 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.ticker import LogLocator, NullLocator
 
+from ..arithmetic.points import LogPoints
 from ..arithmetic.types import Array
 from ..errors import LagtopError
-from ..inputs.input_keys import DECLARED
+from ..inputs.input_keys import DECLARED, NINE
 from ..inputs.names import check_names
+from ..inputs.ranges import parse_range
 from ..inputs.top import Top
 from ..motion.quantity import Key, unit_name
 from ..motion.record import KEYS, NUMBER_KEYS
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
 from ..sweeps.records import BLOCK_ROWS, sweep
-from .kinds import Drawing
-from .request import InputRange, PlotRequest
+from .kinds import Drawing, PlotRequest
 from .style import Look, mark_start, points, scale
 
 MOST_CELLS = 1_000_000
 DEFAULT_COUNTS = 128, 90
 
+MOST_VALUES = 2000
+"""Most values of an input along one axis."""
+
 OUTERMOST = 1.0
 """Percentage of the values on either side that does not stretch the range of the colours."""
+
+
+class InputRange(NamedTuple):
+    """An input of the top and the values it takes along one axis of a map."""
+
+    name: str
+    values: Array
+    """Increasing values; a tilt in degrees."""
+    logarithmic: bool = False
+    """Whether the values grow by equal factors and not by equal steps."""
+
+    def text(self) -> str:
+        """Return the range as it is written on the command line."""
+        first, last = (repr(float(self.values[i])) for i in (0, -1))
+        steps = "log:" if self.logarithmic else ""
+        return f"{self.name}={steps}{first}:{last}:{self.values.size}"
+
+
+def parse_input_range(name: str, text: str) -> InputRange:
+    """Return the range that a text such as `r0=10:100:40` or `r0=log:1:100:40` stands for.
+
+    `name` is the argument that an error names.  Raises LagtopError where the input is unknown, and
+    where it is no range of 2 to 2000 increasing values.
+    """
+    known, _, grid = text.partition("=")
+    if known not in NINE:
+        wanted = f"one of {' '.join(NINE)} and ="
+        raise LagtopError(f"{name} must begin with {wanted}, got {text!r}", name)
+    try:
+        points = parse_range(grid)
+    except LagtopError as error:
+        raise LagtopError(f"{name} {error}", name) from None
+    if not 2 <= points.count <= MOST_VALUES:
+        raise LagtopError(
+            f"{name} must have a count in [2, {MOST_VALUES}], got {points.count}", name
+        )
+    values = next(points.blocks())
+    if not values[0] < values[-1]:
+        raise LagtopError(f"{name} must have start < stop, got {text!r}", name)
+    return InputRange(known, values, isinstance(points, LogPoints) and bool(values[0] > 0))
 
 
 class KeyMap(NamedTuple):
@@ -84,14 +128,16 @@ def key_map(
     rows = max(BLOCK_ROWS // x.values.size, 1)
     blocks = (y.values[first : first + rows, None] for first in range(0, y.values.size, rows))
     parts = (_values(over(x.values, block), key, radians).ravel() for block in blocks)
-    values = np.concatenate(list(progress(parts, "tops", cells, np.size))).reshape(-1, x.values.size)
+    values = np.concatenate(list(progress(parts, "tops", cells, np.size))).reshape(
+        -1, x.values.size
+    )
     return KeyMap(key, x, y, values, _sleeping(over(*np.meshgrid(x.values, y.values)), values))
 
 
 def _values(inputs: dict[str, Any], key: str, radians: bool) -> Array:
     """Return the key at each top.  Raises LagtopError where one cannot be."""
     records = sweep(keys=[key, "error"], radians=radians, **inputs)
-    for error in filter(None, records["error"].flat):
+    for error in filter(None, records["error"].ravel().tolist()):
         raise LagtopError(error)
     return np.asarray(records[key], dtype=np.float64)
 
@@ -106,7 +152,7 @@ def _sleeping(inputs: dict[str, Any], like: Array) -> Array:
     return np.where(m * g * s > 0, ratio, np.inf)
 
 
-def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the key over two inputs."""
     usual = default_ranges(motion.top, radians=request.radians)
     x, y = request.x or usual[0], request.y or usual[1]

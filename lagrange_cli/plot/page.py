@@ -12,10 +12,9 @@ from matplotlib.figure import Figure, FigureBase, SubFigure
 from ..errors import LagtopError, NothingToDrawError
 from ..motion.record import KEYS
 from ..motion.solve import Motion
+from .curves import motion_in_words
 from .files import About, figure_bytes
-from .kinds import KINDS
-from .motion_facts import motion_in_words
-from .request import PlotRequest
+from .kinds import KINDS, PlotRequest
 from .style import DARK, POINTS, Look, head, number_text, styled
 
 NUMBERS_WIDTH, PANEL = 3.7, (5.8, 5.0)

@@ -14,10 +14,8 @@ from matplotlib.axes import Axes
 
 from ..arithmetic.types import Array
 from ..motion.solve import Motion
-from .curves import PHASES, sampled_columns, span
-from .kinds import Drawing
-from .motion_facts import motion_in_words
-from .request import PlotRequest
+from .curves import PHASES, motion_in_words, sampled_columns, span
+from .kinds import Drawing, PlotRequest
 from .style import Look, mark_start, number_from_left_to_right, points
 
 SEPARATRIX = (
@@ -66,7 +64,7 @@ def separatrix_orbit(a: float, b: float) -> tuple[Array, Array]:
     return theta, rate
 
 
-def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+def phase_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the orbit and the separatrix."""
     portrait = phase_portrait(motion)
 

@@ -14,11 +14,17 @@ from matplotlib.collections import LineCollection
 from ..arithmetic.types import Array, Mask
 from ..motion.solve import Motion
 from .camera import Camera, best_camera, camera_at, runs
-from .curves import highest_times, sampled_columns, span, sphere_span
+from .curves import (
+    axis_at,
+    highest_times,
+    motion_in_words,
+    sampled_columns,
+    span,
+    sphere_span,
+    tilt_period,
+)
 from .globe import Limits, draw_globe
-from .kinds import Drawing
-from .motion_facts import axis_at, motion_in_words, tilt_period
-from .request import PlotRequest
+from .kinds import Drawing, PlotRequest
 from .style import Look, mark_start, points, scale
 
 NARROW = math.radians(6.0)
@@ -69,7 +75,7 @@ def axis_path(motion: Motion, t_max: float) -> AxisPath:
     return AxisPath(t, path, math.radians(least), math.radians(greatest), motion.path, highest)
 
 
-def drawing(motion: Motion, request: PlotRequest) -> Drawing:
+def sphere_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the path; a narrow one has two axes on a page, where a piece of it is magnified."""
     path = axis_path(motion, request.t_max or sphere_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW

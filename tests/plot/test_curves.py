@@ -17,16 +17,14 @@ from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.plot.curves import (
     checked_span,
     highest_times,
+    periods_since_highest,
     phase_times,
     refined,
     sampled_columns,
-    span,
-    turn_span,
-)
-from lagrange_cli.plot.motion_facts import (
-    periods_since_highest,
     separatrix_swing,
+    span,
     tilt_period,
+    turn_span,
 )
 from lagrange_cli.plot.sphere import axis_path
 
@@ -159,10 +157,10 @@ def test_a_span_of_too_many_periods_is_refused() -> None:
 
 
 def test_pictures_ask_a_motion_only_what_everybody_sees() -> None:
-    """Nothing of how a motion is solved, but in one file: `motion_facts`."""
+    """Nothing of how a motion is solved, but in one file: `curves`."""
     seen = {"solve", "record", "quantity", "regime", "sensitivity.angle_uncertainty"}
     for path in (ROOT / "lagrange_cli" / "plot").glob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("motion."):
                 module = str(node.module).removeprefix("motion.")
-                assert module in seen or path.stem == "motion_facts", path
+                assert module in seen or path.stem == "curves", path

@@ -17,10 +17,10 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.types import Array
-from lagrange_cli.plot import camera, cone, film
+from lagrange_cli.plot import camera, film
 from lagrange_cli.plot.curves import turn_span
+from lagrange_cli.plot.kinds import PlotRequest
 from lagrange_cli.plot.page import Page
-from lagrange_cli.plot.request import PlotRequest
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import LIGHT, styled
 
@@ -44,18 +44,18 @@ def attitude(theta: float, phi: float, psi: float) -> Array:
 
 def test_the_top_of_the_film_stands_on_its_axis() -> None:
     seen = camera.camera_at(0.3, 0.4)
-    top = cone.cone_at(attitude(0.5, 1.0, 2.0), seen)
+    top = camera.cone_at(attitude(0.5, 1.0, 2.0), seen)
     axis = np.array([math.sin(0.5) * math.sin(2), -math.sin(0.5) * math.cos(2), math.cos(0.5)])
     assert np.stack(top.axle, axis=1)[1] == pytest.approx(np.stack(seen.project(axis)))
     assert top.lid_in_sight
-    assert sum(face.on_lid for face in top.faces) == cone.WEDGES
-    away = cone.cone_at(attitude(math.pi - 0.5, 1.0, 2.0), camera.camera_at(0.3, 1.4))
+    assert sum(face.on_lid for face in top.faces) == camera.WEDGES
+    away = camera.cone_at(attitude(math.pi - 0.5, 1.0, 2.0), camera.camera_at(0.3, 1.4))
     assert not away.lid_in_sight
 
 
 def _lid(phi: float) -> list[tuple[float, ...]]:
     """Return the corners of the light wedges of the lid at an angle of spin."""
-    top = cone.cone_at(attitude(0.5, phi, 2.0), camera.camera_at(0.3, 0.4))
+    top = camera.cone_at(attitude(0.5, phi, 2.0), camera.camera_at(0.3, 0.4))
     light = [face.corners for face in top.faces if face.on_lid and face.light]
     return sorted(tuple(np.round(corners, 12).ravel().tolist()) for corners in light)
 
@@ -65,7 +65,7 @@ def test_the_spin_is_seen_on_the_lid() -> None:
     assert _lid(1.0) != _lid(1.0 + math.pi / 3)
     assert set(_lid(1.0)).isdisjoint(_lid(1.0 + math.pi / 3))
     assert np.array(_lid(1.0)) == pytest.approx(np.array(_lid(1.0 + 2 * math.pi / 3)), abs=1e-11)
-    assert len(_lid(1.0)) == cone.WEDGES / 2
+    assert len(_lid(1.0)) == camera.WEDGES / 2
 
 
 def test_each_frame_shows_the_top_and_the_path_so_far() -> None:

@@ -17,8 +17,7 @@ from lagrange_cli import Motion, Top, solve
 from lagrange_cli.plot.camera import camera_at
 from lagrange_cli.plot.cubic import cubic_curve
 from lagrange_cli.plot.globe import Limits, draw_globe
-from lagrange_cli.plot.kinds import KINDS
-from lagrange_cli.plot.request import PlotRequest
+from lagrange_cli.plot.kinds import KINDS, PlotRequest
 from lagrange_cli.plot.style import LIGHT, styled
 
 SCENES = 200

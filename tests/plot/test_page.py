@@ -21,8 +21,9 @@ from lagrange_cli import LagtopError, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.motion.sensitivity.angle_uncertainty import AngleStds
-from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET
-from lagrange_cli.plot.motion_facts import tilt_period
+from lagrange_cli.plot.curves import tilt_period
+from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
+from lagrange_cli.plot.map import parse_input_range
 from lagrange_cli.plot.page import (
     LEAST_LETTERS,
     MOST_PIXELS,
@@ -31,7 +32,6 @@ from lagrange_cli.plot.page import (
     draw_page,
     page_bytes,
 )
-from lagrange_cli.plot.request import PlotRequest, parse_input_range
 from lagrange_cli.plot.style import DARK, LIGHT, POINTS, Look, styled
 
 X, Y = parse_input_range("x", "r0=20:100:4"), parse_input_range("y", "theta0=10:90:3")

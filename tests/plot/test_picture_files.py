@@ -11,8 +11,9 @@ import pytest
 from conftest import Lagtop
 
 from lagrange_cli import Motion, Top, solve
+from lagrange_cli.plot.kinds import PlotRequest
+from lagrange_cli.plot.map import parse_input_range
 from lagrange_cli.plot.page import Page, page_bytes
-from lagrange_cli.plot.request import PlotRequest, parse_input_range
 from lagrange_cli.plot.style import DARK, LIGHT
 
 

@@ -11,7 +11,7 @@ import pytest
 from conftest import ROOT, Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, solve, view
-from lagrange_cli.plot.browser.document import joined_script
+from lagrange_cli.plot.browser import joined_script
 
 FOLDER = ROOT / "lagrange_cli" / "plot" / "browser"
 SCRIPTS = sorted(FOLDER.rglob("*.js"))
