@@ -10,13 +10,13 @@ from ..motion.solve import Motion
 from ..output.progress import Progress, silent
 from ..output.report import Field, Report, short
 from .integrators import STEPS_PER_SECOND
-from .machine import common_conditions
 from .measure import (
     DIGITS,
     FEWER_DIGITS,
     RUNS,
     SECONDS_OF_RUNS,
     Task,
+    common_conditions,
     measure,
     reference_period,
     task,

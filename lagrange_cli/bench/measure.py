@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import platform
 import statistics
 import time
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,9 +21,8 @@ from ..motion.regime import Regime
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
 from .closed_forms import CLOSED_FORMS
-from .engines.process import FAMILIES, engines
+from .engines import FAMILIES, engines
 from .integrators import integrators
-from .machine import warm_allocator
 from .method import (
     NOT_APPLICABLE,
     AngleFunction,
@@ -113,7 +114,7 @@ def task(
     Raises LagtopError for a motion that the reference cannot judge, and for a time out of reach.
     """
     check_scene(motion)
-    warm_allocator()
+    np.empty(1 << 21)  # glibc then keeps freed memory: to ask for it again would double the time
     times = np.linspace(0.0, t_max, count) if count > 1 else np.array([t_max])
     motion.sampler().check(times)
     index = np.unique(np.linspace(0, count - 1, min(judged, count)).round().astype(np.int64))
@@ -198,3 +199,33 @@ def _judged(
     each: dict[str, Any] = {f"{name}_max": x for name, x in zip(ANGLES, worst, strict=True)}
     each |= {f"{name}_end": x for name, x in zip(ANGLES, end, strict=True)}
     return row._replace(error_max=max(worst), error_end=max(end), units_max=units, **each)
+
+
+def _machine() -> str:
+    """Return the processor and the system."""
+    return f"{_processor()}, {platform.system()} {platform.machine()}"
+
+
+def _processor() -> str:
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as lines:
+            names = [line.partition(":")[2].strip() for line in lines if "model name" in line]
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor() or "unknown processor"
+
+
+def _versions() -> str:
+    """Return the versions of Python and of all packages that take part."""
+    parts = [f"Python {platform.python_version()}"]
+    for name in ("lagtop", "numpy", "mpmath", "scipy", "heyoka"):
+        try:
+            parts.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            parts.append(f"no {name}")
+    return ", ".join(parts)
+
+
+def common_conditions() -> dict[str, str]:
+    """Return the conditions that every report begins with."""
+    return {"machine": _machine(), "versions": _versions()}

@@ -26,7 +26,7 @@ from .battery import (
 from .closed_forms import CLOSED_FORMS
 from .hard_scenes import STRATA, hard_scene
 from .integrators import TIGHTEST
-from .machine import common_conditions
+from .measure import common_conditions
 from .method import NotApplicableError
 
 TIMES = 2

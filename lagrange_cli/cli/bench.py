@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,8 @@ SAMPLES, LONG_SAMPLES = 10_000, 1000
 PERIODS = 20.3
 """No end at a turning point, where approximations are at their best."""
 MOST_TIMES = 10_000_000
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+"""Variables that say how many threads the linear algebra of packages has."""
 
 
 def _write_methods(formatter: click.HelpFormatter) -> None:
@@ -82,9 +85,7 @@ def command(
     per nutation period, or a tolerance.  A * marks the Pareto front: no other run is both faster
     and more accurate.
     """
-    from ..bench.machine import use_one_thread
-
-    use_one_thread()
+    os.environ.update(dict.fromkeys(_THREADS, "1"))  # before these packages are imported
     from ..bench.compare_methods import compare_methods, compare_spans
     from ..bench.measure import check_scene, chosen_methods, reference_period
     from ..bench.pictures import draw_long_spans, draw_work_precision

@@ -15,16 +15,15 @@ from conftest import ROOT, Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, compare, solve
 from lagrange_cli.bench import compare_methods
+from lagrange_cli.bench import engines as engines_module
 from lagrange_cli.bench import method as methods
-from lagrange_cli.bench.engines import process
-from lagrange_cli.bench.engines.process import (
+from lagrange_cli.bench.engines import (
     FAMILIES,
     IMPORTS,
     engine_attitudes,
-    engine_sample,
     engines,
+    scaled_body,
 )
-from lagrange_cli.bench.engines.scaled_body import scaled_body
 from lagrange_cli.bench.measure import chosen_methods, measure, task
 from lagrange_cli.bench.method import FailedError, NotApplicableError
 from lagrange_cli.judge.convergence import convergence
@@ -134,8 +133,8 @@ def fake(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, float
     (tmp_path / "fakes").mkdir()
     (tmp_path / "fakes" / "fake.py").write_text(FAKE)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(process, "__package__", "fakes")
-    return lambda scheme, limit: engine_sample("fake", scheme, Top(), 1, limit)
+    monkeypatch.setattr(engines_module, "MODELS", "fakes.fake")
+    return lambda scheme, limit: engine_attitudes("build", scheme, Top(), 1, limit)
 
 
 @pytest.mark.slow
@@ -145,7 +144,7 @@ def test_engines_that_go_wrong(
     """A crash harms nobody, and neither do prints and files."""
     monkeypatch.chdir(tmp_path)
     times = np.linspace(0, 1, 3)
-    assert np.array(fake("talks", 20.0)(times)).tolist() == [[0.0] * 3] * 3
+    assert np.array(fake("talks", 20.0)(times)).tolist() == [[1.0, 0.0, 0.0, 0.0]] * 3
     with pytest.raises(FailedError, match=r"^RuntimeError: no such thing$"):
         fake("refuses", 20.0)
     crashed = fake("crashes", 20.0)

@@ -5,6 +5,7 @@ Another engine, or another scheme, is one entry in FAMILIES.
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import textwrap
 import weakref
@@ -15,14 +16,13 @@ from multiprocessing.context import SpawnProcess
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from ...arithmetic.types import Array
-from ...inputs.top import Top
-from ...motion.solve import solve
-from ...sweeps.jobs import interrupts_blocked, safe_path
-from ..integrators import quaternion_angles
-from ..method import AngleFunction, FailedError, Method, NotApplicableError
-from .scaled_body import Body, scaled_body
-from .serve import serve
+from ..arithmetic.types import Array
+from ..inputs.top import Top
+from ..motion.solve import solve
+from ..sweeps.jobs import interrupts_blocked, safe_path
+from .engine_simulation import Body, serve
+from .integrators import quaternion_angles, scaled_top
+from .method import AngleFunction, FailedError, Method, NotApplicableError
 
 SECONDS_TO_START = 60.0
 """Seconds that the import of an engine may take."""
@@ -31,22 +31,23 @@ LONGEST_ERROR = 80
 STEPS = [50, 200, 800, 3200]
 MANY_STEPS = [200, 800, 3200, 12800]
 """Steps per nutation period of schemes with a fixed step; many for those of order 1."""
+MODELS = f"{__package__}.engine_models"
 IMPORTS = {"drake": "pydrake"}
 """Modules of packages, where they have another name than the package."""
 
 
 class EngineProcess:
-    """A process that runs one module of this folder; it ends with this object.
+    """A process that runs one model; it ends with this object.
 
     What the engine writes, such as a log, goes to a directory that ends with it.
     """
 
-    def __init__(self, module: str, body: Body, scheme: str, setting: Any) -> None:
+    def __init__(self, model: str, body: Body, scheme: str, setting: Any) -> None:
         """Start the process and build the model.  Raises FailedError as `attitudes` does."""
         folder = TemporaryDirectory(prefix="lagtop-")
         context = multiprocessing.get_context("spawn")
         self._pipe, other = context.Pipe()
-        order = (other, folder.name, f"{__package__}.{module}", (body, scheme, setting))
+        order = (other, folder.name, model, (body, scheme, setting))
         self._process = context.Process(target=serve, args=order, daemon=True)
         weakref.finalize(self, _stop, self._process, folder)
         with safe_path(), interrupts_blocked():
@@ -87,29 +88,42 @@ def _stop(process: SpawnProcess, folder: TemporaryDirectory[str]) -> None:
     folder.cleanup()
 
 
-def engine_sample(
-    module: str, scheme: str, top: Top, setting: Any, limit: float = 5.0
-) -> AngleFunction:
-    """Return an engine in a process of its own; a run may take `limit` seconds.
+def scaled_body(top: Top, period: float) -> tuple[Body, float]:
+    """Return the body of a top with this nutation period, and its units of time per unit of time.
 
-    Raises NotApplicableError for a body that engines refuse, and FailedError if the process does
-    not start.
+    The unit of mass is m, that of length makes A = 1, and that of time makes the rates of the size
+    of 1, so that no engine sees numbers that are very large or small, whatever units the scene has.
+    Raises NotApplicableError where no masses have such moments: engines refuse them.
     """
-    attitudes = engine_attitudes(module, scheme, top, setting, limit)
-    return lambda t: quaternion_angles(attitudes(t))
+    p, mass, A = scaled_top(top), float(top.m), float(top.A)
+    s, C = float(top.s) * math.sqrt(mass / A), float(top.C) / A
+    central = 1 - s * s
+    if central <= 0 or C > 2 * central * (1 + 1e-12):
+        raise NotApplicableError("engines refuse a body with C > 2(A - m s^2)")
+    half = p.theta0 / 2
+    body = Body(
+        central=max(central, C / 2),
+        C=C,
+        s=s,
+        g=p.a / (2 * s),
+        attitude=(math.cos(half), math.sin(half), 0.0, 0.0),
+        rates=(p.theta_rate, p.psi_rate * math.sin(p.theta0), p.r0),
+        period=period * p.clock,
+    )
+    return body, p.clock
 
 
 def engine_attitudes(
-    module: str, scheme: str, top: Top, setting: Any, limit: float
+    package: str, scheme: str, top: Top, setting: Any, limit: float
 ) -> Callable[[Array], Array]:
     """Return a function that gives the quaternions (w, x, y, z; a row for each time) of an engine.
 
-    Raises NotApplicableError and FailedError as `engine_sample` does; so does the function, for
-    times before the start and for a run that goes wrong.
+    The engine runs in a process of its own, `limit` seconds at most.  Raises NotApplicableError for
+    a body that engines refuse, and FailedError if the process does not start; so does the function,
+    for times before the start and for a run that goes wrong.
     """
-    period = solve(top).T_nutation
-    body, clock = scaled_body(top, float(period or 1))
-    process = EngineProcess(module, body, scheme, setting)
+    body, clock = scaled_body(top, float(solve(top).T_nutation or 1))
+    process = EngineProcess(f"{MODELS}:{package}", body, scheme, setting)
 
     def attitudes(t: Array) -> Array:
         if t[-1] < 0:
@@ -117,6 +131,13 @@ def engine_attitudes(
         return process.attitudes(t * clock, limit)
 
     return attitudes
+
+
+def _engine_angles(
+    package: str, scheme: str, top: Top, setting: Any, limit: float
+) -> AngleFunction:
+    attitudes = engine_attitudes(package, scheme, top, setting, limit)
+    return lambda t: quaternion_angles(attitudes(t))
 
 
 class Scheme(NamedTuple):
@@ -141,7 +162,7 @@ FAMILIES: dict[str, dict[str, Scheme]] = {
         "discrete": Scheme("discrete", MANY_STEPS),
     },
 }
-"""Schemes of each engine, by the module of this folder that runs it: that of its package."""
+"""Schemes of each engine, by its package; its model is the function of that name."""
 
 
 def engines(limit: float) -> dict[str, Method]:
@@ -149,7 +170,7 @@ def engines(limit: float) -> dict[str, Method]:
     return {
         f"{package}-{short}".rstrip("-"): Method(
             scheme.settings,
-            partial(engine_sample, package, scheme.name, limit=limit),
+            partial(_engine_angles, package, scheme.name, limit=limit),
             IMPORTS.get(package, package),
             whole_turns=False,
             engine=package,
