@@ -7,7 +7,7 @@ from typing import cast
 
 from lagrange_cli.arithmetic.points import ExactComplex
 from lagrange_cli.arithmetic.types import Array
-from lagrange_cli.elliptic.modulus_input import ModulusInput
+from lagrange_cli.elliptic.modulus import ModulusInput
 from lagrange_cli.elliptic.request import FunctionRequest
 from lagrange_cli.elliptic.tables import TableOfFunctions
 

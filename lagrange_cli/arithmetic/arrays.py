@@ -101,10 +101,10 @@ class Pairs(Arrays):
     pi = DoubleDouble(np.array([np.pi]), np.array([1.2246467991473532e-16]))
 
     @staticmethod
-    def convert(value: float | Fraction) -> Any:
+    def convert(value: Any) -> Any:
         """Return an exact value as a pair with one element, which goes with any array."""
-        high, low = pair(Fraction(value))
-        return DoubleDouble(np.array([high]), np.array([low]))
+        exact = Fraction(value) if isinstance(value, float | int) else value
+        return DoubleDouble(*(np.array([part]) for part in pair(exact)))
 
     @staticmethod
     def sqrt(x: Any) -> Any:

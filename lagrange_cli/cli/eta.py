@@ -17,7 +17,7 @@ from .row_options import RANGE, listed, write_functions
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..elliptic.quadrature import Quadrature
+    from ..elliptic.eta import Quadrature
 
 
 def _parse_distance(text: str) -> ExactComplex:
@@ -96,14 +96,14 @@ def command(
     (imaginary, as 0.7i, for a complex pair), or by the gaps to them; with one gap alone the other
     outer root is at infinity, as for Lagrange's top, and under --quadratic both are.
     """
-    from ..elliptic.eta import record
+    from ..elliptic.eta_table import record
 
     times = listed("tau", single, grid)
     if quadratic:
         ways = {"--p": p, "--q": q, "--gap-above": gap_above, "--gap-below": gap_below}
         for name, value in ways.items():
             exclude({"--quadratic": quadratic, name: value})
-        from ..elliptic.quadrature import Quadrature
+        from ..elliptic.eta import Quadrature
 
         quadrature = Quadrature(delta_star, delta, (), g)
     else:
@@ -129,7 +129,7 @@ def _quadrature(
     g: Fraction,
 ) -> Quadrature:
     """Return the quadrature from either way to give the outer roots; it is checked when used."""
-    from ..elliptic.quadrature import Quadrature
+    from ..elliptic.eta import Quadrature
 
     p, q = middle
     above, below = gaps

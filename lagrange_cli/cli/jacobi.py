@@ -25,7 +25,7 @@ from .row_options import RANGE, listed, write_functions
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..elliptic.modulus_input import ModulusInput
+    from ..elliptic.modulus import ModulusInput
     from ..elliptic.request import Arguments, FunctionRequest
     from ..elliptic.tables import TableOfFunctions
     from ..inputs.multiples import Multiple, Multiples
@@ -135,7 +135,7 @@ def command(
     imaginary, columns end in _re and _im, and imaginary parts go up to 2^50 periods too.  Omega and
     Pi are continuous between the lines of zeros of theta; am is empty beyond its branch points.
     """
-    from ..elliptic.modulus_input import ModulusInput, constants_record
+    from ..elliptic.modulus import ModulusInput, constants_record
 
     beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
     real_k = None if k is None else k.real
@@ -163,7 +163,7 @@ def command(
         others = {"--u": arguments, "--series": terms, f"--{(*asked, '')[0]}": asked or None}
         for name, value in {**others, "--param": param}.items():
             exclude({"--phi": angles, name: value})
-        from ..elliptic.amplitude_table import AmplitudeTable
+        from ..elliptic.incomplete import AmplitudeTable
 
         write_functions(AmplitudeTable(angles, modulus), digits, fmt, output)
         return
@@ -250,7 +250,7 @@ def _write_series(
     destination: tuple[str, str],
 ) -> None:
     """Write the sums, and on standard error how many terms are enough."""
-    from ..elliptic.series_table import TOLERANCE, SeriesTable
+    from ..elliptic.nome_series import TOLERANCE, SeriesTable
 
     if not 1 <= terms <= MOST_TERMS:
         raise LagtopError(f"--series must be in [1, {MOST_TERMS}], got {terms}")

@@ -7,10 +7,8 @@ Taylor series about the mean.  Over forty decades of arguments all four are with
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import reduce, wraps
-from itertools import combinations
 from typing import TYPE_CHECKING, Any, cast
 
 from ..arithmetic.numbers import F, R, absolute, in_arithmetic, power, root_of_epsilon
@@ -20,14 +18,6 @@ if TYPE_CHECKING:
 
     Roots = tuple[Value, Value, Value, Value]
     Gain = Callable[[Roots, Value, Value], Value]
-    from ..arithmetic.types import Array
-
-
-_FAR_APART = 1e6
-"""Ratio of arguments beyond which the rounding errors of ten steps or more add up."""
-
-_NEAR_ONE, _TINY = 0.01, 1e-17
-"""Where R_C(1, 1 - e) = sum e^n/(2n + 1) is used, and what it may leave out."""
 
 
 def blockwise(function: F) -> F:
@@ -57,6 +47,26 @@ def _in_blocks(function: Callable[..., Any], ar: Any, arguments: tuple[Any, ...]
     flat = [array.ravel() for array in arrays]
     parts = [function(ar, *(x[block] for x in flat)) for block in blocks(flat[0].size)]
     return np.concatenate(parts).reshape(arrays[0].shape)
+
+
+def in_pairs(function: F) -> F:
+    """Return a formula f(ar, *arguments) that computes arrays in pairs of doubles.
+
+    So the rounding errors of many steps do not add up.
+    """
+
+    @blockwise
+    @wraps(function)
+    def evaluate(ar: Any, *arguments: Any) -> Any:
+        if not ar.is_array or ar.magnitude < -20:
+            return function(ar, *arguments)
+        from ..arithmetic.arrays import PAIRS  # NumPy is loaded for arrays only
+        from ..arithmetic.double_double import DoubleDouble
+
+        pairs = function(PAIRS, *(DoubleDouble(x.astype(float)) for x in arguments))
+        return pairs.high.reshape(arguments[0].shape)[()]
+
+    return cast(F, evaluate)
 
 
 @blockwise
@@ -92,25 +102,19 @@ def carlson_rf(ar: Arithmetic[R], x: R, y: R, z: R) -> R:
     return series / ar.sqrt(mean)
 
 
-@in_arithmetic
+@in_pairs
 def carlson_rc(ar: FunctionArithmetic, x: Value, y: Value) -> Value:
     """Return R_C(x, y) = R_F(x, y, y) for x >= 0, y > 0 (DLMF 19.2.17)."""
-    if not ar.is_array:
-        return carlson_rf(ar, x, y, y)
-    difference, root_x = y - x, ar.sqrt(x)
-    root = ar.sqrt(abs(ar.where(difference == 0, 1.0, difference)))
-    far = x > 4 * y  # where the quotient of the other form could overflow
-    circular = ar.atan2(root, root_x)
-    logarithm = ar.log((root_x + root) / ar.sqrt(y))
-    near_one = ar.log1p(2 * root * (root_x + root) / ar.where(far, x, y)) / 2
-    hyperbolic = ar.where(far, logarithm, near_one)
-    integral = ar.where(difference > 0, circular, hyperbolic) / root
-    return ar.where(difference == 0, 1 / ar.sqrt(y), integral)
+    return carlson_rf(ar, x, y, y)
 
 
 @blockwise
 def carlson_rd(ar: FunctionArithmetic, x: Value, y: Value, z: Value) -> Value:
     """Return R_D(x, y, z) for x, y >= 0, at most one of them 0, and z > 0 (DLMF 19.36.2)."""
+    if ar.is_array:
+        from scipy.special import elliprd  # for arrays only
+
+        return elliprd(x, y, z)
 
     def gain(roots: Roots, z: Value, shift: Value) -> Value:
         return 3 / (roots[2] * (z + shift))
@@ -118,7 +122,7 @@ def carlson_rd(ar: FunctionArithmetic, x: Value, y: Value, z: Value) -> Value:
     return _duplicated(ar, (x, y, z, z), gain)
 
 
-@blockwise
+@in_pairs
 def carlson_rj(ar: FunctionArithmetic, x: Value, y: Value, z: Value, p: Value) -> Value:
     """Return R_J(x, y, z, p) for x, y, z >= 0, at most one of them 0, and p > 0 (DLMF 19.36.2).
 
@@ -130,7 +134,7 @@ def carlson_rj(ar: FunctionArithmetic, x: Value, y: Value, z: Value, p: Value) -
         root_x, root_y, root_z, root_p = roots
         beta = root_p * (p + shift)
         total = beta + p * (root_x + root_y + root_z) + root_x * root_y * root_z
-        return 6 / total * _rc_from_one(ar, 2 * beta / total)
+        return 6 / total * carlson_rc(ar, 1 + 0 * p, 2 * beta / total)
 
     return _duplicated(ar, (x, y, z, p), gain)
 
@@ -149,90 +153,20 @@ def _radius(*shares: R) -> R:
     return total
 
 
-def _rc_from_one(ar: FunctionArithmetic, y: Value) -> Value:
-    """Return R_C(1, y); that of an array close to 1 is a Taylor series."""
-    e = 1 - y
-    largest = max(_TINY, float(abs(e).max(initial=0.0))) if ar.is_array else 1.0
-    if not largest <= _NEAR_ONE:
-        return carlson_rc(ar, ar.sqrt(1), y)
-    last = int(math.log(_TINY) / math.log(largest))
-    return reduce(lambda value, n: value * e + 1 / (2 * n + 1), range(last, -1, -1), 0 * e)
-
-
 def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
-    """Return R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`.
-
-    The rounding errors of the arguments add up over the steps; those elements of arrays whose
-    arguments are many decades apart, and need many, carry them along.
-    """
-    far = _far_apart(ar, arguments) if ar.is_array else False
-    if not ar.anywhere(far) or ar.everywhere(far):
-        return _stepped(ar, arguments, gain, carried=ar.anywhere(far))
-    total = 0 * arguments[0]
-    for rows, carried in ((far, True), (~far, False)):
-        x, y, z, p = (argument[rows] for argument in arguments)
-        total[rows] = _stepped(ar, (x, y, z, p), gain, carried=carried)
-    return total
-
-
-def _stepped(ar: FunctionArithmetic, arguments: Roots, gain: Gain, *, carried: bool) -> Value:
-    """Return R_J by duplication.
-
-    What remains after n steps is R_J of the new arguments over 4^n: where fewer than half of an
-    array need more, they are continued alone.
-    """
+    """Return R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`."""
     x, y, z, p = arguments
-    mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, ar.sqrt(1)
+    mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, 1 + 0 * p
     spread = _spread(ar, mean, x, y, z, p)
-    lows, lost = [0 * p] * 4, 0 * p
-    while _mostly(ar, unequal := spread > abs(mean)):
+    while ar.anywhere(spread > abs(mean)):
         root_x, root_y, root_z = ar.sqrt(x), ar.sqrt(y), ar.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x
-        term = gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
-        if carried:
-            from ..arithmetic.double_double import two_sum  # numpy is loaded for arrays only
-
-            total, error = two_sum(total, term)
-            lost = lost + error
-            (x, y, z, p), lows = _shifted((x, y, z, p), lows)
-        else:
-            total = total + term
-            x, y, z, p = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, (p + shift) / 4
+        total = total + gain((root_x, root_y, root_z, ar.sqrt(p)), p, shift) * weight
+        x, y, z, p = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4, (p + shift) / 4
         weight, spread = weight / 4, spread / 4
         mean = (x + y + z + 2 * p) / 5
     rest = _near_mean(ar, 1 - x / mean, 1 - y / mean, 1 - z / mean) / (mean * ar.sqrt(mean))
-    if not ar.everywhere(~unequal if ar.is_array else not unequal):
-        rest[unequal] = _duplicated(ar, (x[unequal], y[unequal], z[unequal], p[unequal]), gain)
-    return total + (rest * weight + lost)
-
-
-def _far_apart(ar: FunctionArithmetic, arguments: Roots) -> Any:
-    """Return where some arguments, other than zeros, are many decades apart."""
-    some = (ar.where(x == 0, math.inf, x) for x in arguments)
-    least = reduce(lambda a, b: ar.where(a < b, a, b), some)
-    return least * _FAR_APART < sum(arguments)
-
-
-def _shifted(highs: Roots, lows: list[Array]) -> tuple[Roots, list[Array]]:
-    """Return the arguments of the next step from arguments in pairs of doubles, as such pairs."""
-    from ..arithmetic.double_double import sqrt_pair, two_product, two_sum
-
-    shift, low = 0 * highs[0], 0 * highs[0]
-    roots = [sqrt_pair(high, rest) for high, rest in zip(highs[:3], lows[:3], strict=True)]
-    for (a, a_low), (b, b_low) in combinations(roots, 2):
-        product, error = two_product(a, b)
-        shift, lost = two_sum(shift, product)
-        low = low + (error + lost + (a * b_low + b * a_low))
-    sums = [two_sum(high, shift) for high in highs]
-    rests = [(error + rest + low) / 4 for (_, error), rest in zip(sums, lows, strict=True)]
-    pairs = [two_sum(total / 4, rest) for (total, _), rest in zip(sums, rests, strict=True)]
-    x, y, z, p = (high for high, _ in pairs)
-    return (x, y, z, p), [rest for _, rest in pairs]
-
-
-def _mostly(ar: FunctionArithmetic, condition: Any) -> bool:
-    """Return whether a condition holds, or holds for half of the elements of an array."""
-    return 2 * condition.sum() > condition.size if ar.is_array else bool(condition)
+    return total + rest * weight
 
 
 def _near_mean(ar: FunctionArithmetic, dx: Value, dy: Value, dz: Value) -> Value:

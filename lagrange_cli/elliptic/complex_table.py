@@ -11,14 +11,13 @@ from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, check_reach
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
-from .complex_known import known_parts
 from .complex_theta import theta_at_place, zeta_at_place
 from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .jacobi import complex_jacobi
-from .lattice import Lattice, Place, lattice, place_of
 from .many_digits import AgreeingNumbers, ManyDigits
-from .modulus_input import ModulusInput
-from .request import THETA, THIRD, Arguments, FunctionRequest
+from .modulus import ModulusInput
+from .periods import Lattice, Place, lattice, place_of
+from .request import THETA, THIRD, Arguments, FunctionRequest, known_parts
 from .tables import TableOfFunctions
 
 if TYPE_CHECKING:

@@ -9,16 +9,29 @@ from cell to cell are exponentials of polynomials, which are written out.
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.protocol import ComplexArithmetic
+from ..arithmetic.protocol import ComplexArithmetic, Value
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
-from .cell_series import Base, cell_series
-from .lattice import Fine, Lattice, Place, coarse, coordinate_of, fine_whole, lattice, place_of
 from .many_digits import ManyDigits
 from .modulus import Modulus, in_many_digits
-from .periods import NAMES, Complex
+from .periods import (
+    NAMES,
+    Complex,
+    Fine,
+    Lattice,
+    Place,
+    coarse,
+    coordinate_of,
+    fine_whole,
+    lattice,
+    negligible,
+    place_of,
+)
 
 _OTHER_NAMES = {
     ModulusKind.UNIT: {},
@@ -85,7 +98,7 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     (r, s), (X, Y) = ((c.rest for c in at), map(fine_whole, at))
     parity = at.x.whole * (inner[0] == "1") + at.y.whole * (inner[1] == "1")
     turn = ar.mpc(1, 0) / (1 if periods.circular else ar.sqrt(T))
-    size = fine_size(s if periods.circular else r)
+    size = abs(s if periods.circular else r)
     odd = rises(inner, periods)
     if periods.circular:
         rise = size - 0.25 if odd else 0 * r
@@ -106,13 +119,8 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
     angle = ar.pi * 2 * coarse(coordinate_of(ar, half_turns * 0.5).rest)
     wave = ar.mpc(ar.cos(angle), ar.sin(angle)) * (1 - 2 * (parity % 2))
     value = wave * (turn * base_at(ar, inner, at, periods).value)
-    rest = growth - _as_fine(growth)
+    rest = growth - type(growth)(coarse(growth))
     return ar.exp(coarse(growth)) * (value * (1 + coarse(rest)))
-
-
-def _as_fine(x: Fine) -> Fine:
-    """Return the leading part of a number."""
-    return DoubleDouble(x.high) if isinstance(x, DoubleDouble) else x
 
 
 _EIGHTH = {
@@ -147,18 +155,111 @@ def base_at(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> B
     """Return the series of theta_ij at the rests of a place."""
     x, y, t = at.x.rest, at.y.rest, periods.steepness
     if periods.circular:
-        base = cell_series(ar, inner, x, fine_size(y), t)
+        base = cell_series(ar, inner, x, abs(y), t)
         return base.mirrored(ar, coarse(y) < 0)
-    value, slope = cell_series(ar, inner[1] + inner[0], fine_size(y), fine_size(x), t)
+    value, slope = cell_series(ar, inner[1] + inner[0], abs(y), abs(x), t)
     base = Base(value, slope).mirrored(ar, coarse(x) > 0)
     turn = ar.mpc(0, 1) if inner == "11" else 1
     base = Base(turn * base.value, ar.mpc(0, -1 / periods.ratio) * base.slope)
     return base.mirrored(ar, coarse(y) < 0)
 
 
-def fine_size(x: Fine) -> Fine:
-    """Return the size of a coordinate."""
-    if not isinstance(x, DoubleDouble):
-        return abs(x)
-    sign = 1.0 - 2.0 * (x.high < 0)
-    return DoubleDouble(sign * x.high, sign * x.low)
+class Base(NamedTuple):
+    """The value of a series, and the derivative of its logarithm by z."""
+
+    value: Complex
+    slope: Complex
+
+    def mirrored(self, ar: ComplexArithmetic, where: Value) -> Base:
+        """Return the series of the conjugate argument where a condition holds."""
+        return self.chosen(ar, where, Base(ar.conj(self.value), ar.conj(self.slope)))
+
+    def chosen(self, ar: ComplexArithmetic, where: Value, other: Base) -> Base:
+        """Return another one where a condition holds."""
+        return Base(*(ar.where(where, b, a) for a, b in zip(self, other, strict=True)))
+
+
+def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Value) -> Base:
+    """Return theta_ij at z = phase + i height t/pi, with the nome exp(-t), and its slope.
+
+    Of 11 and 10: q^(-1/4) exp(-t height) theta_ij.  t is at least pi, the phase within 1/2, and the
+    height from 0 to 1/2.  Each function has one zero there, next to which it is read from the
+    series of sines that vanishes at 0; so all values keep their digits.
+    """
+    if ij == "11":
+        return _sines(ar, coarse(phase), coarse(height), t)
+    if ij == "10":
+        return _cosines(ar, phase, coarse(height), t)
+    low = coarse(height) < 0.25
+    near_0 = ar.where(low, coarse(height), 0 * coarse(height))
+    plain = _even(ar, coarse(phase), near_0, t, alternating=ij[1] == "1")
+    beyond = coarse(0.5 - height)
+    rest = _sines(ar, coarse(phase), beyond, t) if ij == "01" else _cosines(ar, phase, beyond, t)
+    rest = rest.mirrored(ar, True)  # half a period tau back: theta01 is then exp(-i pi z) theta11
+    angle = ar.pi * coarse(phase)
+    turn = ar.mpc(ar.cos(angle), -ar.sin(angle)) * (ar.mpc(0, 1) if ij == "01" else 1)
+    return Base(turn * rest.value, rest.slope - ar.mpc(0, ar.pi)).chosen(ar, low, plain)
+
+
+def _cosines(ar: ComplexArithmetic, phase: Fine, height: Value, t: Value) -> Base:
+    """Return the series of theta10; next to its zero as theta11 half a period away."""
+    here = coarse(phase)
+    middle = abs(here) < 0.25
+    left = here < 0
+    there = ar.where(left, coarse(0.5 + phase), coarse(0.5 - phase))
+    value, slope = _sines(ar, there, height, t)
+    beside = Base(ar.conj(value), -ar.conj(slope)).chosen(ar, left, Base(value, slope))
+    plain = _odd(ar, ar.where(middle, here, 0 * here), height, t, sines=False)
+    return beside.chosen(ar, middle, plain)
+
+
+def _sines(ar: ComplexArithmetic, phase: Value, height: Value, t: Value) -> Base:
+    """Return the series of theta11."""
+    return _odd(ar, phase, height, t, sines=True)
+
+
+def _odd(ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, sines: bool) -> Base:
+    """Return 2 sum (-1)^n q^(n (n + 1)) sin (2n + 1) pi z, over exp(t height), and its slope.
+
+    Without `sines`: the sum of cosines without the signs.
+    """
+    real = imag = slope_real = slope_imag = 0 * phase
+    for n in range(_terms(ar)):
+        near = (-1) ** (n * sines) * ar.exp(-(t * n) * (n + 1 - 2 * height))
+        drop, rate = ar.expm1(-(4 * n + 2) * t * height), (2 * n + 1) * ar.pi
+        both, apart = near * (2 + drop), -near * drop
+        sine, cosine = ar.sin(rate * phase), ar.cos(rate * phase)
+        across = both * sine, apart * cosine
+        along = both * cosine, -apart * sine
+        if not sines:
+            across, along = along, (-across[0], -across[1])
+        real, imag = real + across[0], imag + across[1]
+        slope_real, slope_imag = slope_real + rate * along[0], slope_imag + rate * along[1]
+    value = ar.mpc(real, imag)
+    if not ar.is_array and not value:
+        return Base(value, ar.mpc(ar.inf, 0))
+    return Base(value, ar.mpc(slope_real, slope_imag) / value)
+
+
+def _even(
+    ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, alternating: bool
+) -> Base:
+    """Return 1 + 2 sum (+-1)^n q^(n^2) cos 2 n pi z, and its slope, for a height up to 1/4."""
+    real, imag, slope_real, slope_imag = 1 + 0 * phase, 0 * phase, 0 * phase, 0 * phase
+    for n in range(1, _terms(ar)):
+        near = (-1) ** (n * alternating) * ar.exp(-(t * n) * (n - 2 * height))
+        drop, rate = ar.expm1(-4 * n * t * height), 2 * n * ar.pi
+        both, apart = near * (2 + drop), -near * drop
+        sine, cosine = ar.sin(rate * phase), ar.cos(rate * phase)
+        real, imag = real + both * cosine, imag - apart * sine
+        slope_real, slope_imag = (
+            slope_real - rate * (both * sine),
+            slope_imag - rate * (apart * cosine),
+        )
+    value = ar.mpc(real, imag)
+    return Base(value, ar.mpc(slope_real, slope_imag) / value)
+
+
+def _terms(ar: ComplexArithmetic) -> int:
+    """Return how many terms matter, of which the last is at most exp(-pi (n - 1/2)^2)."""
+    return 2 + math.ceil(math.sqrt(negligible(ar) / math.pi))

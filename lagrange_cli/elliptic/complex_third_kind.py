@@ -18,14 +18,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, Value
 from .any_modulus import ModulusKind
-from .complex_theta import base_at, fine_size, inner_name, rises, slope_in_cell
-from .lattice import Coordinate, Fine, Lattice, Place, coarse, place_of
+from .complex_theta import base_at, inner_name, rises, slope_in_cell
 from .many_digits import ManyDigits
-from .periods import Complex
+from .periods import Complex, Fine, Lattice, Place, coarse, fine_whole, place_of
 
 
 class Parameter(NamedTuple):
@@ -102,7 +100,7 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Omega_ij at a place."""
     T, v, u = given.periods.ratio, given.at, at.within()
     cell = _Cell(ar, u, given)
-    (r, s), (a, b) = map(_coarse_rests, (at, v))
+    (r, s), (a, b) = at.coarse_rests(), v.coarse_rests()
     height, other = (u.y, v.y) if given.periods.circular else (u.x, v.x)
     bends = given.periods.kind is ModulusKind.LARGE
     rise, turns = cell.rise, cell.half_turns(at)
@@ -129,7 +127,7 @@ def pi_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Pi_ij at a place."""
     T, t, u = given.periods.ratio, given.periods.steepness, at.within()
     cell = _Cell(ar, u, given)
-    r, s = _coarse_rests(at)
+    r, s = at.coarse_rests()
     height = (u.y if given.periods.circular else u.x).rest
     rise = cell.rise + given.side * height
     phase = cell.phase + given.side * (-r if given.periods.circular else s)
@@ -155,10 +153,10 @@ class _Cell:
         self.given = given
         self.places = less, more = u.shifted(ar, v, -1), u.shifted(ar, v, 1)
         ends = [place_.y if periods.circular else place_.x for place_ in self.places]
-        steps = [end.whole * (end.rest * 2 + end.whole) for end in _fine(ends)]
+        steps = [(whole := fine_whole(end)) * (end.rest * 2 + whole) for end in ends]
         rise = (steps[0] - steps[1]) * 0.5
         if rises(self.inner, periods):
-            rise = rise + (fine_size(ends[0].rest) - fine_size(ends[1].rest)) * 0.5
+            rise = rise + (abs(ends[0].rest) - abs(ends[1].rest)) * 0.5
         self.rise = rise
         if periods.circular:
             here = [coarse(u.x.rest - v.x.rest), coarse(u.x.rest + v.x.rest)]
@@ -196,16 +194,3 @@ class _Cell:
 def _sign(x: Value) -> Value:
     """Return -1, 0 or 1."""
     return (x > 0) * 1 - (x < 0) * 1
-
-
-def _coarse_rests(at: Place) -> tuple[Value, Value]:
-    """Return the rests of a place."""
-    return coarse(at.x.rest), coarse(at.y.rest)
-
-
-def _fine(ends: list[Coordinate]) -> list[Coordinate]:
-    """Return coordinates whose whole parts go with their rests."""
-    return [
-        Coordinate(DoubleDouble(end.whole), end.rest) if isinstance(end.rest, DoubleDouble) else end
-        for end in ends
-    ]

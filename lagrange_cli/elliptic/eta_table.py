@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.balls import Balls, balls
 from ..arithmetic.numbers import DOUBLES
@@ -13,11 +13,10 @@ from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import Pair, decided, pair
 from .complete import complete_k
-from .eta import Band, EtaConstants, band_of, eta_constants, modulus_in_use
+from .eta import Band, EtaConstants, Quadrature, band_of, eta_constants, modulus_in_use
 from .jacobi import jacobi, jacobi_at
 from .periods import whole_and_rest
-from .quadrature import Quadrature
-from .tables import RealTable
+from .tables import ProvedNumbers, RealTable
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -185,3 +184,71 @@ def place_in_band(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band)
     risen, left = band.width * up / (up + down), band.width * down / (up + down)
     eta = ar.where(ar.either(risen < left), band.lower + risen, band.upper - left)
     return PlaceInBand(eta, risen, left, sn * cn < 0)
+
+
+def record(
+    quadrature: Quadrature, digits: int | None = None, c3: Fraction = Fraction(0)
+) -> dict[str, Any]:
+    """Return roots and constants, each the nearest double or to so many significant digits.
+
+    Raises LagtopError as `Quadrature.check` does and, for doubles, `Quadrature.check_doubles`.
+    """
+    if digits is not None:
+        quadrature.check()
+    else:
+        quadrature.check_doubles()
+    zeros = dict.fromkeys(_zeros_of_record(quadrature), 0)
+    return ProvedNumbers(digits).of(lambda ar: _record_in(ar, quadrature, c3), zeros)
+
+
+def _zeros_of_record(quadrature: Quadrature) -> set[str]:
+    """Return the constants that are exactly 0."""
+    square1, square2 = quadrature.squares
+    upper, lower, outer = quadrature.upper, quadrature.lower, quadrature.outer
+    opposite = square2 * upper**2 == square1 * lower**2
+    exact = {
+        "delta": upper,
+        "delta_star": lower,
+        "p": sum(outer),
+        "q": outer[0] - outer[-1] if outer else 0,
+        "outer_root": sum(outer),
+        "d": square2 - square1,
+        "s": not (opposite and upper * lower >= 0),
+        "gamma": not (opposite and upper * lower <= 0),
+        "k": (upper - lower) * (outer[0] - outer[1] if len(outer) > 1 else len(outer)),
+    }
+    if quadrature.height:
+        exact["k_imag"] = upper - lower
+    zeros = {name for name, x in exact.items() if not x}
+    return zeros | {name.replace("k", "k1") for name in zeros & {"k", "k_imag"}}
+
+
+def _record_in(ar: FunctionArithmetic, quadrature: Quadrature, c3: Fraction) -> dict[str, Any]:
+    """Return the record in balls; None for what the layout does not have."""
+    c, outer = eta_constants(ar, quadrature), quadrature.outer
+    pair_of_roots, imaginary = len(outer) > 1, bool(quadrature.height)
+    return {
+        "delta": ar.convert(quadrature.upper),
+        "delta_star": ar.convert(quadrature.lower),
+        "p": ar.convert((outer[0] + outer[-1]) / 2) if pair_of_roots else None,
+        "q": ar.convert(abs(outer[0] - outer[1]) / 2) if pair_of_roots and not imaginary else None,
+        "q_imag": ar.convert(quadrature.height) if imaginary else None,
+        "outer_root": ar.convert(outer[0]) if len(outer) == 1 else None,
+        "g": ar.convert(quadrature.g),
+        "layout": quadrature.layout,
+        "kind": quadrature.kind,
+        "m_prime": c.m1,
+        "m_double_prime": c.m2,
+        "k": None if imaginary else c.k,
+        "k_imag": c.k if imaginary else None,
+        "k1": None if imaginary else c.k1,
+        "k1_imag": c.k1 if imaginary else None,
+        "k1_prime": c.k1_prime,
+        "K1": c.period * c.sigma1 / 4,
+        "sigma1": c.sigma1,
+        "s": c.s,
+        "d": c.d,
+        "gamma": c.gamma,
+        "period": c.period,
+        "tau3": ar.convert(c3) - c.period / 4,
+    }

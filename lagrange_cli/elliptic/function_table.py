@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.balls import Balls, balls
 from ..arithmetic.numbers import DOUBLES
-from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
+from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ListedPoints, Points, check_reach
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import decided, pair
 from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
-from .known_values import known_values, put_exact_values
 from .modulus import Modulus
 from .periods import Periods, of_quarters
-from .request import THETA, THIRD, FunctionRequest
+from .request import THETA, THIRD, FunctionRequest, known_values, put_exact_values
 from .tables import RealTable
 from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
-from .third_kind import check_near, third_kind
+from .third_kind import third_kind
 from .third_kind_real import ThirdKind
 
 if TYPE_CHECKING:
@@ -63,14 +62,14 @@ class FunctionTable(RealTable):
         """Return the table with a parameter in doubles."""
         request, modulus = self.request.in_doubles(), self.modulus.in_doubles()
         has_periods = modulus.k_prime > 0
+        K = complete_k(DOUBLES, modulus.k_prime) if has_periods else MAX_TIME
         self.check()
         if request.in_quarters:
             check_reach("u in units of K", self.points, 2 * MAX_PERIODS)
         else:
-            K = complete_k(DOUBLES, modulus.k_prime) if has_periods else MAX_TIME
             check_reach("u", self.points, min(MAX_PERIODS * 2 * K, MAX_TIME))
         if request.has_parameter and has_periods and not request.imaginary:
-            check_near(float(request.size), modulus)
+            check_reach("param", ListedPoints([request.size]), MAX_PERIODS * 2 * K)
         return FunctionTable(self.points, request)
 
     def check(self) -> None:

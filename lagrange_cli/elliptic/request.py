@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.points import ExactComplex
-from .modulus_input import ModulusInput
+from .any_modulus import AnyModulus, ModulusKind
+from .complete import complete_k
+from .modulus import ModulusInput
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..arithmetic.protocol import Value
+    from ..arithmetic.types import Array
+    from .many_digits import ManyDigits
 
 THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
 """The functions of one argument, and those of an argument and a parameter."""
@@ -77,3 +82,181 @@ class Arguments(NamedTuple):
             yield from map(ExactComplex, self.real.decimals())
         else:
             yield from map(ExactComplex, self.real.decimals(), self.imag.decimals())
+
+
+VANISH = {
+    "u": "u am_deg am_rad sn theta11 zeta01 zeta00 zeta10 omega01 omega00 pi01 pi00",
+    "param": "omega01 omega00 omega11 pi01 pi00",
+    "k": "theta11 theta10 zeta01 zeta00 omega01 omega00 pi01 pi00",
+}
+"""The columns that are exactly 0 where u, the parameter or k is; no other is, at rational u."""
+
+
+def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
+    """Return the columns that are exactly 0 at u, and not a number where they have a pole.
+
+    K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
+    rational places to think of.
+    """
+    name, value, _ = request.real_modulus
+    suffix = "_imag" if request.imaginary else ""
+    known: dict[str, float] = {}
+
+    def add(names: str, x: float) -> None:
+        for column in names.split():
+            known[column + suffix * column.startswith(("omega", "pi"))] = x
+
+    if value == (1 if name == "k_prime" else 0):
+        add(VANISH["k"], 0)
+    if u == 0:
+        add(VANISH["u"] + ("" if request.imaginary else " omega11 pi11"), 0)
+        add("zeta11", math.nan)
+    if request.size == 0:
+        add(VANISH["param"], 0)
+        add("pi11", math.nan)
+    elif abs(u) == abs(request.size) and not (request.imaginary or request.in_quarters):
+        add("omega11 pi11", math.nan)
+    if request.in_quarters and u.denominator == 1:
+        known |= known_at_quarter(int(u % 4), request)
+        known |= {} if request.radians else {"am_deg": 90 * int(u)}
+        known |= {"omega11_imag": 0} if u == 1 and request.imaginary else {}
+    return known
+
+
+def known_at_quarter(quarter: int, request: FunctionRequest) -> dict[str, float]:
+    """Return the columns that are 0, 1, -1 or a pole at the multiples quarter + 4n of K.
+
+    These are the entries of Aksenov's table 2, and what follows for theta and Zeta functions and
+    the Omega functions of a parameter.  dn is k' at odd quarters.
+    """
+    odd = quarter % 2
+    known: dict[str, float] = {"sn": (0, 1, 0, -1)[quarter], "cn": (1, 0, -1, 0)[quarter]}
+    zeros = "zeta10 theta11" if not odd else "zeta11 theta10"
+    known |= dict.fromkeys(f"{zeros} zeta01 zeta00".split(), 0)
+    known["zeta10" if odd else "zeta11"] = math.nan
+    suffix = "_imag" if request.imaginary else ""
+    known |= {f"omega01{suffix}": 0, f"omega00{suffix}": 0}
+    if not odd:
+        known["dn"] = 1
+    if not request.imaginary:
+        known["omega11"] = 0
+    return known
+
+
+def put_exact_values(table: dict[str, Array], u: Array, request: FunctionRequest) -> None:
+    """Put what is known at u = 0, at whole multiples of K and at poles in its place."""
+    import numpy as np
+
+    def put(here: Array, known: dict[str, float]) -> None:
+        for name in known.keys() & table.keys():
+            table[name] = np.where(here, known[name], table[name])
+
+    if request.in_quarters:
+        whole = u == np.rint(u)
+        for quarter in range(4):
+            put(whole & (u % 4 == quarter), known_at_quarter(quarter, request))
+        if "am_deg" in table:
+            table["am_deg"] = np.where(whole, 90 * u, table["am_deg"])
+        if request.imaginary:
+            put(u == 1, {"omega11_imag": 0})
+    put(u == 0, known_values(Fraction(0), request))
+    if request.size and not request.imaginary:
+        poles = abs(table["u"]) == abs(float(request.size))
+        put(poles, dict.fromkeys(("omega11", "pi11"), math.nan))
+
+
+_RIGHT = ModulusInput("modular_angle", Fraction(45))
+"""The modulus sin 45 degrees, of which K' = K."""
+
+
+class Known(NamedTuple):
+    """Parts that may be 0, and columns that are not numbers."""
+
+    parts: frozenset[str]
+    poles: frozenset[str]
+    turns: frozenset[str] = frozenset()
+    """Parts that are whole multiples of a quarter turn, of which rounding leaves a trace."""
+
+    def names(self) -> set[str]:
+        """Return all parts that may be 0 or not a number."""
+        split = {f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")}
+        return split | self.parts | self.turns
+
+    def cleared(self, ar: ManyDigits, parts: dict[str, Value]) -> dict[str, Value]:
+        """Return all parts, those of no turn as 0: a trace is far smaller than a quarter turn."""
+        trace = ar.mpf(10) ** (-ar.dps // 2)
+        none = {name for name in self.turns & parts.keys() if abs(parts[name]) < trace}
+        return {name: 0 * part if name in none else part for name, part in parts.items()}
+
+
+def known_parts(u: ExactComplex, request: FunctionRequest, given: AnyModulus) -> Known:
+    """Return the parts that are exactly 0 at u, and the poles."""
+    v, am, kind, zeros = request.parameter, request.am, given.kind, "u_re u_im"
+    large, along, upright = kind is ModulusKind.LARGE, not u.imag, not u.real
+    if along:
+        zeros += f" {am}_im sn_im cn_im dn_im"
+        zeros += "" if large else " zeta01_im zeta00_im zeta11_im zeta10_im theta01_im theta00_im"
+        zeros += " theta11_im theta10_im" if kind is ModulusKind.UNIT else ""
+    if upright:
+        zeros += f" {am}_re sn_re cn_im dn_im"
+        zeros += "" if large else " zeta01_re zeta00_re zeta11_re zeta10_re theta01_im theta00_im"
+        zeros += " theta11_re theta10_im" if kind is ModulusKind.UNIT else ""
+    if along and upright:
+        zeros += f" u {am} sn zeta01_re zeta01_im zeta00_re zeta00_im zeta10_re zeta10_im"
+        zeros += " theta11_re theta11_im"
+    if not given.modulus.k:
+        zeros += " dn_im"
+    zeros += _third("pi", u, v) + ("" if large and any(u) and any(v) else _third("omega", u, v))
+    poles = {"zeta11"} if along and upright else set()
+    if not any(v):
+        poles.add("pi11")
+    if v in (u, ExactComplex(-u.real, -u.imag)):
+        poles |= {"omega11", "pi11"}
+    if _beyond(u, given):
+        poles.add(am)
+    turns = frozenset() if large else _turns(u, v, request.modulus)
+    return Known(frozenset(zeros.split()), frozenset(poles), turns)
+
+
+def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
+    """Return the parts of Omega or Pi that vanish by symmetry; half turns may be none."""
+    parts = ""
+    if not (any(u) and any(v)):
+        parts = "re im"
+    elif (not u.imag and not v.real) or (not u.real and not v.imag):
+        parts = "re"
+    if (not u.imag and not v.imag) or (not u.real and not v.real):
+        parts += " im"
+    names = (f" {family}{ij}_{part}" for ij in ("01", "00", "11") for part in parts.split())
+    return "".join(names)
+
+
+def _turns(
+    u: ExactComplex, v: ExactComplex, modulus: ModulusInput | ExactComplex
+) -> frozenset[str]:
+    """Return the parts that are multiples of a quarter turn where u and v are on symmetric lines.
+
+    Omega(u, v) is Omega(v, u), but for the odd theta function and half turns; so it is real where u
+    is conj v or -conj v.  For K' = K (or K' = K - iK, of k = i) theta(iu) is theta(u), i theta(u)
+    of the odd one, times exp(pi u^2/4K^2).  On the diagonals conj u is iu or -iu; so Pi is real
+    where u and v are on one of them, and imaginary where they are on both.
+    """
+    if not (all(u) and all(v)):
+        return frozenset()
+    turns, straight = set(), u.real * v.real == u.imag * v.imag
+    if v in (ExactComplex(u.real, -u.imag), ExactComplex(-u.real, u.imag)):
+        turns = {"omega01_im", "omega00_im"}
+    on_diagonals = all(abs(z.real) == abs(z.imag) for z in (u, v))
+    even = {ExactComplex(Fraction(0), Fraction(1)): "01", _RIGHT: "00"}.get(modulus)
+    if even and on_diagonals:
+        turns |= {f"pi{ij}_{'im' if straight else 're'}" for ij in (even, "11")}
+    return frozenset(turns)
+
+
+def _beyond(u: ExactComplex, given: AnyModulus) -> bool:
+    """Return whether u is beyond the branch points of am."""
+    k = given.modulus.k
+    if not k:
+        return False
+    ar = k.context
+    return bool(abs(ar.convert(u.imag)) * given.stretch > complete_k(ar, k))

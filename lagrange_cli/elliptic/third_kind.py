@@ -8,57 +8,31 @@ computed once, in many digits, and what depends on eta is arranged so that nothi
 Theta(eta -+ v) are taken apart as P +- Q, and the growth of Pi over a period is one constant.
 
 A parameter of many digits and one rounded to doubles obey the same formulas, over balls and arrays.
+
+The classes below are for an imaginary parameter i alpha, |alpha| < K'; both functions are over i,
+so that they are real.  Omega is the phase of theta(x - i y), continuous in x = eta/2K, where
+y = alpha/2K.  Of the odd function it is -pi/2 at x = 0, for alpha > 0, as in (2,5), and grows by
+half a turn in a period.  All is odd in alpha, so y > 0 below.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from operator import mul
+from typing import Any, Self
 
 from ..arithmetic.balls import balls
-from ..arithmetic.numbers import DOUBLES, in_arithmetic
-from ..arithmetic.points import MAX_PERIODS
+from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
 from ..arithmetic.rounding import decided
 from ..errors import LagtopError
 from .complete import complete_k
 from .modulus import Modulus, in_many_digits
 from .periods import Complex, Periods, each_alone, negligible
-from .theta import (
-    in_periods,
-    series_for,
-    zeta_at,
-)
-from .third_kind_imaginary import ImaginaryCircular, ImaginaryHyperbolic
+from .theta import in_periods, series_for, widened_by, zeta_at
 from .third_kind_real import RealCircular, RealHyperbolic, ThirdKind, ZeroParameter
-
-
-def check_parameter(
-    ar: FunctionArithmetic, size: Value, modulus: Modulus, *, imaginary: bool
-) -> None:
-    """Raise LagtopError for an imaginary parameter whose size is K' or more."""
-    if imaginary and modulus.k and abs(size) >= (limit := complete_k(ar, modulus.k)):
-        raise LagtopError(
-            f"param must be smaller than K' = {_shown(limit)} in size where it is imaginary, "
-            f"got {_shown(size)}i",
-            "param",
-        )
-
-
-def _shown(x: Value) -> str:
-    middle: Value = getattr(x, "middle", x)
-    return f"{float(middle):.6g}"
-
-
-def check_near(v: float, modulus: Modulus) -> None:
-    """Raise LagtopError where a real parameter is more than 2^50 periods from 0."""
-    limit = MAX_PERIODS * 2 * float(complete_k(DOUBLES, float(modulus.k_prime)))
-    if abs(v) > limit:
-        raise LagtopError(
-            f"param must be within 2^50 periods = {limit:.3g} of 0, got {v} (or give --digits)",
-            "param",
-        )
 
 
 def third_kind(
@@ -66,10 +40,16 @@ def third_kind(
 ) -> ThirdKind:
     """Return Omega_ij and Pi_ij of a parameter, with constants in balls or an mpmath context.
 
-    The parameter is `size`, or i times it if `imaginary`.  Raises LagtopError as `check_parameter`
-    does, and for k = 1.
+    The parameter is `size`, or i times it if `imaginary`.  Raises LagtopError for k = 1, and for an
+    imaginary parameter whose size is K' or more.
     """
-    check_parameter(ar, size, modulus, imaginary=imaginary)
+    if imaginary and modulus.k and abs(size) >= (limit := complete_k(ar, modulus.k)):
+        most, got = (float(getattr(x, "middle", x)) for x in (limit, size))
+        raise LagtopError(
+            f"param must be smaller than K' = {most:.6g} in size where it is imaginary, "
+            f"got {got:.6g}i",
+            "param",
+        )
     series = series_for(ar, modulus)
     if not size:
         return ZeroParameter(ij)
@@ -114,12 +94,22 @@ def _evaluate(
     """Return Omega or Pi of numbers of a context, or of arrays that broadcast."""
 
     def function(eta: Value, v: Complex, *parts: Value) -> Complex:
-        given = Modulus(*parts)
-        size, imaginary = parameter_of(ar, v)
-        make = rounded_kind if ar.is_array else partial(third_kind, ar)
-        kind = make(ij, size, given, imaginary=imaginary)
+        given, real, imag = Modulus(*parts), ar.re(v), ar.im(v)
+        if imag and real:
+            raise LagtopError("param must be real or imaginary", "param")
+        make = partial(third_kind, ij=ij, imaginary=bool(imag))
+
+        def rounded(digits: int) -> ThirdKind:
+            exact, size = balls(digits), float(imag or real)
+            many = in_many_digits(exact, given)
+            return make(exact, size=exact.convert(size), modulus=many).rounded()
+
+        if ar.is_array:
+            kind = decided("the constants of the parameter", rounded)
+        else:
+            kind = make(ar, size=imag or real, modulus=given)
         value = getattr(kind, name)(ar, in_periods(ar, eta, series_for(ar, given)))
-        return ar.mpc(0 * value, value) if imaginary else value
+        return ar.mpc(0 * value, value) if imag else value
 
     eta, v = place
     if not ar.is_array:
@@ -127,23 +117,175 @@ def _evaluate(
     return each_alone(ar, function, eta, v, *modulus)
 
 
-def parameter_of(ar: FunctionArithmetic, v: Complex) -> tuple[Value, bool]:
-    """Return the size of a parameter, with its sign, and whether it is imaginary.
+@dataclass(frozen=True)
+class ImaginaryCircular(ThirdKind):
+    """The parameter for k <= k', where the series run in the nome q."""
 
-    Raises LagtopError unless it is real or imaginary.
+    odd: bool
+    shifted: bool
+    """Whether the function is that of x + 1/2."""
+    sign: int
+    """Sign of alpha."""
+    zeta: Value
+    """2K Z(i |alpha|)/i."""
+    growth: Value
+    """What Pi grows by in a period: zeta, and half a turn of the odd function."""
+    floor: Value
+    """theta01(i y) of the even function, which vanishes with K' - alpha."""
+    heights: tuple[Value, ...]
+    """Coefficients with cosh."""
+    slants: tuple[Value, ...]
+    """Coefficients with sinh."""
+    left_out: Value
+    """A bound of what each series leaves out."""
+
+    @classmethod
+    def at(
+        cls, ar: FunctionArithmetic, ij: str, y: Value, q: Value, terms: int
+    ) -> ImaginaryCircular:
+        """Return the constants from y = alpha/2K and the nome.
+
+        As 2 pi |y| <= log(1/q), the terms of the sums from h = N on are at most 4 q^(N(N-1)), those
+        of the slopes (2 N + 1) pi times that, and each is less than half of the one before.
+        """
+        odd, shifted, size = ij[0] == "1", ij[1] == "0", abs(y)
+        orders = range(terms) if odd else range(1, terms)
+        rates = [(2 * h + odd) * ar.pi for h in orders]
+        if odd:
+            weights = [(-1) ** h * q ** (h * (h + 1)) / ar.cosh(ar.pi * size) for h in orders]
+        else:
+            weights = [2 * (-1) ** h * q ** (h * h) for h in orders]
+        heights = [w * ar.cosh(rate * size) for w, rate in zip(weights, rates, strict=True)]
+        slants = [w * ar.sinh(rate * size) for w, rate in zip(weights, rates, strict=True)]
+        signs = [(-1) ** h if shifted else 1 for h in orders]  # of the function half a period on
+        left_out = 8 * q ** (terms * (terms - 1))
+        value, slope = (slants, heights) if ij == "11" else (heights, slants)
+        total = sum(map(mul, signs, value), 0 if odd else ar.convert(1))
+        rising = sum(map(mul, map(mul, signs, slope), rates))
+        zeta = -widened_by(ar, rising, 4 * (2 * terms + 1) * left_out)
+        zeta = zeta / widened_by(ar, total, left_out)
+        floor = widened_by(ar, 1 + sum(heights), left_out)
+        if not odd:
+            heights = [-2 * height for height in heights]
+        growth, sign = zeta + ar.pi if odd else zeta, -1 if y < 0 else 1
+        parts = tuple(heights), tuple(slants), 2 * left_out
+        return cls(odd, shifted, sign, zeta, growth, floor, *parts)
+
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return the phase of the theta function."""
+        half_turns, within = self._phase(ar, x)
+        return self.sign * (ar.pi * half_turns + within)
+
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return Pi, by its growth over the periods and what is left within one."""
+        half_turns, within = self._phase(ar, x)
+        if self.odd:
+            within = within + ar.pi * (half_turns - x.turns)
+        return self.sign * (self.growth * x.turns + (self.zeta * x.rest + within))
+
+    def _phase(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value]:
+        """Return whole half turns of the phase, and the rest of it."""
+        turns, rest, _ = x.half_further(ar) if self.shifted else x
+        series = list(enumerate(zip(self.heights, self.slants, strict=True)))
+        if self.odd:
+            across = sum(a * ar.sin((2 * h + 1) * ar.pi * rest) for h, (a, _) in series)
+            along = sum(b * ar.cos((2 * h + 1) * ar.pi * rest) for h, (_, b) in series)
+            return turns, self._angle(ar, across, along) - ar.pi / 2
+        along = self.floor + sum(a * ar.sin((h + 1) * ar.pi * rest) ** 2 for h, (a, _) in series)
+        across = sum(b * ar.sin(2 * (h + 1) * ar.pi * rest) for h, (_, b) in series)
+        return 0 * turns, self._angle(ar, across, along)
+
+    def _angle(self, ar: FunctionArithmetic, across: Value, along: Value) -> Value:
+        """Return the angle of two sums, with what they leave out."""
+        return ar.atan2(*(widened_by(ar, x, self.left_out) for x in (across, along)))
+
+    def rounded(self, **others: Any) -> Self:
+        """Return the parameter with its constants in doubles."""
+        return super().rounded(left_out=0.0, **others)
+
+
+@dataclass(frozen=True)
+class ImaginaryHyperbolic(ThirdKind):
+    """The parameter for k > k', where the theta functions are sums of Gaussians.
+
+    theta(x - i y) is exp(2 i c x y) times a sum over n > 0, half-integers or (for 00 and 10)
+    integers, of exp(-c n^2) cosh or sinh 2 c n (x - i y); c = pi K/K' is the steepness.
     """
-    real, imag = ar.re(v), ar.im(v)
-    if imag and real:
-        raise LagtopError("param must be real or imaginary", "param")
-    return (imag, True) if imag else (real, False)
 
+    ij: str
+    sign: int
+    """Sign of alpha."""
+    steepness: Value
+    turn: Value
+    """2 c y = pi |alpha|/K', less than pi."""
+    slope: Value
+    """Z of the sum alone: 2K Z(i |alpha|)/i + 2 c y."""
+    growth: Value
+    """What Pi grows by in a period: 2K Z(i |alpha|)/i, and half a turn of the odd function."""
+    cosines: tuple[Value, ...]
+    """cos 2 c n y."""
+    sines: tuple[Value, ...]
+    """sin 2 c n y."""
 
-def rounded_kind(ij: str, size: float, modulus: Modulus, *, imaginary: bool) -> ThirdKind:
-    """Return Omega_ij and Pi_ij of a parameter and a modulus in doubles, rounded from balls."""
+    @classmethod
+    def at(
+        cls, ar: FunctionArithmetic, ij: str, y: Value, steepness: Value, terms: int
+    ) -> ImaginaryHyperbolic:
+        """Return the constants from y = alpha/2K and the steepness."""
+        c, half_turn = steepness, steepness * abs(y)
+        orders = [ar.convert(2 * i + 1 if ij[1] == "1" else 2 * i) / 2 for i in range(terms)]
+        signs = [(-1) ** i if ij[0] == "1" else 1 for i in range(terms)]
+        cosines = tuple(ar.cos(2 * n * half_turn) for n in orders)
+        sines = tuple(ar.sin(2 * n * half_turn) for n in orders)
+        first = orders[0] ** 2
+        bells = [ar.exp(-c * (n * n - first)) for n in orders]
+        if ij[1] == "0":
+            bells[0] /= 2  # it is its own image
+        parts = list(zip(map(mul, signs, bells), orders, cosines, sines, strict=True))
+        if ij == "11":
+            rise = -sum(weight * 2 * c * n * cosine for weight, n, cosine, _ in parts)
+            total = sum(weight * sine for weight, _, _, sine in parts)
+        else:
+            rise = sum(weight * 2 * c * n * sine for weight, n, _, sine in parts)
+            total = sum(weight * cosine for weight, _, cosine, _ in parts)
+        # from i = N on the terms are at most exp(-c N^2) and 2 c (N + 1) times that
+        bell = 2 * ar.exp(-c * (terms * terms))
+        rise = widened_by(ar, rise, 2 * c * (terms + 1) * bell)
+        slope, turn = rise / widened_by(ar, total, bell), 2 * half_turn
+        growth = slope - turn + ar.pi if ij[0] == "1" else slope - turn
+        return cls(ij, -1 if y < 0 else 1, c, turn, slope, growth, cosines, sines)
 
-    def kind(digits: int) -> ThirdKind:
-        ar = balls(digits)
-        exact = in_many_digits(ar, modulus)
-        return third_kind(ar, ij, ar.convert(float(size)), exact, imaginary=imaginary).rounded()
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return the phase of the theta function."""
+        half_turns = ar.pi * x.turns if self.ij[0] == "1" else 0 * x.turns
+        return self.sign * (half_turns + (self.turn * x.rest + self._phase(ar, x.rest)))
 
-    return decided("the constants of the parameter", kind)
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+        """Return Pi, by its growth over the periods and what is left within one."""
+        within = self.slope * x.rest + self._phase(ar, x.rest)
+        return self.sign * (self.growth * x.turns + within)
+
+    def _phase(self, ar: FunctionArithmetic, rest: Value) -> Value:
+        """Return the phase of the sum alone, within a period."""
+        c, size, half = self.steepness, abs(rest), self.ij[1] == "1"
+        plus = minus = 0 * size, 0 * size
+        for i, (cosine, sine) in enumerate(zip(self.cosines, self.sines, strict=True)):
+            sign = (-1) ** i if self.ij[0] == "1" else 1
+            bell = sign * ar.exp(-c * i * (i + (1 if half else 0) - 2 * size))
+            image = ar.expm1(-2 * c * (2 * i + 1 if half else 2 * i) * size)
+            both = bell * (2 + image) if i or half else 1 + 0 * size
+            plus = plus[0] + both * cosine, plus[1] + both * sine
+            minus = minus[0] - bell * image * cosine, minus[1] - bell * image * sine
+        terms = len(self.cosines)  # from i = N on they are at most 2 exp(-c N(N - 1))
+        bell = 4 * ar.exp(-c * (terms * (terms - 1)))
+        if self.ij != "11":
+            across, along = widened_by(ar, minus[1], bell), widened_by(ar, plus[0], bell)
+            return -ar.sign(rest) * ar.atan2(across, along)
+        across, along = widened_by(ar, plus[1], bell), widened_by(ar, minus[0], bell)
+        turned = ar.atan2(across, along)
+        return ar.where(rest < 0, turned - ar.pi, -turned)
+
+    def rounded(self, **others: Any) -> Self:
+        """Return the parameter with its constants in doubles, of which fewer matter."""
+        few = {"cosines": self.cosines[:5], "sines": self.sines[:5]}
+        return super().rounded(**few, **others)

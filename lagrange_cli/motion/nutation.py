@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import R
 from ..arithmetic.values import Over
-from ..elliptic.complete import complete_e, complete_k, nome, period_mean
-from ..elliptic.landen import first_kind
+from ..elliptic.complete import complete_e, complete_k, first_kind, nome, period_mean
 from .gaps import Gaps, State
 from .quantity import key, quantity
 from .regime import Facts

@@ -17,7 +17,7 @@ from ..arithmetic.points import MAX_TIME
 from ..arithmetic.rounding import Pair, Triple
 from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
-from ..elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
+from ..elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine
 from ..motion.gaps import Gaps, State, gaps_from_rest
 from ..motion.kinds import Nutating
 from ..motion.over_time.attitude import Attitude, Growth, Growths, Spinor, Times

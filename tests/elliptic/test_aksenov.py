@@ -12,16 +12,12 @@ from equations import EquationTests, Register, Sides, ar, slightly_wrong
 from errata import misprints
 
 from lagrange_cli.elliptic.complete import complete_k, nome
-from lagrange_cli.elliptic.eta import (
-    band_of,
-    eta_constants,
-)
+from lagrange_cli.elliptic.eta import Quadrature, band_of, eta_constants
 from lagrange_cli.elliptic.eta_table import place_in_band
 from lagrange_cli.elliptic.incomplete import incomplete_f
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.elliptic.nome_series import am_sums, cn_sums, k_sums, sn_sums
-from lagrange_cli.elliptic.quadrature import Quadrature
 
 aksenov = Register()
 equation, as_printed = aksenov.equation, aksenov.as_printed

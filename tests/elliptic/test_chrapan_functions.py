@@ -17,8 +17,8 @@ from lagrange_cli.elliptic.complex_third_kind import complex_omega, complex_pi
 from lagrange_cli.elliptic.complex_third_kind import parameter as parameter_of
 from lagrange_cli.elliptic.incomplete import incomplete_e, incomplete_f
 from lagrange_cli.elliptic.jacobi import complex_jacobi, jacobi
-from lagrange_cli.elliptic.lattice import lattice
 from lagrange_cli.elliptic.modulus import constants, modulus
+from lagrange_cli.elliptic.periods import lattice
 from lagrange_cli.elliptic.theta import zeta
 from lagrange_cli.elliptic.third_kind import omega, pi_function
 

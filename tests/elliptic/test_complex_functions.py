@@ -19,8 +19,8 @@ from lagrange_cli.elliptic.any_modulus import any_constants, any_modulus
 from lagrange_cli.elliptic.complex_theta import complex_theta, complex_zeta
 from lagrange_cli.elliptic.complex_third_kind import complex_omega, complex_pi, parameter
 from lagrange_cli.elliptic.jacobi import complex_jacobi
-from lagrange_cli.elliptic.lattice import lattice
 from lagrange_cli.elliptic.many_digits import ManyDigits
+from lagrange_cli.elliptic.periods import lattice
 
 AR = ManyDigits(50)
 THIRD = ("01", "00", "11")

@@ -18,10 +18,9 @@ from hypothesis import strategies as st
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.bench.reference import error_in_units
-from lagrange_cli.elliptic.eta import eta_constants, record
-from lagrange_cli.elliptic.eta_table import EtaTable
+from lagrange_cli.elliptic.eta import Quadrature, eta_constants
+from lagrange_cli.elliptic.eta_table import EtaTable, record
 from lagrange_cli.elliptic.many_digits import ManyDigits
-from lagrange_cli.elliptic.quadrature import Quadrature
 
 
 def quadrature(

@@ -23,7 +23,7 @@ from lagrange_cli.arithmetic.ball import TooFewDigitsError
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rj
 from lagrange_cli.elliptic.function_table import FunctionTable
-from lagrange_cli.elliptic.modulus_input import ModulusInput
+from lagrange_cli.elliptic.modulus import ModulusInput
 
 FAMILIES = ("theta", "zeta", "omega", "pi")
 

@@ -11,7 +11,7 @@ import pytest
 from lagrange_cli.arithmetic.arrays import PAIRS
 from lagrange_cli.arithmetic.decimals import decimals
 from lagrange_cli.arithmetic.double_double import DoubleDouble
-from lagrange_cli.elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
+from lagrange_cli.elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine
 
 AR = decimals(40)
 PLACES = [("0", "1"), ("1e-60", "1"), ("0.3", "0.7"), ("2", "1e-30"), ("1", "0")]

@@ -22,11 +22,15 @@ from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.arithmetic.balls import Balls
 from lagrange_cli.arithmetic.duals import Dual, Duals, independent
 from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
-from lagrange_cli.elliptic.complete import agm, complete_e, complete_k, nome, period_mean
-from lagrange_cli.elliptic.landen import (
+from lagrange_cli.elliptic.complete import (
+    agm,
+    complete_e,
+    complete_k,
     cosine_and_sine,
     first_kind,
     hyperbolic_cosine_and_sine,
+    nome,
+    period_mean,
     place,
 )
 from lagrange_cli.elliptic.modulus import exact_modulus, modulus

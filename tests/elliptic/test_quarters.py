@@ -17,7 +17,7 @@ from function_tables import array_rows
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import ListedPoints
 from lagrange_cli.elliptic.function_table import FunctionTable
-from lagrange_cli.elliptic.modulus_input import ModulusInput
+from lagrange_cli.elliptic.modulus import ModulusInput
 from lagrange_cli.elliptic.request import FunctionRequest
 from lagrange_cli.inputs.multiples import Multiple, parse_multiple
 

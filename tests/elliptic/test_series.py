@@ -21,8 +21,8 @@ from lagrange_cli.elliptic.nome_series import (
     k_sums,
     sn_bound,
     sn_sums,
+    terms_needed,
 )
-from lagrange_cli.elliptic.series_table import terms_needed
 
 ar = ManyDigits(60)
 MODULI = ["1e-8", "0.03", "0.5", "0.9", "0.99", "0.9999"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple
 from ...arithmetic.numbers import R
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.protocol import Value
-from ...elliptic.landen import place
+from ...elliptic.complete import place
 from ..kinds import Constant, Kind, Nutating, Separatrix
 from .multiple_angles import Coefficients
 from .theta_series import (

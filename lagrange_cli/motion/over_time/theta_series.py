@@ -16,8 +16,7 @@ from typing import Any, NamedTuple
 
 from ...arithmetic.numbers import polynomial
 from ...arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
-from ...elliptic.complete import nome
-from ...elliptic.landen import cosine_and_sine, hyperbolic_cosine_and_sine
+from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
 from .multiple_angles import (
     COS_EVEN,
     COS_ODD,
