@@ -27,7 +27,7 @@ from lagrange_cli.fits.record import FAILED, Outcome, outcomes
 from lagrange_cli.fits.recording import Reading, Recording, read_recordings
 
 NOISE = math.radians(0.5)
-SAMPLE = recordings.PATH
+SAMPLE = recordings.SAMPLES / recordings.SMALL_TOP.name
 
 
 def motion_of(top: Top, t: Array) -> Rotation:
@@ -118,7 +118,8 @@ def sample() -> Outcome:
 
 
 def test_the_recording_is_what_the_script_writes() -> None:
-    assert recordings.text() == SAMPLE.read_text()
+    for camera in (recordings.SMALL_TOP, recordings.WHEEL):
+        assert recordings.text(camera) == (recordings.SAMPLES / camera.name).read_text()
 
 
 def test_the_sample_is_what_an_integrator_gives() -> None:

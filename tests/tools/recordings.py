@@ -1,18 +1,19 @@
-"""A recording as a camera makes it: `python tests/tools/recordings.py` writes it to sample_inputs.
+"""Recordings as a camera makes them: `python tests/tools/recordings.py` writes them as samples.
 
-The motion is exact.  The camera takes 120 pictures a second, sees the tilt and the precession with
-some noise, loses frames, and sees the mark on the rotor only while that is in front.
+The motions are exact.  The camera sees the tilt and the precession with some noise, loses frames,
+and sees the mark on the rotor only while that is in front.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from lagrange_cli import Top, solve
 
-PATH = Path(__file__).parents[2] / "sample_inputs" / "recording.csv"
+SAMPLES = Path(__file__).parents[2] / "sample_inputs"
 TOP = Top(
     m=1.587,
     A=3.9032e-3,
@@ -24,11 +25,45 @@ TOP = Top(
     thetadot0=1.3,
     psidot0=2.5,
 )
-RATE, SECONDS, DROPPED = 120, 2.0, 0.05
-THETA_NOISE, PSI_NOISE, PHI_NOISE = 0.3, 0.5, 1.0
-"""Degrees."""
 FIRST, PSI_ZERO, PHI_ZERO = 3.25, 137.0, 62.0
 """The time on the clock of the camera, and where its zeros are, in degrees."""
+DROPPED = 0.05
+"""Share of the frames that are lost."""
+
+
+class Camera(NamedTuple):
+    """A recording: the top, the frames, and the noise in degrees."""
+
+    name: str
+    top: Top
+    rate: int
+    seconds: float
+    theta_noise: float
+    psi_noise: float
+    phi_noise: float
+    comment: str
+
+
+SMALL_TOP = Camera(
+    "recording.csv",
+    TOP,
+    rate=120,
+    seconds=2.0,
+    theta_noise=0.3,
+    psi_noise=0.5,
+    phi_noise=1.0,
+    comment="# A top of 1.587 kg, its mass centre 0.04 m from the pivot; 120 frames a second.",
+)
+WHEEL = Camera(
+    "tutorials/wheel.csv",
+    Top(m=2.04, A=0.1313, C=0.1562, s=0.152, g=9.81, r0=23.7, theta0_deg=82, psidot0=0.35),
+    rate=60,
+    seconds=6.0,
+    theta_noise=0.15,
+    psi_noise=0.2,
+    phi_noise=1.0,
+    comment="# A bicycle wheel of 2.04 kg on a handle, seen from above; 60 frames a second.",
+)
 
 
 def wrapped(degrees: np.ndarray) -> np.ndarray:
@@ -36,20 +71,21 @@ def wrapped(degrees: np.ndarray) -> np.ndarray:
     return 180 - (180 - degrees) % 360
 
 
-def text(seed: int = 1952) -> str:
-    """Return the recording."""
+def text(camera: Camera = SMALL_TOP, seed: int = 1952) -> str:
+    """Return a recording."""
     rng = np.random.default_rng(seed)
-    t = np.arange(int(RATE * SECONDS)) / RATE
+    t = np.arange(int(camera.rate * camera.seconds)) / camera.rate
     kept = rng.random(t.size) > DROPPED
     kept[0] = True
     t = t[kept]
-    theta, phi, psi = (np.degrees(x) for x in solve(TOP).angles(t))
-    theta += rng.normal(scale=THETA_NOISE, size=t.size)
-    psi = wrapped(psi + PSI_ZERO + rng.normal(scale=PSI_NOISE, size=t.size))
-    phi = wrapped(phi + PHI_ZERO + rng.normal(scale=PHI_NOISE, size=t.size))
+    theta, phi, psi = (np.degrees(x) for x in solve(camera.top).angles(t))
+    theta += rng.normal(scale=camera.theta_noise, size=t.size)
+    psi = wrapped(psi + PSI_ZERO + rng.normal(scale=camera.psi_noise, size=t.size))
+    phi = wrapped(phi + PHI_ZERO + rng.normal(scale=camera.phi_noise, size=t.size))
     lines = [
-        "# A top of 1.587 kg, its mass centre 0.04 m from the pivot; 120 frames a second.",
-        "# Noise: theta 0.3, psi 0.5, phi 1.0 degrees; phi is of a mark seen in front only.",
+        camera.comment,
+        f"# Noise: theta {camera.theta_noise}, psi {camera.psi_noise}, phi {camera.phi_noise} "
+        "degrees; phi is of a mark seen in front only.",
         "t,theta_deg,psi_deg,phi_deg",
     ]
     for at, *angles in zip(t + FIRST, theta, psi, phi, strict=True):
@@ -60,4 +96,5 @@ def text(seed: int = 1952) -> str:
 
 
 if __name__ == "__main__":
-    PATH.write_text(text())
+    for made in (SMALL_TOP, WHEEL):
+        (SAMPLES / made.name).write_text(text(made))
