@@ -94,7 +94,7 @@ def best_attempt(recording: Recording, known: Mapping[str, float], where: str) -
         if found and _least(found).explains():
             break
     if not found:
-        raise DataError(f"{where}: no top moves as the recording shows")
+        raise DataError(f"{where}: no motion of a top matches the recording")
     return _told_apart([*map(_slowed, found)])
 
 
@@ -121,13 +121,6 @@ class _Way(NamedTuple):
     shown: Shown | Turns
 
 
-class _Case(NamedTuple):
-    """A recording one way or the other, and a start for it."""
-
-    way: _Way
-    start: StartingTop
-
-
 def _ways(recording: Recording, known: Mapping[str, float], where: str) -> list[_Way]:
     """Return a recording, and if its spin determines the sense of psi its mirror image too."""
     spins = recording.kind == "angles" and "psi" in recording.angles
@@ -137,29 +130,39 @@ def _ways(recording: Recording, known: Mapping[str, float], where: str) -> list[
     return [_Way(one, mirrored, look(one, where)) for one, mirrored in ways]
 
 
-def _cases(ways: Sequence[_Way], known: Mapping[str, float], *, wide: bool) -> list[_Case]:
+def _cases(
+    ways: Sequence[_Way], known: Mapping[str, float], *, wide: bool
+) -> list[tuple[_Way, StartingTop]]:
     """Return the starts, the nearest first; the nearest of either way is among them."""
-    first: list[_Case] = []
-    others: list[_Case] = []
+    first: list[tuple[_Way, StartingTop]] = []
+    others: list[tuple[_Way, StartingTop]] = []
     for way in ways:
         cases = [
-            _Case(way, start)
+            (way, start)
             for start in starting_tops(way.recording, way.shown, wide=wide)
             if "phi" in way.recording.angles
             or start.state[1] * known.get("r0", start.state[1]) >= 0
         ]
         first, others = first + cases[:1], others + cases[1:]
-    nearest = min((case.start.misfit for case in first), default=0.0)
-    others = [case for case in others if case.start.misfit <= _COMPARABLE * nearest]
-    return first + sorted(others, key=lambda case: case.start.misfit)[: _MOST_STARTS - len(first)]
+    nearest = min((start.misfit for _, start in first), default=0.0)
+    others = [case for case in others if case[1].misfit <= _COMPARABLE * nearest]
+    return first + sorted(others, key=lambda case: case[1].misfit)[: _MOST_STARTS - len(first)]
 
 
 def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | None:
-    """Return where some steps from one start lead, or None where that is no top."""
+    """Return the result of some steps from one start, or None if they lead to no top."""
     noise = way.shown.noise
     problem = Problem([way.recording], [sigma_of(way.recording, noise)], parameters)
+    a, b, theta, nutation, precession = start.state
+    r0 = parameters.known.get("r0", b + start.excess)
+    values = {
+        **{"a": a, "b": b, "ratio": b / r0 if r0 else 1.0, "r0": r0},
+        **{"theta0": theta, "thetadot0": nutation, "psidot0": precession},
+        **{"psi_zero": start.psi_zero, "phi_zero": start.phi_zero},
+    }
     try:
-        solution = problem.solve(_first(parameters, start), _FIRST_STEPS)
+        first = np.array([values[name] for name, _ in parameters.names])
+        solution = problem.solve(first, _FIRST_STEPS)
     except LagtopError:
         return None
     return Attempt(problem, solution, way.mirrored, noise)
@@ -172,25 +175,6 @@ def sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, A
         x: np.full(recording.t.size, max(noise.get(x, greatest), LEAST_SIGMA))
         for x in recording.channels
     }
-
-
-def _first(parameters: Parameters, start: StartingTop) -> Array:
-    """Return the parameters of a start."""
-    a, b, theta, nutation, precession = start.state
-    known = parameters.known
-    r0 = known.get("r0", b + start.excess)
-    values = {
-        "a": a,
-        "b": b,
-        "ratio": b / r0 if r0 else 1.0,
-        "r0": r0,
-        "theta0": theta,
-        "thetadot0": nutation,
-        "psidot0": precession,
-        "psi_zero": start.psi_zero,
-        "phi_zero": start.phi_zero,
-    }
-    return np.array([values[name] for name, _ in parameters.names])
 
 
 def _finished(begun: Sequence[Attempt]) -> list[Attempt]:

@@ -199,12 +199,12 @@ def invert(
     known = known or {}
     for name, value in known.items():
         if not value:
-            raise LagtopError(f"{name} must not be 0 in a top that nods: leave it out", name)
+            raise LagtopError(f"{name} must not be 0 in a top that nutates: leave it out", name)
     spin = known.get("r0")  # of the sign of b
     found = [x for x in with_mean_rate(nutation, rate) if spin is None or spin * float(x.b) > 0]
     if not found:
         raise AbsentError(
-            f"no top nods between these tilts in this time and precesses by {rate:g} on average"
+            f"no top nutates so between these tilts and precesses by {rate:g} on average"
             + ("" if spin is None else f" with r0 = {spin:g}")
         )
     tops = [top_of(nutation, one, numbers.get(_SPIN)) for one in found]

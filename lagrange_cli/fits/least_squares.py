@@ -84,7 +84,7 @@ class Problem:
         low, high = self._bounds()
         inside = np.clip(start, low, high)
         if (self._at(inside)[0] == _FAR).all():
-            raise LagtopError("the fit cannot start: no top moves as the recording shows")
+            raise LagtopError("the fit cannot start: no motion of a top matches the recording")
         free = self.by.apply
         ended = least_squares(
             lambda x: self._at(self.by.parameters(x))[0],
@@ -100,7 +100,7 @@ class Problem:
         found = self.by.parameters(ended.x)
         values, slopes, left = self._at(found)
         if (values == _FAR).all():
-            raise LagtopError("the fit ends where no top moves as the recording shows")
+            raise LagtopError("the fit ends where no motion of a top matches the recording")
         spread = _Inverse(self._slopes(ended.x)).spread
         return FittedParameters(
             self.parameters,

@@ -99,13 +99,11 @@ class Outcome:
             rms = self.residuals[channel].rms
             if rms > _MUCH * noise:
                 found.append(
-                    f"no motion that was found is like the recording: {channel} is "
+                    f"no motion fits the recording: {channel} is "
                     f"{rms * scale:.3g} {unit} off, plain harmonics {noise * scale:.3g}"
                 )
         if not self._leaves_noise:
-            found += [
-                f"no motion that was found is like the recording: {x}" for x in self._impossible()
-            ]
+            found += [f"no motion fits the recording: {x}" for x in self._impossible()]
         return found
 
     def unit(self, name: str) -> str:
@@ -147,7 +145,7 @@ class Outcome:
             scale = self.scale(name)
             yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
         for product, deviation in self.products():
-            meaning = "" if len(product.powers) == 1 else "not to be told apart"
+            meaning = "" if len(product.powers) == 1 else "only this product is known"
             yield product.name, product.value, deviation, meaning
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
@@ -165,7 +163,7 @@ class Outcome:
     def undetermined(self) -> list[str]:
         """Return sentences on inputs that are not determined separately."""
         several = [(x.name, list(x.powers)) for x in self.determined if len(x.powers) > 1]
-        return [f"{', '.join(x[:-1])} and {x[-1]} only as {name}" for name, x in several]
+        return [f"{', '.join(x[:-1])} and {x[-1]} are known only as {name}" for name, x in several]
 
     def failure(self) -> str:
         """Return why a fit has failed, with the name of the recording if it has one."""
@@ -185,8 +183,8 @@ class Outcome:
         for channel, left in self.residuals.items():
             if not left.is_noise:
                 found.append(
-                    f"what is left of {channel} is no noise: neighbours correlate by "
-                    f"{left.lag1:.2f}, noise by {3 / math.sqrt(left.rows):.2f} at most"
+                    f"the residuals of {channel} are not noise: neighbours correlate by "
+                    f"{left.lag1:.2f}, noise by at most {3 / math.sqrt(left.rows):.2f}"
                 )
         return [*found, *self._impossible()] if self._leaves_noise else found
 
@@ -199,7 +197,7 @@ class Outcome:
         ratio = self.values["b"] / self.values["r0"] if self.values["r0"] else 1.0
         spins = abs(self.values["b"]) > _SURE * self.deviations["b"]
         if spins and not 0 < ratio <= 2:
-            yield f"C/A = {ratio:.3g} is that of no rigid body, 0 to 2"
+            yield f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2"
 
     def notes(self) -> list[str]:
         """Return how the recording was understood."""

@@ -85,7 +85,7 @@ def _conditions(outcomes: Sequence[Outcome], source: str, system: System | None)
     return {
         "data": f"{source}: {rows} rows of {channels}, from {start}",
         "known": known or "nothing",
-        "sigma": "as given" if first.fit.sigma_known else "that of what is left",
+        "sigma": "as given" if first.fit.sigma_known else "estimated from the residuals",
     }
 
 
@@ -99,7 +99,7 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         yield f"{name}chi2/dof = {outcome.chi2_dof:.3f}, noise {bounds}; {solution.dof} dof."
     unit, scale = "rad" if outcome.radians else "deg", per_radian(radians=outcome.radians)
     rest = ", ".join(f"{x} {y.rms * scale:.3g}" for x, y in outcome.residuals.items())
-    yield f"{name}Left, rms in {unit}: {rest}."
+    yield f"{name}RMS residual ({unit}): {rest}."
     related = ", ".join(f"{x} and {y} {z:.2f}" for x, y, z in outcome.correlations())
     if related:
         yield f"{name}Correlation: {related}."
@@ -114,7 +114,7 @@ def scene_text(outcome: Outcome, source: str) -> str:
     lines = [
         f"# Found by `lagtop fit` from {one_line(source)}: the start is its first row, at "
         f"t = {outcome.recording.t_start!r}.",
-        *(f"# {text}: one of them is put in." for text in outcome.undetermined()),
+        *(f"# {text}: one of them is assumed." for text in outcome.undetermined()),
         *(f"# Warning: {text}." for text in outcome.warnings()),
     ]
     spread = {

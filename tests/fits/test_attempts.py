@@ -105,7 +105,7 @@ def test_residuals_beyond_the_noise_of_any_channel_are_a_failure() -> None:
     for channel in ("theta", "phi", "psi"):
         noise = {**found.fit.noise[0], channel: found.residuals[channel].rms / 2.1}
         (reason,) = Outcome(found.fit._replace(noise=[noise]), 0).failures()
-        assert reason.startswith(f"no motion that was found is like the recording: {channel} is 0.")
+        assert reason.startswith(f"no motion fits the recording: {channel} is 0.")
 
 
 @pytest.mark.parametrize("names", [("a", "b", "theta0", "thetadot0", "psidot0", "r0", "psi_zero")])
@@ -215,7 +215,7 @@ def fate(angles: Any) -> str:
 )
 def test_recordings_of_no_top_have_no_good_fit(angles: Any) -> None:
     """Warnings are errors in tests: none may come from the depth of the search."""
-    assert fate(angles) in {FAILED, "data: no top moves as the recording shows"}
+    assert fate(angles) in {FAILED, "data: no motion of a top matches the recording"}
 
 
 @pytest.mark.slow

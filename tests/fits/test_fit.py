@@ -20,10 +20,10 @@ from scipy.spatial.transform import Rotation
 from lagrange_cli import LagtopError, Top, fit, read_scene, solve
 from lagrange_cli.fits import fit as fits
 from lagrange_cli.fits.invert import TurningPoints, candidates, top_of
-from lagrange_cli.fits.least_squares import Problem, chi2_bounds
+from lagrange_cli.fits.least_squares import Problem
 from lagrange_cli.fits.model import residuals
 from lagrange_cli.fits.parameters import FIT_QUANTITIES, parameters_of
-from lagrange_cli.fits.record import FAILED, Outcome, outcomes
+from lagrange_cli.fits.record import Outcome, outcomes
 from lagrange_cli.fits.recording import Reading, Recording, read_recordings
 
 NOISE = math.radians(0.5)
@@ -39,73 +39,6 @@ def motion_of(top: Top, t: Array) -> Rotation:
 def angles_of(turns: Rotation) -> dict[str, Array]:
     psi, theta, phi = turns.as_euler("ZXZ").T
     return {"theta": theta, "phi": phi, "psi": psi}
-
-
-def recorded(
-    top: Top, seed: int, names: tuple[str, ...] = ("theta", "psi"), count: int = 240
-) -> Recording:
-    """Return noisy angles of a top over some periods, psi and phi counted from anywhere."""
-    rng = np.random.default_rng(seed)
-    t = np.linspace(0, solve(top).T_nutation * rng.uniform(1.5, 8), count)
-    exact = angles_of(motion_of(top, t))
-    angles = {name: exact[name] + rng.normal(scale=NOISE, size=count) for name in names}
-    for name in set(names) - {"theta"}:
-        angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
-    sigma = {name: np.full(count, NOISE) for name in angles}
-    return Recording("", t, 0.0, "angles", angles, sigma)
-
-
-def any_top(seed: int) -> Top:
-    """Return a random top that nutates: cusped, looping or wavy, of either spin."""
-    rng = np.random.default_rng(seed)
-    a, b = 10 ** rng.uniform(1, 2.7), rng.choice([-1, 1]) * 10 ** rng.uniform(0, 1.7)
-    ratio = rng.uniform(0.2, 1.9)
-    start = {"theta0_deg": rng.uniform(5, 175)}
-    if seed % 3:
-        start |= {"thetadot0": rng.normal(scale=2), "psidot0": rng.normal(scale=3)}
-    return Top(m=1, s=1, g=a / 2, A=1, C=ratio, r0=b / ratio, **start)
-
-
-def pulls(outcome: Outcome, top: Top) -> Array:
-    """Return how far from the truth a fit is, in its own standard deviations."""
-    motion = solve(top)
-    truth = {
-        "a": motion.a,
-        "b": motion.b,
-        "r0": top.r0,
-        "theta0": math.radians(float(top.theta0_deg or 0)),
-        "thetadot0": top.thetadot0,
-        "psidot0": top.psidot0,
-    }
-    return np.array([(x - float(truth[n])) / s for n, x, s in outcome.found() if n in truth])
-
-
-def check(seed: int, names: tuple[str, ...]) -> Array:
-    top = any_top(seed)
-    (outcome,) = outcomes(fits.fit_recordings([recorded(top, seed, names)], {}))
-    low, high = chi2_bounds(outcome.fit.solution.dof)
-    off = pulls(outcome, top)
-    assert np.all(np.abs(off) < 4), (top, off)
-    assert low < outcome.chi2_dof < high
-    assert outcome.verdict != FAILED
-    return off
-
-
-@pytest.mark.parametrize("seed", [1])
-def test_a_random_top_is_found(seed: int) -> None:
-    check(seed, ("theta", "psi"))
-
-
-@pytest.mark.slow
-def test_random_tops_are_found_within_their_standard_deviations() -> None:
-    off = np.concatenate([check(seed, ("theta", "psi")) for seed in range(100, 118)])
-    assert 0.7 < np.std(off) < 1.3
-
-
-@pytest.mark.slow
-def test_random_tops_with_their_spin() -> None:
-    off = np.concatenate([check(seed, ("theta", "phi", "psi")) for seed in range(200, 212)])
-    assert 0.7 < np.std(off) < 1.3
 
 
 @pytest.fixture(scope="module")
@@ -216,25 +149,14 @@ def test_the_axis_and_the_attitude(lagtop: Lagtop, tmp_path: Path, kind: str) ->
 
 
 @pytest.mark.slow
-def test_psi_may_count_the_other_way() -> None:
-    top = any_top(4)
-    recording = recorded(top, 4, ("theta", "phi", "psi"))
-    (one,) = outcomes(fits.fit_recordings([recording], {}))
-    (other,) = outcomes(fits.fit_recordings([recording.mirrored], {}))
-    assert one.notes() == []
-    assert other.notes()[0].startswith("psi is counted the other way round")
-    assert other.values["b"] == pytest.approx(one.values["b"], rel=1e-6)
-
-
-@pytest.mark.slow
 def test_a_top_that_is_let_go_needs_no_precession() -> None:
-    top = Top()
-    recording = recorded(top, 5, ("theta",))
-    known = {"psidot0": 0.0, "thetadot0": 0.0, "r0": 50.0}
-    (outcome,) = outcomes(fits.fit_recordings([recording], known))
-    motion = solve(top)
-    assert abs(outcome.values["a"] - motion.a) < 4 * outcome.deviations["a"]
-    assert abs(outcome.values["b"] - motion.b) < 4 * outcome.deviations["b"]
+    t = np.linspace(0, 2, 240)
+    theta = angles_of(motion_of(Top(), t))["theta"]
+    theta += np.random.default_rng(5).normal(scale=NOISE, size=t.size)
+    found = fit(t, theta=theta, known={"psidot0": 0.0, "thetadot0": 0.0, "r0": 50.0})
+    motion = solve(Top())
+    assert abs(found.values["a"] - motion.a) < 4 * found.deviations["a"]
+    assert abs(found.values["b"] - motion.b) < 4 * found.deviations["b"]
 
 
 def trials(tmp_path: Path) -> Path:
@@ -287,14 +209,14 @@ def test_the_scene_is_read_by_other_commands(lagtop: Lagtop, tmp_path: Path) -> 
     path = tmp_path / "fitted.toml"
     shown = lagtop("fit", SAMPLE, "--g", 9.81, "-o", path)
     assert shown.exit_code == 0, shown.stderr
-    assert "m, s and A only as m*s/A" in shown.stdout
+    assert "m, s and A are known only as m*s/A" in shown.stdout
     motion = solve(read_scene(str(path)))
     assert motion.top.caveat() is None
     truth = solve(recordings.TOP)
     assert motion.top.g == 9.81
     assert motion.a == pytest.approx(truth.a, rel=2e-3)
     assert motion.b == pytest.approx(truth.b, rel=2e-3)
-    assert "# m, s and A only as m*s/A" in path.read_text()
+    assert "# m, s and A are known only as m*s/A" in path.read_text()
     assert re.search(r"^r0 = 49.99\d+  # 49.997\(4\)$", path.read_text(), re.M)
     assert set(tomllib.loads(path.read_text())) >= {"m", "A", "C", "s", "g", "r0", "theta0_deg"}
 
@@ -336,7 +258,7 @@ def test_what_is_no_noise_is_said(lagtop: Lagtop, tmp_path: Path) -> None:
     shown = lagtop("fit", path, "--sigma", 0.2)
     assert shown.exit_code == 0
     assert "Warning: chi2/dof = " in shown.stdout
-    assert "Warning: what is left of theta is no noise" in shown.stdout
+    assert "Warning: the residuals of theta are not noise" in shown.stdout
     record = json.loads(lagtop("fit", path, "--format", "json").stdout)
     assert record["verdict"] == "doubtful"
     assert record["chi2_dof"] is None
