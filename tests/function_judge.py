@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from flint import acb, arb, ctx, fmpq
+from arb_balls import exact_arb
+from flint import acb, arb, ctx
 
 EPS = 2.0**-52
 INDEX = {"11": 0, "10": 1, "00": 2, "01": 3}
@@ -26,18 +27,12 @@ class Exact(NamedTuple):
     by_v: Any
 
 
-def ball(x: Fraction | float) -> Any:
-    """Return a number as a ball."""
-    exact = Fraction(x)
-    return arb(fmpq(exact.numerator, exact.denominator))
-
-
 class Judge:
     """The functions of one modulus, given by k or by k'."""
 
     def __init__(self, name: str, value: Fraction, bits: int = 700) -> None:
         ctx.prec = self.bits = bits
-        x = ball(value)
+        x = exact_arb(value)
         other = (1 - x * x).sqrt()
         k, k_prime = (x, other) if name == "k" else (other, x)
         self.K, self.K_prime = arb.pi() / 2 / _agm(k_prime), arb.pi() / 2 / _agm(k)
@@ -46,7 +41,7 @@ class Judge:
     def place(self, u: Any) -> tuple[Any, Any]:
         """Return whole periods in u and the rest, in periods."""
         x = u / (2 * self.K)
-        turns = (x + ball(Fraction(1, 2))).floor()
+        turns = (x + exact_arb(Fraction(1, 2))).floor()
         return turns, x - turns
 
     def theta(self, ij: str, x: Any, order: int = 0) -> Any:
@@ -62,7 +57,7 @@ class Judge:
     def columns(self, u: float, v: float | None, imaginary: bool) -> Iterator[tuple[str, Exact]]:
         """Yield every column of `lagtop jacobi` but am, sn, cn, dn, with its exact value."""
         ctx.prec = self.bits
-        exact_u = ball(u)
+        exact_u = exact_arb(u)
         turns, x = self.place(exact_u)
         reach = 2 * self.K * x
         sign = 1 - 2 * (int(turns.unique_fmpz()) % 2)
@@ -75,7 +70,7 @@ class Judge:
                 yield f"zeta{ij}", Exact(value.real, reach * slope.real, arb(0))
         if v is None:
             return
-        w = acb(0, ball(v)) if imaginary else acb(self.place(ball(v))[1] * 2 * self.K)
+        w = acb(0, exact_arb(v)) if imaginary else acb(self.place(exact_arb(v))[1] * 2 * self.K)
         y = w / (2 * self.K)
         for ij in ("01", "00", "11"):
             if ij == "11" and (v == 0 or (not imaginary and abs(u) == abs(v))):
@@ -109,7 +104,7 @@ def units(computed: float, exact: Exact, *, with_v: bool) -> float:
     unit = max(1.0, abs(float(exact.value.mid()))) + abs(float(exact.by_u.mid()))
     if with_v:
         unit += abs(float(exact.by_v.mid()))
-    error = abs(ball(computed) - exact.value)
+    error = abs(exact_arb(computed) - exact.value)
     assert float(error.rad()) < 1e-3 * EPS * unit, "the judge needs more bits"
     return float(error.mid()) / (EPS * unit)
 
@@ -123,7 +118,7 @@ class ComplexJudge:
 
     def __init__(self, k: complex, bits: int = 700) -> None:
         ctx.prec = self.bits = bits
-        m = ball(k.real) ** 2 - ball(k.imag) ** 2
+        m = exact_arb(k.real) ** 2 - exact_arb(k.imag) ** 2
         complement = acb(1 - m).sqrt()
         self.K = acb(arb.pi()) / 2 / acb(1).agm(complement)
         self.K_prime = acb(arb.pi()) / 2 / acb(1).agm(acb(m).sqrt())
@@ -154,7 +149,7 @@ class ComplexJudge:
 
     def rest(self, u: Any) -> Any:
         """Return a number less whole periods along both axes."""
-        half, period = ball(Fraction(1, 2)), self.real_period.real
+        half, period = exact_arb(Fraction(1, 2)), self.real_period.real
         real = u.real - period * (u.real / period + half).floor()
         imag = u.imag - self.imag_period * (u.imag / self.imag_period + half).floor()
         return acb(real, imag)
@@ -173,7 +168,7 @@ class ComplexJudge:
     def columns(self, u: complex, v: complex | None) -> Iterator[tuple[str, Exact]]:
         """Yield every function by its column; of logarithms there are several, i pi apart."""
         ctx.prec = self.bits
-        z = acb(ball(u.real), ball(u.imag))
+        z = acb(exact_arb(u.real), exact_arb(u.imag))
         size = abs(self.rest(z))
         sn, cn, dn = self.jacobi(z)
         m = (self.theta("10", acb(0)) / self.theta("00", acb(0))) ** 4
@@ -194,7 +189,7 @@ class ComplexJudge:
         if v is None:
             return
         size = reach if self.large else size
-        w = acb(ball(v.real), ball(v.imag))
+        w = acb(exact_arb(v.real), exact_arb(v.imag))
         width = abs(w if self.large else self.rest(w))
         for ij in ("01", "00", "11"):
             on_line = abs(u.imag) == abs(v.imag) or not v
@@ -218,12 +213,12 @@ STEPS = {"am": 2 * math.pi, "omega": 1j * math.pi, "pi": 1j * math.pi}
 
 def complex_units(name: str, computed: complex, exact: Exact) -> float:
     """Return the error of a complex number in eps (max(1, |f|) + |u f'| + |v df/dv|)."""
-    error = acb(ball(computed.real), ball(computed.imag)) - exact.value
+    error = acb(exact_arb(computed.real), exact_arb(computed.imag)) - exact.value
     step = STEPS.get(name.rstrip("01"))
     if step:
         exact_step = arb.pi() * (2 if name == "am" else 1)
         part = error.real if name == "am" else error.imag
-        many = exact_step * (part / exact_step + ball(Fraction(1, 2))).floor()
+        many = exact_step * (part / exact_step + exact_arb(Fraction(1, 2))).floor()
         error = error - (acb(many) if name == "am" else acb(0, many))
     size = abs(complex(computed))
     unit = max(1.0, size) + float(exact.by_u.mid()) + float(exact.by_v.mid())

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import LagtopError
-from .double_double import DoubleDouble
+from .double_double import PI, DoubleDouble
 from .numbers import Unenclosed
 from .rounding import pair
 from .text import quoted
@@ -98,7 +98,7 @@ class Pairs(Arrays):
     """The arithmetic of arrays of pairs of doubles, as far as it is needed."""
 
     eps, magnitude = 2.0**-104, -31.31
-    pi = DoubleDouble(np.array([np.pi]), np.array([1.2246467991473532e-16]))
+    pi = DoubleDouble(np.array([PI.high]), np.array([PI.middle]))
 
     @staticmethod
     def convert(value: Any) -> Any:

@@ -12,34 +12,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .rounding import Pair, Triple
+from .decimals import pi_to
+from .rounding import Pair, Triple, triple
 from .types import Array, Mask
 
-_SPLITTER = 2.0**27 + 1
 _ZERO = np.zeros(())
+PI = triple(pi_to(50))
 MANY = 2.0**26
 _LESS_THAN_1 = 1 - 2.0**-20
 
 
-def two_product(x: Array, factor: float | Array) -> tuple[Array, Array]:
-    """Return x * factor and its rounding error, exactly (Dekker)."""
-    factor_high = factor * _SPLITTER
-    factor_high -= factor_high - factor
-    factor_low = factor - factor_high
-    high = x * _SPLITTER
-    high -= high - x
-    low = x - high
-    product: Array = x * factor
-    error = high * factor_high - product
-    error += high * factor_low
-    error += low * factor_high
-    error += low * factor_low
-    return product, error
-
-
-def _product(x: Array, y: Array) -> tuple[Array, Array]:
-    """Return x * y and its rounding error, exactly."""
-    product: Array = x * y
+def two_product(x: float | Array, y: float | Array) -> tuple[Array, Array]:
+    """Return x * y and its rounding error, exactly (Dekker)."""
+    product: Array = np.multiply(x, y)
     (x_high, x_low), (y_high, y_low) = _halves(x), _halves(y)
     error = x_high * y_high
     error = error - product
@@ -49,9 +34,10 @@ def _product(x: Array, y: Array) -> tuple[Array, Array]:
     return product, error
 
 
-def _halves(x: Array) -> tuple[Array, Array]:
+def _halves(x: float | Array) -> tuple[Array, Array]:
     """Return numbers as sums of new ones with 26 bits."""
-    high = ((x.view(np.int64) + (1 << 26)) & -(1 << 27)).view(np.float64)
+    bits = np.asarray(x, dtype=np.float64).view(np.int64)
+    high: Array = ((bits + (1 << 26)) & -(1 << 27)).view(np.float64)
     return high, x - high
 
 
@@ -172,12 +158,9 @@ class DoubleDouble:
         """Return arrays as the rows of one."""
         return cls(np.stack([x.high for x in rows]), np.stack([x.low for x in rows]))
 
-    def _like(self, other: DoubleDouble | float) -> DoubleDouble:
-        return (
-            other
-            if isinstance(other, DoubleDouble)
-            else DoubleDouble(np.asarray(other, dtype=np.float64))
-        )
+    @staticmethod
+    def _like(x: DoubleDouble | float) -> DoubleDouble:
+        return x if isinstance(x, DoubleDouble) else DoubleDouble(np.asarray(x, dtype=np.float64))
 
     def __getitem__(self, index: Any) -> DoubleDouble:
         return DoubleDouble(self.high[index], self.low[index])
@@ -207,7 +190,7 @@ class DoubleDouble:
         other = self._like(other)
         if self.high.size < other.high.size:  # a constant
             return other * self
-        high, low = _product(self.high, other.high)
+        high, low = two_product(self.high, other.high)
         low += self.high * other.low
         low += self.low * other.high
         return _renormalised(high, low)
@@ -219,35 +202,34 @@ class DoubleDouble:
             return self.scaled(1 / other)
         other = self._like(other)
         high = self.high / other.high
-        product, rest = _product(high, other.high)
+        product, rest = two_product(high, other.high)
         rest = (self.high - product) - rest
         rest += self.low
         rest -= high * other.low
         rest /= other.high
         return _renormalised(high, rest)
 
-    def __gt__(self, other: DoubleDouble | float) -> Mask:
-        other = self._like(other)
-        holds: Mask = (self.high > other.high) | (self.high == other.high) & (self.low > other.low)
-        return holds
-
-    def __le__(self, other: DoubleDouble | float) -> Mask:
-        other = self._like(other)
-        holds: Mask = (self.high < other.high) | (self.high == other.high) & (self.low <= other.low)
-        return holds
-
     def __rtruediv__(self, other: float) -> DoubleDouble:
         return self._like(other) / self
 
-    def __lt__(self, other: DoubleDouble | float) -> Mask:
+    def _ordered(self, other: DoubleDouble | float, compare: Any, strictly: Any) -> Mask:
+        """Return a comparison of the larger parts or, where these are equal, of the others."""
         other = self._like(other)
-        holds: Mask = (self.high < other.high) | (self.high == other.high) & (self.low < other.low)
+        equal = self.high == other.high
+        holds: Mask = strictly(self.high, other.high) | equal & compare(self.low, other.low)
         return holds
 
+    def __gt__(self, other: DoubleDouble | float) -> Mask:
+        return self._ordered(other, np.greater, np.greater)
+
     def __ge__(self, other: DoubleDouble | float) -> Mask:
-        other = self._like(other)
-        holds: Mask = (self.high > other.high) | (self.high == other.high) & (self.low >= other.low)
-        return holds
+        return self._ordered(other, np.greater_equal, np.greater)
+
+    def __lt__(self, other: DoubleDouble | float) -> Mask:
+        return self._ordered(other, np.less, np.less)
+
+    def __le__(self, other: DoubleDouble | float) -> Mask:
+        return self._ordered(other, np.less_equal, np.less)
 
     def sqrt(self) -> DoubleDouble:
         """Return the square root of numbers >= 0."""

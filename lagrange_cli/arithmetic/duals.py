@@ -128,6 +128,20 @@ def is_zero(x: Plain) -> bool:
     return not x
 
 
+def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:
+    """Return a function of x by its value and its slope there."""
+    return Dual(value, None if x.partials is None else [slope * dx for dx in x.partials])
+
+
+def _function(name: str, slope: Callable[[Any, Plain], Plain]) -> Callable[[Duals, Dual], Dual]:
+    """Return the function of this name of dual numbers, by its slope."""
+
+    def function(ar: Duals, x: Dual) -> Dual:
+        return _chained(x, getattr(ar.plain, name)(x.value), slope(ar.plain, x.value))
+
+    return function
+
+
 class Duals(Scalars):
     """The arithmetic of dual numbers over that of balls or decimals.
 
@@ -166,31 +180,12 @@ class Duals(Scalars):
             return Dual(root)
         return _chained(x, root, self.plain.nan if is_zero(root) else 1 / (2 * root))
 
-    def sin(self, x: Dual) -> Dual:
-        """Return the sine of x."""
-        return _chained(x, self.plain.sin(x.value), self.plain.cos(x.value))
-
-    def cos(self, x: Dual) -> Dual:
-        """Return the cosine of x."""
-        return _chained(x, self.plain.cos(x.value), -self.plain.sin(x.value))
-
-    def sinh(self, x: Dual) -> Dual:
-        """Return the hyperbolic sine of x."""
-        return _chained(x, self.plain.sinh(x.value), self.plain.cosh(x.value))
-
-    def cosh(self, x: Dual) -> Dual:
-        """Return the hyperbolic cosine of x."""
-        return _chained(x, self.plain.cosh(x.value), self.plain.sinh(x.value))
-
-    def asinh(self, x: Dual) -> Dual:
-        """Return the inverse hyperbolic sine of x."""
-        slope = 1 / self.plain.sqrt(1 + x.value * x.value)
-        return _chained(x, self.plain.asinh(x.value), slope)
-
-    def exp(self, x: Dual) -> Dual:
-        """Return e to the power x."""
-        value = self.plain.exp(x.value)
-        return _chained(x, value, value)
+    sin = _function("sin", lambda ar, x: ar.cos(x))
+    cos = _function("cos", lambda ar, x: -ar.sin(x))
+    exp = _function("exp", lambda ar, x: ar.exp(x))
+    sinh = _function("sinh", lambda ar, x: ar.cosh(x))
+    cosh = _function("cosh", lambda ar, x: ar.sinh(x))
+    asinh = _function("asinh", lambda ar, x: 1 / ar.sqrt(1 + x * x))
 
     def atan2(self, y: Dual, x: Dual) -> Dual:
         """Return the angle of the point (x, y), in (-pi, pi]."""
@@ -239,11 +234,6 @@ class Duals(Scalars):
         """Return one of two numbers."""
         chosen = yes if condition else no
         return self.convert(chosen) if isinstance(chosen, int) else chosen
-
-
-def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:
-    """Return a function of x by its value and its slope there."""
-    return Dual(value, None if x.partials is None else [slope * dx for dx in x.partials])
 
 
 def _sizes(ar: Balls, x: Dual) -> Dual:

@@ -40,11 +40,7 @@ class Arithmetic(Protocol[R]):
         """Not a number: what an array holds where a top has no number."""
 
     def working(self) -> AbstractContextManager[object]:
-        """Return a context manager inside which every operation has the precision of this object.
-
-        It belongs around each computation, not around the program: the precision of decimals is a
-        property of the thread.
-        """
+        """Return a context manager that sets this precision, for the thread, in a computation."""
 
     def convert(self, value: float | Fraction, /) -> R:
         """Return the number nearest to an exact value."""

@@ -20,8 +20,6 @@ from .tables import RealTable
 if TYPE_CHECKING:
     from .tables import Known
 
-_PI = 3.141592653589793, 1.2246467991473532e-16, -2.9947698097183397e-33
-
 
 class Amplitude(NamedTuple):
     """An amplitude as whole half turns, and sine and cosine of the rest, up to a quarter turn."""
@@ -38,13 +36,13 @@ def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
         half_turns = ar.nint(ar.re(phi) / ar.pi)
         rest = phi - half_turns * ar.pi
         return Amplitude(half_turns, ar.sin(rest), ar.cos(rest))
-    from ..arithmetic.double_double import two_product, two_sum
+    from ..arithmetic.double_double import PI, two_product, two_sum
 
     half_turns = ar.nint(phi / ar.pi)
-    product, error = two_product(half_turns, _PI[0])
-    second, second_error = two_product(half_turns, _PI[1])
+    product, error = two_product(half_turns, PI.high)
+    second, second_error = two_product(half_turns, PI.middle)
     rest, low = two_sum(phi - product, -second)
-    low -= error + (second_error + half_turns * _PI[2])
+    low -= error + (second_error + half_turns * PI.low)
     sine, cosine = ar.sin(rest), ar.cos(rest)
     sine, cosine = sine + low * cosine, cosine - low * sine
     beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)  # by its rounding

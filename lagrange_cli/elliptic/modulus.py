@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -99,14 +100,6 @@ def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
     return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
 
-def _from_k(ar: FunctionArithmetic, k: Value) -> Modulus:
-    return Modulus(k, *_complement(ar, k))
-
-
-def _from_k_prime(ar: FunctionArithmetic, k_prime: Value) -> Modulus:
-    return Modulus(_complement(ar, k_prime)[0], k_prime, 0 * k_prime)
-
-
 def _from_m(ar: FunctionArithmetic, m: Value) -> Modulus:
     if not ar.is_array:
         return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
@@ -115,10 +108,6 @@ def _from_m(ar: FunctionArithmetic, m: Value) -> Modulus:
     from ..arithmetic.double_double import sqrt_pair, two_sum
 
     return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(np.ones_like(m), -m)))
-
-
-def _from_angle(ar: FunctionArithmetic, angle: Value) -> Modulus:
-    return Modulus(ar.sin(angle), ar.cos(angle), 0 * angle)
 
 
 def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
@@ -157,11 +146,11 @@ def _complement(ar: FunctionArithmetic, k: Value) -> tuple[Value, Value]:
     return sqrt_pair(*two_sum(difference, rest - error))
 
 
-_FROM = {
-    "k": _from_k,
-    "k_prime": _from_k_prime,
+_FROM: dict[str, Callable[[FunctionArithmetic, Value], Modulus]] = {
+    "k": lambda ar, k: Modulus(k, *_complement(ar, k)),
+    "k_prime": lambda ar, other: Modulus(_complement(ar, other)[0], other, 0 * other),
     "m": _from_m,
-    "angle": _from_angle,
+    "angle": lambda ar, angle: Modulus(ar.sin(angle), ar.cos(angle), 0 * angle),
     "q": _from_q,
 }
 

@@ -34,16 +34,21 @@ ErrorBound = Callable[[int], Value]
 
 def sn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
     """Yield sums of sn u = 2 pi/(k K) sum q^(n-1/2)/(1 - q^(2n-1)) sin (2n-1) pi u/2K  (3.1.4)."""
-    q, angle, scale = _parts(ar, u, modulus)
-    odd, root = (2 * n - 1 for n in count(1)), ar.sqrt(q)
-    return accumulate(scale * root**n / (1 - q**n) * ar.sin(n * angle) for n in odd)
+    return _odd_sums(ar, u, modulus, -1, ar.sin)
 
 
 def cn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
     """Yield sums of cn u = 2 pi/(k K) sum q^(n-1/2)/(1 + q^(2n-1)) cos (2n-1) pi u/2K  (3.1.5)."""
+    return _odd_sums(ar, u, modulus, 1, ar.cos)
+
+
+def _odd_sums(
+    ar: FunctionArithmetic, u: Value, modulus: Modulus, sign: int, wave: Callable[[Value], Value]
+) -> Iterator[Value]:
+    """Yield sums of the waves of odd order, with a sign beside q^(2n-1)."""
     q, angle, scale = _parts(ar, u, modulus)
-    odd, root = (2 * n - 1 for n in count(1)), ar.sqrt(q)
-    return accumulate(scale * root**n / (1 + q**n) * ar.cos(n * angle) for n in odd)
+    root = ar.sqrt(q)
+    return accumulate(scale * root**n / (1 + sign * q**n) * wave(n * angle) for n in count(1, 2))
 
 
 def am_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:

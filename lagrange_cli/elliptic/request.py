@@ -117,13 +117,13 @@ def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
     elif abs(u) == abs(request.size) and not (request.imaginary or request.in_quarters):
         add("omega11 pi11", math.nan)
     if request.in_quarters and u.denominator == 1:
-        known |= known_at_quarter(int(u % 4), request)
+        known |= _at_quarter(int(u % 4), suffix)
         known |= {} if request.radians else {"am_deg": 90 * int(u)}
         known |= {"omega11_imag": 0} if u == 1 and request.imaginary else {}
     return known
 
 
-def known_at_quarter(quarter: int, request: FunctionRequest) -> dict[str, float]:
+def _at_quarter(quarter: int, suffix: str) -> dict[str, float]:
     """Return the columns that are 0, 1, -1 or a pole at the multiples quarter + 4n of K.
 
     These are the entries of Aksenov's table 2, and what follows for theta and Zeta functions and
@@ -131,38 +131,28 @@ def known_at_quarter(quarter: int, request: FunctionRequest) -> dict[str, float]
     """
     odd = quarter % 2
     known: dict[str, float] = {"sn": (0, 1, 0, -1)[quarter], "cn": (1, 0, -1, 0)[quarter]}
-    zeros = "zeta10 theta11" if not odd else "zeta11 theta10"
-    known |= dict.fromkeys(f"{zeros} zeta01 zeta00".split(), 0)
+    zeros = "zeta11 theta10" if odd else "zeta10 theta11"
+    known |= dict.fromkeys(f"{zeros} zeta01 zeta00 omega01{suffix} omega00{suffix}".split(), 0)
     known["zeta10" if odd else "zeta11"] = math.nan
-    suffix = "_imag" if request.imaginary else ""
-    known |= {f"omega01{suffix}": 0, f"omega00{suffix}": 0}
-    if not odd:
-        known["dn"] = 1
-    if not request.imaginary:
-        known["omega11"] = 0
-    return known
+    return known | ({} if odd else {"dn": 1}) | ({} if suffix else {"omega11": 0})
 
 
 def put_exact_values(table: dict[str, Array], u: Array, request: FunctionRequest) -> None:
     """Put what is known at u = 0, at whole multiples of K and at poles in its place."""
     import numpy as np
 
-    def put(here: Array, known: dict[str, float]) -> None:
-        for name in known.keys() & table.keys():
-            table[name] = np.where(here, known[name], table[name])
-
+    places = {Fraction(0): u == 0}
     if request.in_quarters:
         whole = u == np.rint(u)
-        for quarter in range(4):
-            put(whole & (u % 4 == quarter), known_at_quarter(quarter, request))
-        if "am_deg" in table:
-            table["am_deg"] = np.where(whole, 90 * u, table["am_deg"])
-        if request.imaginary:
-            put(u == 1, {"omega11_imag": 0})
-    put(u == 0, known_values(Fraction(0), request))
-    if request.size and not request.imaginary:
-        poles = abs(table["u"]) == abs(float(request.size))
-        put(poles, dict.fromkeys(("omega11", "pi11"), math.nan))
+        every_turn = {Fraction(4 + i): whole & (u % 4 == i) for i in range(4)}
+        places = every_turn | {Fraction(1): u == 1} | places
+    elif not request.imaginary:
+        places = {abs(request.size): abs(u) == abs(float(request.size))} | places
+    for place, here in places.items():
+        for name, value in known_values(place, request).items():
+            if name in table:
+                known = 90 * u if name == "am_deg" else value
+                table[name] = np.where(here, known, table[name])
 
 
 _RIGHT = ModulusInput("modular_angle", Fraction(45))

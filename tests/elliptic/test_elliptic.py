@@ -53,16 +53,6 @@ def test_nome() -> None:
                 assert error(nome(DOUBLES, m=k * k, k_prime=float(mpmath.sqrt(1 - m))), true) <= 2.2
 
 
-def test_carlson_rf() -> None:
-    """Worst seen in 3000, arguments over forty decades: 2.2 eps."""
-    rng = random.Random("R_F")
-    with mpmath.workdps(40):
-        for i in range(200):
-            x, y, z = (10 ** rng.uniform(-20, 20) for _ in range(3))
-            x = 0.0 if i % 5 == 0 else x
-            assert error(carlson_rf(DOUBLES, x, y, z), mpmath.elliprf(x, y, z)) <= 2.2
-
-
 def test_arrays_give_what_floats_give() -> None:
     k_prime = np.array(COMPLEMENTS)
     for function in (complete_k, complete_e):

@@ -11,9 +11,10 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from arb_balls import exact_arb
 from conftest import Lagtop
 from flint import acb, arb, ctx
-from function_judge import EPS, ball
+from function_judge import EPS
 
 from lagrange_cli.arithmetic.arrays import ARRAYS
 from lagrange_cli.elliptic.incomplete import (
@@ -33,7 +34,7 @@ class Exact:
 
     def __init__(self, name: str, value: float, phi: float, degrees: bool) -> None:
         ctx.prec = 2600 if value < 1e-20 else 500
-        other = ball(value) ** 2
+        other = exact_arb(value) ** 2
         m, rest = (other, 1 - other) if name == "k" else (1 - other, other)
         complete = acb(m).elliptic_k().real, acb(m).elliptic_e().real
         if degrees and Fraction(phi) / 90 % 2 == 1:
@@ -41,8 +42,8 @@ class Exact:
             self.values = complete[0] * quarters, complete[1] * quarters
             self.slopes = 0.0, 0.0
             return
-        angle = ball(phi) * (arb.pi() / 180 if degrees else 1)
-        turns = (angle / arb.pi() + ball(Fraction(1, 2))).floor()
+        angle = exact_arb(phi) * (arb.pi() / 180 if degrees else 1)
+        turns = (angle / arb.pi() + exact_arb(Fraction(1, 2))).floor()
         within = angle - turns * arb.pi()
         sine, cosine2 = within.sin(), within.cos() ** 2
         delta2 = cosine2 + rest * sine * sine
@@ -60,7 +61,7 @@ class Exact:
     @staticmethod
     def _units(computed: float, exact: Any, slope: float) -> float:
         unit = EPS * (max(1.0, abs(float(exact.mid()))) + slope)
-        error = abs(ball(computed) - exact)
+        error = abs(exact_arb(computed) - exact)
         assert float(error.rad()) < 1e-3 * unit, "the judge needs more bits"
         return float(error.mid()) / unit
 

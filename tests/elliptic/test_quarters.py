@@ -9,9 +9,10 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from arb_balls import exact_arb
 from conftest import Lagtop
 from flint import acb, arb, ctx
-from function_judge import EPS, INDEX, Judge, ball
+from function_judge import EPS, INDEX, Judge
 from function_tables import array_rows
 
 from lagrange_cli import LagtopError
@@ -102,7 +103,7 @@ def exact_values(judge: Judge, factor: Fraction) -> dict[str, tuple[Any, float]]
     """
     ctx.prec = judge.bits
     turns = round(factor / 2)
-    x = ball(factor / 2 - turns)
+    x = exact_arb(factor / 2 - turns)
     sign = (-1) ** turns
     at = {ij: judge.theta(ij, x).real for ij in INDEX}
     zero = {ij: judge.theta(ij, arb(0)).real for ij in INDEX}
@@ -112,7 +113,7 @@ def exact_values(judge: Judge, factor: Fraction) -> dict[str, tuple[Any, float]]
     dn = zero["01"] / zero["00"] * at["00"] / at["01"]
     exact |= {"sn": sign * sn, "cn": sign * cn, "dn": dn}
     exact["am_deg"] = 180 * turns + (acb(cn, sn).log().imag * 180 / arb.pi())
-    exact["u"] = ball(factor) * judge.K
+    exact["u"] = exact_arb(factor) * judge.K
     slopes = {f"theta{ij}": float((x * judge.theta(ij, x, 1).real).mid()) for ij in INDEX}
     reach = float((x * 2 * judge.K).mid())
     slopes |= {"sn": reach * float((cn * dn).mid()), "cn": reach * float((sn * dn).mid())}
@@ -130,7 +131,7 @@ def test_any_multiple(seed: int) -> None:
         (cells,) = array_rows(FunctionTable(ListedPoints([factor]), request))
         for name, (exact, slope) in exact_values(judge, factor).items():
             unit = EPS * (max(1.0, abs(float(exact.mid()))) + slope)
-            error = float(abs(ball(cells[name]) - exact).mid()) / unit
+            error = float(abs(exact_arb(cells[name]) - exact).mid()) / unit
             assert error <= 2.5, (name, request.modulus, factor)
 
 
@@ -140,7 +141,7 @@ def test_digits_of_a_third_of_a_quarter() -> None:
     (cells,) = FunctionTable(ListedPoints([Fraction(1, 3)]), request).digit_rows(40)
     for name, text in cells.items():
         exact, _ = exact_values(judge, Fraction(1, 3))[name]
-        assert float(abs((ball(Fraction(text)) - exact) / exact).mid()) < 5.01e-40, name
+        assert float(abs((exact_arb(Fraction(text)) - exact) / exact).mid()) < 5.01e-40, name
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -155,7 +156,9 @@ def test_small_tables_of_multiples_have_the_nearest_doubles(seed: int) -> None:
             if exact.contains(0):
                 assert cells[name] == 0, name
             else:
-                assert abs(ball(cells[name]) - exact) <= ball(math.ulp(cells[name])) / 2, name
+                assert (
+                    abs(exact_arb(cells[name]) - exact) <= exact_arb(math.ulp(cells[name])) / 2
+                ), name
 
 
 @pytest.mark.parametrize(

@@ -6,13 +6,13 @@ the axis passes next to a pole.  So little is lost where they are added up.
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...arithmetic.double_double import (
     MANY,
+    PI,
     Period,
     fraction_of_product,
     period_of,
@@ -24,8 +24,6 @@ from ...arithmetic.numbers import R
 from ...arithmetic.protocol import Arithmetic
 from ...arithmetic.rounding import Pair, Triple, pair, triple
 from ...arithmetic.types import Array
-
-_PI = Pair(math.pi, 1.2246467991473532e-16)
 
 
 class Times(NamedTuple):
@@ -73,15 +71,15 @@ class Growth(NamedTuple):
         As many turns are taken off the time as leave the sum of both parts in that interval.
         """
         angle = self.since_start(periodic, at)
-        turns = np.multiply(angle, 0.5 / _PI.high, out=at.space[3])
+        turns = np.multiply(angle, 0.5 / PI.high, out=at.space[3])
         grown, lost = self._within_a_turn(at, turns)
         angle += grown
         angle += lost
         outside = np.abs(angle, out=lost) >= np.pi
         if outside.any():  # by what the rounding of many turns has taken
             rest = angle[outside]
-            rest[rest > np.pi] -= 2.0 * _PI.high
-            rest[rest <= -np.pi] += 2.0 * _PI.high
+            rest[rest > np.pi] -= 2.0 * PI.high
+            rest[rest <= -np.pi] += 2.0 * PI.high
             angle[outside] = rest
         return angle
 
@@ -89,8 +87,8 @@ class Growth(NamedTuple):
         """Return the angle less half turns, in [-pi/2, pi/2], and (-1)^n for n of them."""
         grown, lost = self._within_a_turn(at)
         angle, more = two_sum(self.since_start(periodic, at), grown)
-        halves = np.rint(angle / _PI.high)
-        angle = (angle - halves * _PI.high) + (lost + more - halves * _PI.low)
+        halves = np.rint(angle / PI.high)
+        angle = (angle - halves * PI.high) + (lost + more - halves * PI.middle)
         return angle, 1.0 - 2.0 * (halves % 2.0)
 
     def _within_a_turn(self, at: Times, more: float | Array = 0.0) -> tuple[Array, Array]:
@@ -102,9 +100,9 @@ class Growth(NamedTuple):
         if at.farthest > self.turn.reach:  # the fraction of a turn is known for any number of them
             far, turns = np.abs(whole) >= MANY, fraction_of_product(at.t, self.turns)
             turns -= np.rint(turns + more)
-            product, error = two_product(turns, 2.0 * _PI.high)
+            product, error = two_product(turns, 2.0 * PI.high)
             np.copyto(grown, product, where=far)
-            np.copyto(lost, error + turns * (2.0 * _PI.low), where=far)
+            np.copyto(lost, error + turns * (2.0 * PI.middle), where=far)
         return grown, lost
 
 
