@@ -12,8 +12,8 @@ import pytest
 
 from lagrange_cli import Top
 from lagrange_cli.elliptic.many_digits import ManyDigits
+from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
-from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 from lagrange_cli.motion.solve import solve
 
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..inputs.given import Given
     from ..inputs.value import Value
-    from ..motion.over_time.table import TableRequest
+    from ..motion.over_time.times import TableRequest
     from ..motion.solve import Motion
 
 
@@ -118,7 +118,8 @@ def command(
     Uncertain inputs (see there too) add the standard uncertainties of the angles, theta_deg_std and
     so on, as the last columns.
     """
-    from ..motion.over_time.table import DEFAULT_COLUMNS, DEFAULT_ROWS, TableRequest
+    from ..motion.over_time.columns import DEFAULT_COLUMNS
+    from ..motion.over_time.times import DEFAULT_ROWS, TableRequest
 
     options, interval = in_seconds(options, t_min=t_min, t_max=t_max, dt=dt)
     exclude({"--n": count, "--dt": dt})
@@ -191,7 +192,7 @@ def _same(times: Points, _: Motion) -> Points:
 
 
 def _grid(motion: Motion, **interval: Any) -> Points:
-    from ..motion.over_time.table import grid
+    from ..motion.over_time.times import grid
 
     return grid(motion, **interval)
 

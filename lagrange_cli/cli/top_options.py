@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.input_keys import Input
     from ..inputs.value import Value
-    from ..motion.sensitivity.angle_uncertainty import AngleStds
+    from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
 
 
@@ -189,7 +189,7 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     """
     if not found.stds:
         return None
-    from ..motion.sensitivity.angle_uncertainty import AngleStds  # for few tops only
+    from ..motion.sensitivity.angle_sensitivities import AngleStds  # for few tops only
 
     stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
     if stds.reason:

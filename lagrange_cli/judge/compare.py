@@ -16,7 +16,6 @@ from ..inputs.seen import Conventions, Quantities
 from ..inputs.top import Top
 from ..inputs.trajectory import open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
-from ..motion.over_time.times import times_of
 from ..motion.solve import Motion, solve
 from ..output.progress import Progress, silent
 from .alignment import Alignment, alignment
@@ -90,7 +89,7 @@ def compare(
 
 def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
     """Return the arrays as quantities.  Raises LagtopError for one of another shape."""
-    times = times_of(t).reshape(-1, 1)
+    times = doubles_of("t", t).reshape(-1, 1)
     if not arrays:
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
     steps = times[1:, 0], times[:-1, 0]  # a difference may be beyond all doubles

@@ -13,7 +13,7 @@ from ..arithmetic.numbers import R
 from ..arithmetic.rounding import Settled, decided, rounding_of, settled
 from ..inputs.top import Top
 from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
-from .kinds import Kind, kind_of, middle_of
+from .kinds import Kind, kind_of
 from .record import NUMBER_KEYS, number_key
 from .regime import Exact, Facts, Regime
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 S = TypeVar("S")
 
-_ROOTS = ("u1", "u2", "u3")
 SAMPLER_DIGITS = 40
 """Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
 
@@ -92,28 +91,16 @@ class Numbers:
 
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number if it is known as a fraction; a root, if it may be midway in `digits`."""
-        if name in NUMBER_KEYS:
-            from .exact.rational_keys import known_fraction  # start-up: for few tops only
+        if name not in NUMBER_KEYS:
+            from .paper.requested import requested_fractions  # start-up: not for a record
 
-            known = known_fraction(self.exact, name, radians=radians)
-            return self._rational_root(name, digits) if known is None and name in _ROOTS else known
-        from .paper.requested import requested_fractions  # start-up: not for a record
+            return requested_fractions(self.exact).get(name)
+        from .exact.rational_keys import known_fraction, rational_root  # start-up: for few tops
 
-        return requested_fractions(self.exact).get(name)
-
-    def _rational_root(self, name: str, digits: int) -> Fraction | None:
-        """Return a root of the cubic if it is a fraction, such as one midway between doubles.
-
-        Only this root is in its enclosure, so that a fraction in there that is a root is this one.
-        """
-        from .exact.rational_keys import rational_root  # start-up: for few tops only
-
-        roots = {root: self.enclosure(root, 2 * digits + 80) for root in _ROOTS}
-        ball = roots.pop(name)
-        others = [other for other in roots.values() if other is not None]
-        if ball is None or any((ball - other).least == 0 for other in others):
-            return None
-        return rational_root(self.exact, *ball.ends())
+        known = known_fraction(self.exact, name, radians=radians)
+        if known is not None or name not in {"u1", "u2", "u3"}:
+            return known
+        return rational_root(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that holds a number, by its key; None if the motion has none.
@@ -184,8 +171,14 @@ class Numbers:
 
     def sampler(self) -> Sampler:
         """Return the series behind `angles`, made once."""
-        from .over_time.series_constants import sampler_of  # start-up: loads NumPy
+        from .over_time.theta_sampler import sampler_of  # start-up: loads NumPy
 
         if self._sampler is None:
             self._sampler = sampler_of(self.middle())
         return self._sampler
+
+
+def middle_of(kind: Any) -> Any:
+    """Return a motion in decimals, from the middles of the balls of its start and its gaps."""
+    middles = (type(x)(*(number.middle for number in x)) for x in (kind.state, kind.gaps))
+    return type(kind)(kind.ar.middles, kind.facts, *middles)

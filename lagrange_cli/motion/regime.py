@@ -112,6 +112,25 @@ class Exact(Values):
         """psi' sin^2(theta0) by u0; beta less b u0 (4,5)."""
         return self.psi_rate * (1 - U * U)
 
+    @property
+    def alpha(self) -> Polynomial:
+        """The constant alpha (4,4) by u0."""
+        return self.energy + self.a * U
+
+    @property
+    def beta(self) -> Polynomial:
+        """The constant beta (4,5) by u0."""
+        return self.momentum + self.b * U
+
+    @property
+    def fall(self) -> Polynomial:
+        """u'' over sin^2(theta0) by u0, for a start without nutation rate."""
+        return _fall(self.a, self.b, self.psi_rate)
+
+
+def _fall(a: Fraction, b: Fraction, psi_rate: Fraction) -> Polynomial:
+    return Polynomial(2 * b * psi_rate - a, -2 * psi_rate * psi_rate)
+
 
 def exact(top: Top) -> Exact:
     """Return a top in fractions, with the facts of its motion.
@@ -149,9 +168,7 @@ def _facts(
     # where beta = b, 1 is a root, and alpha - a = theta'^2 - (1 - u) (a - psi' b) says which
     slope = a - psi_rate * b
     over = 0 if minus else cosine.sign(Polynomial(theta_rate * theta_rate - slope, slope))
-    # u'' = 0 at rest: 2 b psi' - a - 2 u psi'^2
-    level = Polynomial(2 * b * psi_rate - a, -2 * psi_rate * psi_rate)
-    steady = not theta_rate and (vertical or cosine.vanishes(level))
+    steady = not theta_rate and (vertical or cosine.vanishes(_fall(a, b, psi_rate)))
     separatrix = not minus and not over and bool(a) and not vertical
     upper_root = 0
     if not minus and not vertical and not separatrix:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..inputs.input_keys import Input
     from ..inputs.units import System
     from ..motion.quantity import Key
-    from ..motion.sensitivity.angle_uncertainty import AngleStds
+    from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
     from .map import InputRange
     from .style import Look

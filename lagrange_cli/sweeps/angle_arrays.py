@@ -21,8 +21,9 @@ from ..elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine
 from ..motion.gaps import Gaps, State, gaps_from_rest
 from ..motion.kinds import Nutating
 from ..motion.over_time.attitude import Attitude, Growth, Growths, Spinor, Times
-from ..motion.over_time.samplers import arguments_of, moduli_of, tilt_of, unwound
+from ..motion.over_time.samplers import tilt_of
 from ..motion.over_time.series_constants import theta_constants
+from ..motion.over_time.theta_sampler import arguments_of, moduli_of, unwound
 from ..motion.over_time.theta_series import (
     Component,
     Frame,

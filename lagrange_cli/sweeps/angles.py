@@ -7,12 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, workspace
+from ..arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
 from ..arithmetic.types import Array, Mask
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.top import Top
-from ..motion.over_time.times import times_of
 from ..motion.regime import Regime
 from ..motion.solve import solve
 from .angle_arrays import (
@@ -42,7 +41,7 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Re
         name = min(together.stds)
         raise LagtopError(f"{name} must be certain: the angles of sweeps have no stds", name)
     tops, shape = together.part(slice(None)), together.shape
-    times = times_of(t)
+    times = doubles_of("t", t)
     if times.ndim > 1 and times.shape[:-1] != shape:
         raise LagtopError(f"t must have the shape {(*shape, 'n')} or (n,), got {times.shape}", "t")
     whole = times.shape if times.ndim > 1 else shape + times.shape

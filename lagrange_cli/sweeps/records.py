@@ -20,7 +20,8 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion import record as motion_record
-from ..motion.kinds import fast_remark, kind_of, vertical_remark
+from ..motion.degenerate import vertical_remark
+from ..motion.kinds import fast_remark, kind_of
 from ..motion.numbers import gaps_of
 from ..motion.regime import FAST, Regime
 from ..motion.solve import record_in_range, solve

@@ -14,7 +14,8 @@ from ..errors import LagtopError
 from ..inputs.given import Given
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
-from ..motion.over_time.table import DEFAULT_COLUMNS, TableRequest
+from ..motion.over_time.columns import DEFAULT_COLUMNS
+from ..motion.over_time.times import TableRequest
 from ..motion.solve import solve
 from ..output.write import block_text
 from .angles import angles_of_tops

@@ -11,9 +11,9 @@ from scenes import UNIT
 
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.arithmetic.arrays import ROWS, workspace
-from lagrange_cli.motion.over_time import samplers
+from lagrange_cli.motion.over_time import theta_sampler
 from lagrange_cli.motion.over_time.columns import COLUMNS, chosen_columns, name_of
-from lagrange_cli.motion.over_time.sample import samples
+from lagrange_cli.motion.over_time.table import samples
 
 STARTS: dict[str, dict[str, float]] = {
     "hyperbolic": {},
@@ -59,7 +59,7 @@ def test_what_is_not_asked_for_is_not_computed(
     motion = solve(Top(**STARTS[start]))
     expected = motion.table(T, list(COLUMNS))
     for name in forbidden.split():
-        monkeypatch.setattr(samplers, name, _forbidden)
+        monkeypatch.setattr(theta_sampler, name, _forbidden)
     for name, values in motion.table(T, columns.split()).items():
         np.testing.assert_array_equal(values, expected[name])
 
@@ -88,7 +88,7 @@ class _Forbidden:
 @pytest.mark.parametrize("name", ["arguments_of", "moduli_of", "whole_periods"])
 def test_what_is_asked_for_is_computed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Else the test before would show nothing."""
-    monkeypatch.setattr(samplers, name, _forbidden)
+    monkeypatch.setattr(theta_sampler, name, _forbidden)
     with pytest.raises(pytest.fail.Exception):
         solve(Top()).table(T, ["p"])
 

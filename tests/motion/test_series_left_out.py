@@ -18,11 +18,11 @@ from flint import acb, arb
 from lagrange_cli.arithmetic.ball import Ball
 from lagrange_cli.arithmetic.balls import Balls
 from lagrange_cli.elliptic.complete import complete_k
+from lagrange_cli.motion.over_time.series_constants import evaluate
 from lagrange_cli.motion.over_time.theta_series import (
     SquaredRatio,
     ThetaConstants,
     circular_series,
-    evaluate,
 )
 from lagrange_cli.motion.over_time.theta_series import hyperbolic_series as hyperbolic
 

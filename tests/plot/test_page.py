@@ -20,7 +20,7 @@ from scenes import SAMPLES
 from lagrange_cli import LagtopError, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
-from lagrange_cli.motion.sensitivity.angle_uncertainty import AngleStds
+from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
 from lagrange_cli.plot.map import parse_input_range

@@ -104,9 +104,9 @@ def test_numbers_correlate_with_inputs_by_the_signs_of_the_derivatives(regime: s
         found = sweep(keys=moved, **inputs | drawn)
         for key in moved:
             whole = wholes[key]
+            slopes = {line.input: line.sensitivity for line in uncertain.budget(key, inputs)}
             for name, std in uncertain.stds.items():
-                slope = uncertain.derivative(key, name)
-                assert slope is not None
+                slope = slopes[name]
                 correlation = np.corrcoef(np.asarray(found[key], float), drawn[name])[0, 1]
                 assert correlation == pytest.approx(slope * std / whole, abs=noise), (key, name)
                 if abs(correlation) > noise:

@@ -37,8 +37,8 @@ from lagrange_cli.elliptic.carlson import carlson_rd, carlson_rf, carlson_rj
 from lagrange_cli.elliptic.jacobi import jacobi
 from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.inputs.trajectory import open_trajectory
+from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
-from lagrange_cli.motion.over_time.table import DEFAULT_COLUMNS
 from lagrange_cli.output.write import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
 from lagrange_cli.sweeps.plan import runs_of

@@ -12,7 +12,7 @@ from ...arithmetic.exact_cosine import Cosine, U
 from ..regime import Exact
 from .rational_keys import known_fraction
 
-_MEAN_RATES = {"phi_rate": "mean_spin_rate", "psi_rate": "mean_precession_rate"}
+_MEANS = {"phi_rate": "mean_spin_rate", "psi_rate": "mean_precession_rate"}
 
 
 def known_column(
@@ -40,9 +40,8 @@ def _conserved(exact: Exact, method: str) -> Fraction | None:
     """Return the energy (4,2) or the vertical momentum (4,3), polynomials in cos(theta0)."""
     A, C = Fraction(exact.top.A), Fraction(exact.top.C)
     if method == "energy":
-        alpha, spin = exact.energy + exact.a * U, C * exact.r0 * exact.r0 / 2
-        return exact.cosine.fraction(A / 2 * alpha + spin)
-    return exact.cosine.fraction(A * (exact.momentum + exact.b * U))
+        return exact.cosine.fraction(A / 2 * exact.alpha + C * exact.r0 * exact.r0 / 2)
+    return exact.cosine.fraction(A * exact.beta)
 
 
 def _of_some_tops(exact: Exact, method: str) -> Fraction | None:
@@ -92,14 +91,14 @@ def _of_steady(
 ) -> Fraction | None:
     """Return a column of a motion at constant tilt."""
     if method in {"phi", "psi"}:
-        rate = known_fraction(exact, _MEAN_RATES[f"{method}_rate"])
+        rate = known_fraction(exact, _MEANS[f"{method}_rate"])
         known = rate is not None and (not rate or (radians and not wrap))
         return rate * t if rate is not None and known else None
     if method in {"p", "q"}:
         stays = not (t and exact.psi_rate) or known_fraction(exact, "mean_spin_rate") == 0
         return _at_start(exact, method, radians=radians) if stays else None
     if method in {"phi_rate", "psi_rate"}:
-        return known_fraction(exact, _MEAN_RATES[method])
+        return known_fraction(exact, _MEANS[method])
     return _at_start(exact, method, radians=radians)
 
 

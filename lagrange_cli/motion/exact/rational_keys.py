@@ -8,16 +8,17 @@ such a tie, is told here from the inputs.
 from __future__ import annotations
 
 import math
-from decimal import Decimal
+from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
 
-from ...arithmetic.exact_cosine import Polynomial, U
+from ...arithmetic.ball import Ball
+from ...arithmetic.exact_cosine import U
 from ..regime import Exact
 from .half_rates import HALF_RATES, vanishing_half_rates
 
-_MEAN_RATES = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
-"""The rates that periods are made of."""
+_RATE_OF = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
+"""The mean rates that periods are made of."""
 
 
 def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
@@ -37,7 +38,7 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
 
 def is_endless(exact: Exact, name: str) -> bool:
     """Return whether a key is the period of a mean rate that is exactly 0."""
-    return name in _MEAN_RATES and known_fraction(exact, _MEAN_RATES[name]) == 0
+    return name in _RATE_OF and known_fraction(exact, _RATE_OF[name]) == 0
 
 
 @lru_cache(maxsize=8)
@@ -91,32 +92,38 @@ def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
 
 def starts_at_u1(exact: Exact) -> bool:
     """Return whether the start is the upper turning point."""
-    if exact.facts.pole:
-        return exact.facts.pole == 1
-    return exact.facts.steady or (not exact.theta_rate and _fall(exact) < 0)
+    return _starts_at(exact, 1)
 
 
 def starts_at_u2(exact: Exact) -> bool:
     """Return whether the start is the lower turning point."""
-    if exact.facts.pole:
-        return exact.facts.pole == -1
-    return exact.facts.steady or (not exact.theta_rate and _fall(exact) > 0)
+    return _starts_at(exact, -1)
 
 
-def _fall(exact: Exact) -> int:
-    """Return the sign of u'' for a start without nutation rate: that of c1/sin^2 theta0."""
-    psi = exact.psi_rate
-    return exact.cosine.sign(Polynomial(2 * exact.b * psi - exact.a, -2 * psi * psi))
+def _starts_at(exact: Exact, side: int) -> bool:
+    facts = exact.facts
+    if facts.pole:
+        return facts.pole == side
+    return facts.steady or (not exact.theta_rate and exact.cosine.sign(exact.fall) == -side)
 
 
-def rational_root(exact: Exact, low: Decimal, high: Decimal) -> Fraction | None:
-    """Return the simplest fraction between two numbers if it is a root of the cubic (4,9)."""
+def rational_root(
+    exact: Exact, name: str, enclosure: Callable[[str], Ball | None]
+) -> Fraction | None:
+    """Return a root of the cubic (4,9) if it is a fraction, such as one midway between doubles.
+
+    Only this root is in its enclosure, so that a fraction in there that is a root is this one.
+    """
+    roots = {root: enclosure(root) for root in ("u1", "u2", "u3")}
+    ball = roots.pop(name)
+    others = [other for other in roots.values() if other is not None]
+    if ball is None or any((ball - other).least == 0 for other in others):
+        return None
+    low, high = ball.ends()
     u = _simplest(Fraction(low), Fraction(high))
-    alpha, beta = exact.energy + exact.a * U, exact.momentum + exact.b * U
-    around = beta - exact.b * u
-    return (
-        u if exact.cosine.vanishes((1 - u * u) * (alpha - exact.a * u) - around * around) else None
-    )
+    around = exact.beta - exact.b * u
+    value = (1 - u * u) * (exact.alpha - exact.a * u) - around * around
+    return u if exact.cosine.vanishes(value) else None
 
 
 def _simplest(low: Fraction, high: Fraction) -> Fraction:
@@ -131,9 +138,8 @@ def _simplest(low: Fraction, high: Fraction) -> Fraction:
 
 def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
     """Return u1 = 0 or u2 = 0 where f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0."""
-    beta = exact.momentum + exact.b * U
     keys: dict[str, Fraction] = {}
-    if exact.cosine.vanishes(exact.energy + exact.a * U - beta * beta):
+    if exact.cosine.vanishes(exact.alpha - exact.beta * exact.beta):
         sign = exact.cosine.sign(U)
         if sign:
             keys["u2" if sign > 0 else "u1"] = Fraction(0)
@@ -152,7 +158,7 @@ def _quarter_is_level(exact: Exact) -> bool:
     """
     a, b, energy, momentum = exact.a, exact.b, exact.energy, exact.momentum
     if exact.facts.free:
-        return exact.cosine.vanishes(b * (momentum + b * U))
+        return exact.cosine.vanishes(b * exact.beta)
     c2 = 2 * a * U - energy - b * b
     c1 = 2 * b * momentum - a * (1 - U * U) - 2 * (U * energy)
     product = a * (U * U) - U * c2 + c1  # a u2 u3
@@ -197,7 +203,7 @@ def _free_half_rates(exact: Exact) -> dict[str, Fraction]:
     beta - b u and r0 (1 - u^2) - u (beta - b u) do, at u = u(T/2).
     """
     b = exact.b
-    beta, D = exact.momentum + b * U, exact.energy + b * b
+    beta, D = exact.beta, exact.energy + b * b
     D_u = 2 * b * beta - U * D
     still = D * beta - b * D_u
     keys: dict[str, Fraction] = {}

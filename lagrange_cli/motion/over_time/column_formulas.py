@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING
 
 from ...arithmetic.numbers import R
 from ...arithmetic.values import Over, Values
-from ..kinds import Kind, rate_parts
+from ..degenerate import Vertical
+from ..kinds import Kind
 
 if TYPE_CHECKING:
     from ...arithmetic.protocol import Arithmetic
@@ -49,15 +50,17 @@ def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
     ar, state = kind.ar, kind.state
     A, C = Fraction(exact.top.A), Fraction(exact.top.C)
     with ar.working():
-        drift, plus, minus = rate_parts(kind)
+        drift, plus, minus = state.pole_drift, kind.gaps.beta_plus_b / 2, kind.gaps.beta_minus_b / 2
+        if isinstance(kind, Vertical):  # all of the rotation counts as spin
+            drift, plus, minus = kind.r0, 0 * kind.r0, 0 * kind.r0
         return ColumnConstants(
             half_A=ar.convert(A / 2),
             half_C=ar.convert(C / 2),
             torque=ar.convert(exact.a * A / 2),
             r0=state.r0,
             drift=drift,
-            plus=plus / 2,
-            minus=minus / 2,
+            plus=plus,
+            minus=minus,
             alpha=state.energy + state.a * state.cos,
             a=state.a,
         )
@@ -73,47 +76,25 @@ class ColumnFormulas(Over[R]):
     t: R
     constants: ColumnConstants[R]
 
-    @property
-    @abstractmethod
-    def x2(self) -> R:
-        """|X|^2."""
-
-    @property
-    @abstractmethod
-    def y2(self) -> R:
-        """|Y|^2."""
-
-    @property
-    @abstractmethod
-    def around(self) -> R:
-        """The precession, up to whole turns."""
-
-    @property
-    @abstractmethod
+    @cached_property
     def within(self) -> R:
         """The spin, up to whole turns."""
+        raise NotImplementedError
 
-    @property
-    @abstractmethod
-    def args(self) -> tuple[R, R]:
-        """(psi + phi)/2 and (psi - phi)/2, up to whole turns of both or half a turn of both."""
+    @cached_property
+    def around(self) -> R:
+        """The precession, up to whole turns."""
+        raise NotImplementedError
 
-    @property
+    @cached_property
     @abstractmethod
     def theta_rate(self) -> R:
         """The nutation rate."""
 
-    @abstractmethod
-    def theta(self) -> R:
-        """Return the tilt."""
-
-    @abstractmethod
-    def phi(self) -> R:
-        """Return the spin."""
-
-    @abstractmethod
-    def psi(self) -> R:
-        """Return the precession."""
+    @cached_property
+    def args(self) -> tuple[R, R]:
+        """(psi + phi)/2 and (psi - phi)/2, up to whole turns of both or half a turn of both."""
+        return (self.around + self.within) / 2, (self.around - self.within) / 2
 
     @abstractmethod
     def phi_remainder(self) -> R:
@@ -126,6 +107,18 @@ class ColumnFormulas(Over[R]):
     @abstractmethod
     def over(self, value: R, divisor: R) -> R:
         """Return a quotient, and 0 for 0/0: over a pole there is no momentum about it."""
+
+    def theta(self) -> R:
+        """Return the tilt."""
+        return 2 * self.ar.atan2(self.y, self.x)
+
+    def phi(self) -> R:
+        """Return the spin."""
+        return self.within
+
+    def psi(self) -> R:
+        """Return the precession."""
+        return self.around
 
     def times(self) -> R:
         """Return the time."""
@@ -144,6 +137,16 @@ class ColumnFormulas(Over[R]):
     def y(self) -> R:
         """|Y|."""
         return self.ar.sqrt(self.y2)
+
+    @cached_property
+    def x2(self) -> R:
+        """|X|^2."""
+        return self.x * self.x
+
+    @cached_property
+    def y2(self) -> R:
+        """|Y|^2."""
+        return self.y * self.y
 
     @cached_property
     def norm(self) -> R:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import reduce
 from typing import NamedTuple
 
-from ...inputs.names import check_names
+from ...inputs.names import ANGLES, check_names
 
 
 class Needs(NamedTuple):
@@ -94,6 +94,8 @@ COLUMNS: dict[str, Column] = {
         "mass len²/time",
     ),
 }
+
+DEFAULT_COLUMNS = ("t", *ANGLES)
 
 _SINGLE = {
     part.heading: [part]

@@ -1,7 +1,7 @@
 """Columns of one motion over time in balls, each rounded where both ends of its ball are alike.
 
-The attitude is that of the theta series in balls (`spinors`), whose remainders are proved in
-`theta_series`, so that whole turns are proved with it.  Equation numbers are Chrapan's.
+The attitude is that of `series_constants` in balls.  `theta_series` proves what its series leave
+out, so that whole turns are proved too.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from ...arithmetic.balls import Balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
+from ..degenerate import Constant, Separatrix
 from ..exact.rational_columns import known_column
 from ..exact.rational_keys import known_fraction
-from ..kinds import Constant, Separatrix
 from ..numbers import Numbers
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
 from .columns import ScalarColumn, chosen_columns, headings, name_of
-from .spinors import Attitude, spinor_of
+from .series_constants import Pose, pose_of
 
 if TYPE_CHECKING:
     from ...arithmetic.points import Points
@@ -43,62 +43,15 @@ class BallSample(ColumnFormulas[Ball]):
         digits: int,
         constants: ColumnConstants[Ball],
         t: Ball,
-        at: Attitude[Ball],
+        at: Pose[Ball],
     ) -> None:
         self.exact, self.kind = motion.exact, motion.kind(digits)
-        self.constants, self.t, self.at = constants, t, at
-        self.ar = t.ar
-
-    @property
-    def x(self) -> Ball:
-        """|X|."""
-        return self.at.x
-
-    @property
-    def y(self) -> Ball:
-        """|Y|."""
-        return self.at.y
-
-    @cached_property
-    def x2(self) -> Ball:
-        """|X|^2."""
-        return self.at.x * self.at.x
-
-    @cached_property
-    def y2(self) -> Ball:
-        """|Y|^2."""
-        return self.at.y * self.at.y
-
-    @property
-    def within(self) -> Ball:
-        """The spin."""
-        return self.at.phi
-
-    @property
-    def around(self) -> Ball:
-        """The precession."""
-        return self.at.psi
-
-    @cached_property
-    def args(self) -> tuple[Ball, Ball]:
-        """(psi + phi)/2 and (psi - phi)/2."""
-        return (self.at.psi + self.at.phi) / 2, (self.at.psi - self.at.phi) / 2
+        self.constants, self.t, self.ar = constants, t, t.ar
+        self.x, self.y, self.within, self.around, self.tilting = at
 
     def over(self, value: Ball, divisor: Ball) -> Ball:
         """Return a quotient, and 0 if the value is exactly 0."""
         return value / divisor if value else value
-
-    def theta(self) -> Ball:
-        """Return the tilt."""
-        return 2 * self.ar.atan2(self.at.y, self.at.x)
-
-    def phi(self) -> Ball:
-        """Return the spin."""
-        return self.at.phi
-
-    def psi(self) -> Ball:
-        """Return the precession."""
-        return self.at.psi
 
     def wrapped(self, angle: Ball) -> Ball:
         """Return an angle in (-pi, pi]."""
@@ -120,12 +73,12 @@ class BallSample(ColumnFormulas[Ball]):
     def phi_remainder(self) -> Ball:
         """Return the periodic part of the spin (6,4)."""
         constant = isinstance(self.kind, Constant)
-        return 0 * self.t if constant else self.at.phi - self.growths[0]
+        return 0 * self.t if constant else self.within - self.growths[0]
 
     def psi_remainder(self) -> Ball:
         """Return the periodic part of the precession (7,4)."""
         constant = isinstance(self.kind, Constant)
-        return 0 * self.t if constant else self.at.psi - self.growths[1]
+        return 0 * self.t if constant else self.around - self.growths[1]
 
     @cached_property
     def theta_square(self) -> Ball:
@@ -134,12 +87,11 @@ class BallSample(ColumnFormulas[Ball]):
 
     @cached_property
     def theta_rate(self) -> Ball:
-        """theta', which has the sign of `at.tilting`."""
-        tilting = self.at.tilting
-        if not tilting:
+        """theta', which has the sign of `tilting`."""
+        if not self.tilting:
             return 0 * self.t
         speed = self.ar.sqrt(self.theta_square)
-        return speed if tilting > 0 else -speed
+        return speed if self.tilting > 0 else -speed
 
 
 class ProvedTable:
@@ -161,7 +113,7 @@ class ProvedTable:
         scene = motion.exact
         rates = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate)
         self._speed = sum(map(abs, rates)) + scene.a + 1
-        self._spinors: dict[int, Callable[[Ball], Attitude[Ball]]] = {}
+        self._poses: dict[int, Callable[[Ball], Pose[Ball]]] = {}
         self._constants: dict[int, ColumnConstants[Ball]] = {}
 
     def row(self, time: Fraction) -> list[Settled]:
@@ -182,12 +134,12 @@ class ProvedTable:
             self._constants[digits] = column_constants(kind, self.motion.exact)
         t = kind.ar.convert(time)
         if time:
-            if digits not in self._spinors:
-                self._spinors[digits] = spinor_of(kind)
-            at = self._spinors[digits](t)
+            if digits not in self._poses:
+                self._poses[digits] = pose_of(kind)
+            at = self._poses[digits](t)
         else:
             state = kind.state
-            at = Attitude(state.cos_half, state.sin_half, t, t, state.theta_rate)
+            at = Pose(state.cos_half, state.sin_half, t, t, state.theta_rate)
         return BallSample(self.motion, digits, self._constants[digits], t, at)
 
     def _number(

@@ -1,37 +1,20 @@
-"""From a kind of motion to the constants of its series, and to its attitude at arrays of doubles.
+"""From a kind of motion to the constants of its series, and to its attitude as a function of time.
 
-A sampler evaluates the arrays; its constants are those of the motion in many digits, rounded once.
+All of it is in the arithmetic of the motion.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from decimal import Decimal
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple
+from collections.abc import Callable
+from typing import Any, Generic, NamedTuple
 
-from ...arithmetic.numbers import R
-from ...arithmetic.points import MAX_PERIODS
-from ...arithmetic.protocol import Value
+from ...arithmetic.numbers import R, polynomial
+from ...arithmetic.protocol import SeriesArithmetic, Value
 from ...elliptic.complete import place
-from ..kinds import Constant, Kind, Nutating, Separatrix
-from .multiple_angles import Coefficients
-from .theta_series import (
-    Component,
-    Frame,
-    Series,
-    SquaredRatio,
-    ThetaConstants,
-    evaluate,
-    theta_series,
-)
-
-if TYPE_CHECKING:
-    from .samplers import ConstantSampler, Sampler, SeparatrixSampler, ThetaSampler
-
-_NEGLIGIBLE = Decimal(2) ** -60
-_SIZE = 2**16
-"""The largest coefficient of a frame, or half of it."""
+from ..degenerate import Constant, Separatrix
+from ..kinds import Kind, Nutating
+from .theta_series import Component, Frame, Series, SquaredRatio, ThetaConstants, theta_series
 
 
 def theta_constants(
@@ -88,33 +71,24 @@ def direction(motion: Nutating[R] | Separatrix[R]) -> int:
     return -1 if motion.state.theta_rate < 0 else 1
 
 
-class SeriesFromStart(NamedTuple):
-    """The theta series of a motion, counted from the turning point that is nearest to its start."""
+def evaluate(
+    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Value, rises: int
+) -> tuple[Value, Value, Value, Value]:
+    """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
-    series: Series
-    frames: list[Frame]
-    """The series about that turning point and about the other one."""
-    first_is_upper: bool
-    """Whether that turning point is u1."""
-    offset: Value
-    """Steps, each of them half a period, from there to the start: at most 1/2 either way."""
-    starts: tuple[Value, Value]
-    """The arguments of X and Y at the start."""
+    On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
+    that just before; on the lower pole, where X = 0, the other way round.
+    """
+    z = phase * series.scale
+    S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
+    s = S * S
 
+    def polar(c: Component, side: int) -> tuple[Value, Value]:
+        P, Q = polynomial(c.real, s), polynomial(c.imag, s)
+        real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
+        return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
 
-def series_from_start(ar: Any, c: ThetaConstants) -> SeriesFromStart:
-    """Return the series that some constants have, counted from next to the start."""
-    series = theta_series(ar, c)
-    nearest = ar.nint(c.offset * 2)
-    offset = c.offset * 2 - nearest
-    frames = [series.frames[(nearest + i) % 2] for i in range(2)]
-    _, x_start, _, y_start = evaluate(ar, series, frames[0], offset, c.rises)
-    return SeriesFromStart(series, frames, nearest % 2 == 0, offset, (x_start, y_start))
-
-
-def greatest_argument(ar: Any, series: Series) -> Any:
-    """Return what s, sin^2 or sinh^2, is at most where a step ends, half of `scale` from 0."""
-    return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
+    return *polar(frame.x, -rises), *polar(frame.y, rises)
 
 
 class SeparatrixConstants(NamedTuple, Generic[R]):
@@ -143,115 +117,108 @@ def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
     return SeparatrixConstants(offset, x, y, sign, ar.atan2(sign * y * side, x))
 
 
-def sampler_of(motion: Kind[Decimal]) -> Sampler:
-    """Return the attitude of a motion as a function of arrays of doubles."""
+class Pose(NamedTuple, Generic[R]):
+    """The attitude at one time."""
+
+    x: R
+    """cos(theta/2), up to a factor common with y."""
+    y: R
+    """sin(theta/2), up to that factor."""
+    phi: R
+    """Spin, counted on from 0 at t = 0."""
+    psi: R
+    """Precession, counted on from 0 at t = 0."""
+    tilting: R
+    """A number that has the sign of the nutation rate."""
+
+
+def pose_of(motion: Kind[R]) -> Callable[[R], Pose[R]]:
+    """Return the attitude of a motion as a function of time, in its arithmetic."""
     if isinstance(motion, Nutating):
-        return nutating_sampler(motion)
-    if isinstance(motion, Separatrix):
-        return separatrix_sampler(motion)
-    return constant_sampler(motion)
+        return nutating_pose(motion)
+    return separatrix_pose(motion) if isinstance(motion, Separatrix) else constant_pose(motion)
 
 
-def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
-    """Return the sampler of a nutating top."""
-    from ...arithmetic.double_double import period_of
-    from ...arithmetic.rounding import pair
-    from .attitude import growths
-    from .samplers import ThetaSampler
-
+def nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
+    """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     with ar.working():
-        c = theta_constants(motion, periods_since_top(motion), direction(motion), rates=True)
-        found = series_from_start(ar, c)
-        series = found.series
-        steps, spin, precession = 2 / c.period, series.spin_slope, series.precession_slope
-        slopes = (precession + spin) / 2, (precession - spin) / 2
-        x, y = (
-            start + slope * found.offset for start, slope in zip(found.starts, slopes, strict=True)
-        )
-        return ThetaSampler(
-            tilt=tilt_of(motion),
-            step=period_of(pair(c.period / 2), float(steps)),
-            offset=float(found.offset),
-            max_time=float(int(MAX_PERIODS) * c.period),
-            scale=float(series.scale),
-            speed=float(series.scale * steps),
-            first=float(series.scale * found.offset),
-            hyperbolic=series.hyperbolic,
-            frames=[_rounded(ar, frame, series) for frame in found.frames],
-            slopes=[float(slope / series.scale) for slope in slopes],
-            growths=growths(ar, (motion.mean_spin_rate, motion.mean_precession_rate), (x, y)),
-        )
+        constants = theta_constants(motion, periods_since_top(motion), direction(motion))
+        series = theta_series(ar, constants, _terms(ar, constants))
 
+    def position(t: R) -> tuple[int, R, tuple[R, R, R, R]]:
+        passed = (t / constants.period + constants.offset) * 2
+        step = ar.nint(passed)
+        phase = passed - step
+        odd = step % 2
+        return odd, phase, evaluate(ar, series, series.frames[odd], phase, constants.rises)
 
-def constant_sampler(motion: Constant[Decimal]) -> ConstantSampler:
-    """Return the sampler of a constant tilt and constant rates."""
-    from .attitude import growths
-    from .samplers import ConstantSampler
-
-    ar: Any = motion.ar
     with ar.working():
-        rates = motion.mean_spin_rate, motion.state.psi_rate
-        return ConstantSampler(
-            tilt=tilt_of(motion),
-            x=float(motion.state.cos_half),
-            y=float(motion.state.sin_half),
-            growths=growths(ar, rates),
-            max_time=_reach(max(map(abs, rates))),
-        )
+        _, since_first, (_, x_start, _, y_start) = position(0 * motion.K)
+        rates = motion.mean_spin_rate, motion.mean_precession_rate
+
+    def pose(t: R) -> Pose[R]:
+        with ar.working():
+            odd, phase, (x, arg_x, y, arg_y) = position(t)
+            within = phase - since_first
+            plus, minus = arg_x - x_start, arg_y - y_start
+            phi = t * rates[0] + within * series.spin_slope + (plus - minus)
+            psi = t * rates[1] + within * series.precession_slope + (plus + minus)
+            if motion.facts.plane:
+                phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
+            return Pose(x, y, phi, psi, -phase if odd else phase)
+
+    return pose
 
 
-def separatrix_sampler(motion: Separatrix[Decimal]) -> SeparatrixSampler:
-    """Return the sampler of the separatrix."""
-    from .attitude import growths
-    from .samplers import SeparatrixSampler
+def _terms(ar: Any, c: ThetaConstants) -> int:
+    """Return how many terms of the series matter.
 
-    ar: Any = motion.ar
-    with ar.working():
-        swing, speed = separatrix_constants(motion), motion.argument_rate
-        rates = motion.r0 - motion.b / 2, motion.b / 2
-        return SeparatrixSampler(
-            tilt=tilt_of(motion),
-            speed=float(speed),
-            offset=float(swing.offset),
-            x=float(swing.x),
-            y=float(swing.y),
-            sign=swing.sign,
-            growths=growths(ar, rates, (swing.start, 0 * swing.start)),
-            max_time=_reach(max(map(abs, (*rates, speed)))),
-        )
+    The nome is exp(-pi r), where r is the larger of K'/K and K/K'; the last term has at least the
+    digits' logarithm over that of the nome in its exponent.
+    """
+    if c.quarter_prime is None:  # a nome of 0
+        return 2
+    K, K_prime = c.quarter, c.quarter_prime
+    hundredths = max(ar.nint(100 * (x / y)) for x, y in ((K, K_prime), (K_prime, K)))
+    return 2 + math.isqrt(int(ar.digits * math.log(10) / math.pi * 100 / hundredths))
 
 
-def tilt_of(motion: Nutating[Decimal] | Constant[Decimal] | Separatrix[Decimal]) -> float:
-    """Return the tilt at the start."""
+def _half_turns(ar: Any, angle: R) -> R:
+    """Return the nearest number of half turns: in a plane an angle only leaps, at the poles."""
+    turned: R = ar.pi * ar.nint(angle / ar.pi)
+    return turned
+
+
+def constant_pose(motion: Constant[R]) -> Callable[[R], Pose[R]]:
+    """Return the attitude of a constant tilt and constant rates."""
     state = motion.state
-    return float(2 * motion.ar.atan2(state.sin_half, state.cos_half))
+
+    def pose(t: R) -> Pose[R]:
+        with motion.ar.working():
+            phi, psi = motion.mean_spin_rate * t, state.psi_rate * t
+            return Pose(state.cos_half, state.sin_half, phi, psi, 0 * t)
+
+    return pose
 
 
-def _reach(rate: Decimal) -> float:
-    return float(int(MAX_PERIODS) / rate) if rate else float("inf")
+def separatrix_pose(motion: Separatrix[R]) -> Callable[[R], Pose[R]]:
+    """Return the attitude on the separatrix: 1 - u = (1 - u2)/cosh^2 h, h = speed t + offset."""
+    ar: Any = motion.ar
+    with ar.working():
+        swing = separatrix_constants(motion)
 
+    def pose(t: R) -> Pose[R]:
+        with ar.working():
+            h = motion.argument_rate * t + swing.offset
+            sinh, cosh = ar.sinh(h), ar.cosh(h)
+            real, imag = swing.x * cosh, swing.sign * swing.y * sinh
+            turned = ar.atan2(imag, real) - swing.start if t else 0 * t
+            half_b = motion.b * t / 2
+            phi, psi = motion.r0 * t - half_b + turned, half_b + turned
+            if motion.facts.plane:
+                phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
+            x = ar.sqrt(real * real + imag * imag)
+            return Pose(x, swing.y, phi, psi, -h)
 
-def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
-    """Return the frame in doubles, without the coefficients that are too small to matter."""
-    greatest = greatest_argument(ar, series)
-    # X and Y may have any size in common: one that keeps the smallest and the largest in doubles
-    parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
-    size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE
-
-    def scaled(polynomial: Coefficients, size: Any) -> Coefficients:
-        count = needed([abs(x) for x in polynomial], greatest, _NEGLIGIBLE)
-        return [float(x / size) + 0.0 for x in polynomial[:count]]  # no -0
-
-    def component(c: Component) -> Component:
-        return Component(scaled(c.real, size), scaled(c.imag, size), c.even)
-
-    return Frame(component(frame.x), component(frame.y), scaled(frame.rate, size**4))
-
-
-def needed(sizes: Sequence[Decimal], greatest: Decimal, negligible: Decimal) -> int:
-    """Return how many coefficients, two at least, matter beside the first to an argument."""
-    count = len(sizes)
-    while count > 2 and sizes[count - 1] * greatest ** (count - 1) <= negligible * sizes[0]:
-        count -= 1
-    return count
+    return pose

@@ -1,57 +1,134 @@
-"""Rows over time: the grid of times that suits a motion, and blocks of rows for the writer."""
+"""The columns of `lagtop table` at arrays of times, and blocks of rows for the writer."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cache, cached_property
+from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
 from ...arithmetic.points import EvenPoints, Points
-from ...errors import LagtopError
+from ...arithmetic.types import Array
 from ...inputs.names import ANGLES
 from ..numbers import Numbers
-from .columns import chosen_columns, headings, name_of
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from ...arithmetic.types import Array
-
-DEFAULT_ROWS = 101
-DEFAULT_COLUMNS = ("t", *ANGLES)
+from .attitude import Attitude, needed
+from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
+from .columns import DEFAULT_COLUMNS, ScalarColumn, chosen_columns, headings, name_of, needs_of
+from .proved_table import ProvedTable
 
 
-def grid(
-    motion: Numbers,
-    t_min: Fraction | None = None,
-    t_max: Fraction | None = None,
-    *,
-    n: int | None = None,
-    dt: Fraction | None = None,
-) -> EvenPoints:
-    """Return n times from t_min to t_max, or as many steps dt as fit, counted exactly.
+class Sample(ColumnFormulas[Array]):
+    """The motion at a block of times."""
 
-    By default one nutation period (or a unit of time where there is none) from 0, 101 times.
-    Raises LagtopError for an interval, a number or a step that makes no grid of 1 to 1e9 rows.
+    ar: Any = ARRAYS
+
+    def __init__(
+        self,
+        t: Array,
+        attitude: Attitude,
+        constants: ColumnConstants[Array],
+        rises: int,
+        wrap: bool,
+    ) -> None:
+        self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
+        self.rises = rises
+
+    def write(self, part: ScalarColumn, target: Array) -> None:
+        """Write a column into an array."""
+        target[:] = getattr(self, part.method)()
+
+    def theta(self) -> Array:
+        """Return the tilt."""
+        return self.attitude.theta()
+
+    def phi(self) -> Array:
+        """Return the spin."""
+        return self.attitude.phi(wrap=self.wrap)
+
+    def psi(self) -> Array:
+        """Return the precession."""
+        return self.attitude.psi(wrap=self.wrap)
+
+    def phi_remainder(self) -> Array:
+        """Return the periodic part of the spin (6,4)."""
+        return self.attitude.phi_remainder()
+
+    def psi_remainder(self) -> Array:
+        """Return the periodic part of the precession (7,4)."""
+        return self.attitude.psi_remainder()
+
+    @cached_property
+    def x2(self) -> Array:
+        """|X|^2."""
+        return needed(self.attitude.spinor.x2)
+
+    @cached_property
+    def y2(self) -> Array:
+        """|Y|^2."""
+        return needed(self.attitude.spinor.y2)
+
+    @cached_property
+    def theta_rate(self) -> Array:
+        """(5,3), with its sign; on a pole by the energy (4,2), with the sign of the start."""
+        product = 2.0 * self.norm * self.x * self.y
+        rate = needed(self.attitude.spinor.rate)
+        speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
+        speed *= self.rises
+        return np.divide(rate, product, out=speed, where=product != 0.0)
+
+    @cached_property
+    def within(self) -> Array:
+        """The spin, without whole turns."""
+        return self.attitude.phi(wrap=True)
+
+    @cached_property
+    def around(self) -> Array:
+        """The precession, without whole turns; the line of nodes lies along x at psi = 0."""
+        return self.attitude.psi(wrap=True)
+
+    @cached_property
+    def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """(psi + phi)/2 and (psi - phi)/2, each less half turns, and the sign of X or Y for it."""
+        return self.attitude.quarters()
+
+    @cached_property
+    def args(self) -> tuple[Array, Array]:
+        """(psi + phi)/2 and (psi - phi)/2, each less half turns."""
+        (arg_x, _), (arg_y, _) = self.quarters
+        return arg_x, arg_y
+
+    @cached_property
+    def unit(self) -> tuple[Array, Array]:
+        """|X| and |Y|, each over sqrt(N), with the signs that make the quaternion continuous."""
+        (_, sign_x), (_, sign_y) = self.quarters
+        x, y = super().unit
+        return sign_x * x, sign_y * y
+
+    def over(self, value: Array, divisor: Array) -> Array:
+        """Return the quotient, and 0 where both vanish."""
+        return np.divide(value, divisor, out=np.zeros_like(divisor), where=divisor != 0.0)
+
+
+def samples(
+    motion: Numbers, t: Array, chosen: Sequence[ScalarColumn], *, wrap: bool
+) -> Iterator[tuple[slice, Sample]]:
+    """Yield the motion at the times t, a block at a time, with what some columns need.
+
+    A sample is used up when the next one is asked for.
     """
-    t_min = Fraction(0) if t_min is None else t_min
-    t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
-    if not t_max >= t_min:
-        raise LagtopError(f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max")
-    if n is not None and n < 1:
-        raise LagtopError(f"n must be >= 1, got {n}", "n")
-    if dt is not None:
-        if not dt > 0:
-            raise LagtopError(f"dt must be > 0, got {float(dt)}", "dt")
-        count, step = int((t_max - t_min) / dt) + 1, dt
-    else:
-        count = n or (DEFAULT_ROWS if t_max > t_min else 1)
-        step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
-    try:
-        return EvenPoints(t_min, step, count)
-    except LagtopError as error:
-        raise LagtopError(f"the grid of times {error}") from None
+    sampler, needs, kind = motion.sampler(), needs_of(chosen), motion.middle()
+    constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
+    rises = -1 if kind.state.theta_rate < 0 else 1
+    farthest = sampler.check(t)
+    with workspace(min(t.size, BLOCK)) as space:
+        for part in blocks(t.size):
+            with ARRAYS.working():
+                attitude = sampler.attitude(t[part], needs, farthest, space)
+            yield part, Sample(t[part], attitude, constants, rises, wrap)
 
 
 def rows(
@@ -69,10 +146,6 @@ def rows(
     the angles among the columns are the last columns.  Raises LagtopError for an unknown column
     and, before the first block, for a time out of reach.
     """
-    import numpy as np
-
-    from .sample import samples
-
     chosen, header = chosen_columns(columns), headings(columns, radians=radians)
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
     for name, end in zip(ends, times.bounds(), strict=False):  # none where times are read later
@@ -100,41 +173,11 @@ def rows(
     return [*header, *names], blocks()
 
 
-class TableRequest(NamedTuple):
-    """What to tabulate of every top."""
-
-    times: Callable[[Any], Points]
-    """Returns the times for a motion."""
-    columns: Sequence[str]
-    radians: bool
-    wrap: bool
-    rows_per_top: int | None
-    """Their number, where the options tell it."""
-    same: bool
-    """Whether all tops have the same times."""
-
-    def headings(self) -> list[str]:
-        """Return the names of the columns, with the units of angles."""
-        return headings(self.columns, radians=self.radians)
-
-    def rows(
-        self, motion: Numbers, times: Points, stds: Callable[[Array], Array] | None = None
-    ) -> tuple[list[str], Iterator[Array]]:
-        """Return the header and blocks of rows of one motion, as `rows` does."""
-        return rows(motion, times, self.columns, radians=self.radians, wrap=self.wrap, stds=stds)
-
-
 def table(
     motion: Numbers, t: ArrayLike, columns: Sequence[str], *, wrap: bool = False
 ) -> dict[str, Array]:
     """Return columns by name, each a float64 array in the shape of t; see `Motion.table`."""
-    import numpy as np
-
-    from ...arithmetic.arrays import ARRAYS
-    from .sample import samples
-    from .times import times_of
-
-    chosen, times = chosen_columns(columns), times_of(t)
+    chosen, times = chosen_columns(columns), doubles_of("t", t)
     motion.sampler().check(times)
     flat = np.ascontiguousarray(times).reshape(-1)
     found = {name_of(column): np.empty_like(flat) for column in chosen}
@@ -156,8 +199,6 @@ def _start(
 
     @cache
     def row() -> list[float]:
-        from .proved_table import ProvedTable
-
         table = ProvedTable(motion, columns, radians=radians, wrap=wrap)
         return [number.value for number in table.row(Fraction(0))]
 

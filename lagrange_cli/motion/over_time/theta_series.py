@@ -7,27 +7,26 @@ series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so four term
 doubles.  The phase is counted from the nearer of u1 and u2: no argument is ever near the end of
 its branch, and none can leap there.
 
-s is sin^2 x or -sinh^2 x, and S and C are sine and cosine (see `multiple_angles`).
+S is sin x or sinh x, C is cos x or cosh x, and s is S^2.  A cos 2nx is a polynomial in s,
+cos(2n+1)x is C times one, sin(2n+1)x is S times one, and sin 2nx is S C times one; one recurrence
+gives all four families, and the hyperbolic ones are the same with -s.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...arithmetic.numbers import polynomial
 from ...arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
-from .multiple_angles import (
-    COS_EVEN,
-    COS_ODD,
-    SIN_EVEN,
-    SIN_ODD,
-    Coefficients,
-    alternated,
-    doubled,
-    multiples,
-    summed,
-)
+
+Coefficients = list[Any]
+"""Coefficients in s, the lowest power first."""
+
+Family = tuple[tuple[int, ...], tuple[int, ...]]
+"""The first two of a family of polynomials in s, which give the others."""
+COS_ODD, SIN_ODD = ((1,), (1, -4)), ((1,), (3, -4))
+COS_EVEN, SIN_EVEN = ((1,), (1, -2)), ((0,), (2,))
 
 TERMS = 4
 """Enough for doubles."""
@@ -234,21 +233,50 @@ def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients
     return summed(SIN_EVEN, curvature, unit, terms)
 
 
-def evaluate(
-    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Value, rises: int
-) -> tuple[Value, Value, Value, Value]:
-    """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
+def summed(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Coefficients:
+    """Return a weighted sum of the polynomials of a family, times a unit.
 
-    On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
-    that just before; on the lower pole, where X = 0, the other way round.
+    The curvature is 1 for sines and cosines, -1 for hyperbolic ones.
     """
-    z = phase * series.scale
-    S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
-    s = S * S
+    total: Coefficients = [0 * unit] * len(weights)
+    for weight, coefficients in zip(weights, _polynomials(family, len(weights)), strict=True):
+        for i, coefficient in enumerate(coefficients):
+            total[i] += weight * coefficient
+    return [unit * x if i % 2 == 0 else curvature * unit * x for i, x in enumerate(total)]
 
-    def polar(c: Component, side: int) -> tuple[Value, Value]:
-        P, Q = polynomial(c.real, s), polynomial(c.imag, s)
-        real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
-        return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)
 
-    return *polar(frame.x, -rises), *polar(frame.y, rises)
+@lru_cache(maxsize=64)
+def _polynomials(family: Family, count: int) -> list[list[int]]:
+    """Return the first polynomials in s of a family, P(n+1) = (2 - 4 s) P(n) - P(n-1)."""
+    found = [list(polynomial) for polynomial in family]
+    while len(found) < count:
+        before, last = found[-2:]
+        twice, shifted = [2 * c for c in last] + [0], [0] + [4 * c for c in last]
+        padded = before + [0] * (len(twice) - len(before))
+        found.append([a - b - c for a, b, c in zip(twice, shifted, padded, strict=True)])
+    return found[:count]
+
+
+def alternated(terms: list[Value]) -> list[Value]:
+    """Return terms with every second sign changed, the first one kept."""
+    return [-term if n % 2 else term for n, term in enumerate(terms)]
+
+
+def doubled(cos: Value, sin: Value, curvature: int) -> tuple[Value, Value]:
+    """Return cosine and sine of twice an angle, or the hyperbolic ones for a curvature of -1."""
+    return 1 - 2 * curvature * sin * sin, 2 * sin * cos
+
+
+def multiples(
+    first: tuple[Value, Value], step: tuple[Value, Value], curvature: int, count: int
+) -> tuple[list[Value], list[Value]]:
+    """Return cosines and sines of first, first + step, first + 2 step ..., by those of both.
+
+    A factor that all the sines, or all the cosines, have in common keeps its digits.
+    """
+    cosines, sines = [first[0]], [first[1]]
+    for _ in range(count - 1):
+        c, s = cosines[-1], sines[-1]
+        cosines.append(c * step[0] - curvature * s * step[1])
+        sines.append(s * step[0] + c * step[1])
+    return cosines, sines

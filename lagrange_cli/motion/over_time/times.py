@@ -1,19 +1,78 @@
-"""Times that are given in Python: real numbers within reach."""
+"""Times of a table: what is asked for, the grid that suits a motion, times that name a phase."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...arithmetic.arrays import doubles_of
-from ...arithmetic.points import MAX_TIME
-from ...arithmetic.types import Array
+from ...arithmetic.points import MAX_TIME, EvenPoints, Points
 from ...errors import LagtopError
+from ..numbers import Numbers
+from .columns import headings
+
+if TYPE_CHECKING:
+    from ...arithmetic.types import Array
+
+DEFAULT_ROWS = 101
 
 
-def times_of(t: ArrayLike) -> Array:
-    """Return times as float64.  Raises LagtopError for what is not an array of real numbers."""
-    return doubles_of("t", t)
+class TableRequest(NamedTuple):
+    """What to tabulate of every top."""
+
+    times: Callable[[Any], Points]
+    """Returns the times for a motion."""
+    columns: Sequence[str]
+    radians: bool
+    wrap: bool
+    rows_per_top: int | None
+    """Their number, where the options tell it."""
+    same: bool
+    """Whether all tops have the same times."""
+
+    def headings(self) -> list[str]:
+        """Return the names of the columns, with the units of angles."""
+        return headings(self.columns, radians=self.radians)
+
+    def rows(
+        self, motion: Numbers, times: Points, stds: Callable[[Array], Array] | None = None
+    ) -> tuple[list[str], Iterator[Array]]:
+        """Return the header and blocks of rows of one motion, as `rows` does."""
+        from .table import rows  # start-up: loads NumPy
+
+        return rows(motion, times, self.columns, radians=self.radians, wrap=self.wrap, stds=stds)
+
+
+def grid(
+    motion: Numbers,
+    t_min: Fraction | None = None,
+    t_max: Fraction | None = None,
+    *,
+    n: int | None = None,
+    dt: Fraction | None = None,
+) -> EvenPoints:
+    """Return n times from t_min to t_max, or as many steps dt as fit, counted exactly.
+
+    By default one nutation period (or a unit of time where there is none) from 0, 101 times.
+    Raises LagtopError for an interval, a number or a step that makes no grid of 1 to 1e9 rows.
+    """
+    t_min = Fraction(0) if t_min is None else t_min
+    t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
+    if not t_max >= t_min:
+        raise LagtopError(f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max")
+    if n is not None and n < 1:
+        raise LagtopError(f"n must be >= 1, got {n}", "n")
+    if dt is not None:
+        if not dt > 0:
+            raise LagtopError(f"dt must be > 0, got {float(dt)}", "dt")
+        count, step = int((t_max - t_min) / dt) + 1, dt
+    else:
+        count = n or (DEFAULT_ROWS if t_max > t_min else 1)
+        step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
+    try:
+        return EvenPoints(t_min, step, count)
+    except LagtopError as error:
+        raise LagtopError(f"the grid of times {error}") from None
 
 
 def check_times(times: Array, most: float, name: str = "t") -> float:
@@ -27,7 +86,7 @@ def check_times(times: Array, most: float, name: str = "t") -> float:
     limit, low, high = min(most, MAX_TIME), float(times.min()), float(times.max())
     if low >= -limit and high <= limit:
         return max(-low, high)
-    bad = times[~(np.abs(times) <= limit)]
+    bad = times[~(abs(times) <= limit)]
     raise LagtopError(
         f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name
     )

@@ -1,8 +1,8 @@
 """Keys on request: numbers of a motion that are not part of its record.
 
-They are declared like those of the record, where their formulas stand: section 4 in
-`energy_momentum`, sections 5 to 7 in `quarters`, section 8 in `worked_example`.  None of these
-modules is imported before one of their keys is asked for.
+They are declared like those of the record, where their formulas stand: sections 4 to 7 in
+`quarters`, section 8 in `worked_example`.  Neither is imported before one of their keys is asked
+for.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
 
 def _constants(exact: Exact) -> dict[str, Fraction]:
     """Return what is rational of the constants of section 4."""
-    alpha, beta = exact.energy + exact.a * U, exact.momentum + exact.b * U
+    alpha, beta = exact.alpha, exact.beta
     half, whole = Fraction(exact.top.A) / 2, Fraction(exact.top.A)
     polynomials: dict[str, Polynomial] = {
         "energy_constant": alpha,

@@ -3,37 +3,52 @@
 They are those of the closed form, not of neighbouring motions, and grow with time where rates
 differ.  Next to a steady precession they are small nutations; over a pole, along the vertical and
 on the separatrix some do not exist, or are not computed: these are NaN.
+
+Next to the separatrix and to the poles the parts of a derivative by series may cancel.  How much
+they lose is known from their sizes, and what loses too much is computed in many digits.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arithmetic.arrays import ARRAYS, blocks
+from ...arithmetic.arrays import ARRAYS, blocks, doubles_of
 from ...arithmetic.ball import TooFewDigitsError
-from ...arithmetic.numbers import unit_in_radians
+from ...arithmetic.duals import Dual
+from ...arithmetic.numbers import DOUBLES, unit_in_radians
 from ...arithmetic.rounding import decided
 from ...arithmetic.types import Array
-from ...inputs.names import check_names
+from ...inputs.names import ANGLES, check_names
 from ...inputs.top import Top
-from ..kinds import middle_of
-from ..numbers import Numbers
+from ..kinds import Nutating
+from ..numbers import Numbers, middle_of
 from ..over_time.samplers import Angles
-from ..over_time.times import check_times, times_of
+from ..over_time.series_constants import Pose, nutating_pose
+from ..over_time.times import check_times
 from ..regime import Exact, Regime, exact
 from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .sensitivities import Partials
 from .series_derivatives import SeriesDerivatives
-from .spinor_derivatives import NutationDerivatives
 from .steady_neighbours import SteadyDerivatives
+from .uncertainty import by_given
 
 _DIGITS = 48
 """Digits of the constants of series, if nothing is small."""
+_LOST = 1e-15
+"""The error of a derivative by series over the sizes of its parts: the worst seen is 2e-16."""
+
+_IN_THE_PLANE = [PARAMETERS.index(name) for name in ("a", "tilt", "theta_rate")]
+"""Along these a motion in a plane stays in it."""
+
+_FEW_DIGITS = 1e-6
+"""Tolerance of an uncertainty, which has few digits while a table may have many rows."""
 
 
 class AngleSensitivities(NamedTuple):
@@ -63,7 +78,7 @@ def angle_sensitivities(
     chain = by_inputs(scene)
     names = check_names("inputs", list(chain) if inputs is None else inputs, chain)
     neighbours = AngleDerivatives(scene)
-    times = times_of(t)
+    times = doubles_of("t", t)
     check_times(times, neighbours.max_time)
     flat = np.ascontiguousarray(times).reshape(-1)
     angles, found = np.empty((3, flat.size)), np.empty((3, flat.size, len(names)))
@@ -158,6 +173,64 @@ class AngleDerivatives:
         return angles, derivatives
 
 
+class NutationDerivatives:
+    """Angles of a nutating top over time, and their derivatives to a tolerance."""
+
+    def __init__(
+        self, motion: Nutating[Dual], tilt: float, rows: Sequence[int], tolerance: float
+    ) -> None:
+        """Take a motion, its tilt in the unit in use, and the parameters along which it is smooth.
+
+        The tolerance is that of a derivative over the condition number of its angle.
+        """
+        self.motion, self.rows, self.tolerance = motion, rows, tolerance
+        self.series = SeriesDerivatives(motion, motion)
+        self.max_time = self.series.max_time
+        start, period = motion.state, float(motion.T_nutation.value)
+        rates = [abs(float(x.value)) for x in (start.theta_rate, start.psi_rate)]
+        constants = [abs(float(x.value)) for x in (start.a, start.b, start.r0)]
+        sizes = np.array([*constants, tilt, *rates])
+        self.sizes = np.where(sizes > 0, sizes, 1 / period)
+
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """Return angles (3, times) and their derivatives (3, parameters, times).
+
+        In a plane spin and precession leap and are else constant: along the parameters that leave
+        the motion there their derivatives are 0, along the others they come from the series.
+        """
+        angles, derivatives, parts = self.series.at(t)
+        smooth = 3
+        if self.motion.facts.plane:
+            smooth = 1
+            derivatives[1:, _IN_THE_PLANE], parts[1:] = 0.0, 0.0
+        doubtful = self._doubtful(derivatives, parts)
+        derivatives[:smooth, :, doubtful] = self._in_digits(t[doubtful])[:smooth]
+        return angles, derivatives
+
+    def _doubtful(self, derivatives: Array, parts: Array) -> Array:
+        """Return at which times a derivative may be beyond the tolerance."""
+        sizes = self.sizes[self.rows, None]
+        condition = 1.0 + (abs(derivatives[:, self.rows]) * sizes).sum(axis=1)
+        error = _LOST * (parts[:, self.rows] * sizes).max(axis=1)
+        return np.asarray(~(error <= self.tolerance * condition).all(axis=0))
+
+    @cached_property
+    def _pose(self) -> Callable[[Dual], Pose[Dual]]:
+        return nutating_pose(self.motion)
+
+    def _in_digits(self, t: Array) -> Array:
+        """Return the derivatives in dual numbers, which takes some milliseconds per time."""
+        found = np.zeros((3, len(PARAMETERS), t.size))
+        ar = self.motion.ar
+        with ar.working():
+            for i, time in enumerate(t.tolist()):
+                at = self._pose(Dual(Decimal(time)))
+                for j, angle in enumerate((2 * ar.atan2(at.y, at.x), at.phi, at.psi)):
+                    if angle.partials is not None:
+                        found[j, :, i] = [float(x) for x in angle.partials]
+        return found
+
+
 class TorqueDerivatives:
     """Angles of a torque-free motion, of whose derivatives the one by a is right."""
 
@@ -183,3 +256,31 @@ class Spinning:
         derivatives = np.zeros((3, len(PARAMETERS), t.size))
         derivatives[1, PARAMETERS.index("r0")] = t
         return np.array(self.sampler.angles(t)), derivatives
+
+
+class AngleStds:
+    """Uncertainties of tilt, spin and precession of a top, whose inputs are not correlated."""
+
+    def __init__(self, scene: Exact, stds: Mapping[str, float], given: Collection[str]) -> None:
+        """Take the uncertainties of the inputs as they were given, and the names of all inputs."""
+        self.neighbours, solved = AngleDerivatives(scene, _FEW_DIGITS), by_inputs(scene)
+        inputs = by_given(DOUBLES, scene.top, given)
+        self.moved = np.zeros((len(stds), len(PARAMETERS)))
+        """How far one uncertainty moves each parameter."""
+        for row, (name, std) in zip(self.moved, stds.items(), strict=True):
+            for one, slope in inputs[name].items():
+                for by, factor in solved[one].items():
+                    row[PARAMETERS.index(by)] += std * slope * float(factor)
+        used = set(np.flatnonzero(self.moved.any(axis=0)).tolist())
+        self.reason = None if used <= self.neighbours.known else self.neighbours.reason
+        """Why there are no uncertainties after the start, where there are none."""
+
+    def at(self, t: Array) -> Array:
+        """Return the uncertainties in radians, of shape (3, times); NaN where there is none."""
+        with ARRAYS.working():
+            _, derivatives = self.neighbours.at(t)
+            square = np.zeros((len(ANGLES), t.size))
+            for row in self.moved:
+                used = np.flatnonzero(row)
+                square += np.einsum("p,apt->at", row[used], derivatives[:, used]) ** 2
+            return np.asarray(np.sqrt(square))

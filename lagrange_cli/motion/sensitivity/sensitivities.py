@@ -20,9 +20,10 @@ from ...arithmetic.values import Values
 from ...inputs.names import check_names
 from ...inputs.top import Top
 from ..any_start import cubic
+from ..degenerate import Steady
 from ..exact.rational_keys import is_endless
-from ..gaps import Gaps
-from ..kinds import Steady, kind_of
+from ..gaps import Gaps, State
+from ..kinds import kind_of
 from ..quantity import quantity
 from ..record import NUMBER_KEYS
 from ..regime import Exact, Regime, exact
@@ -165,35 +166,35 @@ class Partials:
         leaves = key == "u_quarter" and not self.exact.facts.pole
         return frozenset({"theta_rate"} if leaves else ())
 
+    def _kind(self, start: State[Dual], gaps: Gaps[Dual], **changes: Any) -> Any:
+        """Return motions next to the top, with some of the facts changed."""
+        facts = self.near.facts.replace(**changes)
+        return kind_of(self.exact.facts)(self.near.ar, facts, start, gaps)
+
     @cached_property
     def here(self) -> Any:
         """The motions next to the top for which the same facts hold."""
-        near = self.near
-        return kind_of(self.exact.facts)(near.ar, near.facts, near.state, near.gaps)
+        return self._kind(self.near.state, self.near.gaps)
 
     @cached_property
     def _at_rest(self) -> Any:
-        near, facts = self.near, self.near.facts.replace(at_rest=self.exact.facts.at_rest)
-        return kind_of(self.exact.facts)(near.ar, facts, near.state, near.gaps)
+        return self._kind(self.near.state, self.near.gaps, at_rest=self.exact.facts.at_rest)
 
     @cached_property
     def generic(self) -> Any:
         """The motions next to one that is free or passes over a pole."""
-        near = self.near
-        facts = near.facts.replace(over_bottom=False, upper_root=0)
-        return kind_of(self.exact.facts)(near.ar, facts, near.moved, generic_gaps(near))
+        gaps = generic_gaps(self.near)
+        return self._kind(self.near.moved, gaps, over_bottom=False, upper_root=0)
 
     @cached_property
     def generic_means(self) -> Any:
         """Motions whose means are formed as if there were a torque."""
         generic = self.generic
-        facts = generic.facts.replace(free=False)
-        return type(generic)(generic.ar, facts, generic.state, generic.gaps)
+        return self._kind(generic.state, generic.gaps, over_bottom=False, upper_root=0, free=False)
 
     @cached_property
     def _above_lowest(self) -> Any:
-        near = self.near
-        return kind_of(self.exact.facts)(near.ar, near.facts, near.state, lowest_gaps(near))
+        return self._kind(self.near.state, lowest_gaps(self.near))
 
     @cached_property
     def _about_steady(self) -> NearSteady:

@@ -13,32 +13,50 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...arithmetic.arrays import ARRAYS
 from ...arithmetic.double_double import period_of, whole_periods
 from ...arithmetic.duals import Dual
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
+from ...elliptic.jacobi import jacobi
+from ...elliptic.modulus import Modulus
 from ..kinds import Nutating
 from ..over_time.attitude import Growths, Times, growths
-from ..over_time.multiple_angles import Coefficients
-from ..over_time.series_constants import (
+from ..over_time.series_constants import direction, periods_since_top, theta_constants
+from ..over_time.theta_sampler import (
     SeriesFromStart,
-    direction,
+    count_needed,
     greatest_argument,
-    needed,
-    periods_since_top,
     series_from_start,
-    theta_constants,
 )
-from ..over_time.theta_series import Component
+from ..over_time.theta_series import Coefficients, Component
 from .neighbourhood import PARAMETERS
-from .rates_about_means import RatesAboutMeans
 
 _NEGLIGIBLE = Decimal(2) ** -100
 
 
 class Rows(NamedTuple):
-    """X or Y about one turning point, its coefficients in rows."""
+    """Derivatives in rows, and the sizes of the parts that they are sums of."""
+
+    slopes: Array
+    sizes: Array
+
+    @classmethod
+    def of(cls, slopes: Array) -> Rows:
+        """Return derivatives that are no sums."""
+        return cls(slopes, abs(slopes))
+
+    def __add__(self, other: Any) -> Rows:
+        return Rows(self.slopes + other.slopes, self.sizes + other.sizes)
+
+    def times(self, factor: Any, size: Array | None = None) -> Rows:
+        """Return the product with a factor, which may be a sum of parts of some `size`."""
+        return Rows(self.slopes * factor, self.sizes * (abs(factor) if size is None else size))
+
+
+class Polynomials(NamedTuple):
+    """X or Y about one turning point, its coefficients in rows: value and derivatives."""
 
     real: Array
     imag: Array
@@ -46,17 +64,12 @@ class Rows(NamedTuple):
 
 
 class Polar(NamedTuple):
-    """The squared modulus and the argument of X or Y, and their derivatives in rows.
-
-    The sizes are those of the parts that the derivatives are sums of.
-    """
+    """The squared modulus and the argument of X or Y, and their derivatives."""
 
     square: Array
-    squares: Array
-    square_sizes: Array
+    squares: Rows
     argument: Array
-    arguments: Array
-    argument_sizes: Array
+    arguments: Rows
 
 
 class SeriesDerivatives:
@@ -103,28 +116,23 @@ class SeriesDerivatives:
         step, since, lost = whole_periods(t, self.step, farthest, space, self.offsets[0])
         since = (since - lost) * self.speed
         phase, times = since + self.offsets[0], Times(t, farthest, space[2:])
-        moved = np.multiply.outer(self.speeds[1:], t)
         x, y = (self._polar(i, step, phase) for i in range(2))
-        dphase = moved + self.offsets[1:, None]
-        rates = self._rates(step, phase, x.square, y.square)
-        angles = np.empty((3, t.size))
-        derivatives, sizes = np.empty((2, 3, len(PARAMETERS), t.size))
-        dsize = abs(moved) + abs(self.offsets[1:, None])
-        angles[0] = 2.0 * np.arctan2(np.sqrt(y.square), np.sqrt(x.square))
+        moved = Rows.of(np.multiply.outer(self.speeds[1:], t)) + Rows.of(self.offsets[1:, None])
+        *gains, size = self._rates(step, phase, x.square, y.square)
         both = np.sqrt(x.square * y.square) * (x.square + y.square)
-        derivatives[0] = (x.square * y.squares - y.square * x.squares) / both + rates[0] * dphase
-        sizes[0] = (x.square * y.square_sizes + y.square * x.square_sizes) / both
-        sizes[0] += abs(rates[0]) * dsize
-        series = x.argument - y.argument, x.argument + y.argument
-        slopes = x.arguments - y.arguments, x.arguments + y.arguments
+        angles = np.empty((3, t.size))
+        angles[0] = 2.0 * np.arctan2(np.sqrt(y.square), np.sqrt(x.square))
+        tilt = y.squares.times(x.square / both) + x.squares.times(-y.square / both)
+        found = [tilt + moved.times(gains[0])]
         for i, growth in enumerate((self.growths.phi, self.growths.psi)):
-            periodic = series[i] + self.slopes[i, 0] * phase - self.starts[i, 0]
-            angles[i + 1] = growth.unwrapped(periodic, times)
-            grown = np.multiply.outer(self.rates[i, 1:], t)
+            sign = (-1, 1)[i]
+            periodic = x.argument + sign * y.argument + self.slopes[i, 0] * phase
+            angles[i + 1] = growth.unwrapped(periodic - self.starts[i, 0], times)
             wound = np.multiply.outer(self.slopes[i, 1:], since) - self.starts[i, 1:, None]
-            derivatives[i + 1] = slopes[i] + wound + grown + rates[i + 1] * dphase
-            sizes[i + 1] = x.argument_sizes + y.argument_sizes + abs(wound) + abs(grown)
-            sizes[i + 1] += rates[3] * dsize
+            grown = np.multiply.outer(self.rates[i, 1:], t)
+            rows = x.arguments + y.arguments.times(sign) + Rows.of(wound) + Rows.of(grown)
+            found.append(rows + moved.times(gains[i + 1], size))
+        derivatives, sizes = (np.array(part) for part in zip(*found, strict=True))
         return angles, derivatives, sizes
 
     def _rates(self, step: Array, phase: Array, x2: Array, y2: Array) -> list[Array]:
@@ -145,30 +153,28 @@ class SeriesDerivatives:
     def _polar(self, which: int, step: Array, phase: Array) -> Polar:
         """Return X (0) or Y (1) with its derivatives at a fixed phase."""
         z = phase * self.scales[0]
-        dz = np.multiply.outer(self.scales[1:], phase)
+        dz = Rows.of(np.multiply.outer(self.scales[1:], phase))
         odd = np.remainder(step, 2.0) != 0
-        real, imag, real_size, imag_size = np.empty((4, len(dz) + 1, z.size))
+        values, slopes, sizes = np.empty((2, z.size)), *np.empty((2, 2, *dz.slopes.shape))
         for rows, frame in ((~odd, self.frames[0]), (odd, self.frames[1])):
             parts = _component(frame[which], z[rows], self.hyperbolic)
-            wholes = (real, real_size), (imag, imag_size)
-            for (whole, size), (values, slope) in zip(wholes, parts, strict=True):
-                turned = slope * dz[:, rows]
-                size[:, rows] = abs(values)
-                size[1:, rows] += abs(turned)
-                values[1:] += turned
-                whole[:, rows] = values
-        square = real[0] * real[0] + imag[0] * imag[0]
+            for i, (at_phase, slope) in enumerate(parts):
+                turned = Rows(dz.slopes[:, rows], dz.sizes[:, rows]).times(slope)
+                values[i, rows] = at_phase[0]
+                slopes[i][:, rows], sizes[i][:, rows] = Rows.of(at_phase[1:]) + turned
+        (re, im), dre, dim = values, *(Rows(*pair) for pair in zip(slopes, sizes, strict=True))
+        square = re * re + im * im
         return Polar(
             square,
-            2.0 * (real[0] * real[1:] + imag[0] * imag[1:]),
-            2.0 * (real_size[0] * real_size[1:] + imag_size[0] * imag_size[1:]),
-            np.arctan2(imag[0], real[0]),
-            (real[0] * imag[1:] - imag[0] * real[1:]) / square,
-            (real_size[0] * imag_size[1:] + imag_size[0] * real_size[1:]) / square,
+            dre.times(2.0 * re) + dim.times(2.0 * im),
+            np.arctan2(im, re),
+            dim.times(re / square) + dre.times(-im / square),
         )
 
 
-def _in_doubles(ar: Any, found: SeriesFromStart) -> tuple[list[tuple[Rows, Rows]], list[Array]]:
+def _in_doubles(
+    ar: Any, found: SeriesFromStart
+) -> tuple[list[tuple[Polynomials, Polynomials]], list[Array]]:
     """Return X and Y, and the rate of the tilt, about both turning points as rows of doubles.
 
     Coefficients that are too small to matter are left out.
@@ -177,10 +183,10 @@ def _in_doubles(ar: Any, found: SeriesFromStart) -> tuple[list[tuple[Rows, Rows]
     leading = max(abs(c.real[0].value) for frame in found.frames for c in frame[:2])
     size = Decimal(2) ** math.frexp(float(leading))[1]
 
-    def component(c: Component) -> Rows:
+    def component(c: Component) -> Polynomials:
         parts = (_kept(part, greatest) for part in (c.real, c.imag))
         real, imag = (_rows([x / Dual(size) for x in part]) for part in parts)
-        return Rows(real, imag, c.even)
+        return Polynomials(real, imag, c.even)
 
     def rate(coefficients: Coefficients) -> Array:
         return np.array([float(x.value / size**4) for x in _kept(coefficients, greatest)])
@@ -189,7 +195,7 @@ def _in_doubles(ar: Any, found: SeriesFromStart) -> tuple[list[tuple[Rows, Rows]
     return frames, [rate(frame.rate) for frame in found.frames]
 
 
-def _component(component: Rows, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
+def _component(component: Polynomials, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
     """Return real and imaginary part, each in rows and with its derivative by z."""
     S, C = (np.sinh(z), np.cosh(z)) if hyperbolic else (np.sin(z), np.cos(z))
     s, rising, curvature = S * S, 2.0 * S * C, 1.0 if hyperbolic else -1.0
@@ -208,7 +214,7 @@ def _component(component: Rows, z: Array, hyperbolic: bool) -> list[tuple[Array,
 def _kept(polynomial: Coefficients, greatest: Decimal) -> Coefficients:
     """Return the coefficients that matter beside the first, up to the greatest argument."""
     sizes = [abs(x.value) for x in polynomial]
-    return polynomial[: needed(sizes, greatest, _NEGLIGIBLE)]
+    return polynomial[: count_needed(sizes, greatest, _NEGLIGIBLE)]
 
 
 def _rows(polynomial: Coefficients) -> Array:
@@ -229,3 +235,57 @@ def _value(polynomial: Array, s: Array) -> Array:
 
 def _decimal(x: Any) -> Decimal:
     return x.value if isinstance(x, Dual) else Decimal(x)
+
+
+class RatesAboutMeans(NamedTuple):
+    """The rates of spin and precession about their means, by how far u is from u1 and u2."""
+
+    modulus: Modulus
+    quarter: float
+    """K."""
+    south: float
+    """(beta + b)/2 (u1 - u2)/(1 + u1), over 1 + u the part of the precession rate beyond u1."""
+    north: float
+    south_at_u1: float
+    """(beta + b)/2/(1 + u1) less the mean of (beta + b)/2/(1 + u)."""
+    north_at_u2: float
+    first_is_upper: bool
+    """Whether the turning point of the even steps is u1."""
+
+    @classmethod
+    def of(
+        cls, motion: Nutating[Dual], means: Nutating[Dual], *, first_is_upper: bool
+    ) -> RatesAboutMeans:
+        """Return the constants of a motion, rounded from many digits."""
+        gaps = motion.gaps
+        plus, minus = gaps.beta_plus_b.value / 2, gaps.beta_minus_b.value / 2
+        drift = means.mean_spin_rate.value - motion.state.pole_drift.value
+        precession, width = means.mean_precession_rate.value, gaps.u1_u2.value
+        south, north = plus / gaps.below_u1.value, minus / gaps.above_u2.value
+        return cls(
+            Modulus(float(motion.k.value), float(motion.k_prime.value)),
+            quarter=float(motion.K.value),
+            south=float(south * width),
+            north=float(north * width),
+            south_at_u1=float(south - (precession + drift) / 2),
+            north_at_u2=float(north - (precession - drift) / 2),
+            first_is_upper=first_is_upper,
+        )
+
+    def at(
+        self, phase: Array, odd: Array, below: Array, above: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return both rates less their means, and the size of the parts of which both are sums.
+
+        `below` and `above` are 1 + u and 1 - u.
+        """
+        _, sn, cn, dn = jacobi(ARRAYS, phase * self.quarter, self.modulus)
+        away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 the rest
+        mirrored = (self.modulus.k_prime * sn / dn) ** 2
+        upper = odd != self.first_is_upper
+        under_u1 = np.where(upper, mirrored, cn * cn)
+        over_u2 = np.where(upper, (cn / dn) ** 2, away)
+        south, north = self.south * under_u1 / below, self.north * over_u2 / above
+        size = abs(south) + abs(north) + abs(self.south_at_u1) + abs(self.north_at_u2)
+        south, north = south + self.south_at_u1, north + self.north_at_u2
+        return south - north, south + north, size

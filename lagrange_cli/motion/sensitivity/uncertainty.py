@@ -80,13 +80,6 @@ class FirstOrder:
             return total
         return total * (ar.pi / 180) if key.endswith("_rad") else total * 180 / ar.pi
 
-    def derivative(self, key: str, name: str) -> float | None:
-        """Return the derivative of a key, or an input, by an input that was given.
-
-        None says that the motion has no such key, NaN that it has no derivative.
-        """
-        return self._rounded(key, lambda digits: self.slope(key, name, digits))
-
     def std(self, key: str) -> float | None:
         """Return the standard uncertainty of a key or of an input; None where there is none."""
         std = self._rounded(key, lambda digits: balls(digits).sqrt(self._variance(key, digits)))

@@ -1,0 +1,295 @@
+"""The angles of a nutating top at arrays of times, by its theta series in doubles.
+
+Of the half-period representations `theta_series` takes the ones whose zeros are the passes over the
+poles: there real and imaginary part vanish each by itself, and nothing cancels.
+
+A time is first reduced, exactly, to whole steps and a phase; then a few multiplications per sample
+evaluate the polynomials, however far the time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...arithmetic.arrays import order_by_parity, placed, taken
+from ...arithmetic.double_double import Period, period_of, whole_periods
+from ...arithmetic.points import MAX_PERIODS
+from ...arithmetic.protocol import Value
+from ...arithmetic.rounding import pair
+from ...arithmetic.types import Array
+from ..degenerate import Separatrix
+from ..kinds import Kind, Nutating
+from .attitude import Attitude, Growths, Spinor, Times, growths
+from .columns import NOTHING, Needs
+from .samplers import Sampler, constant_sampler, separatrix_sampler, start_tilt, tilt_of
+from .series_constants import direction, evaluate, periods_since_top, theta_constants
+from .theta_series import (
+    Coefficients,
+    Component,
+    Frame,
+    Series,
+    ThetaConstants,
+    theta_series,
+)
+
+_GREATEST = 340.0
+"""The square of its hyperbolic sine leaves room for what is multiplied with it."""
+_LEAST = 5e-324
+"""An argument of the functions that is next to 0, but not 0."""
+_NEGLIGIBLE = Decimal(2) ** -60
+_SIZE = 2**16
+"""The largest coefficient of a frame, or half of it."""
+ARGUMENTS = ("arg_x", "arg_y")
+
+
+@dataclass(frozen=True)
+class ThetaSampler(Sampler):
+    """A nutating top, by its theta series."""
+
+    tilt: float
+    step: Period
+    """Half a period of the nutation."""
+    offset: float
+    """The phase at t = 0, in steps."""
+    max_time: float
+    scale: float
+    """Argument of the functions per step."""
+    speed: float
+    """Argument per unit of time."""
+    first: float
+    """Argument at t = 0."""
+    hyperbolic: bool
+    frames: Sequence[Frame]
+    """About the turning points of the even and of the odd steps."""
+    slopes: Sequence[float]
+    """What the mean growth of arg X and arg Y has more than these, per unit of the argument."""
+    growths: Growths
+
+    @cached_property
+    def over_a_pole(self) -> bool:
+        """Whether the axis passes over a pole: the real part of X or Y is 0 all about it."""
+        return not all(part.real[0] for frame in self.frames for part in frame[:2])
+
+    def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
+        """Return the attitude at a block of times, by the series about the nearer turning point."""
+        space = space[:, : t.size]
+        times = Times(t, farthest, space[12:])
+        if needs == NOTHING:
+            return Attitude(self.growths, times, Spinor())
+        step, argument, lost = whole_periods(t, self.step, farthest, space[:3], self.offset or None)
+        argument -= lost
+        argument *= self.speed
+        if self.first:
+            argument += self.first
+        elif self.over_a_pole:  # on a pole at t = 0, and on one side of it however soon after
+            np.copyto(argument, np.copysign(_LEAST, t), where=(argument == 0.0) & (t != 0.0))
+        even, order = order_by_parity(step)
+        if order is not None:
+            argument = taken(argument, order, step)
+        found = self._evaluated(argument, even, needs, space[2:13])
+        if order is not None:
+            free = (space[i] for i in (0, 1, 2, 3, 4, 8))
+            found = {name: placed(values, order, next(free)) for name, values in found.items()}
+        return Attitude(self.growths, times, Spinor(**found))
+
+    def _evaluated(
+        self, argument: Array, even: int, needs: Needs, space: Array
+    ) -> dict[str, Array]:
+        """Return the parts of a spinor that are needed.
+
+        The first arguments, as many as are `even`, are about the first turning point.
+        """
+        functions, parts = space[:3], space[3:7]
+        found: dict[str, Array] = {}
+        self._write_functions(argument, functions)
+        pieces = list(zip((slice(even), slice(even, None)), self.frames, strict=True))
+        for rows, frame in pieces:
+            self._write_parts(frame, functions[:, rows], parts[:, rows])
+        if needs.arguments:
+            arguments = arguments_of(parts, space[7:9])
+            if self.over_a_pole:
+                for rows, frame in pieces:
+                    for side, part in zip(arguments[:, rows], frame[:2], strict=True):
+                        _settle_on_the_pole(side, part, argument[rows])
+            found |= zip(
+                ARGUMENTS, unwound(arguments, self.slopes, argument, space[10]), strict=True
+            )
+        if needs.tilt or needs.moduli:
+            x2, y2 = moduli_of(parts)
+            if needs.tilt:
+                found["tilt"] = tilt_of(x2, y2, out=parts[1])
+            if needs.moduli:
+                found |= {"x2": x2, "y2": y2}
+        if needs.rate:
+            found["rate"] = rate = space[9]
+            for rows, frame in pieces:
+                _write_polynomial(frame.rate, functions[2][rows], rate[rows])
+            rate *= functions[0]
+            rate *= functions[1]
+        return found
+
+    def _write_functions(self, x: Array, functions: Array) -> None:
+        """Write S, C and s of the series; in circular ones tan, 1/cos^2 and sin^2.
+
+        All parts of circular series have the factor cos x, which is divided out.
+        """
+        S, C, s = functions
+        if not self.hyperbolic:
+            np.tan(x, out=S)
+        elif self.scale > 2 * _GREATEST:  # beyond, the tilt is below 1e-140
+            np.sinh(np.clip(x, -_GREATEST, _GREATEST, out=S), out=S)
+        else:
+            np.sinh(x, out=S)
+        np.multiply(S, S, out=s)
+        np.add(s, 1.0, out=C)
+        if self.hyperbolic:
+            np.sqrt(C, out=C)
+        else:
+            s /= C
+
+    def _write_parts(self, frame: Frame, functions: Array, parts: Array) -> None:
+        """Write Re X, Im X, Re Y and Im Y about a turning point."""
+        S, C, s = functions
+        (*x, even), (*y, _) = frame.x, frame.y
+        for coefficients, part in zip((*x, *y), parts, strict=True):
+            _write_polynomial(coefficients, s, part)
+        parts[1::2] *= S
+        if self.hyperbolic:
+            parts[slice(1, 3) if even else slice(0, 4, 3)] *= C
+
+
+def _settle_on_the_pole(arguments: Array, part: Component, x: Array) -> None:
+    """Write the argument of X or Y where real and imaginary part are 0, or too small for doubles.
+
+    It is 0 on the pole, and next to it a quarter turn to the side of x, because the real part goes
+    with s = S^2 and the imaginary part with S.
+    """
+    vanish = np.isnan(arguments)
+    arguments[vanish] = np.sign(part.imag[0]) * np.sign(x[vanish]) * (np.pi / 2)
+
+
+def arguments_of(parts: Array, out: Array) -> Array:
+    """Return the arguments of X and Y, whose real parts are not negative, from their parts."""
+    arguments: Array = np.divide(parts[1::2], parts[::2], out=out)
+    np.arctan(arguments, out=arguments)
+    return arguments
+
+
+def unwound(arguments: Array, slopes: Sequence[Any], argument: Array, spare: Array) -> Array:
+    """Return the periodic parts of arg X and arg Y, in place: less their mean growth."""
+    for i, slope in enumerate(slopes):
+        arguments[i] += np.multiply(argument, slope, out=spare)
+    return arguments
+
+
+def moduli_of(parts: Array) -> Array:
+    """Return |X|^2 and |Y|^2 from the parts of X and Y, which are overwritten."""
+    parts *= parts
+    parts[::2] += parts[1::2]
+    return parts[::2]
+
+
+def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> None:
+    """Write the value of two coefficients at least, the lowest power first."""
+    np.multiply(x, coefficients[-1], out=value)
+    for coefficient in coefficients[-2:0:-1]:
+        value += coefficient
+        value *= x
+    value += coefficients[0]
+
+
+class SeriesFromStart(NamedTuple):
+    """The theta series of a motion, counted from the turning point that is nearest to its start."""
+
+    series: Series
+    frames: list[Frame]
+    """The series about that turning point and about the other one."""
+    first_is_upper: bool
+    """Whether that turning point is u1."""
+    offset: Value
+    """Steps, each of them half a period, from there to the start: at most 1/2 either way."""
+    starts: tuple[Value, Value]
+    """The arguments of X and Y at the start."""
+
+
+def series_from_start(ar: Any, c: ThetaConstants) -> SeriesFromStart:
+    """Return the series that some constants have, counted from next to the start."""
+    series = theta_series(ar, c)
+    nearest = ar.nint(c.offset * 2)
+    offset = c.offset * 2 - nearest
+    frames = [series.frames[(nearest + i) % 2] for i in range(2)]
+    _, x_start, _, y_start = evaluate(ar, series, frames[0], offset, c.rises)
+    return SeriesFromStart(series, frames, nearest % 2 == 0, offset, (x_start, y_start))
+
+
+def greatest_argument(ar: Any, series: Series) -> Any:
+    """Return what s, sin^2 or sinh^2, is at most where a step ends, half of `scale` from 0."""
+    return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
+
+
+def sampler_of(motion: Kind[Decimal]) -> Sampler:
+    """Return the attitude of a motion as a function of arrays of doubles."""
+    if isinstance(motion, Nutating):
+        return nutating_sampler(motion)
+    if isinstance(motion, Separatrix):
+        return separatrix_sampler(motion)
+    return constant_sampler(motion)
+
+
+def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
+    """Return the sampler of a nutating top."""
+    ar: Any = motion.ar
+    with ar.working():
+        c = theta_constants(motion, periods_since_top(motion), direction(motion), rates=True)
+        found = series_from_start(ar, c)
+        series = found.series
+        steps, spin, precession = 2 / c.period, series.spin_slope, series.precession_slope
+        slopes = (precession + spin) / 2, (precession - spin) / 2
+        x, y = (
+            start + slope * found.offset for start, slope in zip(found.starts, slopes, strict=True)
+        )
+        return ThetaSampler(
+            tilt=start_tilt(motion),
+            step=period_of(pair(c.period / 2), float(steps)),
+            offset=float(found.offset),
+            max_time=float(int(MAX_PERIODS) * c.period),
+            scale=float(series.scale),
+            speed=float(series.scale * steps),
+            first=float(series.scale * found.offset),
+            hyperbolic=series.hyperbolic,
+            frames=[_rounded(ar, frame, series) for frame in found.frames],
+            slopes=[float(slope / series.scale) for slope in slopes],
+            growths=growths(ar, (motion.mean_spin_rate, motion.mean_precession_rate), (x, y)),
+        )
+
+
+def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
+    """Return the frame in doubles, without the coefficients that are too small to matter."""
+    greatest = greatest_argument(ar, series)
+    # X and Y may have any size in common: one that keeps the smallest and the largest in doubles
+    parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
+    size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE
+
+    def scaled(polynomial: Coefficients, size: Any) -> Coefficients:
+        count = count_needed([abs(x) for x in polynomial], greatest, _NEGLIGIBLE)
+        return [float(x / size) + 0.0 for x in polynomial[:count]]  # no -0
+
+    def component(c: Component) -> Component:
+        return Component(scaled(c.real, size), scaled(c.imag, size), c.even)
+
+    return Frame(component(frame.x), component(frame.y), scaled(frame.rate, size**4))
+
+
+def count_needed(sizes: Sequence[Decimal], greatest: Decimal, negligible: Decimal) -> int:
+    """Return how many coefficients, two at least, matter beside the first to an argument."""
+    count = len(sizes)
+    while count > 2 and sizes[count - 1] * greatest ** (count - 1) <= negligible * sizes[0]:
+        count -= 1
+    return count
