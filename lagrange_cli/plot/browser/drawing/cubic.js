@@ -1,7 +1,6 @@
 // The cubic f(u) = u'^2 (4,9), its roots, and the top as a point that runs between two of them.
 
-import { dot, prepared, stroke, write } from "./look.js";
-import { tickText, ticksBetween } from "./ticks.js";
+import { dot, even, prepared, stroke, tickText, ticksBetween, write } from "./canvas.js";
 
 const MARGIN = { left: 14, right: 14, top: 12, bottom: 32 };
 
@@ -31,7 +30,7 @@ export function drawCubic(canvas, look, motion) {
   }
   const f = cubicOf(motion);
   const { low, high, near } = windowOf(motion.record);
-  const us = [...Array(241).keys()].map((i) => low + (high - low) * i / 240);
+  const us = even(low, high, 240);
   const { u1, u2, u3 } = motion.record;
   const inside = us.filter((u) => u >= u2 && u <= (near ? u3 : u1)).map((u) => Math.abs(f(u)));
   const most = 1.35 * (Math.max(0, ...inside) || Math.max(...us.map((u) => Math.abs(f(u)))) || 1);

@@ -1,17 +1,22 @@
-// The spinning top in space, from back to front.
+// The spinning top in space, from back to front: the globe with the limiting circles of the tilt
+// and the trace of the axis, the frames and their angles, and the top, a cone whose six wedges show
+// the spin.
 
-import { drawAngles, drawAxes, drawBodyAxes } from "./frames.js";
-import { drawBody } from "./body.js";
-import { drawCircles, drawDisc, drawTrace } from "./globe.js";
-import { dot, prepared } from "./look.js";
-import { frameOf } from "./camera.js";
+import { combined, frameOf, scaled } from "./camera.js";
+import { dot, even, fill, prepared, stroke, write } from "./canvas.js";
+
+const HEIGHT = 0.62;
+const RADIUS = 0.34;
+const WEDGES = 24;
+const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+const LENGTH = 1.2;  // of the axes in space
+const TURN = even(0, 2 * Math.PI, 360);
 
 /** Draw the top at one time; `shown` says which parts. */
 export function drawSpace(canvas, camera, look, { motion, curves, t, angles, blurred, shown }) {
   const { context, width, height } = prepared(canvas);
-  const posture = { theta: angles.theta, psi: angles.psiWithin };
-  const frame = frameOf(posture);
-  const spin = angles.phiWithin;
+  const { theta, psiWithin: psi, phiWithin: spin } = angles;
+  const frame = frameOf({ theta, psi });
   const view = camera.view(width, height, centreOf(motion, t, camera.zoom));
   const side = (near) => {
     if (shown.circles) drawCircles(context, view, look, motion.record, near);
@@ -21,24 +26,155 @@ export function drawSpace(canvas, camera, look, { motion, curves, t, angles, blu
   const axle = () => {
     if (shown.axes) drawBodyAxes(context, view, look, frame, spin);
   };
-  drawDisc(context, view, look);
+  const pivot = view.project([0, 0, 0]);
+  dot(context, pivot, view.scale, look.faint, { rim: look.quiet, width: 1, alpha: 0.55 });
   side(false);
   const away = view.depth(frame.axis) < 0;
   if (away) axle();
   drawBody(context, view, look, frame, spin, blurred);
   if (!away) axle();
   side(true);
-  if (shown.angles) {
-    const vertical = Math.sin(angles.theta) < 1e-9;
-    drawAngles(context, view, look, frame, { ...posture, spin, vertical });
-  }
-  dot(context, view.project(frame.axis), 4, look.trace, look.paper);
+  if (shown.angles) drawAngles(context, view, look, frame, { theta, psi, spin });
+  dot(context, view.project(frame.axis), 4, look.trace, { rim: look.paper });
 }
 
-/** What is in the middle: the pivot, or from near by the mean place of the axis, which glides. */
+/** The centre of the picture: the pivot, or from near by the mean place of the axis. */
 function centreOf({ record }, t, zoom) {
   const theta = (record.theta_min_deg + record.theta_max_deg) / 2 * Math.PI / 180;
   const psi = (record.mean_precession_rate ?? 0) * t % (2 * Math.PI);
-  const part = Math.min(Math.max(zoom - 1.5, 0), 1);
-  return frameOf({ theta, psi }).axis.map((x) => part * x);
+  return scaled(frameOf({ theta, psi }).axis, Math.min(Math.max(zoom - 1.5, 0), 1));
+}
+
+/** Draw the part of a curve on one side of the sphere. */
+function drawSide(context, view, points, near, style) {
+  const seen = points.map((p) => ((view.depth(p) >= 0) === near ? view.project(p) : [NaN, NaN]));
+  stroke(context, seen, style);
+}
+
+/** Draw equator and limiting circles on the near side or, pale and dashed, on the far side. */
+function drawCircles(context, view, look, { theta_min_deg, theta_max_deg }, near) {
+  const circles = [
+    [90, { colour: look.quiet, width: 0.6 }],
+    [theta_min_deg, { colour: look.blue, width: 1.1 }],
+    [theta_max_deg, { colour: look.red, width: 1.1 }],
+  ];
+  const faded = near ? {} : { alpha: 0.4, dash: [3, 3] };
+  for (const [tilt, style] of circles) {
+    const circle = TURN.map((psi) => frameOf({ theta: tilt * Math.PI / 180, psi }).axis);
+    drawSide(context, view, circle, near, { ...style, ...faded });
+  }
+}
+
+/** Draw one side of the trace: the past strong, the future faint. */
+function drawTrace(context, view, look, { axes, times }, t, near) {
+  const here = times.findIndex((time) => time > t);
+  const end = here < 0 ? times.length : here;
+  const [width, alpha] = near ? [2.2, 1] : [1.2, 0.4];
+  const side = (points, style) => drawSide(context, view, points, near, style);
+  side(axes.slice(Math.max(end - 1, 0)), { colour: look.trace, width: 1, alpha: 0.35 * alpha });
+  side(axes.slice(0, end), { colour: look.trace, width, alpha });
+}
+
+/** Draw the axes in space that point away from the eye, or those that point towards it. */
+function drawAxes(context, view, look, near) {
+  for (const [name, axis] of Object.entries(AXES)) {
+    if ((view.depth(axis) >= 0) === near) {
+      arrow(context, view, [0, 0, 0], scaled(axis, LENGTH), look.quiet, near ? 1.2 : 0.8);
+      write(context, name, view.project(scaled(axis, LENGTH + 0.07)), look.quiet);
+    }
+  }
+}
+
+/** A point of the lid's plane, at an angle from the line of nodes, counted like the spin. */
+export function onLid({ nodes, across, axis }, angle, radius) {
+  return combined(
+    radius * Math.cos(angle), nodes, radius * Math.sin(angle), across, HEIGHT, axis);
+}
+
+/** Draw the cone; `blurred` if it turns too fast for its wedges to be seen. */
+function drawBody(context, view, look, frame, spin, blurred) {
+  const angles = even(spin, spin + 2 * Math.PI, WEDGES);
+  const rim = angles.map((angle) => view.project(onLid(frame, angle, RADIUS)));
+  const sides = angles.slice(0, -1).map((angle) => (
+    facesEye(view, frame, angle + Math.PI / WEDGES)));
+  const parts = (apex, colour, seen) => {
+    for (let sixth = 0; sixth < 6; sixth += 1) {
+      const ink = blurred ? mixed(look.paper, colour) : [look.paper, colour][sixth % 2];
+      const corners = cornersOf(rim, sixth * WEDGES / 6, seen);
+      if (corners.length) fill(context, [apex, ...corners], ink);
+    }
+  };
+  parts(view.project([0, 0, 0]), look.red, sides);
+  if (view.depth(frame.axis) > 0) {
+    parts(view.project(onLid(frame, 0, 0)), look.blue, sides.map(() => true));
+  }
+  stroke(context, rim, { colour: look.ink, width: 0.9 });
+}
+
+/** The corners along the rim of the seen wedges of the sixth that begins at `first`. */
+function cornersOf(rim, first, seen) {
+  const wedges = [...Array(WEDGES / 6).keys()].map((j) => first + j).filter((j) => seen[j]);
+  return wedges.length ? [rim[wedges[0]], ...wedges.map((j) => rim[j + 1])] : [];
+}
+
+/** Whether the side of the cone at an angle from the line of nodes is in sight. */
+function facesEye(view, { nodes, across, axis }, angle) {
+  return view.depth(combined(
+    HEIGHT * Math.cos(angle), nodes, HEIGHT * Math.sin(angle), across, -RADIUS, axis)) > 0;
+}
+
+/** The colour midway between two, each #rrggbb. */
+function mixed(first, second) {
+  const parts = (colour) => [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16));
+  const [p, q] = [parts(first), parts(second)];
+  return `rgb(${p.map((x, i) => Math.round((x + q[i]) / 2)).join(" ")})`;
+}
+
+/** Draw the axes in the body: the figure axis out to the sphere, x' and y' on the lid. */
+function drawBodyAxes(context, view, look, frame, spin) {
+  const middle = onLid(frame, 0, 0);
+  stroke(context, [middle, frame.axis].map(view.project), { colour: look.ink, width: 1.6 });
+  for (const [name, angle] of [["x′", spin], ["y′", spin + Math.PI / 2]]) {
+    arrow(context, view, middle, onLid(frame, angle, 0.45), look.ink, 1.1);
+    write(context, name, view.project(onLid(frame, angle, 0.53)), look.ink, { size: 12 });
+  }
+}
+
+/** Draw the line of nodes and the three angles, each in the colour of its curve. */
+function drawAngles(context, view, look, frame, { theta, spin, psi }) {
+  const { nodes, axis } = frame;
+  if (Math.sin(theta) >= 1e-9) {
+    const ends = [scaled(nodes, -0.25), nodes].map(view.project);
+    stroke(context, ends, { colour: look.green, width: 1, dash: [6, 3] });
+    const across = combined(1 / Math.sin(theta), axis, -1 / Math.tan(theta), AXES.z);
+    arc(context, view, look.green, "ψ", psi, (x) => [0.55 * Math.cos(x), 0.55 * Math.sin(x), 0]);
+    arc(context, view, look.blue, "ϑ", theta, (x) => (
+      combined(0.8 * Math.cos(x), AXES.z, 0.8 * Math.sin(x), across)));
+  }
+  const middle = onLid(frame, 0, 0);
+  stroke(context, [middle, onLid(frame, 0, 0.42)].map(view.project), {
+    colour: look.green, width: 1, dash: [4, 3],
+  });
+  arc(context, view, look.red, "φ", spin, (x) => onLid(frame, x, RADIUS * 1.14));
+}
+
+/** Draw an arc from 0 to an angle, with its name in the middle. */
+function arc(context, view, colour, name, angle, point) {
+  const points = even(0, angle, 32).map((x) => view.project(point(x)));
+  stroke(context, points, { colour, width: 2 });
+  if (Math.abs(angle) > 0.12) {
+    const [[x, y], [cx, cy]] = [points[16], view.project([0, 0, 0])];
+    const away = 12 / Math.max(Math.hypot(x - cx, y - cy), 1);
+    write(context, name, [x + (x - cx) * away, y + (y - cy) * away], colour, { size: 16 });
+  }
+}
+
+function arrow(context, view, from, to, colour, width) {
+  const [[x0, y0], [x1, y1]] = [view.project(from), view.project(to)];
+  stroke(context, [[x0, y0], [x1, y1]], { colour, width });
+  const length = Math.hypot(x1 - x0, y1 - y0);
+  if (length < 12) return;
+  const [dx, dy] = [(x1 - x0) / length * 7, (y1 - y0) / length * 7];
+  const corners = [1, -1].map((side) => [x1 - dx - side * dy * 0.4, y1 - dy + side * dx * 0.4]);
+  fill(context, [[x1, y1], ...corners], colour);
 }

@@ -1,12 +1,10 @@
 // The motion of one top: periods, tilts and mean rates.  Equation numbers are those of the paper.
 
+import { constantSampler, nutatingSampler, offsetOf, separatrixSampler } from "./attitude.js";
 import { checkRoots, gapsOf } from "./gaps.js";
 import { completeK, periodMean } from "./integrals.js";
 import { PI, pair } from "./pair.js";
-import { factsOf } from "./regime.js";
-import { checkScene, startOf } from "./scene.js";
-import { constantSampler, nutatingSampler, separatrixSampler } from "./samplers.js";
-import { offsetOf } from "./series.js";
+import { checkScene, factsOf, startOf } from "./start.js";
 
 /** Least mean rate over the parts that cancel in it, of which the record can tell ten digits. */
 const LEAST_RATE = 1e-20;

@@ -1,8 +1,8 @@
 // The time: play, pause, speed, step, and any time at once.  The motion is in closed form, so that
 // no time is farther than another.
 
+import { textOf } from "../drawing/canvas.js";
 import { numberOf } from "./inputs.js";
-import { textOf } from "./record.js";
 
 const FARTHEST = 1e15;
 
@@ -81,14 +81,14 @@ export class Clock {
 
   show() {
     const { time, scrub } = this.page;
-    const shown = this.t === 0 ? "0" : textOf(Number(this.t.toPrecision(7)));
+    const shown = this.t === 0 ? "0" : textOf(this.t, 7);
     if (document.activeElement !== time) time.value = shown;
     scrub.value = String(this.t);
     scrub.setAttribute("aria-valuetext", `t = ${shown}`);
   }
 
   showSpeed() {
-    const text = `${textOf(Number(this.speed.toPrecision(2)))} t/s`;
+    const text = `${textOf(this.speed, 2)} t/s`;
     this.page.speedShown.textContent = text;
     this.page.speed.setAttribute("aria-valuetext", text);
   }

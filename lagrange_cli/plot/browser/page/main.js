@@ -1,20 +1,15 @@
 // The page: one scene, its motion, and all that shows it.
 
 import { EXAMPLES, SCENE, UNITS } from "../data.js";
-import { onLid } from "../drawing/body.js";
-import { Camera, frameOf } from "../drawing/camera.js";
-import { curvesAt, windowOf } from "../drawing/curves.js";
+import { Camera, followHands, frameOf } from "../drawing/camera.js";
+import { readLook, textOf } from "../drawing/canvas.js";
 import { drawCubic } from "../drawing/cubic.js";
-import { readLook } from "../drawing/look.js";
-import { drawPlots } from "../drawing/plots.js";
-import { drawSpace } from "../drawing/space.js";
+import { curvesAt, drawPlots, windowOf } from "../drawing/plots.js";
+import { drawSpace, onLid } from "../drawing/space.js";
 import { motionOf } from "../numerics/motion.js";
 import { Clock } from "./clock.js";
-import { followHands } from "./gestures.js";
-import { Inputs } from "./inputs.js";
-import { linkOf, readLink, showLink } from "./link.js";
-import { showRecord } from "./record.js";
-import { wordsOf } from "./words.js";
+import { Inputs, linkOf, readLink, showLink } from "./inputs.js";
+import { showRecord, wordsOf } from "./record.js";
 
 const FRAME = 1 / 60;  // seconds
 const FAST = 0.8;      // radians of spin per frame that the eye cannot follow

@@ -1,6 +1,7 @@
-// The record of the scene: its numbers under the keys of `lagtop solve`, in groups.
+// The motion in words, and the record of the scene: its numbers under the keys of `lagtop solve`.
 
-import { KEYS } from "../data.js";
+import { DESCRIPTIONS, KEYS } from "../data.js";
+import { textOf } from "../drawing/canvas.js";
 
 /** Fill the table; numbers to ten digits, units by their names in `units`. */
 export function showRecord(table, record, units) {
@@ -31,7 +32,20 @@ function rowOf(cells, title = "") {
   return row;
 }
 
-/** A number to ten digits. */
-export function textOf(x) {
-  return String(Number(x.toPrecision(10))).replace("e+", "e").replace(/-/g, "−");
+/** A title and one or two sentences on a motion. */
+export function wordsOf({ facts, record, start }) {
+  const fast = facts.atRest && start.b * start.b >= 50 * start.a;
+  const kinds = {
+    sleeping: facts.stable ? "stable" : "unstable",
+    "torque-free": facts.steady && "steady",
+    "no spin": facts.overBottom && "plane",
+    regular: fast ? "fast" : record.path ?? "wavy",
+  };
+  const kind = kinds[record.regime];
+  const [title, text] = DESCRIPTIONS[kind ? `${record.regime}, ${kind}` : record.regime];
+  const numbers = {
+    lambda: start.b * start.b / (2 * start.a),
+    nutation: record.theta_max_deg - record.theta_min_deg,
+  };
+  return [title, text.replace(/\{(\w+)\}/g, (_, name) => textOf(numbers[name], 3))];
 }
