@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arithmetic.types import Array, Mask
 from ..inputs.rotations import rotated
@@ -86,20 +87,25 @@ def runs(near: Mask) -> Iterator[tuple[slice, bool]]:
         yield slice(max(first - 1, 0), last), bool(near[first])
 
 
-class Face(NamedTuple):
-    """A triangle of the cone on the page."""
-
-    corners: Array
-    """x and y of the corners, shape (3, 2)."""
-    on_lid: bool
-    light: bool
-    """True on every other sixth of a turn, so that one sees the spin."""
+def on_one_side(camera: Camera, curve: Array, near: bool) -> Array:
+    """Return x and y on the page, shape (2, n), of a curve, NaN where it is on the other side."""
+    shown = np.full((2, len(curve)), np.nan)
+    for part, is_near in runs(camera.faces(curve)):
+        if is_near is near:
+            shown[:, part] = camera.project(curve[part])
+    return shown
 
 
 class Cone(NamedTuple):
-    """The cone that stands for the top, on the page: the faces in sight, the lid last."""
+    """The cone that stands for the top, on the page: the triangles in sight, the lid last."""
 
-    faces: list[Face]
+    corners: Array
+    """x and y of the corners of each triangle, shape (n, 3, 2)."""
+    inks: NDArray[np.int_]
+    """0 for the light triangles, else 1 on the side and 2 on the lid, shape (n).
+
+    Every other sixth of a turn is light, so that one sees the spin.
+    """
     rim: tuple[Array, Array]
     axle: tuple[Array, Array]
     """Line from the middle of the lid to the sphere."""
@@ -112,18 +118,22 @@ def cone_at(quaternion: Array, camera: Camera) -> Cone:
     spokes = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
     z = np.array([0.0, 0.0, 1.0])
     outward = HEIGHT * (spokes[1:] + spokes[:-1]) / 2 - RADIUS * z
-    tip, middle, axis = rotated(quaternion, np.stack([0 * z, HEIGHT * z, z]))
-    rim = rotated(quaternion, RADIUS * spokes + HEIGHT * z)
-    lid_in_sight = bool(axis @ camera.toward > 0)
-
-    def face(j: int, apex: Array, on_lid: bool) -> Face:
-        """Return the triangle between an apex and wedge j of the rim."""
-        corners = np.stack(camera.project(np.stack([apex, rim[j], rim[j + 1]])), axis=1)
-        return Face(corners, on_lid, light=j * 6 // WEDGES % 2 == 0)
-
-    sides = np.flatnonzero(rotated(quaternion, outward) @ camera.toward > 0)
-    faces = [face(int(j), tip, False) for j in sides]
-    if lid_in_sight:
-        faces += [face(j, middle, True) for j in range(WEDGES)]
-    axle = camera.project(np.stack([middle, axis]))
-    return Cone(faces, camera.project(rim), axle, lid_in_sight)
+    points = np.concatenate([[0 * z, HEIGHT * z, z], RADIUS * spokes + HEIGHT * z, outward])
+    turned = rotated(quaternion, points)
+    page = np.stack(camera.project(turned), axis=1)
+    tip, middle, axis, rim = page[0], page[1], page[2], page[3 : WEDGES + 4]
+    lid_in_sight = bool(turned[2] @ camera.toward > 0)
+    sides = turned[WEDGES + 4 :] @ camera.toward > 0
+    edges = np.stack([rim[:-1], rim[1:]], axis=1)
+    dark = np.arange(WEDGES) * 6 // WEDGES % 2
+    shown = [(tip, sides, 1)] + [(middle, np.ones(WEDGES, np.bool_), 2)] * lid_in_sight
+    corners = [np.insert(edges[seen], 0, apex, axis=1) for apex, seen, _ in shown]
+    inks = [dark[seen] * ink for _, seen, ink in shown]
+    axle = np.stack([middle, axis])
+    return Cone(
+        np.concatenate(corners),
+        np.concatenate(inks),
+        (rim[:, 0], rim[:, 1]),
+        (axle[:, 0], axle[:, 1]),
+        lid_in_sight,
+    )

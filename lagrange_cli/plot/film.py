@@ -15,15 +15,16 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from PIL import Image
 
 from ..errors import LagtopError, UnavailableError
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
-from .camera import camera_at, cone_at, runs, side_camera
+from .camera import camera_at, cone_at, on_one_side, side_camera
 from .curves import MOST_PERIODS, span, tilt_period, turn_span
-from .globe import Limits, draw_globe
+from .globe import draw_globe
 from .page import Page, check_pixels
 from .sphere import axis_path
 from .style import points, scale, styled
@@ -215,58 +216,48 @@ class Film:
 
     def __init__(self, page: Page, pace: Pace) -> None:
         motion, look, request = page.motion, page.look, page.request
-        self.figure, self.look = Frames(figsize=page.size or USUAL_SIZE), look
+        self.figure = Frames(figsize=page.size or USUAL_SIZE)
         self.path = axis_path(motion, pace.t_max)
         self.times = np.linspace(0.0, pace.t_max, pace.frames)
         columns = motion.table(self.times, ["quaternion"])
         self.attitude = np.stack([*columns.values()], axis=1)
-        self.turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
         self.camera = camera_at(*request.camera) if request.camera else side_camera(self.path.axis)
-        self.trace = self.camera.project(self.path.axis), self.camera.faces(self.path.axis)
         self.axes: Axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        limits = Limits(self.path.least, self.path.greatest)
+        limits = self.path.least, self.path.greatest
         draw_globe(self.axes, self.camera, limits, request, look)
         low, high = self.axes.get_ylim()
         self.axes.set_ylim(low - FOOT, high)
         self.body = PolyCollection([], zorder=BODY, linewidths=0.3, edgecolors="face")
         self.axes.add_collection(self.body)
+        self.inks = np.array([to_rgba(ink) for ink in (look.paper, look.lines[1], look.lines[0])])
         past = scale(look)(0.35)
         (self.rim,) = self.axes.plot([], [], color=look.ink, lw=points(0.9), zorder=RIM)
         (self.far,) = self.axes.plot([], [], color=past, lw=1.2, alpha=0.45, zorder=FAR)
         (self.near,) = self.axes.plot([], [], color=past, lw=2.2, zorder=NEAR)
+        self.trace = [
+            (line, on_one_side(self.camera, self.path.axis, side))
+            for line, side in ((self.near, True), (self.far, False))
+        ]
         (self.axle,) = self.axes.plot([], [], "o-", color=look.ink, lw=1.4, ms=4, markevery=[-1])
         self.clock = self.axes.text(0.03, 0.95, "", transform=self.axes.transAxes)
         place: dict[str, Any] = {"transform": self.axes.transAxes, "zorder": 0}
-        self.axes.text(0.03, 0.02, self._time_scale(pace), size="small", **place)
+        turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
+        foot = f"1 second shows {pace.speed:.3g} of time t"
+        foot += "; the spin is too fast for these frames" * bool(turned > ALIASED)
+        self.axes.text(0.03, 0.02, foot, size="small", **place)
         self.moving = self.body, self.axle, self.far, self.rim, self.near, self.clock
         others = {*self.axes.lines, *self.axes.texts}.difference(self.moving)
         self.figure.front = [x for x in others if x.get_zorder() > BACKGROUND]
 
-    def _time_scale(self, pace: Pace) -> str:
-        """Return how time and spin are shown, for the foot of the picture."""
-        text = f"1 second shows {pace.speed:.3g} of time t"
-        return text + "; the spin is too fast for these frames" * bool(self.turned > ALIASED)
-
     def show(self, i: int) -> None:
         """Bring the figure to frame i."""
         top = cone_at(self.attitude[i], self.camera)
-        white, blue, red = self.look.paper, *self.look.lines[:2]
-        colours = [white if face.light else blue if face.on_lid else red for face in top.faces]
-        self.body.set(verts=[face.corners for face in top.faces], facecolors=colours)
+        self.body.set(verts=top.corners, facecolors=self.inks[top.inks])
         self.rim.set_data(*top.rim)
         self.axle.set_data(*top.axle)
         self.axle.set_zorder(BEFORE if top.lid_in_sight else BEHIND)
-        passed = int(np.searchsorted(self.path.t, self.times[i], side="right"))
-        self._trace(passed)
+        passed = np.searchsorted(self.path.t, self.times[i], side="right")
+        for line, points_of_side in self.trace:
+            line.set_data(*points_of_side[:, :passed])
         self.clock.set_text(f"t = {self.times[i]:.4g}")
         self.figure.moving = sorted(self.moving, key=Artist.get_zorder)
-
-    def _trace(self, passed: int) -> None:
-        """Draw the path of the axis so far, paler on the far side."""
-        (x, y), near = (z[:passed] for z in self.trace[0]), self.trace[1][:passed]
-        for line, side in ((self.near, True), (self.far, False)):
-            shown = np.full((passed, 2), np.nan)
-            for part, on_near in runs(near):
-                if on_near is side:
-                    shown[part] = np.stack([x[part], y[part]], axis=1)
-            line.set_data(*shown.T)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,41 +22,32 @@ INSEPARABLE = math.radians(0.8)
 """Two circles of nearer tilts than this are one line on the globe."""
 
 
-class Limits(NamedTuple):
-    """The least and the greatest tilt (radians)."""
-
-    least: float
-    greatest: float
-
-    def text(self, radians: bool) -> tuple[str, str]:
-        """Return both as texts with their unit."""
-        one, other = (
-            f"{short_text(tilt)} rad" if radians else f"{short_text(math.degrees(tilt))}°"
-            for tilt in self
-        )
-        return one, other
-
-
 def draw_globe(
-    axes: Axes, camera: Camera, limits: Limits, request: PlotRequest, look: Look
+    axes: Axes, camera: Camera, limits: tuple[float, float], request: PlotRequest, look: Look
 ) -> None:
-    """Draw outline, equator, axes of space and limiting circles; far sides dashed and paler."""
+    """Draw outline, equator, axes of space and limiting circles; far sides dashed and paler.
+
+    `limits` are the least and the greatest tilt (radians).
+    """
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.add_artist(Circle((0, 0), 1, facecolor=look.faint, edgecolor="none", alpha=0.55, zorder=0))
     axes.add_artist(Circle((0, 0), 1, fill=False, ec=look.quiet, lw=points(1.0), zorder=1))
     _draw_circle(axes, camera, math.pi / 2, color=look.quiet, lw=points(0.6))
     _draw_frame(axes, camera, look)
-    least, greatest = limits.text(request.radians)
-    if limits.greatest == limits.least:
-        _draw_limit(axes, camera, limits.least, look.lines[0], f"tilt ϑ = {least}")
-    elif limits.greatest - limits.least < INSEPARABLE:
-        _draw_limit(
-            axes, camera, limits.greatest, look.lines[0], f"tilt ϑ from {least} to {greatest}"
-        )
+    least, greatest = limits
+    low, high = (_tilt_text(tilt, request.radians) for tilt in limits)
+    if greatest == least:
+        _draw_limit(axes, camera, least, look.lines[0], f"tilt ϑ = {low}")
+    elif greatest - least < INSEPARABLE:
+        _draw_limit(axes, camera, greatest, look.lines[0], f"tilt ϑ from {low} to {high}")
     else:
-        _draw_limit(axes, camera, limits.least, look.lines[0], f"ϑ min {least}")
-        _draw_limit(axes, camera, limits.greatest, look.lines[1], f"ϑ max {greatest}")
+        _draw_limit(axes, camera, least, look.lines[0], f"ϑ min {low}")
+        _draw_limit(axes, camera, greatest, look.lines[1], f"ϑ max {high}")
+
+
+def _tilt_text(tilt: float, radians: bool) -> str:
+    return f"{short_text(tilt)} rad" if radians else f"{short_text(math.degrees(tilt))}°"
 
 
 def _draw_limit(axes: Axes, camera: Camera, tilt: float, colour: str, label: str) -> None:

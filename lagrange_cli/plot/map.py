@@ -19,7 +19,7 @@ from ..inputs.input_keys import DECLARED, NINE
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
-from ..motion.quantity import Key, unit_name
+from ..motion.quantity import unit_name
 from ..motion.record import KEYS, NUMBER_KEYS
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
@@ -121,35 +121,22 @@ def key_map(
         raise LagtopError(f"x must have at most 1e6 cells together with y, got {cells}", "x")
     tilt = unit_name("theta0_deg", radians=radians)
     x_input, y_input = (tilt if axis.name == "theta0" else axis.name for axis in (x, y))
+    keys = list(dict.fromkeys([key, "a", "b", "error"]))
 
-    def over(x_values: Array, y_values: Array) -> dict[str, Any]:
-        return motion.top.inputs(radians=radians) | {x_input: x_values, y_input: y_values}
+    def part(y_values: Array) -> Array:
+        """Return the key, a and b at each top of some rows, or raise LagtopError."""
+        over = {x_input: x.values, y_input: y_values[:, None]}
+        records = sweep(keys=keys, radians=radians, **motion.top.inputs(radians=radians) | over)
+        for error in filter(None, records["error"].ravel().tolist()):
+            raise LagtopError(error)
+        return np.stack([records[name].astype(np.float64) for name in (key, "a", "b")])
 
     rows = max(BLOCK_ROWS // x.values.size, 1)
-    blocks = (y.values[first : first + rows, None] for first in range(0, y.values.size, rows))
-    parts = (_values(over(x.values, block), key, radians).ravel() for block in blocks)
-    values = np.concatenate(list(progress(parts, "tops", cells, np.size))).reshape(
-        -1, x.values.size
-    )
-    return KeyMap(key, x, y, values, _sleeping(over(*np.meshgrid(x.values, y.values)), values))
-
-
-def _values(inputs: dict[str, Any], key: str, radians: bool) -> Array:
-    """Return the key at each top.  Raises LagtopError where one cannot be."""
-    records = sweep(keys=[key, "error"], radians=radians, **inputs)
-    for error in filter(None, records["error"].ravel().tolist()):
-        raise LagtopError(error)
-    return np.asarray(records[key], dtype=np.float64)
-
-
-def _sleeping(inputs: dict[str, Any], like: Array) -> Array:
-    """Return C |r0| / sqrt(4Amgs) in the shape of `like`."""
-    m, A, C, s, g, r0 = (
-        inputs[name] + np.zeros_like(like) for name in ("m", "A", "C", "s", "g", "r0")
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = abs(C * r0) / np.sqrt(4 * A * m * g * s)
-    return np.where(m * g * s > 0, ratio, np.inf)
+    parts = (part(y.values[first : first + rows]) for first in range(0, y.values.size, rows))
+    done = list(progress(parts, "tops", cells, lambda part: part[0].size))
+    values, a, b = np.concatenate(done, axis=1)
+    with np.errstate(divide="ignore"):
+        return KeyMap(key, x, y, values, np.where(a > 0, abs(b) / np.sqrt(2 * a), np.inf))
 
 
 def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
@@ -157,14 +144,15 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     usual = default_ranges(motion.top, radians=request.radians)
     x, y = request.x or usual[0], request.y or usual[1]
     chart = key_map(motion, request.key, x, y, request.progress, radians=request.radians)
-    key = _key(chart.key)
+    key = KEYS[chart.key.replace("_rad", "_deg")]
     unit = request.unit_of(key)
 
     def draw(axes: Sequence[Axes], look: Look) -> None:
         """Draw cells, contours, the sleeping threshold and the scene."""
         ax = axes[0]
         ax.set(xlabel=_label(x.name, request), ylabel=_label(y.name, request))
-        ax.set(xscale=_scale_name(x), yscale=_scale_name(y))
+        ax.set(xscale="log" if x.logarithmic else "linear")
+        ax.set(yscale="log" if y.logarithmic else "linear")
         bar = _draw_cells(ax, chart, request.limits, look)
         bar.set_label(f"{chart.key} ({unit})" if unit else chart.key)
         _draw_contours(ax, chart, bar, look)
@@ -172,11 +160,6 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
         _mark_own(ax, motion, chart, request.radians, look)
 
     return Drawing(f"{key.group}: {key.meaning}, {key.symbol} {key.equation}", draw)
-
-
-def _key(name: str) -> Key:
-    """Return how a number of the record is shown, by its name in either unit."""
-    return KEYS[name.replace("_rad", "_deg")]
 
 
 def colour_limits(values: Array) -> tuple[float, float]:
@@ -256,10 +239,6 @@ def _label(name: str, request: PlotRequest) -> str:
     unit, text = request.unit_of(declared), f"{declared.name} {declared.symbol}"
     known = unit != declared.unit or ("len" not in unit and "mass" not in unit)
     return f"{text} ({unit})" if known else text
-
-
-def _scale_name(axis: InputRange) -> str:
-    return "log" if axis.logarithmic else "linear"
 
 
 def _edges(axis: InputRange) -> Array:

@@ -23,7 +23,7 @@ from .curves import (
     sphere_span,
     tilt_period,
 )
-from .globe import Limits, draw_globe
+from .globe import draw_globe
 from .kinds import Drawing, PlotRequest
 from .style import Look, mark_start, points, scale
 
@@ -83,7 +83,7 @@ def sphere_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     def draw(axes: Sequence[Axes], look: Look) -> None:
         """Draw the globe with the path on it, and the bar that explains its colours."""
         camera = camera_at(*request.camera) if request.camera else best_camera(path.axis)
-        draw_globe(axes[0], camera, Limits(path.least, path.greatest), request, look)
+        draw_globe(axes[0], camera, (path.least, path.greatest), request, look)
         lines = _draw_path(axes[0], camera, path, motion, look)
         axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize="small")
         for below in axes[1:]:

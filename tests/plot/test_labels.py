@@ -16,7 +16,7 @@ from matplotlib.transforms import Bbox
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.plot.camera import camera_at
 from lagrange_cli.plot.cubic import cubic_curve
-from lagrange_cli.plot.globe import Limits, draw_globe
+from lagrange_cli.plot.globe import draw_globe
 from lagrange_cli.plot.kinds import KINDS, PlotRequest
 from lagrange_cli.plot.style import LIGHT, styled
 
@@ -86,7 +86,7 @@ def test_the_roots_and_the_poles_of_the_cubic_are_written_where_there_is_room() 
 @pytest.mark.slow
 def test_the_names_on_the_globe() -> None:
     """Names of axes do not touch, from wherever one looks, and all of them are on the page."""
-    draw, limits = np.random.default_rng(7), Limits(0.5, 1.0)
+    draw, limits = np.random.default_rng(7), (0.5, 1.0)
     with styled(LIGHT):
         axes = Figure(figsize=(6.4, 6.0)).add_subplot()
         for _ in range(SCENES):

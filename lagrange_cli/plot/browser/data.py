@@ -45,62 +45,48 @@ EXAMPLES: dict[str, PageScene] = {
 
 DESCRIPTIONS = {
     "sleeping, stable": (
-        "Sleeping, stable",
-        "The top stands upright and stays: λ = b²/2a = {lambda} is at least 1.",
+        "Sleeping, stable: The top stands upright and stays: λ = b²/2a = {lambda} is at least 1."
     ),
     "sleeping, unstable": (
-        "Sleeping, unstable",
-        "The top stands upright, but any push fells it: λ = b²/2a = {lambda} is less than 1.",
+        "Sleeping, unstable: The top stands upright, but any push fells it: λ = b²/2a = {lambda} "
+        "is less than 1."
     ),
-    "hanging": (
-        "Hanging",
-        "The axis hangs straight down and turns about itself, whatever the spin.",
-    ),
+    "hanging": "Hanging: The axis hangs straight down and turns about itself, whatever the spin.",
     "torque-free, steady": (
-        "Without torque",
-        "Nothing pulls at the top: its axis stands still, or goes round evenly.",
+        "Without torque: Nothing pulls at the top: its axis stands still, or goes round evenly."
     ),
     "torque-free": (
-        "Without torque",
-        "Nothing pulls at the top: its axis goes round a tilted circle at a constant rate.",
+        "Without torque: Nothing pulls at the top: its axis goes round a tilted circle at a "
+        "constant rate."
     ),
     "separatrix": (
-        "Separatrix",
-        "The axis rises to the vertical, slower and slower, and never arrives.",
+        "Separatrix: The axis rises to the vertical, slower and slower, and never arrives."
     ),
     "steady precession": (
-        "Steady precession",
-        "The tilt does not change, and the axis goes round evenly.",
+        "Steady precession: The tilt does not change, and the axis goes round evenly."
     ),
     "no spin, plane": (
-        "Plane pendulum",
-        "Without spin the top is a pendulum, here one that swings in a plane.",
+        "Plane pendulum: Without spin the top is a pendulum, here one that swings in a plane."
     ),
-    "no spin": (
-        "Spherical pendulum",
-        "Without spin the top is a pendulum, here one that goes round.",
-    ),
+    "no spin": "Spherical pendulum: Without spin the top is a pendulum, here one that goes round.",
     "regular, fast": (
-        "Pseudo-regular precession",
-        "Let go at rest, and so fast that the tilt nutates by {nutation}° only."
-        " λ = b²/2a = {lambda}.",
+        "Pseudo-regular precession: Let go at rest, and so fast that the tilt nutates by "
+        "{nutation}° only. λ = b²/2a = {lambda}."
     ),
     "regular, cusped": (
-        "Regular motion with cusps",
-        "At its highest points the axis stands still for a moment, and falls again: cusps."
-        " λ = b²/2a = {lambda}.",
+        "Regular motion with cusps: At its highest points the axis stands still for a moment, and"
+        " falls again: cusps. λ = b²/2a = {lambda}."
     ),
     "regular, looping": (
-        "Regular motion with loops",
-        "Near its highest points the precession runs backwards: the axis draws loops."
-        " λ = b²/2a = {lambda}.",
+        "Regular motion with loops: Near its highest points the precession runs backwards: the "
+        "axis draws loops. λ = b²/2a = {lambda}."
     ),
     "regular, wavy": (
-        "Regular motion in waves",
-        "The precession never turns back: the axis draws waves. λ = b²/2a = {lambda}.",
+        "Regular motion in waves: The precession never turns back: the axis draws waves. λ = "
+        "b²/2a = {lambda}."
     ),
 }
-"""A title and one or two sentences for each kind of motion."""
+"""A title and one or two sentences for each kind of motion, with a colon between."""
 
 
 def page_data(motion: Motion, unit: Callable[[str], str]) -> str:

@@ -42,7 +42,8 @@ export function wordsOf({ facts, record, start }) {
     regular: fast ? "fast" : record.path ?? "wavy",
   };
   const kind = kinds[record.regime];
-  const [title, text] = DESCRIPTIONS[kind ? `${record.regime}, ${kind}` : record.regime];
+  const description = DESCRIPTIONS[kind ? `${record.regime}, ${kind}` : record.regime];
+  const [, title, text] = /^(.*?): (.*)$/.exec(description);
   const numbers = {
     lambda: start.b * start.b / (2 * start.a),
     nutation: record.theta_max_deg - record.theta_min_deg,
