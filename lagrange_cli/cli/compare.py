@@ -14,7 +14,7 @@ from ..inputs.names import split_names
 from .command import ExamplesFirst, fail_for, write_report
 from .options import FILE, NAMES, NUMBER, Parsed, exclude, output_options
 from .progress import with_progress
-from .row_options import reading_options
+from .row_options import dialect, reading_options, text_options
 from .top_options import INPUT, input_options, solved
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ def _parse_steps(text: str) -> list[float]:
 @click.option("--scene", type=FILE, metavar="FILE|-", help="Scene file; options win over it.")
 @input_options(INPUT)
 @reading_options(quaternion=None)
+@text_options
 @click.option(
     "--rates-frame",
     type=click.Choice(["body", "space"]),
@@ -129,7 +130,8 @@ def command(
     exclude({"--scene -": scene == "-" or None, "the trajectory -": "-" in trajectories or None})
     limit = None if max_error is None else float(max_error)
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, rad).checked()
-    request = ComparisonRequest(columns, conventions, alignment(align or []), limit, step_sizes)
+    frames = alignment(align or [])
+    request = ComparisonRequest(columns, conventions, frames, limit, step_sizes, dialect())
     motion = solved(scene, rad, False, options)
 
     def find() -> Report:

@@ -14,7 +14,7 @@ from ..inputs.names import split_names
 from .command import ExamplesFirst, complain, fail_for, write_report
 from .options import FILE, NAMES, Parsed, exclude, extension, output_options
 from .progress import with_progress
-from .row_options import reading_options
+from .row_options import dialect, reading_options, text_options
 from .top_options import INPUT, by_key, input_options, say_unused
 
 if TYPE_CHECKING:
@@ -81,6 +81,7 @@ def _positive(value: float) -> float:
     "--together", is_flag=True, help="The recordings of --by are of one body: a and C/A are shared."
 )
 @reading_options(quaternion="wxyz")
+@text_options
 @click.option(
     "--plot",
     type=FILE,
@@ -128,7 +129,8 @@ def command(
     known, system = _known(scene, fix or [], by_key(options, radians=rad))
     conventions = Conventions(quaternion_order, euler_sequence, "body", rad).checked()
     spread = _in_radians(sigma, rad)
-    recordings = read_recordings(recording, Reading(columns, conventions, by, spread))
+    reading = Reading(columns, conventions, by, spread, dialect())
+    recordings = read_recordings(recording, reading)
     scene_path = output if extension(output) == "toml" else None
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..arithmetic.text import quoted
+from ..errors import LagtopError
 from .options import NAMES, F, Parsed, exclude, late
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.tables import TableOfFunctions
+    from ..inputs.text_tables import Dialect
 
 RANGE = Parsed("range", late("inputs.ranges", "parse_range"))
 
@@ -42,6 +45,51 @@ def jobs_option(command: F) -> F:
         metavar="N|auto",
         help="Processes that share the work; auto: one per core.  [default: 1]",
     )(command)
+
+
+_DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
+_DECIMALS = {"point": ".", "comma": ","}
+_MEANINGS = {"delimiter": "delimiter of cells", "decimal": "decimal mark"}
+
+
+def _mark(marks: dict[str, str]) -> Callable[[str], str]:
+    """Return a parser of the name of a mark, or of the mark itself."""
+
+    def parse(text: str) -> str:
+        if text not in {*marks, *marks.values()}:
+            raise LagtopError(f"must be {', '.join(marks)} or the character, got {quoted(text)}")
+        return marks.get(text, text)
+
+    return parse
+
+
+def text_options(command: F) -> F:
+    """Add --delimiter and --decimal, of which `dialect` makes one."""
+    for name, marks in (("decimal", _DECIMALS), ("delimiter", _DELIMITERS)):
+        command = click.option(
+            f"--{name}",
+            type=Parsed("mark", _mark(marks)),
+            expose_value=False,
+            callback=_keep,
+            metavar="|".join(marks),
+            help=f"The {_MEANINGS[name]} of text files.  [default: found in each file]",
+        )(command)
+    return command
+
+
+def _keep(ctx: click.Context, param: click.Parameter, mark: str | None) -> None:
+    ctx.meta[f"lagtop.{param.name}"] = mark or ""
+
+
+def dialect() -> Dialect:
+    """Return how the command reads text files.  Raises LagtopError for a comma in both places."""
+    from ..inputs.text_tables import Dialect
+
+    meta = click.get_current_context().meta
+    asked = Dialect(meta["lagtop.delimiter"], meta["lagtop.decimal"])
+    if asked.delimiter == asked.decimal == ",":
+        raise LagtopError("--delimiter comma and --decimal comma exclude each other: leave one out")
+    return asked
 
 
 def reading_options(quaternion: str | None) -> Callable[[F], F]:

@@ -14,7 +14,7 @@ from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
 from .options import FILE, KEY_NAMES, Parsed, exclude, output_options
 from .progress import with_progress
-from .row_options import jobs_option
+from .row_options import dialect, jobs_option, text_options
 from .top_options import by_key, input_options, say_missing, say_no_tops, value_type
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
     metavar="DIR",
     help="Write a file per part; resume a folder that is not complete.",
 )
+@text_options
 @output_options("csv", "ndjson", "json", "parquet")
 def command(
     files: tuple[str, ...],
@@ -122,6 +123,7 @@ def command(
         system=units,
         until_error=fail_fast and to_stdout,
         described=folder is not None,
+        dialect=dialect(),
     )
     say_missing(todo.given)
     tally = Tally(fail_fast=fail_fast)

@@ -22,7 +22,7 @@ from .options import (
     output_options,
 )
 from .progress import with_progress
-from .row_options import jobs_option
+from .row_options import dialect, jobs_option, text_options
 from .top_options import (
     TIME,
     UNCERTAIN,
@@ -89,6 +89,7 @@ if TYPE_CHECKING:
 @click.option("--wrap", is_flag=True, help="Spin and precession in (-180, 180].")
 @digits_option(MOST_TABLE_DIGITS)
 @certify_option
+@text_options
 @output_options("csv", "json", "table", "parquet", "npy")
 def command(
     scene: str | None,
@@ -181,7 +182,7 @@ def _listed(times: str | None, tops: str | None, fmt: str) -> Callable[[Motion],
         return None
     from ..inputs.times_file import TimesFile
 
-    file = TimesFile(times, counted=fmt == "npy")
+    file = TimesFile(times, counted=fmt == "npy", dialect=dialect())
     if tops is None and fmt != "table":
         return lambda _: file
     return partial(_same, file.listed(None if tops is not None else MAX_TABLE_ROWS + 1))
@@ -248,7 +249,9 @@ def _write_many(
 
     inputs = by_key(options, radians=request.radians)
     system = inputs.pop("units", None)
-    tables, lines, given = open_tables(tops, scene, inputs, request, fmt=fmt, system=system)
+    tables, lines, given = open_tables(
+        tops, scene, inputs, request, fmt=fmt, system=system, dialect=dialect()
+    )
     exclude({"--tops": tops, "uncertain inputs": given.stds or None})
     say_missing(given)
     tally = Tally()

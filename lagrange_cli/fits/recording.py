@@ -15,6 +15,7 @@ from ..inputs import rotations
 from ..inputs.given import checked_double
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
+from ..inputs.text_tables import UNDECIDED, Dialect
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
 from ..inputs.trajectory_columns import plain_name
 
@@ -82,6 +83,7 @@ class Reading(NamedTuple):
     """A column that tells recordings apart."""
     sigma: Mapping[str, float] | float | None = None
     """Standard deviations in radians: one for all channels, or by channel."""
+    dialect: Dialect = UNDECIDED
 
 
 def read_recordings(path: str, reading: Reading) -> list[Recording]:
@@ -89,7 +91,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
 
     Raises LagtopError for a file that cannot be read, DataError for one that holds no recording.
     """
-    with open_trajectory(path, reading.columns) as trajectory:
+    with open_trajectory(path, reading.columns, reading.dialect) as trajectory:
         spread = _add_spreads(trajectory)
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
         if reading.by is None:

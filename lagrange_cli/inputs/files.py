@@ -1,4 +1,4 @@
-"""Files that are read, or standard input for `-`: their names, and the error where they cannot be.
+"""Files that are read, or standard input for `-`: their names, and their bytes.
 
 Whatever is wrong with a file of inputs is a DataError, that it is not there among it.
 """
@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
-from io import BufferedIOBase, BytesIO
-from typing import BinaryIO, cast
+from contextlib import ExitStack, contextmanager, suppress
+from io import BufferedIOBase, BufferedReader, BytesIO, RawIOBase
+from typing import Any, BinaryIO, cast
 
 from ..errors import CannotWriteError, DataError
+
+_AT_ONCE = 1 << 16
+_GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 
 
 @contextmanager
@@ -28,6 +31,68 @@ def reading(path: str) -> Iterator[BufferedIOBase]:
             yield file
     except OSError as error:
         raise DataError(f"{shown_path(path)}: {error.strerror or error}") from None
+
+
+@contextmanager
+def decoded(stream: BufferedIOBase, name: str) -> Iterator[BufferedReader]:
+    """Yield the bytes of a stream; gzip is decompressed, and UTF-16 with its mark becomes UTF-8.
+
+    The stream stays open.  Raises DataError, here or while it is read, for a file that is broken.
+    """
+    reader = BufferedReader(cast(Any, stream), _AT_ONCE)
+    found = reader
+    if found.peek(2)[:2] == _GZIP:
+        found = BufferedReader(_Chunks(_decompressed(found, name)), _AT_ONCE)
+    if found.peek(2)[:2] in _UTF16:
+        found = BufferedReader(_Chunks(_from_utf16(found, name)), _AT_ONCE)
+    try:
+        yield found
+    finally:
+        with suppress(ValueError):  # of a stream that is closed
+            reader.detach()
+
+
+class _Chunks(RawIOBase):
+    """Chunks of bytes as a stream that only goes forward."""
+
+    def __init__(self, chunks: Iterator[bytes]) -> None:
+        self._chunks, self._left = chunks, memoryview(b"")
+
+    def readable(self) -> bool:
+        """Return True."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Fill a buffer with the next bytes, and return how many these are."""
+        if not self._left:
+            self._left = memoryview(next(filter(None, self._chunks), b""))
+        count = min(len(buffer), len(self._left))
+        buffer[:count], self._left = self._left[:count], self._left[count:]
+        return count
+
+
+def _decompressed(stream: BufferedReader, name: str) -> Iterator[bytes]:
+    import gzip  # for few files only, as zlib
+    import zlib
+
+    try:
+        with gzip.GzipFile(fileobj=stream) as file:
+            while chunk := file.read(_AT_ONCE):
+                yield chunk
+    except (gzip.BadGzipFile, EOFError, zlib.error) as error:
+        raise DataError(f"{name}: not a gzip file: {error}") from None
+
+
+def _from_utf16(stream: BufferedReader, name: str) -> Iterator[bytes]:
+    from codecs import getincrementaldecoder
+
+    decoder = getincrementaldecoder("utf-16")()
+    try:
+        while chunk := stream.read(_AT_ONCE):
+            yield decoder.decode(chunk).encode()
+        decoder.decode(b"", True)
+    except UnicodeError as error:
+        raise DataError(f"{name}: not UTF-16 text: {error}") from None
 
 
 @contextmanager

@@ -32,8 +32,6 @@ def heading(cell: str) -> tuple[str, str]:
     name, bracket, unit = cell.partition("[")
     if not bracket or not unit.endswith("]") or name.strip() not in {*INPUTS, TILT}:
         return cell, ""
-    if name.strip().startswith(f"{TILT}_"):
-        raise LagtopError(f"the column {cell} must be called {TILT} [{unit}")
     return name.strip(), unit[:-1].strip()
 
 
@@ -57,6 +55,8 @@ def heading_units(
     """
     found = {x: Value(Fraction(1), unit) for x, unit in headings if x in known}
     for column, one in found.items():
+        if one.unit and column.startswith(f"{TILT}_"):
+            raise DataError(f"{name}: the column {column} must be called {TILT} [{one.unit}]")
         if one.unit:
             _check_unit(column, one, name)
     return found

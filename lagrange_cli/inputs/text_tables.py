@@ -1,106 +1,338 @@
-"""Tables as text: numbered lines, comments, delimiters, cells and JSON objects.
+"""Tables as text: the one grammar of files of tops, trajectories, recordings and times.
 
-The readers of tops, times and trajectories share these, so that their lines have one grammar.
-Only the cells of a trajectory are split elsewhere, mostly by NumPy (see `trajectory_text`).
+A row is a line: cells between commas, semicolons, tabs or white space, or a JSON object.  The
+delimiter and the decimal mark are decided once per file, from its headings and its first rows.  A
+comma is a decimal mark only if it is not the delimiter.  A file that can be read in two ways, or
+that has thousands separators, is refused.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from io import BufferedIOBase
-from typing import Any, BinaryIO
+from typing import BinaryIO, NamedTuple
 
-from ..arithmetic.text import json_text, shortened
+from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
+from .text_lines import Numbered, NumberedLines, at_line, decoded_row, has_row
 
-LONGEST_LINE = 1 << 20
-"""Bytes of a line: memory does not grow with a file that has no line ends."""
-BYTES_AT_ONCE = 1 << 21
-DELIMITERS = ",;\t"
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+SAMPLE_ROWS, _SAMPLE_BYTES = 1000, 1 << 22
+"""The first rows, which decide how a file is read, and the most bytes of them."""
+_MOST_TITLES = 5
+"""Rows among which the headings are, below titles such as Tracker's `mass A`."""
+_SEPARATORS = "\t;,"
+SWAP = bytes.maketrans(b",.", b".,")
+"""Exchanges decimal points and commas."""
+_DIGITS = r"(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(rf"[+-]?(?:{_DIGITS}|nan|inf)", re.IGNORECASE | re.ASCII)
+_NUMBERS = re.compile(rf"[+-]?{_DIGITS}(?:\s+[+-]?{_DIGITS})+", re.ASCII)
+_THOUSANDS = re.compile(
+    r"[+-]?\d{1,3}(?:,\d{3}(?:,\d{3})*\.\d*|\.\d{3}(?:\.\d{3})*,\d*|(?:,\d{3}){2,}|(?:\.\d{3}){2,})",
+    re.ASCII,
+)
+_PERHAPS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+_ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
+_HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
+_LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", b"***End_of_Header***"
 
 
-class NumberedLines:
-    """The lines of a file with their numbers, from 1; each is yielded once."""
+class Dialect(NamedTuple):
+    """The delimiter and the decimal mark of a table; an empty one is decided by the file."""
 
-    def __init__(self, stream: BufferedIOBase | BinaryIO, name: str) -> None:
-        self.stream, self.name, self.number = stream, name, 0
+    delimiter: str = ""
+    """A comma, semicolon, tab, or a blank, which stands for any white space."""
+    decimal: str = ""
+    """A point or a comma."""
 
-    def __iter__(self) -> Iterator[tuple[int, bytes]]:
-        """Yield the next lines one by one.  Raises DataError for a long line."""
-        while line := self.stream.readline(LONGEST_LINE):
-            self.number += 1
-            self._check_length(line, self.number)
-            yield self.number, line.removeprefix(_BYTE_ORDER_MARK) if self.number == 1 else line
+    def cells(self, text: str) -> list[str]:
+        """Return the cells of a line.
 
-    def blocks(self) -> Iterator[list[tuple[int, bytes]]]:
-        """Yield the next lines many at once, stripped and without blank ones.
-
-        Raises DataError for a long line.
+        A quoted cell ends on its line, or one open quote would swallow the rows that follow.
+        Raises LagtopError for a wrong quote.
         """
-        while chunk := self.stream.read(BYTES_AT_ONCE):
-            if not chunk.endswith(b"\n"):
-                chunk += self.stream.readline(LONGEST_LINE)
-            first, self.number = self.number + 1, self.number + chunk.count(b"\n")
-            lines = chunk.split(b"\n")
-            longest = max(lines, key=len)
-            self._check_length(longest, first + lines.index(longest))
-            stripped = (line.strip(b" \r") for line in lines)
-            yield [x for x in enumerate(stripped, first) if x[1]]
+        is_blank, delimiter = self.delimiter == " ", self.delimiter
+        if '"' not in text:
+            return text.split() if is_blank else text.split(delimiter)
+        if is_blank:
+            text = text.replace("\t", " ").strip()
+        skips = is_blank or f'{delimiter} "' in text
+        try:
+            lines = csv.reader([text], strict=True, delimiter=delimiter, skipinitialspace=skips)
+            return next(lines)
+        except csv.Error:
+            cells = enumerate(text.split(delimiter), 1)
+            number, cell = next((x for x in cells if x[1].count('"') % 2), (1, text))
+            raise LagtopError(
+                f"a quoted cell must end with its quote, got {quoted(cell.strip())} "
+                f"in column {number}"
+            ) from None
 
-    def _check_length(self, line: bytes, number: int) -> None:
-        if len(line) >= LONGEST_LINE:
-            wrong = f"a line must have less than {LONGEST_LINE} bytes"
-            raise DataError(f"{self.name}, line {number}: {wrong}")
+    def with_point(self, cell: str) -> str:
+        """Return a number with a decimal point; one with the other mark is no number then."""
+        return cell.translate({44: 46, 46: 44}) if self.decimal == "," else cell
 
-
-def has_row(line: bytes) -> bool:
-    """Return whether a line is neither blank nor a comment, which begins with #."""
-    bare = line.strip()
-    return bool(bare) and not bare.startswith(b"#")
-
-
-def decoded_row(line: bytes, what: str = "a row") -> str:
-    """Return the text of a line.  Raises LagtopError for a line that is not UTF-8."""
-    try:
-        return line.decode().rstrip("\r\n")
-    except UnicodeDecodeError:
-        raise LagtopError(f"{what} must be UTF-8 text") from None
+    def remedy(self, cell: str) -> str:
+        """Return a hint in brackets if a cell would be a number with the other decimal mark."""
+        other = "point" if self.decimal == "," else "comma"
+        helps = self.delimiter != "," and is_number(cell) and set(cell) & {",", "."}
+        return f" (--decimal {other} reads it)" if helps else ""
 
 
-def delimiter_of(header: str) -> str | None:
-    """Return the delimiter of a table by its first row, None for white space."""
-    return next((x for x in DELIMITERS if x in header), None)
+UNDECIDED = Dialect()
 
 
-def split_cells(line: str, delimiter: str) -> list[str]:
-    """Return the cells of a line of CSV.
+class TableHead(NamedTuple):
+    """The beginning of a table: its headings, its first lines, and the way to read its rows."""
 
-    A quoted cell ends on its line, or one open quote would swallow the rows that follow.  Raises
-    LagtopError for a wrong quote.
+    lines: NumberedLines
+    """The lines that have not been read."""
+    kept: Sequence[Numbered]
+    """Lines below the headings that have been read, blank ones and comments among them."""
+    comments: Sequence[str]
+    """The comments above the first row."""
+    headings: Sequence[str] | None
+    """None if there are none, or if the rows are JSON objects."""
+    place: int
+    """The line of the headings, or else of the first row."""
+    dialect: Dialect = UNDECIDED
+    around: bytes | None = None
+    """For JSON objects, the characters that may stand around each; None for cells."""
+
+    def rows(self) -> list[Numbered]:
+        """Return the first rows."""
+        return [x for x in self.kept if has_row(x[1].strip(self.around))]
+
+    def decided(self, columns: Iterable[int] | None = None) -> Dialect:
+        """Return the dialect with the decimal mark that the numbers of some columns have.
+
+        Raises DataError for thousands separators, and for numbers that can be read in two ways.
+        """
+        if self.dialect.decimal:
+            return self.dialect
+        if self.dialect.delimiter == ",":
+            return self.dialect._replace(decimal=".")
+        wanted = None if columns is None else set(columns)
+        seen: dict[str, tuple[int, str]] = {}
+        for number, line in self.rows():
+            for i, cell in enumerate(_cells((number, line), self.dialect)):
+                if wanted is None or i in wanted:
+                    seen.setdefault(_mark_of(cell.strip()), (number, cell.strip()))
+        commas = [seen[x] for x in (",", "perhaps") if x in seen]
+        if "thousands" in seen:
+            raise self._refused(seen["thousands"], "a number must have no thousands separators")
+        if commas and "." in seen:
+            raise self._refused(max(*commas, seen["."]), "a file must have one decimal mark")
+        if commas and "," not in seen:
+            raise self._refused(commas[0], "a comma may be a decimal mark or separate thousands")
+        return self.dialect._replace(decimal="," if commas else ".")
+
+    def _refused(self, where: tuple[int, str], wanted: str) -> DataError:
+        number, cell = where
+        return DataError(
+            f"{self.lines.name}, line {number}: {wanted}, got {quoted(cell)}: "
+            "pass --decimal point or --decimal comma"
+        )
+
+
+def read_head(
+    stream: BufferedIOBase | BinaryIO,
+    name: str,
+    asked: Dialect,
+    known: Callable[[Sequence[str]], int],
+    width: int | None = None,
+) -> TableHead:
+    """Return the beginning of a table.
+
+    `known` counts the headings that are known, which tells them from titles.  `width` is the number
+    of columns if their names are given: the file needs no headings then, and those it has are left
+    out.  Raises DataError for a file that can be read with two delimiters.
     """
-    if '"' not in line:
-        return line.split(delimiter)
+    lines = NumberedLines(stream, name)
+    kept = _sample(lines)
+    above = next((i for i, x in enumerate(kept) if has_row(x[1])), len(kept))
+    comments = [_decoded(x, name).strip("# \t") for x in kept[:above] if x[1].strip()]
+    kept = kept[above:]
+    if not kept:
+        return TableHead(lines, kept, comments, None, 1, asked)
+    start = kept[0][1].lstrip()[:1]
+    if start in {b"{", b"["}:
+        around = b"[], \t\r\n" if start == b"[" else b" \t\r\n"
+        return TableHead(lines, kept, comments, None, kept[0][0], asked, around)
+    kept, asked = _without_preamble(kept, name, asked)
+    rows = [x for x in kept if has_row(x[1])]
+    titles = [_decoded(x, name) for x in rows[:_MOST_TITLES]]
+    for (number, _), text in zip(rows, titles, strict=False):
+        with at_line(name, number):
+            _has_number(text, asked)  # for its errors
+    at, delimiters = _find_headings(titles, asked, known)
+    if width is None and at is not None:
+        below = rows[at + 1 :]
+        delimiter = _fitting(delimiters, titles[at], below, f"{name}, line {rows[at][0]}")
+        headings = _headings(titles[at], delimiter)
+        if delimiter == " " and below and all(len(_cells(x, Dialect(" "))) == 1 for x in below):
+            headings = [titles[at].strip()]
+    else:
+        below = rows if at is None else rows[at + 1 :]
+        delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
+        headings = None
+    place = rows[at][0] if headings is not None and at is not None else (below or [(1, b"")])[0][0]
+    kept = [x for x in kept if x[0] > place or (x[0] == place and headings is None)]
+    return TableHead(lines, kept, comments, headings, place, asked._replace(delimiter=delimiter))
+
+
+def _sample(lines: NumberedLines) -> list[Numbered]:
+    """Return the first lines, with `SAMPLE_ROWS` rows if there are so many."""
+    kept, rows, size = [], 0, 0
+    for number, line in lines:
+        kept.append((number, line))
+        rows, size = rows + has_row(line), size + len(line)
+        if rows == SAMPLE_ROWS or size > _SAMPLE_BYTES:
+            break
+    return kept
+
+
+def _without_preamble(
+    kept: list[Numbered], name: str, asked: Dialect
+) -> tuple[list[Numbered], Dialect]:
+    """Return the lines below Excel's `sep=;` or LabVIEW's header, and the dialect these give."""
+    first = _decoded(kept[0], name).strip()
+    if found := re.fullmatch(r'"?sep=(.)"?', first):
+        return kept[1:], asked._replace(delimiter=asked.delimiter or found[1])
+    if not first.startswith(_LABVIEW):
+        return kept, asked
+    ends = [i for i, x in enumerate(kept) if x[1].startswith(_END_OF_HEADER)]
+    end = ends[-1] + 1 if ends else 0
+    mark = next((x for _, x in kept[:end] if x.startswith(b"Decimal_Separator")), b"").strip()
+    decimal = asked.decimal or {b",": ",", b".": "."}.get(mark[-1:], "")
+    return kept[end:], asked._replace(decimal=decimal)
+
+
+def _find_headings(
+    titles: Sequence[str], asked: Dialect, known: Callable[[Sequence[str]], int]
+) -> tuple[int | None, list[str]]:
+    """Return which of the first rows has the headings, and the delimiters that it may have.
+
+    That is the row with most known headings among those without numbers, or else the last of them.
+    """
+    found, most = None, 0
+    for i, text in enumerate(titles):
+        counts = {x: known(_headings(text, x)) for x in _delimiters_in(text, asked)}
+        has_number = _has_number(text, asked)
+        if max(counts.values()) > most and not (i and has_number):
+            found, most = (i, [x for x, count in counts.items() if count]), max(counts.values())
+        if has_number:
+            above = i - 1
+            break
+    else:
+        above = min(len(titles), 1) - 1
+    if found is not None:
+        return found
+    return (above, _delimiters_in(titles[above], asked)[:1]) if above >= 0 else (None, [])
+
+
+def _delimiters_in(text: str, asked: Dialect) -> list[str]:
+    """Return the delimiters that a row may have: those in it, or white space."""
+    bare = _ENCLOSED.sub("", text)
+    return [asked.delimiter] if asked.delimiter else [x for x in _SEPARATORS if x in bare] or [" "]
+
+
+def _has_number(text: str, asked: Dialect) -> bool:
+    return any(is_number(x) for d in _delimiters_in(text, asked) for x in _headings(text, d))
+
+
+def _headings(text: str, delimiter: str) -> list[str]:
+    """Return the headings in a row; white space before a unit in brackets separates nothing."""
+    if delimiter == " ":
+        return [x.strip('"') for x in _HEADING.findall(text)]
+    return [x.strip() for x in Dialect(delimiter).cells(text)]
+
+
+def _fitting(delimiters: Sequence[str], text: str, rows: Sequence[Numbered], where: str) -> str:
+    """Return the delimiter by which rows have as many cells as their headings.
+
+    Raises DataError if there are several.
+    """
+    if len(delimiters) == 1:
+        return delimiters[0]
+    widths = {x: len(_headings(text, x)) for x in delimiters}
+    fitting = [
+        x for x, width in widths.items() if any(len(_cells(r, Dialect(x))) == width for r in rows)
+    ]
+    if len(fitting) != 1:
+        raise _two_delimiters(where, text)
+    return fitting[0]
+
+
+def _delimiter_of_rows(
+    rows: Sequence[Numbered], name: str, asked: Dialect, width: int | None
+) -> str:
+    """Return the delimiter of rows without headings, by which no cell has several numbers.
+
+    Raises DataError if there are several, or none.
+    """
+    texts = [_decoded(row, name) for row in rows]
+    possible = [x for text in texts if (x := _delimiters_of_row(text, asked, width))]
+    if width is not None and not possible:  # their reader will name the width
+        return _delimiters_in(texts[0], asked)[0] if texts else " "
+    common = set.intersection(*possible) if possible else {" "}
+    if len(common) != 1:
+        raise _two_delimiters(f"{name}, line {rows[0][0]}", texts[0].strip())
+    return common.pop()
+
+
+def _delimiters_of_row(text: str, asked: Dialect, width: int | None) -> set[str]:
+    """Return the delimiters by which no cell of a row has several numbers, or a delimiter."""
+    present = [x for x in _SEPARATORS if x in text and x != asked.decimal]
+    if "\t" not in present:
+        present.append(" ")
+    found = set()
+    for delimiter in present:
+        with suppress(LagtopError):
+            cells = [x.strip() for x in Dialect(delimiter).cells(text)]
+            fits = width is None or len(cells) == width
+            if fits and all(is_number(x) or not _is_several(x) for x in cells):
+                found.add(delimiter)
+    return found
+
+
+def _is_several(cell: str) -> bool:
+    return bool(set(cell) & set(_SEPARATORS) or _NUMBERS.fullmatch(cell))
+
+
+def _two_delimiters(where: str, text: str) -> DataError:
+    return DataError(
+        f"{where}: the delimiter must be clear, got {quoted(text)}: pass --delimiter, "
+        "or --decimal comma for decimal commas"
+    )
+
+
+def _cells(row: Numbered, dialect: Dialect) -> list[str]:
+    """Return the cells of a row, none of one that cannot be read, which its reader will name."""
     try:
-        return next(csv.reader([line], strict=True, delimiter=delimiter))
-    except csv.Error as error:
-        raise LagtopError(f"a row must be CSV, got a wrong quote: {error}") from None
+        return dialect.cells(decoded_row(row[1]))
+    except LagtopError:
+        return []
 
 
-def json_object(line: bytes) -> dict[str, Any]:
-    """Return the object of a line.  Raises LagtopError for any other line."""
-    import orjson
-
-    try:
-        values = orjson.loads(line)
-    except ValueError as error:
-        raise LagtopError(f"a row must be a JSON object: {error}") from None
-    if not isinstance(values, dict):
-        raise LagtopError(f"a row must be a JSON object, got {shown_json(values)}")
-    return values
+def _mark_of(cell: str) -> str:
+    """Return the decimal mark of a number; `perhaps` for a comma that may separate thousands."""
+    if _THOUSANDS.fullmatch(cell):
+        return "thousands"
+    if not is_number(cell):
+        return ""
+    if _PERHAPS_THOUSANDS.fullmatch(cell):
+        return "perhaps"
+    return next((mark for mark in ",." if mark in cell), "")
 
 
-def shown_json(value: Any) -> str:
-    """Return a JSON value for a message."""
-    return shortened(json_text(value))
+def is_number(cell: str) -> bool:
+    """Return whether a cell is a number, with either decimal mark, or nan or inf."""
+    return _NUMBER.fullmatch(cell) is not None
+
+
+def _decoded(row: Numbered, name: str) -> str:
+    with at_line(name, row[0]):
+        return decoded_row(row[1])

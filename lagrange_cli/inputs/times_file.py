@@ -1,24 +1,23 @@
-"""Times from a file or from standard input, one per line, read as they are needed."""
+"""Times from a file or from standard input, one per row, read as they are needed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import NumberText, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
-from .files import reading, shown_path
-from .text_tables import NumberedLines, decoded_row, has_row
+from .files import decoded, reading, shown_path
+from .text_lines import at_line, decoded_row, has_row, json_object
+from .text_tables import UNDECIDED, Dialect, TableHead, read_head
+from .trajectory_columns import known_quantities, numeric_columns, quantities_in
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
-
-
-HEADERS = ("t", "time")
-"""First rows that name the column: `lagtop table --columns t` writes the first of them."""
 
 
 class TimesFile(Points):
@@ -26,17 +25,16 @@ class TimesFile(Points):
 
     count = 0
 
-    def __init__(self, path: str, *, counted: bool = False) -> None:
+    def __init__(self, path: str, *, counted: bool = False, dialect: Dialect = UNDECIDED) -> None:
         """Open the file (standard input for `-`) and read its first block of lines.
 
-        Where the times are to be `counted`, the file is read twice; otherwise their count is 0.
-
-        Blank lines, comments and a header are left out.  Raises DataError for a file that
-        cannot be read and for a line that is no time, here or while the rest is read.
+        If the times are to be `counted`, the file is read twice; otherwise their count is 0.
+        Raises DataError for a file that cannot be read and for a row without a time, here or
+        while the rest is read.
         """
         if counted:
-            self.count = sum(1 for _ in _read(path))
-        times = _read(path)
+            self.count = sum(1 for _ in _read(path, dialect))
+        times = _read(path, dialect)
         first = list(islice(times, POINTS_AT_ONCE))
         if not first:
             raise DataError(f"{shown_path(path)} must hold at least one time, got none")
@@ -62,15 +60,63 @@ class TimesFile(Points):
         return ListedPoints(list(islice(self._times, most)))
 
 
-def _read(path: str) -> Iterator[Fraction]:
+def _read(path: str, dialect: Dialect) -> Iterator[Fraction]:
+    """Yield the times of a file, which stand in its column `t` or in its only column."""
     name = shown_path(path)
-    with reading(path) as file:
-        rows = ((number, line) for number, line in NumberedLines(file, name) if has_row(line))
-        for i, (number, line) in enumerate(rows):
-            try:
-                text = decoded_row(line, "a time").strip()
-                if i or text not in HEADERS:
-                    yield parse_number(text)
-            except LagtopError as error:
-                what = "" if str(error).startswith("a time") else "the time "
-                raise DataError(f"{name}, line {number}: {what}{error}") from None
+    with reading(path) as file, decoded(file, name) as stream:
+        head = read_head(stream, name, dialect, known_quantities)
+        with at_line(name, head.place):
+            time_of = _reader(head)
+        for number, line in chain(head.kept, head.lines):
+            if has_row(line.strip(head.around)):
+                with at_line(name, number):
+                    time = time_of(line)
+                yield time
+
+
+def _reader(head: TableHead) -> Callable[[bytes], Fraction]:
+    """Return the function that reads the time in a row.  Raises LagtopError if there is none."""
+    rows = [line.strip(head.around) for _, line in head.rows()]
+    if not rows and head.headings is None:
+        return lambda _: Fraction()
+    if head.around is not None:
+        key = _time_among(list(json_object(rows[0])))
+        return lambda line: _time_in_object(line.strip(head.around), key)
+    if head.headings is None:
+        width, place = len(head.dialect.cells(decoded_row(rows[0]))), 0
+        if width > 1:
+            raise LagtopError(f"{width} columns must have headings, t among them, got none")
+    else:
+        width, place = len(head.headings), list(head.headings).index(_time_among(head.headings))
+    dialect = head.decided(numeric_columns(head.headings or ["t"]))
+
+    def time_of(line: bytes) -> Fraction:
+        cells = dialect.cells(decoded_row(line))
+        if len(cells) != width:
+            raise LagtopError(f"a row must have {width} cells, got {len(cells)}")
+        return _parsed(cells[place].strip(), dialect)
+
+    return time_of
+
+
+def _time_among(names: Sequence[str]) -> str:
+    """Return the name of the column of times."""
+    found = quantities_in(names)
+    if "t" not in found:
+        shown = shortened(", ".join(map(repr, names)))
+        raise LagtopError(f"the time must be a number below the heading t or time, got {shown}")
+    return names[found["t"].columns[0]]
+
+
+def _time_in_object(line: bytes, key: str) -> Fraction:
+    json_object(line)  # for its errors
+    value = json.loads(line, parse_float=NumberText, parse_int=NumberText).get(key)
+    return _parsed(value if isinstance(value, NumberText) else repr(value), Dialect())
+
+
+def _parsed(text: str, dialect: Dialect) -> Fraction:
+    try:
+        return parse_number(dialect.with_point(text))
+    except LagtopError as error:
+        wrong = str(error).partition(", got")[0]
+        raise LagtopError(f"the time {wrong}, got {quoted(text)}{dialect.remedy(text)}") from None

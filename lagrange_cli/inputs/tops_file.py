@@ -1,4 +1,4 @@
-"""Files of tops, one per line: a table with a header, or JSON objects.
+"""Files of tops, one per row: a table with headings, or JSON objects.
 
 Lines are cut into blocks without being read closer, so that any machine can take any block; a line
 that cannot be read becomes an error of its own row and harms no other.
@@ -8,29 +8,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from fractions import Fraction
 from io import BufferedIOBase
 from itertools import chain, islice
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ..arithmetic.text import parse_number
+from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
-from .files import reading, shown_path
+from .files import decoded, reading, shown_path
 from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, heading, heading_units
-from .input_keys import from_example, one_of_each, overridden
+from .input_keys import TILT, from_example, one_of_each, overridden
 from .ranges import InputArrays
-from .text_tables import (
-    NumberedLines,
-    decoded_row,
-    delimiter_of,
-    has_row,
-    json_object,
-    shown_json,
-    split_cells,
-)
+from .text_lines import Numbered, decoded_row, has_row, json_object, shown_json
+from .text_tables import UNDECIDED, Dialect, TableHead, read_head
 from .top import INPUTS
 from .value import Value
 
@@ -65,12 +58,12 @@ class Lines(NamedTuple):
     @property
     def size(self) -> int:
         """The number of tops; blank lines and comments hold none."""
-        return sum(1 for text in self.texts if has_row(text))
+        return sum(1 for text in self.texts if self.file.has_top(text))
 
     def rows(self) -> Iterator[TopRow]:
         """Yield the tops of the lines."""
         for number, text in enumerate(self.texts, self.first):
-            if has_row(text):
+            if self.file.has_top(text):
                 yield self.file.row(number, text)
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
@@ -105,7 +98,9 @@ class TopsFile(NamedTuple):
     """1 in each column of an input, in the unit of its heading."""
     factors: Mapping[str, Fraction] = MappingProxyType({})
     """What the numbers of a column are multiplied with, where its heading has a unit."""
-    delimiter: str = ","
+    dialect: Dialect = UNDECIDED
+    around: bytes | None = None
+    """The characters that may stand around JSON objects."""
 
     def among(
         self, inputs: Mapping[str, Any], scene: str | None, system: str | None
@@ -137,6 +132,10 @@ class TopsFile(NamedTuple):
         factors = {keys[x]: found.others[keys[x]] for x in keys if self.units[x].unit}
         return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
+    def has_top(self, line: bytes) -> bool:
+        """Return whether a line holds a top, and is not blank, a comment or a bracket."""
+        return has_row(line.strip(self.around))
+
     def row(self, number: int, raw: bytes) -> TopRow:
         """Return the top of a line, or what is wrong with it."""
         carried: dict[str, Any] = {}
@@ -144,7 +143,7 @@ class TopsFile(NamedTuple):
         error = None
         try:
             if self.columns is None:
-                self._read_json(raw, carried, inputs)
+                self._read_json(raw.strip(self.around), carried, inputs)
             else:
                 self._read_csv(raw, carried, inputs)
             one_of_each(inputs)
@@ -154,14 +153,14 @@ class TopsFile(NamedTuple):
 
     def _read_csv(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         assert self.columns is not None
-        cells = split_cells(decoded_row(raw), self.delimiter)
+        cells = self.dialect.cells(decoded_row(raw))
         texts = dict(zip(self.columns, cells, strict=False))
         carried.update((name, texts[name]) for name in self.carried if name in texts)
         if len(cells) != len(self.columns):
             raise LagtopError(f"a row must have {len(self.columns)} cells, got {len(cells)}")
         for name, text in texts.items():
             if name in INPUTS:
-                inputs[name] = _double(name, text, self.factors.get(name))
+                inputs[name] = _double(name, text, self.dialect, self.factors.get(name))
 
     def _read_json(self, raw: bytes, carried: dict[str, Any], inputs: dict[str, float]) -> None:
         values = json_object(raw)
@@ -173,9 +172,10 @@ class TopsFile(NamedTuple):
                 raise LagtopError(f"the key {name!r} must be in one of the first rows too")
 
 
-def _double(name: str, text: str, factor: Fraction | None = None) -> float:
+def _double(name: str, text: str, dialect: Dialect, factor: Fraction | None = None) -> float:
+    plain = dialect.with_point(text)
     try:
-        value = float(text)
+        value = float(plain)
     except ValueError:
         value = math.nan
     if factor is None and value and math.isfinite(value) and text.isascii() and "_" not in text:
@@ -183,9 +183,12 @@ def _double(name: str, text: str, factor: Fraction | None = None) -> float:
     if not text.strip():
         raise LagtopError(f"{name} must be a number, got an empty cell")
     try:
-        return checked_double(name, parse_number(text) * (1 if factor is None else factor))
+        return checked_double(name, parse_number(plain) * (1 if factor is None else factor))
     except LagtopError as error:
-        raise LagtopError(f"{name} {error}") from None
+        wrong = str(error).replace(quoted(plain.strip()), quoted(text.strip()))
+        if hint := dialect.remedy(text.strip()):
+            wrong = f"{wrong.partition(' (')[0]}{hint}"
+        raise LagtopError(f"{name} {wrong}") from None
 
 
 def _json_double(name: str, value: Any) -> float:
@@ -195,50 +198,64 @@ def _json_double(name: str, value: Any) -> float:
 
 
 def open_tops(
-    path: str, computed: Collection[str], size: int, stream: BufferedIOBase | None = None
+    path: str,
+    computed: Collection[str],
+    size: int,
+    stream: BufferedIOBase | None = None,
+    dialect: Dialect = UNDECIDED,
 ) -> tuple[TopsFile, Iterator[Lines]]:
     """Return the way to read a file (standard input for `-`), and its lines, `size` at a time.
 
     Columns whose names are in `computed` are neither read nor carried through.  A `stream` that is
     open already is read in place of the path.  Raises DataError for a file that cannot be read, for
-    one that has neither a header nor an object, and for a heading whose unit is wrong.
+    one that has neither headings nor an object, and for a heading whose unit is wrong.
     """
     name = shown_path(path)
-    lines = _lines(path, stream)
-    start, first = next(((i, raw) for i, raw in lines if has_row(raw)), (1, b""))
-    if first.lstrip().startswith(b"{"):
-        head = [(start, first), *_some(name, lines, size - 1)]
-        carried = [x for x in _names(raw for _, raw in head) if x not in computed]
-        check_spelling(carried, name)
-        file = TopsFile(name, None, carried, frozenset(computed), _named(raw for _, raw in head))
-        return file, _blocks(file, chain(head, lines), size)
-    try:
-        header = decoded_row(first)
-        delimiter = delimiter_of(header) or ","
-        headings = [heading(cell.strip()) for cell in split_cells(header, delimiter)]
-    except LagtopError as error:
-        raise DataError(f"{name}, line {start}: {error}") from None
+    with ExitStack() as stack:
+        raw = stack.enter_context(stream or reading(path))
+        head = read_head(stack.enter_context(decoded(raw, name)), name, dialect, _known_inputs)
+        lines = chain(head.kept, head.lines)
+        if head.around is None:
+            file = _of_headings(head, computed)
+        else:
+            first = list(_some(name, lines, size))
+            lines = chain(first, lines)
+            file = _of_objects(head, first, computed)
+        return file, _blocks(file, _while_open(stack.pop_all(), lines), size)
+
+
+def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:
+    """Return the way to read a table.  Raises DataError for bad headings."""
+    name, first = head.lines.name, head.kept[0][1] if head.kept else b""
+    headings = [heading(x) for x in head.headings or [first.decode(errors="replace").strip()]]
     columns = [column for column, _ in headings]
     known = {*INPUTS, *(x for x, unit in headings if unit)}
     carried = [x for x in columns if x not in known and x not in computed]
     check_spelling(carried, name)
     check_header(columns, known, name)
     units = heading_units(headings, known, name)
-    file = TopsFile(
-        name,
-        columns,
-        carried,
-        frozenset(computed),
-        set(columns) & set(INPUTS),
-        units,
-        delimiter=delimiter,
-    )
-    return file, _blocks(file, lines, size)
+    dialect = head.decided(i for i, column in enumerate(columns) if column in known)
+    named = set(columns) & set(INPUTS)
+    return TopsFile(name, columns, carried, frozenset(computed), named, units, dialect=dialect)
 
 
-def _lines(path: str, stream: BufferedIOBase | None) -> Iterator[tuple[int, bytes]]:
-    with stream or reading(path) as file:
-        yield from NumberedLines(file, shown_path(path))
+def _of_objects(head: TableHead, first: Iterable[Numbered], computed: Collection[str]) -> TopsFile:
+    """Return the way to read JSON objects, whose keys the first of them name."""
+    objects = [raw.strip(head.around) for _, raw in first]
+    carried = [x for x in _names(objects) if x not in computed]
+    check_spelling(carried, head.lines.name)
+    named = _named(objects)
+    return TopsFile(head.lines.name, None, carried, frozenset(computed), named, around=head.around)
+
+
+def _known_inputs(names: Sequence[str]) -> int:
+    """Return how many inputs some headings name."""
+    return sum(heading(name)[0] in {*INPUTS, TILT} for name in names)
+
+
+def _while_open(stack: ExitStack, lines: Iterator[Numbered]) -> Iterator[Numbered]:
+    with stack:
+        yield from lines
 
 
 def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> Iterator[Lines]:

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from io import BufferedReader
-from typing import TYPE_CHECKING, Any, BinaryIO, cast
+from typing import TYPE_CHECKING, BinaryIO
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
-from .files import reading, shown_path, temporary_copy
+from .files import decoded, reading, shown_path, temporary_copy
+from .text_tables import UNDECIDED, Dialect
 from .trajectory_columns import QUANTITIES, Found, expanded, named_twice, quantities_in
 from .trajectory_rows import Table, Words
 
@@ -45,14 +46,13 @@ class Trajectory:
 
     def _column_names(self, columns: Sequence[str] | None) -> list[str]:
         if columns is not None:
-            names = expanded(columns)
-            if len(names) != self._table.width:
+            if len(columns) != self._table.width:
                 raise LagtopError(
                     f"columns must name all {self._table.width} columns of {self.name} "
-                    f"(_ leaves one out), got {len(names)} names",
+                    f"(_ leaves one out), got {len(columns)} names",
                     "columns",
                 )
-            return names
+            return list(columns)
         if self._table.names is None:
             raise DataError(
                 f"{self.name} has no header: name its {self._table.width} columns by --columns, "
@@ -129,20 +129,26 @@ class Clock:
 
 
 @contextmanager
-def open_trajectory(path: str, columns: Sequence[str] | None = None) -> Iterator[Trajectory]:
+def open_trajectory(
+    path: str, columns: Sequence[str] | None = None, dialect: Dialect = UNDECIDED
+) -> Iterator[Trajectory]:
     """Open the trajectory of a file, or of standard input for `-`.
 
     `columns` name all columns from the left, whatever the file says.  Raises DataError for a file
     that cannot be read or holds no trajectory.
     """
-    with reading(path) as stream:
-        peeked = BufferedReader(cast(Any, stream))
-        try:
-            kind = _MAGIC.get(peeked.peek(4)[:4])
-            with _seekable(peeked, kind) as content:
-                yield Trajectory(path, _reader(kind)(content, shown_path(path)), columns)
-        finally:
-            peeked.detach()
+    names, name = None if columns is None else expanded(columns), shown_path(path)
+    with reading(path) as file, decoded(file, name) as stream:
+        kind = _MAGIC.get(stream.peek(4)[:4])
+        with _seekable(stream, kind) as content:
+            if kind is None:
+                from .trajectory_text import read_text
+
+                width = None if names is None else len(names)
+                table = read_text(content, name, dialect, width)
+            else:
+                table = _arrays(kind)(content, name)
+            yield Trajectory(path, table, names)
 
 
 @contextmanager
@@ -155,11 +161,8 @@ def _seekable(stream: BufferedReader, kind: str | None) -> Iterator[BinaryIO]:
         yield copy
 
 
-def _reader(kind: str | None) -> Callable[[BinaryIO, str], Table]:
-    if kind is None:
-        from .trajectory_text import read_text
-
-        return read_text
+def _arrays(kind: str) -> Callable[[BinaryIO, str], Table]:
+    """Return the reader of a binary format, which loads NumPy."""
     from . import trajectory_arrays as arrays
 
     readers: dict[str, Callable[[BinaryIO, str], Table]] = {

@@ -171,6 +171,17 @@ def quantities_in(names: Sequence[str]) -> dict[str, Found]:
     return found
 
 
+def known_quantities(names: Sequence[str]) -> int:
+    """Return how many quantities some headings name; 0 if the time is not among them."""
+    found = quantities_in(names)
+    return len(found) if "t" in found else 0
+
+
+def numeric_columns(names: Sequence[str]) -> list[int]:
+    """Return the columns of all quantities."""
+    return [i for found in quantities_in(names).values() for i in found.columns]
+
+
 def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, str] | None:
     """Return two names of the same part of a quantity that was found, if there are any."""
     for i in (i for quantity in found.values() for i in quantity.columns):

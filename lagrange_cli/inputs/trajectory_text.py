@@ -1,6 +1,6 @@
-"""Trajectories as text: a row per line, with commas, semicolons, tabs or white space; JSON lines.
+"""Trajectories as text: a row per line, or JSON lines.
 
-A block of lines goes through NumPy's parser.  Where this refuses it, the lines are read one by one:
+A block of lines goes through NumPy's parser.  If this refuses it, the lines are read one by one:
 empty cells are NaN, and what is no number is named by its line and column.
 """
 
@@ -14,90 +14,62 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
-from ..errors import DataError, LagtopError
-from .text_tables import NumberedLines, decoded_row, delimiter_of, json_object
-from .trajectory_columns import names_in_comments
+from ..errors import DataError
+from .text_lines import Numbered, at_line, decoded_row, has_row, json_object
+from .text_tables import SWAP, Dialect, TableHead, is_number, read_head
+from .trajectory_columns import known_quantities, names_in_comments
 from .trajectory_rows import Block, PlainNumbers, Table, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
-_COMMENT = b"#"
-_AROUND = b"[], \t"
-"""What may stand around the objects of an array, one per line."""
 
-Numbered = tuple[int, bytes]
+def read_text(stream: BinaryIO, name: str, dialect: Dialect, width: int | None) -> Table:
+    """Return the rows of a text, whose `width` columns may have been named.
 
-
-def read_text(stream: BinaryIO, name: str) -> Table:
-    """Return the rows of a text.  Raises DataError where there are none."""
-    lines = NumberedLines(stream, name)
-    comments: list[str] = []
-    for number, raw in lines:
-        line = raw.strip(b" \r\n")
-        if line.startswith(_COMMENT):
-            comments.append(_decoded(line, name, number).lstrip("# \t"))
-        elif line in {b"", b"["}:
-            continue
-        elif line[:1] in {b"{", b"["}:
-            return JsonTable(name, (number, line), lines)
-        else:
-            return TextTable(name, (number, line), lines, comments)
-    raise DataError(f"{name} must hold a trajectory, got no row")
+    Raises DataError if there are none.
+    """
+    head = read_head(stream, name, dialect, known_quantities, width)
+    if not head.kept and head.headings is None:
+        raise DataError(f"{name} must hold a trajectory, got no row")
+    return TextTable(name, head) if head.around is None else JsonTable(name, head)
 
 
-def _decoded(line: bytes, name: str, number: int) -> str:
-    try:
-        text = decoded_row(line)
-    except LagtopError as error:
-        raise DataError(f"{name}, line {number}: {error}") from None
-    if "\0" in text:
-        raise DataError(f"{name}, line {number}: a row must be text, got the character NUL")
-    return text
-
-
-def _is_plain(text: bytes) -> bool:
-    """Return whether lines are ASCII text without quoted cells, which are left to `_row`."""
-    return text.isascii() and b'"' not in text and b"\0" not in text
+def _lines(head: TableHead) -> Iterator[list[Numbered]]:
+    """Yield the lines of a table, many at once and without blank ones."""
+    kept = ((number, line.strip(b" \r\n")) for number, line in head.kept)
+    return chain([[x for x in kept if x[1]]], head.lines.blocks())
 
 
 class TextTable:
-    """Rows of a text, with or without a header; comments may give the names too."""
+    """Rows of a text, with or without headings; comments may give the names too."""
 
     place = "line"
 
-    def __init__(
-        self, name: str, first: Numbered, lines: NumberedLines, comments: Sequence[str]
-    ) -> None:
-        self.name = name
-        self.delimiter = delimiter_of(first[1].decode(errors="replace"))
-        cells = self._cells(*first)
-        self.width = len(cells)
-        has_header = not any(_is_number(cell) for cell in cells)
-        self.names: Sequence[str] | None = (
-            cells if has_header else names_in_comments(comments, self.width)
-        )
-        self._lines = chain([[] if has_header else [first]], lines.blocks())
-        self._words: dict[int, Words] = {}
+    def __init__(self, name: str, head: TableHead) -> None:
+        self.name, self._head, self._words = name, head, dict[int, Words]()
+        self._dialect = head.dialect
+        rows = head.rows()
+        self.names = head.headings
+        if head.headings is None:
+            self.width = len(self._cells(*rows[0]))
+            self.names = names_in_comments(head.comments, self.width)
+        else:
+            self.width = len(head.headings)
 
     def words_of(self, column: int) -> Words:
         """Return the words of a column."""
         return self._words.setdefault(column, Words())
 
     def _cells(self, number: int, line: bytes) -> list[str]:
-        cells = [x.strip() for x in _decoded(line, self.name, number).split(self.delimiter)]
-        for i, cell in enumerate(cells, 1):
-            if cell.startswith('"') and (len(cell) == 1 or not cell.endswith('"')):
-                raise DataError(
-                    f"{self.name}, line {number}, column {i}: a quoted cell must end with its "
-                    f"quote, got {quoted(cell)}"
-                )
-        return [cell.strip('"') for cell in cells]
+        with at_line(self.name, number):
+            return [x.strip() for x in self._dialect.cells(decoded_row(line))]
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
         """Yield some columns of the rows.  Raises DataError for what is no number."""
-        for lines in self._lines:
-            block = [x for x in lines if not x[1].startswith(_COMMENT)]
+        self._dialect = self._head.decided(i for i in columns if i not in self._words)
+        for lines in _lines(self._head):
+            block = [x for x in lines if has_row(x[1])]
             if block:
                 places, texts = zip(*block, strict=True)
                 yield Block(self._parsed(block, texts, columns, names), places)
@@ -111,11 +83,17 @@ class TextTable:
     ) -> Array:
         import numpy as np
 
-        if _is_plain(b"\n".join(texts)):
+        text = b"\n".join(texts)
+        swaps = self._dialect.decimal == ","
+        is_plain = text.isascii() and b'"' not in text and b"\0" not in text
+        if is_plain and not (swaps and self._words):  # others are left to `_row`
+            delimiter = None if self._dialect.delimiter == " " else self._dialect.delimiter
+            if swaps:
+                texts = text.translate(SWAP).split(b"\n")
             with suppress(ValueError):
                 values = np.loadtxt(
                     texts,
-                    delimiter=self.delimiter,
+                    delimiter=delimiter,
                     ndmin=2,
                     comments=None,
                     converters={i: words.number for i, words in self._words.items()} or None,
@@ -137,21 +115,14 @@ class TextTable:
             if i in self._words:
                 row.append(self._words[i].number(cells[i]))
                 continue
-            if cells[i] and not _is_number(cells[i]):
+            plain = self._dialect.with_point(cells[i])
+            if plain and (not is_number(plain) or "," in plain):
                 raise DataError(
                     f"{self.name}, line {number}, column {i + 1}: {name} must be a number, "
-                    f"got {quoted(cells[i])}"
+                    f"got {quoted(cells[i])}{self._dialect.remedy(cells[i])}"
                 )
-            row.append(float(cells[i] or "nan"))
+            row.append(float(plain or "nan"))
         return row
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return cell.isascii() and "_" not in cell
 
 
 class JsonTable:
@@ -159,11 +130,13 @@ class JsonTable:
 
     place = "line"
 
-    def __init__(self, name: str, first: Numbered, lines: NumberedLines) -> None:
-        self.name = name
-        self._lines = chain([[first]], lines.blocks())
-        bare = first[1].strip(_AROUND)
-        entries = self._object(first[0], bare)
+    def __init__(self, name: str, head: TableHead) -> None:
+        self.name, self._around = name, head.around
+        self._lines = _lines(head)
+        number, bare = next(
+            ((i, x) for i, line in head.kept if (x := line.strip(head.around))), (1, b"")
+        )
+        entries = self._object(number, bare)
         _check_once(bare, name)
         self.sizes = {
             key: len(value) if isinstance(value, list) else 0
@@ -184,8 +157,8 @@ class JsonTable:
         if wrong := {self.names[i] for i in columns} & self._texts - self._words.keys():
             raise DataError(f"{self.name}, column {min(wrong)}: must be numbers, got texts")
         for lines in self._lines:
-            bare = ((i, line.strip(_AROUND)) for i, line in lines)
-            if block := [x for x in bare if x[1]]:
+            bare = ((i, line.strip(self._around)) for i, line in lines)
+            if block := [x for x in bare if has_row(x[1])]:
                 values = np.array([self._row(*x) for x in block], dtype=np.float64)
                 yield Block(values[:, columns], [i for i, _ in block])
 
@@ -195,10 +168,8 @@ class JsonTable:
         return self._words.setdefault(name, Words()) if name in self._texts else PlainNumbers()
 
     def _object(self, number: int, line: bytes) -> dict[str, Any]:
-        try:
+        with at_line(self.name, number):
             return json_object(line)
-        except LagtopError as error:
-            raise DataError(f"{self.name}, line {number}: {error}") from None
 
     def _row(self, number: int, line: bytes) -> list[float]:
         row: list[float] = []

@@ -13,6 +13,7 @@ from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
 from ..inputs.seen import Conventions, Quantities
+from ..inputs.text_tables import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.trajectory import open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
@@ -172,6 +173,7 @@ class ComparisonRequest(NamedTuple):
     align: Alignment = Alignment()
     limit: float | None = None
     step_sizes: Sequence[float] | None = None
+    dialect: Dialect = UNDECIDED
 
 
 class Comparison(NamedTuple):
@@ -199,7 +201,7 @@ def compare_files(
 def _judged(
     motion: Motion, path: str, request: ComparisonRequest, progress: Progress
 ) -> tuple[JudgedRun, ReadTrajectory]:
-    with open_trajectory(path, request.columns) as trajectory:
+    with open_trajectory(path, request.columns, request.dialect) as trajectory:
         said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
         rows = (block for block, _ in trajectory.blocks())
         blocks = progress(rows, "rows", size=lambda block: len(block["t"]))

@@ -22,7 +22,8 @@ from ..inputs.files import reading, shown_path, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
 from ..inputs.ranges import Block, Product
-from ..inputs.text_tables import NumberedLines
+from ..inputs.text_lines import NumberedLines
+from ..inputs.text_tables import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value
@@ -124,6 +125,7 @@ def plan(
     fmt: str = "csv",
     until_error: bool = False,
     described: bool = False,
+    dialect: Dialect = UNDECIDED,
 ) -> Plan:
     """Return the plan for a scene (a `.toml` file) and a grid, or for a scene and a file of tops.
 
@@ -142,8 +144,8 @@ def plan(
     if ranges := ranges_of({name: as_value(x).number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = _digested(tables[0]) if described else (None, "")
-    computed = {*column_keys(), *column_keys(radians=True), *chosen}
-    file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream)
+    computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
+    file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream, dialect)
     found, source = file.among(axes, scene, system)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     stds = {name: std for name, std in found.stds.items() if name not in file.named}

@@ -12,6 +12,7 @@ from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given
+from ..inputs.text_tables import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.over_time.columns import DEFAULT_COLUMNS
@@ -111,6 +112,7 @@ def open_tables(
     *,
     fmt: str,
     system: str | None,
+    dialect: Dialect = UNDECIDED,
 ) -> tuple[Tables, Iterator[Lines], Given]:
     """Return the tables of the tops in a file, its lines a few at a time, and what is shared.
 
@@ -120,7 +122,7 @@ def open_tables(
     """
     count, same = request.rows_per_top, _same_times(request)
     at_once = 1 if not count else min(max(_ROWS_PER_TASK // count, 1), _TOPS_AT_ONCE)
-    file, lines = open_tops(path, [*request.headings(), "error"], at_once)
+    file, lines = open_tops(path, [*request.headings(), "error"], at_once, dialect=dialect)
     few = same is not None and same.count <= _ROWS_PER_TASK
     times = np.concatenate([*same.blocks()]) if same is not None and few else None
     given, source = file.among(inputs, scene, system)

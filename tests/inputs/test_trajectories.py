@@ -17,7 +17,7 @@ from pyarrow import parquet
 
 from lagrange_cli import LagtopError
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs import text_tables, trajectory_arrays
+from lagrange_cli.inputs import text_lines, trajectory_arrays
 from lagrange_cli.inputs.trajectory import open_trajectory
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES, expanded, quantities_in
 
@@ -113,7 +113,7 @@ def test_every_form_holds_the_same_numbers(
     form: str, at_once: int, made: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(trajectory_arrays, "ROWS_AT_ONCE", at_once)
-    monkeypatch.setattr(text_tables, "BYTES_AT_ONCE", 100 * at_once)
+    monkeypatch.setattr(text_lines, "BYTES_AT_ONCE", 100 * at_once)
     found = read(made(form))
     assert np.array_equal(found["t"][:, 0], DATA[:, 0])
     assert np.array_equal(found["quaternion"], DATA[:, 1:])
@@ -226,9 +226,18 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         (b'{"t":0,"theta":1}\n{"t":1,"theta":"x"}\n', "line 2, column theta: must be a number"),
         (b'{"t":0,"axis":[1,2,3]}\n{"t":1,"axis":[1]}\n', "line 2, column axis: must be 3 numbers"),
         (b'{"t":0,"theta":1}\n{"t":1,', "line 2: a row must be a JSON object"),
-        (b't,theta\n0,1\n1,"2\n', "line 3, column 2: a quoted cell must end with its quote"),
-        (b't,theta\n"0,1\n1,2\n', "line 2, column 1: a quoted cell must end with its quote"),
-        (b't,"theta\n0,1\n', "line 1, column 2: a quoted cell must end with its quote"),
+        (
+            b't,theta\n0,1\n1,"2\n',
+            "line 3: a quoted cell must end with its quote, got '\"2' in column 2",
+        ),
+        (
+            b't,theta\n"0,1\n1,2\n',
+            "line 2: a quoted cell must end with its quote, got '\"0' in column 1",
+        ),
+        (
+            b't,"theta\n0,1\n',
+            "line 1: a quoted cell must end with its quote, got '\"theta' in column 2",
+        ),
         (b"t,theta\n0,1\n1,\xa02\n", "line 3: a row must be UTF-8 text"),
         (b"t,theta,note\n0,1,a\n1,2,caf\xe9\n", "line 3: a row must be UTF-8 text"),
         (b"t,theta\x00\n0,1\n", "line 1: a row must be text, got the character NUL"),

@@ -287,7 +287,11 @@ def test_units_with_fractional_powers_are_refused(unit: str, lagtop: Lagtop) -> 
         ("theta0", [], "standard input: the column theta0 must be spelt theta0_deg"),
         ('{"R0": 1}', [], "standard input: the column R0 must be spelt r0"),
         ('{"theta0_Deg": 1}', [], "standard input: the column theta0_Deg must be spelt theta0_deg"),
-        ("theta0_deg [rad]", [], "standard input, line 1: the column theta0_deg [rad] must be"),
+        (
+            "theta0_deg [rad]",
+            [],
+            "standard input: the column theta0_deg must be called theta0 [rad]",
+        ),
         ('{"m": 1}', WORDS, "standard input: JSON lines have no units"),
     ],
 )
