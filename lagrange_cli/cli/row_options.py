@@ -15,7 +15,7 @@ from .options import NAMES, F, Parsed, exclude, late
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.tables import TableOfFunctions
-    from ..inputs.text_tables import Dialect
+    from ..inputs.text_lines import Dialect
 
 RANGE = Parsed("range", late("inputs.ranges", "parse_range"))
 
@@ -83,7 +83,7 @@ def _keep(ctx: click.Context, param: click.Parameter, mark: str | None) -> None:
 
 def dialect() -> Dialect:
     """Return how the command reads text files.  Raises LagtopError for a comma in both places."""
-    from ..inputs.text_tables import Dialect
+    from ..inputs.text_lines import Dialect
 
     meta = click.get_current_context().meta
     asked = Dialect(meta["lagtop.delimiter"], meta["lagtop.decimal"])

@@ -15,7 +15,7 @@ from ..inputs import rotations
 from ..inputs.given import checked_double
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
-from ..inputs.text_tables import UNDECIDED, Dialect
+from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
 from ..inputs.trajectory_columns import plain_name
 

@@ -1,19 +1,28 @@
-"""Lines of text files: numbered, of limited length, with a row, a comment or nothing in each."""
+"""Lines of text files: numbered, of limited length, with a row, a comment or nothing in each.
+
+The cells of a row, and the numbers in them, are those of a `Dialect`.
+"""
 
 from __future__ import annotations
 
+import csv
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BufferedIOBase
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
-from ..arithmetic.text import json_text, shortened
+from ..arithmetic.text import json_text, quoted, shortened
 from ..errors import DataError, LagtopError
 
 LONGEST_LINE = 1 << 20
 """Bytes of a line: memory does not grow with a file that has no line ends."""
 BYTES_AT_ONCE = 1 << 21
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+SWAP = bytes.maketrans(b",.", b".,")
+"""Exchanges decimal points and commas."""
+DIGITS = r"(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(rf"[+-]?(?:{DIGITS}|nan|inf)", re.IGNORECASE | re.ASCII)
 
 Numbered = tuple[int, bytes]
 
@@ -96,3 +105,53 @@ def json_object(line: bytes) -> dict[str, Any]:
 def shown_json(value: Any) -> str:
     """Return a JSON value for a message."""
     return shortened(json_text(value))
+
+
+class Dialect(NamedTuple):
+    """The delimiter and the decimal mark of a table; an empty one is decided by the file."""
+
+    delimiter: str = ""
+    """A comma, semicolon, tab, or a blank, which stands for any white space."""
+    decimal: str = ""
+    """A point or a comma."""
+
+    def cells(self, text: str) -> list[str]:
+        """Return the cells of a line.
+
+        A quoted cell ends on its line, or one open quote would swallow the rows that follow.
+        Raises LagtopError for a wrong quote.
+        """
+        is_blank, delimiter = self.delimiter == " ", self.delimiter
+        if '"' not in text:
+            return text.split() if is_blank else text.split(delimiter)
+        if is_blank:
+            text = text.replace("\t", " ").strip()
+        skips = is_blank or f'{delimiter} "' in text
+        try:
+            lines = csv.reader([text], strict=True, delimiter=delimiter, skipinitialspace=skips)
+            return next(lines)
+        except csv.Error:
+            cells = enumerate(text.split(delimiter), 1)
+            number, cell = next((x for x in cells if x[1].count('"') % 2), (1, text))
+            raise LagtopError(
+                f"a quoted cell must end with its quote, got {quoted(cell.strip())} "
+                f"in column {number}"
+            ) from None
+
+    def with_point(self, cell: str) -> str:
+        """Return a number with a decimal point; one with the other mark is no number then."""
+        return cell.translate({44: 46, 46: 44}) if self.decimal == "," else cell
+
+    def remedy(self, cell: str) -> str:
+        """Return a hint in brackets if a cell would be a number with the other decimal mark."""
+        other = "point" if self.decimal == "," else "comma"
+        helps = self.delimiter != "," and is_number(cell) and set(cell) & {",", "."}
+        return f" (--decimal {other} reads it)" if helps else ""
+
+
+UNDECIDED = Dialect()
+
+
+def is_number(cell: str) -> bool:
+    """Return whether a cell is a number, with either decimal mark, or nan or inf."""
+    return _NUMBER.fullmatch(cell) is not None

@@ -8,7 +8,6 @@ that has thousands separators, is refused.
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -17,18 +16,24 @@ from typing import BinaryIO, NamedTuple
 
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError
-from .text_lines import Numbered, NumberedLines, at_line, decoded_row, has_row
+from .text_lines import (
+    DIGITS,
+    UNDECIDED,
+    Dialect,
+    Numbered,
+    NumberedLines,
+    at_line,
+    decoded_row,
+    has_row,
+    is_number,
+)
 
 SAMPLE_ROWS, _SAMPLE_BYTES = 1000, 1 << 22
 """The first rows, which decide how a file is read, and the most bytes of them."""
 _MOST_TITLES = 5
 """Rows among which the headings are, below titles such as Tracker's `mass A`."""
 _SEPARATORS = "\t;,"
-SWAP = bytes.maketrans(b",.", b".,")
-"""Exchanges decimal points and commas."""
-_DIGITS = r"(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?"
-_NUMBER = re.compile(rf"[+-]?(?:{_DIGITS}|nan|inf)", re.IGNORECASE | re.ASCII)
-_NUMBERS = re.compile(rf"[+-]?{_DIGITS}(?:\s+[+-]?{_DIGITS})+", re.ASCII)
+_NUMBERS = re.compile(rf"[+-]?{DIGITS}(?:\s+[+-]?{DIGITS})+", re.ASCII)
 _THOUSANDS = re.compile(
     r"[+-]?\d{1,3}(?:,\d{3}(?:,\d{3})*\.\d*|\.\d{3}(?:\.\d{3})*,\d*|(?:,\d{3}){2,}|(?:\.\d{3}){2,})",
     re.ASCII,
@@ -37,51 +42,6 @@ _PERHAPS_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _ENCLOSED = re.compile(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)')
 _HEADING = re.compile(r'"[^"]*"|[^\s\[(]+(?:\s*[\[(][^\])]*[\])])*')
 _LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", b"***End_of_Header***"
-
-
-class Dialect(NamedTuple):
-    """The delimiter and the decimal mark of a table; an empty one is decided by the file."""
-
-    delimiter: str = ""
-    """A comma, semicolon, tab, or a blank, which stands for any white space."""
-    decimal: str = ""
-    """A point or a comma."""
-
-    def cells(self, text: str) -> list[str]:
-        """Return the cells of a line.
-
-        A quoted cell ends on its line, or one open quote would swallow the rows that follow.
-        Raises LagtopError for a wrong quote.
-        """
-        is_blank, delimiter = self.delimiter == " ", self.delimiter
-        if '"' not in text:
-            return text.split() if is_blank else text.split(delimiter)
-        if is_blank:
-            text = text.replace("\t", " ").strip()
-        skips = is_blank or f'{delimiter} "' in text
-        try:
-            lines = csv.reader([text], strict=True, delimiter=delimiter, skipinitialspace=skips)
-            return next(lines)
-        except csv.Error:
-            cells = enumerate(text.split(delimiter), 1)
-            number, cell = next((x for x in cells if x[1].count('"') % 2), (1, text))
-            raise LagtopError(
-                f"a quoted cell must end with its quote, got {quoted(cell.strip())} "
-                f"in column {number}"
-            ) from None
-
-    def with_point(self, cell: str) -> str:
-        """Return a number with a decimal point; one with the other mark is no number then."""
-        return cell.translate({44: 46, 46: 44}) if self.decimal == "," else cell
-
-    def remedy(self, cell: str) -> str:
-        """Return a hint in brackets if a cell would be a number with the other decimal mark."""
-        other = "point" if self.decimal == "," else "comma"
-        helps = self.delimiter != "," and is_number(cell) and set(cell) & {",", "."}
-        return f" (--decimal {other} reads it)" if helps else ""
-
-
-UNDECIDED = Dialect()
 
 
 class TableHead(NamedTuple):
@@ -175,8 +135,11 @@ def read_head(
         if delimiter == " " and below and all(len(_cells(x, Dialect(" "))) == 1 for x in below):
             headings = [titles[at].strip()]
     else:
-        below = rows if at is None else rows[at + 1 :]
-        delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
+        below, delimiters = (rows, []) if at is None else (rows[at + 1 :], delimiters)
+        if len(delimiters) == 1 and delimiters != [" "]:
+            delimiter = delimiters[0]
+        else:
+            delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
         headings = None
     place = rows[at][0] if headings is not None and at is not None else (below or [(1, b"")])[0][0]
     kept = [x for x in kept if x[0] > place or (x[0] == place and headings is None)]
@@ -326,11 +289,6 @@ def _mark_of(cell: str) -> str:
     if _PERHAPS_THOUSANDS.fullmatch(cell):
         return "perhaps"
     return next((mark for mark in ",." if mark in cell), "")
-
-
-def is_number(cell: str) -> bool:
-    """Return whether a cell is a number, with either decimal mark, or nan or inf."""
-    return _NUMBER.fullmatch(cell) is not None
 
 
 def _decoded(row: Numbered, name: str) -> str:

@@ -22,8 +22,8 @@ from .given import Given, checked_double, gather
 from .headings import check_header, check_spelling, heading, heading_units
 from .input_keys import TILT, from_example, one_of_each, overridden
 from .ranges import InputArrays
-from .text_lines import Numbered, decoded_row, has_row, json_object, shown_json
-from .text_tables import UNDECIDED, Dialect, TableHead, read_head
+from .text_lines import UNDECIDED, Dialect, Numbered, decoded_row, has_row, json_object, shown_json
+from .text_tables import TableHead, read_head
 from .top import INPUTS
 from .value import Value
 

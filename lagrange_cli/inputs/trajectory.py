@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import decoded, reading, shown_path, temporary_copy
-from .text_tables import UNDECIDED, Dialect
+from .text_lines import UNDECIDED, Dialect
 from .trajectory_columns import QUANTITIES, Found, expanded, named_twice, quantities_in
 from .trajectory_rows import Table, Words
 

@@ -15,8 +15,17 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
-from .text_lines import Numbered, at_line, decoded_row, has_row, json_object
-from .text_tables import SWAP, Dialect, TableHead, is_number, read_head
+from .text_lines import (
+    SWAP,
+    Dialect,
+    Numbered,
+    at_line,
+    decoded_row,
+    has_row,
+    is_number,
+    json_object,
+)
+from .text_tables import TableHead, read_head
 from .trajectory_columns import known_quantities, names_in_comments
 from .trajectory_rows import Block, PlainNumbers, Table, Words
 

@@ -13,7 +13,7 @@ from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
 from ..inputs.files import shown_path, utf8_path
 from ..inputs.seen import Conventions, Quantities
-from ..inputs.text_tables import UNDECIDED, Dialect
+from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.trajectory import open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES

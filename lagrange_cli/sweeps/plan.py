@@ -22,8 +22,7 @@ from ..inputs.files import reading, shown_path, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
 from ..inputs.ranges import Block, Product
-from ..inputs.text_lines import NumberedLines
-from ..inputs.text_tables import UNDECIDED, Dialect
+from ..inputs.text_lines import UNDECIDED, Dialect, NumberedLines
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value

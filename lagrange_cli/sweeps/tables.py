@@ -12,7 +12,7 @@ from ..arithmetic.points import Points
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given
-from ..inputs.text_tables import UNDECIDED, Dialect
+from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
 from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.over_time.columns import DEFAULT_COLUMNS

@@ -11,7 +11,7 @@ import pytest
 from conftest import Lagtop, assert_one_line
 
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs.text_tables import UNDECIDED, Dialect
+from lagrange_cli.inputs.text_lines import UNDECIDED, Dialect
 from lagrange_cli.inputs.times_file import TimesFile
 from lagrange_cli.inputs.tops_file import open_tops
 from lagrange_cli.inputs.trajectory import open_trajectory

@@ -439,7 +439,7 @@ def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -
         ("x,y\n1,2\n", "must begin with a header that names inputs"),
         ("r0,r0\n1,2\n", "must name each column once, got 'r0' twice"),
         ("theta0\n1\n", "the column theta0 must be spelt theta0_deg"),
-        ('r0,"x\n1,2\n', "wrong quote"),
+        ('r0,"x\n1,2\n', "a quoted cell must end with its quote"),
     ],
 )
 def test_files_that_are_none(text: str, message: str, lagtop: Lagtop) -> None:
