@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import ROOT, Lagtop, process
@@ -31,81 +32,57 @@ def test_kinds_and_scene_in_any_order(lagtop: Lagtop, tmp_path: Path) -> None:
     assert files[0].read_bytes() == files[1].read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("line", "code", "message"),
-    [
-        ("", 2, "nothing to do: give -o FILE.png, --show or --animate FILE.gif"),
-        ("spere -o x.png", 2, "got 'spere' (did you mean 'sphere'?)"),
-        ("nowhere.toml -o x.png", 65, "nowhere.toml: No such file"),
-        ("-o x.jpg", 2, "-o must be a file that ends in .png or .svg or .pdf, got 'x.jpg'"),
-        ("-o x.png --size 8", 2, "--size must be WIDTHxHEIGHT, each in [2, 50] inches, got '8'"),
-        ("-o x.png --size 1x900", 2, "--size must be WIDTHxHEIGHT"),
-        ("-o x.png --dpi 1e9", 2, "--dpi must be in [20, 571] for 15.3 x 10 inches, got 1e+09"),
-        (
-            "-o x.png --dpi 1000 --size 50x50",
-            2,
-            "--dpi must be in [20, 141] for 50 x 50 inches",
-        ),
-        ("-o x.png --dpi 20 --size 2x2", 2, "--dpi must be in [51, 1000] for 2 x 2 inches, got 20"),
-        ("-o x.png cubic phase --size 3x3 --dpi 20", 2, "--dpi must be in [34, 1000] for 3 x 3"),
-        ("--animate x.gif --dpi 1000 --size 9x9", 2, "--dpi must be in [20, 785] for 9 x 9 inches"),
-        ("-o x.png --animate x.avi", 2, "--animate must be a file that ends in .gif or .mp4"),
-        ("-o x.png --t-max 0", 2, "--t-max must be > 0, got 0"),
-        ("-o x.png --t-max 1e6", 2, "--t-max must be at most 1000 nutation periods = 429.25"),
-        ("-o no/where.png cubic", 74, "cannot write no/where.png: No such file"),
-        ("remainders --theta0 0 -o x.png", 2, "no remainders: the tilt stays as it is (sleeping)"),
-        ("map --key colour -o x.png", 2, "--key must be among"),
-        (
-            "map --x r0=1:2 -o x.png",
-            2,
-            "--x must be a range [log:]start:stop:count, got '1:2'",
-        ),
-        ("map --x q=1:2:3 -o x.png", 2, "--x must begin with one of m A C s g r0"),
-        ("map --x r0=2:1:3 -o x.png", 2, "--x must have start < stop"),
-        ("map --x r0=1:2:1 -o x.png", 2, "--x must have a count of 2 or more between"),
-        ("map --x r0=1:2:3000 -o x.png", 2, "--x must have a count in [2, 2000], got 3000"),
-        ("map --x r0=1:z:9 -o x.png", 2, "--x must be a finite decimal number, got 'z'"),
-        ("map --x theta0=1:2:3 -o x.png", 2, "--x must be another input than y, got theta0 twice"),
-        (
-            "-o x.png sphere --camera 30",
-            2,
-            "--camera must be AZIMUTH,ELEVATION in [-360, 360] and [-90",
-        ),
-        ("-o x.png sphere --camera 30,95", 2, "[-90, 90] deg, got '30,95'"),
-        ("-o x.png sphere --camera 30,nan", 2, "[-90, 90] deg, got '30,nan'"),
-        ("-o x.png sphere --rad --camera 3,2", 2, "[-2π, 2π] and [-π/2, π/2] rad, got '3,2'"),
-        (
-            "-o x.png map --colour-limits 5:1",
-            2,
-            "--colour-limits must be LOW:HIGH with LOW < HIGH",
-        ),
-        ("-o x.png map --colour-limits inf:1", 2, "LOW < HIGH, got 'inf:1'"),
-        ("-o x.png --fps 24", 2, "--fps needs --animate FILE.gif"),
-        ("--animate x.gif --fps 0", 2, "--fps must be in [1, 60], got 0"),
-        ("--animate x.gif --duration 1e4", 2, "--duration must be in [0.08, 120] seconds at 25"),
-        ("--animate x.gif --duration 0", 2, "--duration must be in [0.08, 120] seconds"),
-        ("--animate x.gif --speed 0", 2, "--speed must be > 0, got 0"),
-        (
-            "--animate x.gif --speed 1e3",
-            2,
-            "--speed must be at most 71.5417 (1000 nutation periods)",
-        ),
-        ("--animate x.gif --speed 1 --duration 1 --t-max 1", 2, "--speed must be left out where"),
-        ("--animate x.avi", 2, "--animate must be a file that ends in .gif or .mp4, got 'x.avi'"),
-    ],
-)
-def test_bad_input(  # noqa: PLR0917
-    lagtop: Lagtop,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    line: str,
-    code: int,
-    message: str,
+REFUSED = [
+    ("", "nothing to do: give -o FILE.png, --show or --animate FILE.gif"),
+    ("spere -o x.png", "got 'spere' (did you mean 'sphere'?)"),
+    ("nowhere.toml -o x.png", "nowhere.toml: No such file", 65),
+    ("-o x.jpg", "-o must be a file that ends in .png or .svg or .pdf, got 'x.jpg'"),
+    ("-o x.png --size 8", "--size must be WIDTHxHEIGHT, each in [2, 50] inches, got '8'"),
+    ("-o x.png --size 1x900", "--size must be WIDTHxHEIGHT"),
+    ("-o x.png --dpi 1e9", "--dpi must be in [20, 571] for 15.3 x 10 inches, got 1e+09"),
+    ("-o x.png --dpi 1000 --size 50x50", "--dpi must be in [20, 141] for 50 x 50 inches"),
+    ("-o x.png --dpi 20 --size 2x2", "--dpi must be in [51, 1000] for 2 x 2 inches, got 20"),
+    ("-o x.png cubic phase --size 3x3 --dpi 20", "--dpi must be in [34, 1000] for 3 x 3"),
+    ("--animate x.gif --dpi 1000 --size 9x9", "--dpi must be in [20, 785] for 9 x 9 inches"),
+    ("-o x.png --animate x.avi", "--animate must be a file that ends in .gif or .mp4"),
+    ("-o x.png --t-max 0", "--t-max must be > 0, got 0"),
+    ("-o x.png --t-max 1e6", "--t-max must be at most 1000 nutation periods = 429.25"),
+    ("-o no/where.png cubic", "cannot write no/where.png: No such file", 74),
+    ("remainders --theta0 0 -o x.png", "no remainders: the tilt stays as it is (sleeping)"),
+    ("map --key colour -o x.png", "--key must be among"),
+    ("map --x r0=1:2 -o x.png", "--x must be a range [log:]start:stop:count, got '1:2'"),
+    ("map --x q=1:2:3 -o x.png", "--x must begin with one of m A C s g r0"),
+    ("map --x r0=2:1:3 -o x.png", "--x must have start < stop"),
+    ("map --x r0=1:2:1 -o x.png", "--x must have a count of 2 or more between"),
+    ("map --x r0=1:2:3000 -o x.png", "--x must have a count in [2, 2000], got 3000"),
+    ("map --x r0=1:z:9 -o x.png", "--x must be a finite decimal number, got 'z'"),
+    ("map --x theta0=1:2:3 -o x.png", "--x must be another input than y, got theta0 twice"),
+    ("-o x.png sphere --camera 30", "--camera must be AZIMUTH,ELEVATION in [-360, 360] and [-90"),
+    ("-o x.png sphere --camera 30,95", "[-90, 90] deg, got '30,95'"),
+    ("-o x.png sphere --camera 30,nan", "[-90, 90] deg, got '30,nan'"),
+    ("-o x.png sphere --rad --camera 3,2", "[-2π, 2π] and [-π/2, π/2] rad, got '3,2'"),
+    ("-o x.png map --colour-limits 5:1", "--colour-limits must be LOW:HIGH with LOW < HIGH"),
+    ("-o x.png map --colour-limits inf:1", "LOW < HIGH, got 'inf:1'"),
+    ("-o x.png --fps 24", "--fps needs --animate FILE.gif"),
+    ("--animate x.gif --fps 0", "--fps must be in [1, 60], got 0"),
+    ("--animate x.gif --duration 1e4", "--duration must be in [0.08, 120] seconds at 25"),
+    ("--animate x.gif --duration 0", "--duration must be in [0.08, 120] seconds"),
+    ("--animate x.gif --speed 0", "--speed must be > 0, got 0"),
+    ("--animate x.gif --speed 1e3", "--speed must be at most 71.5417 (1000 nutation periods)"),
+    ("--animate x.gif --speed 1 --duration 1 --t-max 1", "--speed must be left out where"),
+    ("--animate x.avi", "--animate must be a file that ends in .gif or .mp4, got 'x.avi'"),
+]
+"""Options, the message, and the exit code if it is not 2."""
+
+
+@pytest.mark.parametrize("row", REFUSED, ids=lambda row: str(row[0]))
+def test_bad_input(
+    lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, row: tuple[Any, ...]
 ) -> None:
+    line, message, code = (*row, 2)[:3]
     monkeypatch.chdir(tmp_path)
     result = lagtop("plot", *line.split())
-    assert result.exit_code == code
-    assert result.stdout == ""
+    assert (result.exit_code, result.stdout) == (code, "")
     assert message in result.stderr
     assert result.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []

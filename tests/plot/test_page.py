@@ -1,23 +1,26 @@
-"""The page: its files, its letters, the sizes at which it can be drawn, and its colours."""
+"""The page: its letters, its sizes and colours, and its files with their text and metadata."""
 
 from __future__ import annotations
 
 import io
 import re
+import shlex
 from collections.abc import Sequence
 from itertools import groupby, pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from colour_vision import VISIONS, seen
+from conftest import Lagtop
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from pictures import REGIMES, drawn, regime_motion, sample_motion
 from scenes import SAMPLES
 
-from lagrange_cli import LagtopError, Regime, Top, solve
+from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
@@ -28,7 +31,6 @@ from lagrange_cli.plot.page import (
     LEAST_LETTERS,
     MOST_PIXELS,
     Page,
-    check_pixels,
     draw_page,
     page_bytes,
 )
@@ -137,45 +139,24 @@ def test_each_page_is_drawable_or_refused(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("kinds", "size", "dpi"),
-    [
-        (["sphere"], (2.0, 2.0), 20.0),
-        (ON_THE_SHEET, (2.0, 2.0), 51.0),
-        (("cubic", "phase"), (2.0, 50.0), 51.0),
-    ],
-)
-def test_the_smallest_pictures(kinds: Sequence[str], size: tuple[float, float], dpi: float) -> None:
-    """FreeType draws every letter; a step below there is a line that says so."""
-    page = Page(solve(Top(r0=101.0, theta0_deg=0.5)), kinds, PlotRequest(x=X, y=Y), LIGHT, size)
-    assert png(page, dpi).shape[:2] == (size[1] * dpi, size[0] * dpi)
-    with pytest.raises(LagtopError, match=r"^dpi must be in \[\d+, \d+\] for 2 x \d+ inches"):
-        page_bytes(page, "png", dpi - 1)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("kinds", KIND_LISTS, ids=",".join)
 def test_pictures_at_the_corners_of_the_range_of_sizes(kinds: Sequence[str]) -> None:
-    """At the fewest pixels per inch allowed; the fullest page as SVG and PDF too."""
+    """At the fewest pixels per inch allowed, FreeType draws every letter; a step below is refused.
+
+    The fullest page is drawn as SVG and PDF too.
+    """
     scene = solve(Top(r0=101.0, theta0_deg=0.5))
     corners = [(2.0, 2.0), (2.0, 50.0), (50.0, 2.0)]
     for size in corners[: 3 if len(kinds) == len(KINDS) else 1]:  # its panels have least room
         page = Page(scene, kinds, PlotRequest(x=X, y=Y), LIGHT, size)
         least = max(20.0, 72 * LEAST_LETTERS / (POINTS * page.lettering()))
-        assert png(page, least * (1 + 1e-12)).size > 0
+        shape = png(page, least * (1 + 1e-12)).shape[:2]
+        assert shape == pytest.approx((size[1] * least, size[0] * least), abs=1)
+        with pytest.raises(LagtopError, match=r"^dpi must be in \[\d+, \d+\] for \d+ x \d+ inches"):
+            page_bytes(page, "png", least - 1)
         if size == (2.0, 2.0) and len(kinds) == len(KINDS):
             assert page_bytes(page, "svg", 20.0).startswith(b"<?xml")
             assert page_bytes(page, "pdf", 20.0).startswith(b"%PDF")
-
-
-def test_pictures_of_too_many_pixels_are_refused() -> None:
-    """The usual size of the page counts too, where none is given."""
-    page = Page(solve(Top()), ON_THE_SHEET, PlotRequest(), LIGHT)
-    with pytest.raises(LagtopError, match=r"\[20, 571\] for 15.3 x 10 inches, got 600") as error:
-        page_bytes(page, "png", 600)
-    assert error.value.key == "dpi"
-    with pytest.raises(LagtopError, match=r"\[20, 1000\]"):
-        check_pixels(1001, (2, 2))
 
 
 # Files.
@@ -231,6 +212,64 @@ def test_the_numbers_of_the_sheet() -> None:
         "7.991055 rad/time",
         "cusped",
     } <= texts
+
+
+def file_of(fmt: str, motion: Motion | None = None) -> bytes:
+    """Return the picture of a cubic."""
+    page = Page(motion or solve(Top(r0=30)), ["cubic"], PlotRequest(), LIGHT)
+    return page_bytes(page, fmt, 50)
+
+
+def test_text_is_text_in_svg_and_its_title_and_scene_can_be_read() -> None:
+    text = file_of("svg").decode()
+    assert ">upright</text>" in text
+    assert "<title>Lagrange top: cubic</title>" in text
+    scene = re.search("<desc>(.*)</desc>", text)
+    assert scene
+    assert "cusped path" in scene[1]
+    assert "r0 = 30.0" in scene[1]
+    assert "lagtop plot cubic --m 1587.0" in text
+    assert "'DejaVu Sans', 'Verdana'" in text
+
+
+def test_pdf_embeds_truetype_fonts_and_knows_its_scene() -> None:
+    data = file_of("pdf")
+    assert b"/Type3" not in data
+    assert b"/Subtype /CIDFontType2" in data or b"/Subtype /TrueType" in data
+    for part in (b"/Title (Lagrange top: cubic)", b"r0 = 30.0", b"--r0 30.0"):
+        assert part in data
+
+
+def test_png_carries_its_scene_and_its_command() -> None:
+    from PIL import Image
+
+    with Image.open(io.BytesIO(file_of("png"))) as picture:
+        info: dict[Any, Any] = picture.info
+    assert info["Title"] == "Lagrange top: cubic"
+    assert "r0 = 30.0" in info["Description"]
+    assert info["Comment"].startswith("lagtop plot cubic --m 1587.0")
+
+
+@pytest.mark.slow
+def test_the_command_in_a_file_draws_the_same_file(lagtop: Lagtop) -> None:
+    """With every option that a picture has."""
+    request = PlotRequest(
+        t_max=0.75,
+        radians=True,
+        key="theta_max_rad",
+        x=parse_input_range("x", "r0=log:10:90:3"),
+        y=parse_input_range("y", "theta0=0.25:1.5:3"),
+        camera=(0.5, -0.25),
+        limits=(0.5, 2.5),
+        numbers=False,
+    )
+    motion = solve(Top(theta0_rad=0.625, psidot0=-0.5))
+    page = Page(motion, ["sphere", "map"], request, DARK, (7.0, 5.0))
+    words = shlex.split(page.command())
+    assert words[:2] == ["lagtop", "plot"]
+    result = lagtop(*words[1:-2], "--format", "svg", "-o", "-")
+    assert result.exit_code == 0
+    assert result.stdout_bytes == page_bytes(page, "svg", 150.0)
 
 
 # Colours.
