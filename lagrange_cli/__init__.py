@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .motion.sensitivity.angle_sensitivities import angle_sensitivities
     from .motion.sensitivity.sensitivities import sensitivities
     from .motion.solve import Motion, solve
+    from .plot import draw
     from .plot.browser import view
     from .sweeps.angles import sweep_angles
     from .sweeps.records import sweep
@@ -29,6 +30,7 @@ __all__ = [
     "__version__",
     "angle_sensitivities",
     "compare",
+    "draw",
     "find",
     "fit",
     "read_scene",
@@ -48,6 +50,7 @@ _MODULES = {
     "Top": "inputs.top",
     "angle_sensitivities": "motion.sensitivity.angle_sensitivities",
     "compare": "judge.compare",
+    "draw": "plot",
     "find": "fits.find",
     "fit": "fits.fit",
     "read_scene": "inputs.given",

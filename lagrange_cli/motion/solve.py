@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.ball import Ball
 from ..arithmetic.balls import balls
 from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounding_of, settled
-from ..errors import OutOfRangeError, OutOfRangeWarning
+from ..errors import LagtopError, OutOfRangeError, OutOfRangeWarning
 from ..inputs.top import Top
 from .numbers import Numbers
 from .quantity import unit_name
@@ -18,7 +18,9 @@ from .record import NUMBER_KEYS, all_keys, record_keys, requested_keys
 from .regime import exact
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
+    from scipy.spatial.transform import Rotation
 
     from ..arithmetic.types import Array
     from .notebook import Document
@@ -53,8 +55,22 @@ class Motion(Numbers):
         return self.decide("remark", lambda kind: kind.remark(radians=radians))
 
     def __dir__(self) -> Sequence[str]:
-        """Return all names, the keys of the record among them."""
-        return [*super().__dir__(), *NUMBER_KEYS, *requested_keys()]
+        """Return the public names: methods, and the keys of the record and on request."""
+        methods = [name for name in vars(Motion) if not name.startswith("_")]
+        return [*methods, "top", "regime", *NUMBER_KEYS, *requested_keys()]
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a number by its key, a float, or None if the motion has none."""
+        try:
+            return super().__getattr__(name)
+        except AttributeError:
+            if name.startswith("_"):
+                raise
+            from ..inputs.names import suggestion  # start-up: for a misspelt name only
+
+            raise AttributeError(
+                f"a motion has no {name!r}{suggestion(name, dir(self))}", name=name, obj=self
+            ) from None
 
     def __eq__(self, other: object) -> bool:
         """Return whether the other is the motion of the same top."""
@@ -111,7 +127,7 @@ class Motion(Numbers):
 
         Raises LagtopError for inputs that are beyond what the page computes with.
         """
-        from .. import view  # the face of the package: pictures are drawn by a room above this one
+        from .. import view  # the face of the package: pictures are drawn by a subpackage above
 
         return view(self)
 
@@ -122,6 +138,46 @@ class Motion(Numbers):
         Raises LagtopError for a time that is not finite or beyond 2^50 nutation periods.
         """
         return self.sampler().angles(t, wrap=wrap)
+
+    def axis(self, t: ArrayLike) -> Array:
+        """Return the unit vector along the figure axis in space, in the shape of t and 3.
+
+        Raises LagtopError for a time out of reach, as `angles` does.
+        """
+        import numpy as np
+
+        columns = self.table(t, ["axis"])
+        return np.stack([columns[f"axis_{x}"] for x in "xyz"], axis=-1)
+
+    def rotation(self, t: ArrayLike) -> Rotation:
+        """Return the rotations from body to space at a time, or at a list of n times.
+
+        The result is a SciPy `Rotation`, single or a stack of n.  Raises LagtopError for a time out
+        of reach, and for times of more than one dimension.
+        """
+        import numpy as np
+        from scipy.spatial.transform import Rotation  # start-up: heavy
+
+        columns = self.table(t, ["quaternion"])
+        quaternion = np.stack([columns[f"quaternion_{x}"] for x in "wxyz"], axis=-1)
+        if quaternion.ndim > 2:
+            shape = quaternion.shape[:-1]
+            raise LagtopError(
+                f"t must be a number or have one dimension, got the shape {shape}", "t"
+            )
+        return Rotation.from_quat(quaternion, scalar_first=True)
+
+    def plot(self, kind: str = "sphere", ax: Any = None, **options: Any) -> list[Axes]:
+        """Draw a picture of the motion: sphere, angles, remainders, cubic, phase or map.
+
+        `ax` is an `Axes` of matplotlib, or a list of them if the kind has several; without it a new
+        figure is made.  The options are those of `lagrange_cli.plot.draw_sphere` and its siblings.
+        Returns the axes.  Raises LagtopError for an unknown kind, or if there is nothing to draw.
+        """
+        from .. import draw  # the face of the package: pictures are drawn by a subpackage above
+
+        drawn: list[Axes] = draw(self, kind, ax, **options)
+        return drawn
 
     def table(
         self,

@@ -75,6 +75,27 @@ def draw_map(
     return _drawn("map", motion, ax, key=key, x=over[0], y=over[1], dark=dark)
 
 
+def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any) -> list[Axes]:
+    """Draw a picture by the name of its kind, and return the axes.
+
+    The options are those of the function of the kind, such as `draw_sphere`.  Raises LagtopError
+    for an unknown kind.
+    """
+    from ..inputs.names import check_names
+
+    functions = {
+        "sphere": draw_sphere,
+        "angles": draw_angles,
+        "remainders": draw_remainders,
+        "cubic": draw_cubic,
+        "phase": draw_phase,
+        "map": draw_map,
+    }
+    check_names("kind", [kind], functions)
+    drawn: list[Axes] = functions[kind](motion, ax, **options)
+    return drawn
+
+
 def _drawn(
     name: str,
     motion: Motion,
