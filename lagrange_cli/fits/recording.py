@@ -114,8 +114,7 @@ def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:
         base = name.lower().replace("_std", "")
         word, unit = plain_name(base)
         if base != name.lower() and word in (*ANGLES, "axis", "quaternion", "attitude"):
-            trajectory.add(f"{word}_std", name)
-            units[word] = unit
+            units[word] = trajectory.add_angle(f"{word}_std", name, unit)
     return units
 
 

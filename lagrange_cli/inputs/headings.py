@@ -1,4 +1,7 @@
-"""Headings of files of tops: the inputs they name, their units, and slips in them."""
+"""Headings of columns: names in ASCII or Greek, units, and slips in the names of inputs.
+
+A unit stands in brackets, in parentheses or after a blank: `t [ms]`, `theta (deg)`, `r0 rpm`.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +16,53 @@ from .names import repeated
 from .top import INPUTS
 from .value import Value
 
+_GREEK = {
+    "\u03b8": "theta",
+    "\u03d1": "theta",
+    "\u03c6": "phi",
+    "\u03d5": "phi",
+    "\u03c8": "psi",
+    "\u03c9": "omega",
+    "\u0307": "dot",
+    "\u2032": "'",
+    "\u2080": "0",
+}
+"""The letters of the angles in both shapes, omega, a dot above, a prime, and a lowered 0."""
+_UNITS = {"\u00b0": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad"}
+_UNITS |= {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "rev/min": "rpm"}
+"""Units that are spelt otherwise."""
+_AFTER_A_BLANK = re.compile(
+    r"(.*\S)\s+((?:us|ms|s|sec|min|h|deg|\u00b0|rad|mrad|turn|rev|rpm|[mkg]?g|[cm]?m)"
+    r"(?:\*[cm]?m(?:\^2)?)?(?:/(?:s|min|s\^2))?)"
+)
 
-def check_spelling(carried: Sequence[str], name: str) -> None:
-    """Raise DataError for a column that is not read but looks like an input."""
-    inputs = {_plain(known): known for known in reversed(INPUTS)}  # the first of those alike
+
+def name_and_unit(heading: str) -> tuple[str, str]:
+    """Return the name in a heading, in ASCII, and its unit, empty if it has none.
+
+    Brackets around numbers belong to the name, as in `omega[0]`.
+    """
+    text = "".join(_GREEK.get(x, x) for x in heading.strip())
+    text = re.sub(r"(theta|phi|psi)'", r"\1dot", text)
+    match = re.fullmatch(r"(.*\S)\s*[\[(]([^\[\]()]*)[\])]", text)
+    if match is None or re.fullmatch(r"[\d\s,]+", match[2]):
+        match = _AFTER_A_BLANK.fullmatch(text)
+    if match is None:
+        return text, ""
+    unit = match[2].strip()
+    return match[1], _UNITS.get(unit, unit)
+
+
+def column_of(heading: str) -> tuple[str, str]:
+    """Return the name of a column of a file of tops and, if it is an input, its unit."""
+    name, unit = name_and_unit(heading)
+    return (name, unit) if name in {*INPUTS, TILT} else (heading, "")
+
+
+def check_spelling(carried: Sequence[str], named: Collection[str], name: str) -> None:
+    """Raise DataError for a column that is not read but looks like an input that is not `named`."""
+    missing = [known for known in reversed(INPUTS) if known not in named]
+    inputs = {_plain(known): known for known in missing}  # the first of those alike
     for column in carried:
         if known := inputs.get(_plain(column)):
             raise DataError(f"{name}: the column {column} must be spelt {known}")
@@ -25,14 +71,6 @@ def check_spelling(carried: Sequence[str], name: str) -> None:
 def _plain(column: str) -> str:
     """Return a name without case, underscores, the 0 of theta0 and the unit: easily mistaken."""
     return re.sub("_|0|deg$|rad$", "", column.lower()) or column
-
-
-def heading(cell: str) -> tuple[str, str]:
-    """Return the name of a column and its unit, which a heading such as `m [g]` of an input has."""
-    name, bracket, unit = cell.partition("[")
-    if not bracket or not unit.endswith("]") or name.strip() not in {*INPUTS, TILT}:
-        return cell, ""
-    return name.strip(), unit[:-1].strip()
 
 
 def check_header(columns: Sequence[str], known: Collection[str], name: str) -> None:

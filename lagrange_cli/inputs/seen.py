@@ -15,6 +15,7 @@ from ..errors import LagtopError
 from . import rotations
 from .kinematics import body_rates
 from .names import ANGLES
+from .trajectory_columns import ELEVATION
 
 ORDERS = ("wxyz", "xyzw")
 FRAMES = ("body", "space")
@@ -196,7 +197,10 @@ class _Reader:
         """Return angles in radians."""
         unit = self.said.get(key, ("", None))[1]
         in_radians = self.conventions.radians if unit is None else unit == "rad"
-        return self.given[key] if in_radians else np.radians(self.given[key])
+        angles = self.given[key]
+        if self.convention(key, "") == ELEVATION:
+            angles = (np.pi / 2 if in_radians else 90.0) - angles
+        return angles if in_radians else np.radians(angles)
 
 
 def rows_of(given: Quantities, rows: Sequence[int] | slice | Array) -> dict[str, Array]:

@@ -14,7 +14,12 @@ from ..errors import DataError, LagtopError
 from .files import decoded, reading, shown_path
 from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, has_row, json_object
 from .text_tables import TableHead, read_head
-from .trajectory_columns import known_quantities, numeric_columns, quantities_in
+from .trajectory_columns import (
+    in_known_unit,
+    known_quantities,
+    numeric_columns,
+    quantities_in,
+)
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
@@ -80,32 +85,34 @@ def _reader(head: TableHead) -> Callable[[bytes], Fraction]:
     if not rows and head.headings is None:
         return lambda _: Fraction()
     if head.around is not None:
-        key = _time_among(list(json_object(rows[0])))
-        return lambda line: _time_in_object(line.strip(head.around), key)
+        key, factor = _time_among(list(json_object(rows[0])))
+        return lambda line: factor * _time_in_object(line.strip(head.around), key)
     if head.headings is None:
-        width, place = len(head.dialect.cells(decoded_row(rows[0]))), 0
+        width, place, factor = len(head.dialect.cells(decoded_row(rows[0]))), 0, Fraction(1)
         if width > 1:
             raise LagtopError(f"{width} columns must have headings, t among them, got none")
     else:
-        width, place = len(head.headings), list(head.headings).index(_time_among(head.headings))
+        name, factor = _time_among(head.headings)
+        width, place = len(head.headings), list(head.headings).index(name)
     dialect = head.decided(numeric_columns(head.headings or ["t"]))
 
     def time_of(line: bytes) -> Fraction:
         cells = dialect.cells(decoded_row(line))
         if len(cells) != width:
             raise LagtopError(f"a row must have {width} cells, got {len(cells)}")
-        return _parsed(cells[place].strip(), dialect)
+        return factor * _parsed(cells[place].strip(), dialect)
 
     return time_of
 
 
-def _time_among(names: Sequence[str]) -> str:
-    """Return the name of the column of times."""
+def _time_among(names: Sequence[str]) -> tuple[str, Fraction]:
+    """Return the name of the column of times, and the size of its unit."""
     found = quantities_in(names)
     if "t" not in found:
         shown = shortened(", ".join(map(repr, names)))
         raise LagtopError(f"the time must be a number below the heading t or time, got {shown}")
-    return names[found["t"].columns[0]]
+    _, factor = in_known_unit("t", found["t"].unit)
+    return names[found["t"].columns[0]], factor or Fraction(1)
 
 
 def _time_in_object(line: bytes, key: str) -> Fraction:

@@ -19,7 +19,7 @@ from ..arithmetic.text import parse_number, quoted
 from ..errors import DataError, LagtopError
 from .files import decoded, reading, shown_path
 from .given import Given, checked_double, gather
-from .headings import check_header, check_spelling, heading, heading_units
+from .headings import check_header, check_spelling, column_of, heading_units
 from .input_keys import TILT, from_example, one_of_each, overridden
 from .ranges import InputArrays
 from .text_lines import UNDECIDED, Dialect, Numbered, decoded_row, has_row, json_object, shown_json
@@ -227,15 +227,15 @@ def open_tops(
 def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:
     """Return the way to read a table.  Raises DataError for bad headings."""
     name, first = head.lines.name, head.kept[0][1] if head.kept else b""
-    headings = [heading(x) for x in head.headings or [first.decode(errors="replace").strip()]]
+    headings = [column_of(x) for x in head.headings or [first.decode(errors="replace").strip()]]
     columns = [column for column, _ in headings]
     known = {*INPUTS, *(x for x, unit in headings if unit)}
     carried = [x for x in columns if x not in known and x not in computed]
-    check_spelling(carried, name)
+    named = set(columns) & set(INPUTS)
+    check_spelling(carried, named, name)
     check_header(columns, known, name)
     units = heading_units(headings, known, name)
     dialect = head.decided(i for i, column in enumerate(columns) if column in known)
-    named = set(columns) & set(INPUTS)
     return TopsFile(name, columns, carried, frozenset(computed), named, units, dialect=dialect)
 
 
@@ -243,14 +243,14 @@ def _of_objects(head: TableHead, first: Iterable[Numbered], computed: Collection
     """Return the way to read JSON objects, whose keys the first of them name."""
     objects = [raw.strip(head.around) for _, raw in first]
     carried = [x for x in _names(objects) if x not in computed]
-    check_spelling(carried, head.lines.name)
     named = _named(objects)
+    check_spelling(carried, named, head.lines.name)
     return TopsFile(head.lines.name, None, carried, frozenset(computed), named, around=head.around)
 
 
 def _known_inputs(names: Sequence[str]) -> int:
     """Return how many inputs some headings name."""
-    return sum(heading(name)[0] in {*INPUTS, TILT} for name in names)
+    return sum(column_of(name)[0] in {*INPUTS, TILT} for name in names)
 
 
 def _while_open(stack: ExitStack, lines: Iterator[Numbered]) -> Iterator[Numbered]:

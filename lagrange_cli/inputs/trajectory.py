@@ -14,8 +14,17 @@ from typing import TYPE_CHECKING, BinaryIO
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import decoded, reading, shown_path, temporary_copy
+from .names import ANGLES
 from .text_lines import UNDECIDED, Dialect
-from .trajectory_columns import QUANTITIES, Found, expanded, named_twice, quantities_in
+from .trajectory_columns import (
+    QUANTITIES,
+    Found,
+    expanded,
+    in_known_unit,
+    in_known_units,
+    named_twice,
+    quantities_in,
+)
 from .trajectory_rows import Table, Words
 
 if TYPE_CHECKING:
@@ -43,6 +52,10 @@ class Trajectory:
                 f"{self.name} must name each quantity once, got {twice[0]!r} and {twice[1]!r}: "
                 "name the columns by --columns, with _ for one of them"
             )
+        try:
+            self.quantities, self._factors = in_known_units(self.quantities, self.names)
+        except LagtopError as error:
+            raise DataError(f"{self.name}: {error}") from None
 
     def _column_names(self, columns: Sequence[str] | None) -> list[str]:
         if columns is not None:
@@ -60,9 +73,20 @@ class Trajectory:
             )
         return list(self._table.names)
 
-    def add(self, key: str, column: str, unit: str | None = None) -> None:
+    def add(self, key: str, column: str) -> None:
         """Read one more column, as a quantity with this key."""
-        self.quantities[key] = Found([self.names.index(column)], "", unit)
+        self.quantities[key] = Found([self.names.index(column)], "", None)
+
+    def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
+        """Read one more column of angles, and return their unit."""
+        self.add(key, column)
+        try:
+            known, factor = in_known_unit(ANGLES[0], unit)
+        except LagtopError as error:
+            raise DataError(f"{self.name}, heading {column}: {error}") from None
+        if factor is not None:
+            self._factors[key] = factor
+        return known
 
     def add_words(self, key: str, column: str) -> Words:
         """Read one more column, of words, whose numbers the words that are returned explain."""
@@ -89,7 +113,12 @@ class Trajectory:
             key: [wanted.index(i) for i in found.columns] for key, found in self.quantities.items()
         }
         for values, places in self._table.blocks(wanted, [self.names[i] for i in wanted]):
-            yield {key: values[:, columns] for key, columns in at.items()}, places
+            found = {key: values[:, columns] for key, columns in at.items()}
+            for key, factor in self._factors.items():
+                # A division by a whole number is rounded once.
+                size = float(max(factor, 1 / factor))
+                found[key] = found[key] * size if factor > 1 else found[key] / size
+            yield found, places
 
     def where(self, place: int) -> str:
         """Return the name of the file and the place of a row."""

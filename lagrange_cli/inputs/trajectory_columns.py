@@ -8,12 +8,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import NamedTuple
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .names import suggestion
+from .headings import name_and_unit
+from .names import ANGLES, suggestion
+from .value import Value
 
+ELEVATION = "elevation"
+"""The convention of an angle that counts from the horizontal."""
+ANGULAR = (*ANGLES, "euler")
+_OWN_UNITS = {"position": "m", "rotvec": "rad"}
+"""Units of quantities that are in no other."""
 SKIPPED = "_"
 """The name of a column that is left out."""
 
@@ -33,7 +41,6 @@ class Quantity(NamedTuple):
     shown: str
     """Names as examples, for people."""
     spellings: Sequence[Spelling]
-    is_angle: bool = False
 
     @property
     def size(self) -> int:
@@ -48,7 +55,7 @@ class Found(NamedTuple):
     """Where its parts are."""
     says: str
     unit: str | None
-    """Unit of angles that the names end in, `deg` or `rad`."""
+    """The unit that its headings have."""
 
 
 def _spelt(prefixes: str, parts: str, says: str = "") -> list[Spelling]:
@@ -63,7 +70,9 @@ _XYZ, _DIGITS = "x y z", ("0 1 2", "0 1 2 3", "0 1 2 3 4 5 6 7 8")
 _MATRIX = "matrix rotationmatrix rotation xmat rot r m"
 
 QUANTITIES: dict[str, Quantity] = {
-    "t": Quantity("time", "t, time, timestamp", _spelt("t time timestamp times simtime", "-")),
+    "t": Quantity(
+        "time", "t, time, timestamp", _spelt("t time timestamp times simtime xvalue", "-")
+    ),
     "quaternion": Quantity(
         "quaternion from body to space",
         "quaternion_w ..., qw qx qy qz; by number: quaternion_0 ..., q0 ...",
@@ -85,9 +94,17 @@ QUANTITIES: dict[str, Quantity] = {
             *_spelt(_MATRIX, "xx xy xz yx yy yz zx zy zz"),
         ],
     ),
-    "theta": Quantity("tilt", "theta, theta_deg, theta_rad", _spelt("theta tilt", "-"), True),
-    "phi": Quantity("spin", "phi, phi_deg, phi_rad", _spelt("phi spin", "-"), True),
-    "psi": Quantity("precession", "psi, psi_deg, psi_rad", _spelt("psi precession", "-"), True),
+    "theta": Quantity(
+        "tilt",
+        "theta, theta_deg, theta_rad, \u03b8, tilt; elevation: 90 degrees minus the tilt",
+        [*_spelt("theta tilt", "-"), Spelling(["elevation"], ELEVATION)],
+    ),
+    "phi": Quantity("spin", "phi, phi_deg, phi_rad, \u03c6, spin", _spelt("phi spin", "-")),
+    "psi": Quantity(
+        "precession",
+        "psi, psi_deg, psi_rad, \u03c8, precession",
+        _spelt("psi precession", "-"),
+    ),
     "euler": Quantity(
         "three angles of turns about coordinate axes",
         "euler_0 ..., roll pitch yaw",
@@ -96,7 +113,6 @@ QUANTITIES: dict[str, Quantity] = {
             Spelling(["roll", "pitch", "yaw"], "xyz"),
             *_spelt("rotxyz", _DIGITS[0], "XYZ"),
         ],
-        True,
     ),
     "rotvec": Quantity(
         "rotation vector from body to space, in radians",
@@ -182,6 +198,43 @@ def numeric_columns(names: Sequence[str]) -> list[int]:
     return [i for found in quantities_in(names).values() for i in found.columns]
 
 
+def in_known_units(
+    found: Mapping[str, Found], names: Sequence[str]
+) -> tuple[dict[str, Found], dict[str, Fraction]]:
+    """Return quantities in radians, degrees or no unit, and the factors that bring them there.
+
+    Times are in seconds then, and rates in radians per second.  Raises LagtopError for a unit that
+    a quantity cannot have, and for parts in different units.
+    """
+    plain, factors = dict(found), {}
+    for key, quantity in found.items():
+        units = {plain_name(names[i])[1] for i in quantity.columns}
+        if len(units) > 1:
+            shown = " and ".join(repr(names[i]) for i in quantity.columns[:2])
+            raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
+        unit, factor = in_known_unit(key, quantity.unit)
+        plain[key] = quantity._replace(unit=unit)
+        if factor is not None:
+            factors[key] = factor
+    return plain, factors
+
+
+def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
+    """Return the unit that a quantity is brought to, and the factor, None if it is in it.
+
+    Raises LagtopError for a unit that the quantity cannot have.
+    """
+    if unit in {None, "-", "1"} or unit == _OWN_UNITS.get(key):
+        return None, None
+    if key in ANGULAR and unit in {"deg", "rad"}:
+        return unit, None
+    from .units import DIMENSIONS, factor_of  # for few files only
+
+    if key not in DIMENSIONS:
+        raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
+    return "rad" if key in ANGULAR else None, factor_of(key, Value(Fraction(1), str(unit)))
+
+
 def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, str] | None:
     """Return two names of the same part of a quantity that was found, if there are any."""
     for i in (i for quantity in found.values() for i in quantity.columns):
@@ -192,14 +245,16 @@ def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, 
 
 
 def plain_name(name: str) -> tuple[str, str | None]:
-    """Return a name in small letters and digits only, without a unit, and the unit of angles."""
-    text = name.strip().lower()
-    match = re.fullmatch(r"(.+?)[\s_.]*[\[(]?(deg|rad|degrees|radians)[\])]?", text)
-    unit = None
-    if match and not match[2].startswith(match[1]):
-        text, unit = match[1], match[2][:3]
-    text = re.sub(r"[\[(](s|sec|m|-|rad/s|1/s)[\])]$", "", text)
-    return re.sub(r"[^a-z0-9]", "", text), unit
+    """Return a name in small letters and digits only, and its unit.
+
+    An angle may have its unit at the end of its name, as in `theta_deg`.
+    """
+    text, unit = name_and_unit(name)
+    text = text.lower()
+    match = re.fullmatch(r"(.+?)[\s_.]*(deg|rad)(?:rees|ians)?", text)
+    if not unit and match and not match[2].startswith(match[1]):
+        text, unit = match[1], match[2]
+    return re.sub(r"[^a-z0-9]", "", text), unit or None
 
 
 def expanded(names: Sequence[str]) -> list[str]:

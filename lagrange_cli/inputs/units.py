@@ -11,6 +11,7 @@ from ..arithmetic.points import Points
 from ..arithmetic.values import Values
 from ..errors import LagtopError, UnavailableError
 from .input_keys import BODY, DECLARED, TILT
+from .names import ANGLES
 from .unit_sizes import RATE, TIME, Dimensions, Unit, UnknownUnitError, unit_of_text
 from .value import Value
 
@@ -24,8 +25,11 @@ _KINDS: dict[str, tuple[Dimensions, str]] = {
     "angle": ((0, 0, 0), "30deg or 0.5rad"),
 }
 """The dimensions of each unit of an input, and an example."""
-_UNIT_OF = {name: x.unit for name, x in DECLARED.items()} | dict.fromkeys(
-    ("t_min", "t_max", "dt"), "time"
+_UNIT_OF = (
+    {name: x.unit for name, x in DECLARED.items()}
+    | dict.fromkeys(("t", "t_min", "t_max", "dt"), "time")
+    | dict.fromkeys((*ANGLES, "euler"), "angle")
+    | dict.fromkeys(("rates", "angle_rates"), "rad/time")
 )
 DIMENSIONS = {name: _KINDS[unit][0] for name, unit in _UNIT_OF.items()}
 """The powers of mass, length and time in each input."""
@@ -137,7 +141,8 @@ def needs_unit(key: str, value: Value) -> bool:
 def factor_of(key: str, value: Value) -> Fraction:
     """Return the size of the unit of an input.  Raises LagtopError for wrong dimensions."""
     unit = _unit_in(key, value)
-    if unit.dimensions != DIMENSIONS[key] or unit.angular != (DIMENSIONS[key] == RATE):
+    is_angular = _UNIT_OF[key] in {"angle", "rad/time"}
+    if unit.dimensions != DIMENSIONS[key] or unit.angular != is_angular:
         raise _refused(key, value)
     return unit.size
 
