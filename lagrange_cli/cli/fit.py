@@ -151,12 +151,11 @@ def _fitted(
     groups: list[list[Recording]], known: Mapping[str, float], source: str, radians: bool
 ) -> list[Outcome]:
     from ..fits.fit import fit_recordings
-    from ..fits.record import outcomes
     from ..inputs.files import shown_path
 
     found: list[Outcome] = []
     for group in with_progress(groups, "fits"):
-        found.extend(outcomes(fit_recordings(group, known, shown_path(source)), radians=radians))
+        found += fit_recordings(group, known, shown_path(source), radians=radians)
     return found
 
 

@@ -99,17 +99,24 @@ def best_attempt(recording: Recording, known: Mapping[str, float], where: str) -
 
 
 def _check(recording: Recording, parameters: Parameters, where: str) -> None:
-    """Raise DataError for a recording that has too few numbers, or tells too little."""
+    """Raise DataError for too few numbers, LagtopError for angles that do not determine a top."""
+    known = parameters.known
     count = sum(int(np.isfinite(recording.angles[x]).sum()) for x in recording.angles)
     if count <= len(parameters.names):
         raise DataError(
             f"{where} must have more numbers than there are unknowns, got {count} for "
             f"{len(parameters.names)}"
         )
-    if not {"phi", "psi"} & recording.angles.keys() and "psidot0" not in parameters.known:
+    seen = recording.angles.keys()
+    if seen == {"theta"} and "psidot0" not in known:
         raise LagtopError(
             f"{where} has neither psi nor phi, and theta alone does not determine b: fix psidot0 "
             "(0 for a top that is let go in the first row)"
+        )
+    if seen == {"psi"} and "theta0" not in known:
+        raise LagtopError(
+            f"{where} has neither theta nor phi, and psi alone does not determine the tilt: fix "
+            "theta0, the tilt in the first row"
         )
 
 
@@ -139,7 +146,7 @@ def _cases(
     for way in ways:
         cases = [
             (way, start)
-            for start in starting_tops(way.recording, way.shown, wide=wide)
+            for start in starting_tops(way.recording, way.shown, known.get("theta0"), wide=wide)
             if "phi" in way.recording.angles
             or start.state[1] * known.get("r0", start.state[1]) >= 0
         ]
@@ -198,7 +205,7 @@ def _slowed(found: Attempt) -> Attempt:
 
     Rates that are whole turns per frame apart look alike.
     """
-    recording, parameters = found.recording, found.solution.parameters
+    recording, parameters = found.recording, found.problem.parameters
     if "phi" not in recording.angles or ("r0", 0) not in parameters.names or parameters.tied:
         return found
     (_, b, r0), (_, spread, _) = found.body

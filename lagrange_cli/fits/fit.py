@@ -15,9 +15,11 @@ from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions
 from .attempts import Attempt, best_attempt, sigma_of
 from .least_squares import LEAST_SIGMA, FittedParameters, Problem
+from .nutation import NoNutationError
 from .parameters import FIT_QUANTITIES, Parameters, known_inputs, parameters_of
-from .record import Fit, Outcome, outcomes
+from .record import Fit, Outcome
 from .recording import Reading, Recording, Source, recording_of
+from .steady import SteadyOutcome, steady_fit
 
 _IN_RADIANS = Conventions("wxyz", radians=True)
 _STEADY, _REWEIGHTINGS = 0.01, 6
@@ -25,15 +27,27 @@ _STEADY, _REWEIGHTINGS = 0.01, 6
 
 
 def fit_recordings(
-    recordings: Sequence[Recording], known: Mapping[str, float], where: str = "data"
-) -> Fit:
-    """Fit one body to some recordings by least squares.
+    recordings: Sequence[Recording],
+    known: Mapping[str, float],
+    where: str = "data",
+    *,
+    radians: bool = False,
+) -> list[Outcome]:
+    """Fit one body to some recordings by least squares, and return the results of each.
 
-    `known` are inputs by key, theta0 in radians.  Raises LagtopError, DataError for recordings that
-    cannot be fitted.
+    A single recording whose nutation is below its noise gets a steady precession.  `known` are
+    inputs by key, theta0 in radians.  Raises LagtopError, DataError for recordings that cannot be
+    fitted.
     """
     with ARRAYS.working():
-        return _fitted(recordings, known, where)
+        try:
+            found = _fitted(recordings, known, where)
+        except NoNutationError:
+            if len(recordings) > 1 or "psi" not in recordings[0].angles:
+                raise
+            found = steady_fit(recordings[0], known, where)
+            return [SteadyOutcome(found, 0, radians=radians)]
+    return [Outcome(found, i, radians=radians) for i in range(len(recordings))]
 
 
 def _fitted(recordings: Sequence[Recording], known: Mapping[str, float], where: str) -> Fit:
@@ -123,7 +137,7 @@ def fit(
     columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
     source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
     recording = recording_of("", source, columns)
-    return outcomes(fit_recordings([recording], known_inputs(known or {})))[0]
+    return fit_recordings([recording], known_inputs(known or {}))[0]
 
 
 def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:

@@ -17,9 +17,12 @@ BODY_INPUTS = ("C", "r0", "m", "s", "g", "A")
 _EXPONENTS: Mapping[str, Mapping[str, int]] = {
     "a": {"m": 1, "s": 1, "g": 1, "A": -1},
     "b": {"C": 1, "r0": 1, "A": -1},
+    "b/a": {"C": 1, "r0": 1, "m": -1, "s": -1, "g": -1},
     "r0": {"r0": 1},
 }
-"""The inputs whose product each number is; a stands for a/2."""
+"""The inputs whose product each number is; a stands for a/2, and b/a for twice that ratio."""
+
+_FACTORS = {"a": 0.5, "b/a": 2.0}
 
 
 class DeterminedProduct(NamedTuple):
@@ -34,8 +37,9 @@ class DeterminedProduct(NamedTuple):
     def name(self) -> str:
         """The product as text, such as `m*s/A`."""
         above = "*".join(_power(x, n) for x, n in self.powers.items() if n > 0)
-        below = "*".join(_power(x, -n) for x, n in self.powers.items() if n < 0)
-        return f"{above}/{below}" if below else above
+        below = [_power(x, -n) for x, n in self.powers.items() if n < 0]
+        product = "*".join(below)
+        return f"{above}/{f'({product})' if len(below) > 1 else product}" if below else above
 
 
 def _power(name: str, exponent: Fraction) -> str:
@@ -56,13 +60,14 @@ def determined_products(
         powers = _EXPONENTS[number]
         right = [Fraction(x == number) - (powers.get(x, 0) if x in known else 0) for x in others]
         rows.append([*(Fraction(powers.get(x, 0)) for x in unknown), *right])
-    sizes = [abs(x / 2 if name == "a" else x) for name, x in {**seen, **known}.items()]
+    sizes = [abs(x * _FACTORS.get(name, 1.0)) for name, x in {**seen, **known}.items()]
     products = []
     for row in _reduced(rows, len(unknown)):
         named = {name: n for name, n in zip(unknown, row, strict=False) if n}
         shares = dict(zip(others, row[len(unknown) :], strict=True))
         size = math.prod(x ** float(n) for x, n in zip(sizes, shares.values(), strict=True))
-        sign = math.copysign(1.0, seen["b"]) if named.get("r0") else 1.0
+        spin = seen["b"] if "b" in seen else seen["b/a"]
+        sign = math.copysign(1.0, spin) if named.get("r0") else 1.0
         parts = {number: shares[number] for number in seen if shares[number]}
         products.append(DeterminedProduct(named, sign * size, parts))
     return products

@@ -11,7 +11,7 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from .model import STATE, Residuals, angles_and_slopes, residuals
-from .parameters import FIT_QUANTITIES, Coordinates, Parameters
+from .parameters import FIT_QUANTITIES, Coordinates, Parameters, SteadyParameters
 from .recording import Recording
 
 _FAR = 1e3
@@ -37,7 +37,7 @@ _ROUNDING = 1e-11
 class FittedParameters(NamedTuple):
     """Parameters with the least sum of squares."""
 
-    parameters: Parameters
+    parameters: Parameters | SteadyParameters
     values: Array
     covariance: Array
     chi2: float

@@ -36,6 +36,10 @@ _PHASES = np.linspace(0, 1, 721)[:-1]
 """Places in a period, in periods."""
 
 
+class NoNutationError(DataError):
+    """A recording shows no nutation beyond its noise."""
+
+
 class Shown(NamedTuple):
     """The nutation in a recording."""
 
@@ -60,7 +64,8 @@ class Turns(NamedTuple):
     """The precession and the spin of a recording over a period."""
 
     psi: Harmonics
-    phi: Harmonics
+    phi: Harmonics | None
+    """The spin, if it was recorded."""
     noise: dict[str, float]
     """Standard deviations of the residuals, of psi and phi."""
 
@@ -70,7 +75,9 @@ def shown_by(recording: Recording, where: str) -> Shown:
     rows = _some_rows(recording.angles["theta"])
     t, theta = recording.t[rows], recording.angles["theta"][rows]
     if not np.ptp(theta) > 1e-12:
-        raise DataError(f"{where}: theta must vary, got {math.degrees(theta[0]):g} in all rows")
+        raise NoNutationError(
+            f"{where}: theta must vary, got {math.degrees(theta[0]):g} in all rows"
+        )
     u = np.cos(theta)
     frequency = frequency_of(t, u)
     series = harmonics_of(t, u, frequency, fine=True)  # the turning points want more harmonics
@@ -90,17 +97,17 @@ def shown_by(recording: Recording, where: str) -> Shown:
 
 def turns_in(recording: Recording, where: str) -> Turns:
     """Return what a recording without the tilt shows.  Raises DataError if there is no nutation."""
-    turns = {name: _turn_of(recording, name) for name in ("psi", "phi")}
+    turns = {name: _turn_of(recording, name) for name in ("psi", "phi") if name in recording.angles}
     clear = max(turns.values(), key=_Turn.clearness)
     frequency = clear.frequency
-    _check(clear.series(frequency), clear.around, clear.t, f"{where}: spin and precession")
+    _check(clear.series(frequency), clear.around, clear.t, f"{where}: {' or '.join(turns)}")
     fine = {name: turn.series(frequency, fine=True) for name, turn in turns.items()}
     noise = {name: max(series.noise, _LEAST_NOISE) for name, series in fine.items()}
     for name, size in noise.items():
         if size > _MOST_NOISE:
             shown = f"{math.degrees(size):.3g}"
             raise DataError(f"{where}: {name} must have less noise than 30 degrees, got {shown}")
-    return Turns(**fine, noise=noise)
+    return Turns(fine["psi"], fine.get("phi"), noise)
 
 
 def _shown(
@@ -124,15 +131,15 @@ def _inside(tilt: float) -> float:
 
 
 def _check(series: Harmonics, y: Array, t: Array, what: str) -> None:
-    """Raise DataError for a nutation that is too slow, or lost in the noise."""
+    """Raise DataError for a nutation that is too slow, NoNutationError for one below the noise."""
     span = float(t[-1] - t[0])
+    if not _clearness(series, y, t) > _LEAST_F:
+        raise NoNutationError(f"{what} must nutate beyond its noise: no period explains it")
     if series.frequency * span < 1:
         where = what.rpartition(":")[0]
         raise DataError(
             f"{where}: a recording must last for a period of the nutation, got {span:g}"
         )
-    if not _clearness(series, y, t) > _LEAST_F:
-        raise DataError(f"{what} must nod beyond its noise; no period explains it")
 
 
 def _clearness(series: Harmonics, y: Array, t: Array) -> float:

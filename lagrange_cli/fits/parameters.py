@@ -23,7 +23,7 @@ has these coordinates, with the precession rate at the first row for Omega.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,6 +40,9 @@ FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero")
 """The quantities that a recording depends on, the state first."""
 _START = ("theta0", "thetadot0", "psidot0")
 _A, _B, _R0 = (FIT_QUANTITIES.index(name) for name in ("a", "b", "r0"))
+
+STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
+"""The parameters of a steady precession: values of lines at the first row, and their rates."""
 
 Name = tuple[str, int]
 """A parameter, and the number of its recording; -1 for one of the body."""
@@ -74,7 +77,7 @@ class Parameters(NamedTuple):
                 if key in self.names:
                     column = self.names.index(key)
                     found[row], slopes[row, column] = values[column], 1.0
-        known_a = _torque(self.known)
+        known_a = known_torque(self.known)
         if known_a is not None:
             found[_A] = known_a
         if self.tied:
@@ -82,6 +85,11 @@ class Parameters(NamedTuple):
             found[_B] = ratio * found[_R0]
             slopes[_B] = ratio * slopes[_R0] + found[_R0] * of_ratio
         return found, slopes
+
+    @property
+    def labels(self) -> Sequence[str]:
+        """The names of the quantities."""
+        return FIT_QUANTITIES
 
     @property
     def tied(self) -> bool:
@@ -105,10 +113,50 @@ class Parameters(NamedTuple):
         return self.known["C"] * a / (2 * weight), self.known["C"] / (2 * weight) * of_a
 
 
+class SteadyParameters(NamedTuple):
+    """The parameters of a steady precession, in the order of STEADY."""
+
+    known: Mapping[str, float]
+    angles: Collection[str]
+    """The angles that were recorded."""
+
+    @property
+    def spins(self) -> bool:
+        """Whether r0 is determined."""
+        return "r0" in self.labels
+
+    @property
+    def labels(self) -> list[str]:
+        """The quantities that follow: b if a is known, else b/a."""
+        labels = ["b/a" if known_torque(self.known) is None else "b", "psidot0", "psi_zero"]
+        labels += ["theta0"] if "theta" in self.angles else []
+        if "phi" in self.angles:
+            tilted = "theta" in self.angles or "theta0" in self.known
+            labels += ["r0", "phi_zero"] if tilted else ["phi_zero"]
+        return labels
+
+    def quantities(self, values: Array, _: int) -> tuple[Array, Array]:
+        """Return the quantities, and their derivatives by the parameters."""
+        theta, rate, *_ = values.tolist()
+        torque, sine, cosine = known_torque(self.known) or 0.0, math.sin(theta), math.cos(theta)
+        r0 = values[3] + rate * cosine
+        rows = {
+            "b/a": (1 / (2 * rate), [0, -1 / (2 * rate**2), 0, 0, 0]),
+            "b": (
+                torque / (2 * rate) + rate * cosine,
+                [-rate * sine, cosine - torque / (2 * rate**2), 0, 0, 0],
+            ),
+            "r0": (r0, [-rate * sine, cosine, 0, 1, 0]),
+        }
+        rows |= {x: (values[i], np.eye(len(STEADY))[i]) for i, x in enumerate(STEADY)}
+        found, slopes = zip(*(rows[label] for label in self.labels), strict=True)
+        return np.array(found), np.array(slopes)
+
+
 def parameters_of(known: Mapping[str, float], recordings: Sequence[Recording]) -> Parameters:
     """Return the parameters of a fit."""
     names: list[Name] = []
-    if _torque(known) is None:
+    if known_torque(known) is None:
         names.append(("a", -1))
     ratio_known = "C" in known and ("A" in known or _weight(known) is not None)
     seen = any("phi" in recording.angles for recording in recordings)
@@ -133,7 +181,7 @@ def _weight(known: Mapping[str, float]) -> float | None:
     return None
 
 
-def _torque(known: Mapping[str, float]) -> float | None:
+def known_torque(known: Mapping[str, float]) -> float | None:
     """Return a = 2mgs/A (4,4) where all of it is known."""
     weight = _weight(known)
     return None if weight is None or "A" not in known else 2 * weight / known["A"]

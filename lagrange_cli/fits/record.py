@@ -26,6 +26,7 @@ _SURE = 4.0
 MEANINGS = {
     "a": "2mgs/A (4,4)",
     "b": "C r0/A (4,5)",
+    "b/a": "C r0/2mgs, by the elementary theory",
     "r0": "total spin rate",
     "theta0": "tilt in the first row",
     "thetadot0": "nutation rate there",
@@ -59,12 +60,13 @@ class Outcome:
         self.recording = found.recordings[index]
         self.known = found.solution.parameters.known
         values, covariance = found.solution.quantities(index)
-        self.values = dict(zip(FIT_QUANTITIES, values.tolist(), strict=True))
+        self.labels = list(found.solution.parameters.labels)
+        self.values = dict(zip(self.labels, values.tolist(), strict=True))
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
-        self.deviations = dict(zip(FIT_QUANTITIES, deviations.tolist(), strict=True))
-        spins = found.solution.parameters.spins and "r0" not in self.known
-        self.shown = {name: self.values[name] for name in ("a", "b", *["r0"] * spins)}
+        self.deviations = dict(zip(self.labels, deviations.tolist(), strict=True))
+        shown = {"a", "b", "b/a", "r0"} if found.solution.parameters.spins else {"a", "b", "b/a"}
+        self.shown = {x: y for x, y in self.values.items() if x in shown - self.known.keys()}
         self.determined = (
             determined_products(self.shown, self.known) if all(self.shown.values()) else []
         )
@@ -116,20 +118,18 @@ class Outcome:
 
     def found(self) -> Iterator[tuple[str, float, float]]:
         """Yield name, value and standard deviation of what was found of the motion."""
+        has = {
+            "r0": self.fit.solution.parameters.spins,
+            "psi_zero": "psi" in self.recording.angles,
+            "phi_zero": "phi" in self.recording.angles,
+        }
         for name in MEANINGS:
-            if name in self.known:
-                continue
-            is_there = {
-                "r0": self.fit.solution.parameters.spins,
-                "psi_zero": "psi" in self.recording.angles,
-                "phi_zero": "phi" in self.recording.angles,
-            }
-            if is_there.get(name, True):
+            if name in self.labels and name not in self.known and has.get(name, True):
                 yield name, self.values[name], self.deviations[name]
 
     def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
         """Yield the determined products of the body, but for r0, and their standard deviations."""
-        rows = [FIT_QUANTITIES.index(name) for name in self.shown]
+        rows = [self.labels.index(name) for name in self.shown]
         covariance = self.covariance[np.ix_(rows, rows)]
         for product in self.determined:
             if product.name != "r0":
@@ -153,12 +153,9 @@ class Outcome:
         names = [name for name in self.shown if self.deviations[name] > 0]
         for i, first in enumerate(names):
             for second in names[i + 1 :]:
-                both = self.covariance[FIT_QUANTITIES.index(first), FIT_QUANTITIES.index(second)]
-                yield (
-                    first,
-                    second,
-                    float(both) / (self.deviations[first] * self.deviations[second]),
-                )
+                both = self.covariance[self.labels.index(first), self.labels.index(second)]
+                size = self.deviations[first] * self.deviations[second]
+                yield first, second, float(both) / size
 
     def undetermined(self) -> list[str]:
         """Return sentences on inputs that are not determined separately."""
@@ -194,10 +191,9 @@ class Outcome:
 
     def _impossible(self) -> Iterator[str]:
         """Yield what no rigid body has, unless the spin is too small to tell."""
-        ratio = self.values["b"] / self.values["r0"] if self.values["r0"] else 1.0
-        spins = abs(self.values["b"]) > _SURE * self.deviations["b"]
-        if spins and not 0 < ratio <= 2:
-            yield f"C/A = {ratio:.3g} is impossible: a rigid body has 0 < C/A <= 2"
+        b, r0 = self.values.get("b", 0.0), self.values.get("r0", 0.0)
+        if r0 and abs(b) > _SURE * self.deviations.get("b", 0.0) and not 0 < b / r0 <= 2:
+            yield f"C/A = {b / r0:.3g} is impossible: a rigid body has 0 < C/A <= 2"
 
     def notes(self) -> list[str]:
         """Return how the recording was understood."""
@@ -247,20 +243,13 @@ class Outcome:
             "psidot0": self.values["psidot0"],
         }
 
-
-def outcomes(found: Fit, *, radians: bool = False) -> list[Outcome]:
-    """Return what was found of each recording of a fit."""
-    return [Outcome(found, i, radians=radians) for i in range(len(found.recordings))]
-
-
-def angles_at(outcome: Outcome, t: Array) -> dict[str, Array]:
-    """Return the angles of the motion that was found, counted as in the recording."""
-    values = outcome.values
-    state = np.array([[values[name] for name in STATE]])
-    theta, phi, psi = motion_angles(state, t)[:, 0]
-    spin = (values["r0"] - values["b"]) * t if "phi" in outcome.recording.angles else 0.0
-    return {
-        "theta": theta,
-        "phi": phi + spin + values["phi_zero"],
-        "psi": psi + values["psi_zero"],
-    }
+    def angles(self, t: Array) -> dict[str, Array]:
+        """Return the angles of the fitted motion, as the recording counts them."""
+        values = self.values
+        theta, phi, psi = motion_angles(np.array([[values[name] for name in STATE]]), t)[:, 0]
+        spin = (values["r0"] - values["b"]) * t if "phi" in self.recording.angles else 0.0
+        return {
+            "theta": theta,
+            "phi": phi + spin + values["phi_zero"],
+            "psi": psi + values["psi_zero"],
+        }

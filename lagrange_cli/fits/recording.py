@@ -174,10 +174,8 @@ def _checked(raw: Recording, where: str) -> Recording:
     raw = replace(raw, angles=_cleaned(raw.angles, where))
     if not raw.angles:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more with a number, got 0")
-    if "theta" not in raw.angles and len(raw.angles) < 2:
-        raise DataError(
-            f"{where} must have the tilt (theta, axis, quaternion or the like), or both phi and psi"
-        )
+    if raw.angles.keys() == {"phi"}:
+        raise DataError(f"{where} must have theta or psi too: phi alone does not determine a top")
     known = np.logical_or.reduce([np.isfinite(x) for x in raw.angles.values()])
     order = np.flatnonzero(known)[np.argsort(raw.t[known], kind="stable")]
     if order.size < LEAST_ROWS:

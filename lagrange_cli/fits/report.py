@@ -15,7 +15,7 @@ from ..output.report import Field, Report, with_unit
 from ..output.terminal import one_line
 from ..output.uncertain_text import uncertain_text
 from .least_squares import chi2_bounds
-from .record import Outcome, angles_at
+from .record import Outcome
 
 if TYPE_CHECKING:
     from ..inputs.units import System
@@ -137,7 +137,7 @@ def curves_of(outcome: Outcome) -> Iterator[Curve]:
     recording, scale = outcome.recording, per_radian(radians=outcome.radians)
     t = recording.t
     fine = np.linspace(0, t[-1], _FINE)
-    at_rows, at_fine = angles_at(outcome, t), angles_at(outcome, fine)
+    at_rows, at_fine = outcome.angles(t), outcome.angles(fine)
     for name in ("theta", "psi", "phi"):
         if name in recording.angles:
             left = within_half_turn(recording.angles[name] - at_rows[name])

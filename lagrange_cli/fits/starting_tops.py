@@ -40,6 +40,8 @@ _SWINGS = (0.01, 0.04, 0.15)
 _MODULI = 10.0 ** np.linspace(-4, 4, 33)
 """Values of (u3 - 1)/(1 - u2) between which a mean precession is looked for."""
 _PHASES = np.arange(128) / 128
+_TILT_OFF = 0.02
+"""Radians that the tilt of a start may differ from the known one."""
 
 
 class StartingTop(NamedTuple):
@@ -56,15 +58,16 @@ class StartingTop(NamedTuple):
 
 
 def starting_tops(
-    recording: Recording, shown: Shown | Turns, *, wide: bool = False
+    recording: Recording, shown: Shown | Turns, tilt: float | None = None, *, wide: bool = False
 ) -> list[StartingTop]:
     """Return tops that move about as a recording shows, the nearest first.
 
-    They have its nutation and mean precession.  If the search is `wide`, or if psi is not given,
-    they have nearly its nutation and any precession.
+    `tilt` is the tilt in the first row, if it is known but not recorded.  The tops have the
+    nutation and the mean precession of the recording.  If the search is `wide`, or if psi is not
+    given, they have nearly its nutation and any precession.
     """
     if isinstance(shown, Turns):
-        states = _states_behind(shown)[: _MOST_STATES[wide]]
+        states = _states_behind(shown, tilt)[: _MOST_STATES[wide]]
     else:
         states = _states_shown(shown, wide=wide)
     states = states[np.isfinite(states).all(axis=1)]
@@ -148,15 +151,18 @@ def _spin_excess(t: Array, left: Array, b: float) -> float:
     return slowest_spin(b + rate, b, 0.0, frame_of(t[np.isfinite(left)])) - b
 
 
-def _states_behind(turns: Turns) -> Array:
+def _states_behind(turns: Turns, tilt: float | None) -> Array:
     """Return states at the first row in the order of `model.STATE`, the likeliest first."""
     nutation, tops = _tops(1 / turns.psi.frequency, turns.psi.growth)
     theta, period = _tilts(nutation, tops), nutation.period
     columns = tops.at((slice(None), np.newaxis))
     rate = columns.precession_rate(theta)
-    off_psi = _misfit(_wave(rate, period), _seen(turns.psi)) / turns.noise["psi"] ** 2
-    off_phi = _misfit(_wave(-np.cos(theta) * rate, period), _seen(turns.phi))
-    misfit = off_psi + off_phi / turns.noise["phi"] ** 2
+    misfit = _misfit(_wave(rate, period), _seen(turns.psi)) / turns.noise["psi"] ** 2
+    if turns.phi is not None:
+        off_phi = _misfit(_wave(-np.cos(theta) * rate, period), _seen(turns.phi))
+        misfit += off_phi / turns.noise["phi"] ** 2
+    if tilt is not None:
+        misfit += ((theta - tilt) / _TILT_OFF) ** 2
     row, phase = np.arange(len(misfit)), np.argmin(misfit, axis=1)
     ends = TurningPoints(
         nutation.theta_min[:, np.newaxis], nutation.theta_max[:, np.newaxis], period

@@ -71,13 +71,6 @@ def test_spin_and_precession_give_the_tilt_too() -> None:
     assert "theta_rms_deg" not in found.record()
 
 
-@pytest.mark.parametrize("names", [("psi",), ("phi",)])
-def test_one_angle_that_is_not_the_tilt_is_too_little(names: tuple[str, ...]) -> None:
-    t, angles = noisy(MISLED, 2.0, 50, 3)
-    with pytest.raises(LagtopError, match=r"must have the tilt \(theta, .*\), or both phi and psi"):
-        fit(t, **{name: angles[name] for name in names})
-
-
 def test_a_fit_that_is_not_good_takes_no_sense_of_psi_for_a_fact(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -175,7 +168,11 @@ TURNS = {"psi": 3 * SWING + 0.05 * np.sin(20 * SWING), "phi": 40 * SWING}
     [
         (SWING * 1e200, {"theta": TILT, **TURNS}, "t must span 1e-60 to 1e"),
         (np.where(SWING < 2, SWING, 1.7e308), {"theta": TILT, **TURNS}, "t must span"),
-        (SWING, {"phi": 0 * SWING, "psi": 0 * SWING}, "must last for a period of the nutation"),
+        (
+            SWING / 10,
+            {"theta": 0.7 + 0.1 * SWING * SWING, "psi": 0 * SWING},
+            "must last for a period of the nutation",
+        ),
         (
             SWING,
             {"theta": TILT, "phi": np.where(SWING > 0.03, np.nan, 1.0)},
