@@ -34,7 +34,7 @@ def motion_angles(states: Array, t: Array) -> Array:
     `states` are of shape (tops, 5), in the order of STATE; `t` is one row of times for all, or a
     row for each.  Raises LagtopError where a state is no top.
     """
-    found = sweep_angles(t, **_inputs(*states.T))
+    found = sweep_angles(t, **inputs_of(*states.T))
     if wrong := [error for error in found["error"] if error]:
         raise LagtopError(str(wrong[0]))
     return np.stack([found[name] for name in ANGLES])
@@ -46,7 +46,7 @@ def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
     Angles are of shape (3, times), derivatives of shape (3, times, 5); those that do not exist are
     NaN.  Raises LagtopError where the state is no top.
     """
-    top = Top(**_inputs(*state.tolist()))
+    top = Top(**inputs_of(*state.tolist()))
     with ARRAYS.working():
         angles, partials = AngleDerivatives(exact(top)).at(t)
     by = dict(zip(PARAMETERS, np.moveaxis(partials, 1, 0), strict=True))
@@ -54,7 +54,7 @@ def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
     return angles, np.stack(slopes, axis=-1)
 
 
-def _inputs(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dict[str, Any]:
+def inputs_of(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dict[str, Any]:
     """Return the inputs of `Top` of a state, or of many."""
     start = {"theta0_rad": theta, "thetadot0": nutation, "psidot0": precession}
     return {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": a / 2, "r0": b, **start}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
+from ..motion.quantity import unit_name
+from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .least_squares import FittedParameters, chi2_bounds, residual_of
 from .model import STATE, motion_angles
@@ -139,6 +142,26 @@ class Outcome:
                 variance = max(float(change @ covariance @ change), 0.0)
                 yield product, abs(product.value) * math.sqrt(variance)
 
+    @cached_property
+    def derived(self) -> list[tuple[DerivedNumber, float, float | None]]:
+        """Numbers that follow from the motion, with their standard deviations.
+
+        The third entry belongs to an elementary formula: its distance from the exact number, over
+        the standard deviation of this difference.
+        """
+        spins = self.fit.solution.parameters.spins
+        numbers = {x.key: x for x in derived_numbers(self.values, spins=spins)}
+        rows: list[tuple[DerivedNumber, float, float | None]] = []
+        for x in numbers.values():
+            std, off = x.std(self.labels, self.covariance), None
+            if x.exact in numbers:
+                between = x.less(numbers[x.exact])
+                spread = between.std(self.labels, self.covariance)
+                off = between.value / spread if spread > 0 else None
+            if not math.isnan(std):
+                rows.append((x, std, off))
+        return rows
+
     def numbers(self) -> Iterator[tuple[str, float, float, str]]:
         """Yield key, value, standard deviation and meaning of everything, in the unit in use."""
         for name, value, deviation in self.found():
@@ -147,6 +170,12 @@ class Outcome:
         for product, deviation in self.products():
             meaning = "" if len(product.powers) == 1 else "only this product is known"
             yield product.name, product.value, deviation, meaning
+        for x, deviation, off in self.derived:
+            angle = x.key.endswith("_deg")
+            scale = math.radians(1.0) if angle and self.radians else 1.0
+            meaning = x.meaning if off is None else f"{x.meaning}: {off:+.1f} sigma off"
+            key = unit_name(x.key, radians=self.radians)
+            yield key, x.value * scale, deviation * scale, meaning
 
     def correlations(self) -> Iterator[tuple[str, str, float]]:
         """Yield the correlations of a, b and r0."""
@@ -209,6 +238,9 @@ class Outcome:
         record: dict[str, Any] = {"name": recording.name} if recording.name else {}
         for key, value, deviation, _ in self.numbers():
             record[key], record[f"{key}_std"] = value, deviation
+        for x, _, off in self.derived:
+            if x.exact:
+                record[f"{x.key}_off_sigma"] = off
         for name, value in self.known.items():
             record[self.unit(name)] = value * self.scale(name)
         for first, second, value in self.correlations():

@@ -45,6 +45,9 @@ def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     units = {"t_start": system.named("time")}
     for product, _ in outcome.products():
         units[product.name] = system.unit_of(product.powers)
+    for number, *_ in outcome.derived:
+        if number.exact:
+            units[number.key] = system.named(KEYS[number.exact].unit)
     for key in outcome.record():
         if key.endswith(("_deg", "_rad")):
             units[key] = key[-3:]

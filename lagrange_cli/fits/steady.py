@@ -12,7 +12,7 @@ does, by the elementary theory of fast tops, which leaves out the last term: b/a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -95,6 +95,9 @@ def _line(t: Array, angle: Array, sigma: Array | None, is_line: bool) -> _Line:
 
 class SteadyOutcome(Outcome):
     """The results of a fit of a steady precession."""
+
+    derived: Any = ()
+    """Nothing follows from the precession rate but b/a, or b."""
 
     def notes(self) -> list[str]:
         """Return what the recording determines."""

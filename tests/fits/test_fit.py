@@ -17,7 +17,7 @@ from conftest import Lagtop, assert_one_line
 from engines import Array, Body, dop853
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Top, fit, read_scene, solve
+from lagrange_cli import LagtopError, Top, fit, read_scene, solve, sweep
 from lagrange_cli.fits import fit as fits
 from lagrange_cli.fits.invert import TurningPoints, candidates, top_of
 from lagrange_cli.fits.least_squares import Problem
@@ -72,6 +72,37 @@ def test_the_sample_gives_the_body(sample: Outcome) -> None:
     assert record["phi_zero_deg"] == pytest.approx(recordings.PHI_ZERO, abs=0.6)
     assert record["verdict"] == "good"
     assert record["remark"] is None
+
+
+def test_periods_and_rates_have_the_spread_of_the_motions(sample: Outcome) -> None:
+    """The judge draws tops from the covariance of the fit: 400 of them show 7 % of a spread."""
+    names = ["a", "b", "theta0", "thetadot0", "psidot0", "r0"]
+    rows = [sample.labels.index(name) for name in names]
+    covariance = sample.covariance[np.ix_(rows, rows)]
+    draws = np.random.default_rng(1).multivariate_normal(
+        [sample.values[name] for name in names], covariance, 400
+    )
+    a, b, tilt, nutation, precession, r0 = draws.T
+    body = {"m": 1.0, "A": 1.0, "s": 1.0, "C": b / r0, "r0": r0, "g": a / 2}
+    tops = sweep(**body, theta0_rad=tilt, thetadot0=nutation, psidot0=precession)
+    record = sample.record()
+    keys = ["T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"]
+    for key in [*keys, "theta_min_deg", "theta_max_deg"]:
+        assert record[f"{key}_std"] == pytest.approx(np.std(tops[key]), rel=0.2), key
+    by_hand = {
+        "stability_factor": b**2 / (2 * a),
+        "T_nutation_elementary": 2 * math.pi / b,
+        "precession_rate_elementary": a / (2 * b),
+    }
+    for key, values in by_hand.items():
+        assert record[key] == pytest.approx(np.mean(values), rel=1e-3)
+        assert record[f"{key}_std"] == pytest.approx(np.std(values), rel=0.2), key
+    off = by_hand["precession_rate_elementary"] - tops["mean_precession_rate"]
+    shown = record["precession_rate_elementary_off_sigma"]
+    assert shown == pytest.approx(np.mean(off) / np.std(off), rel=0.2)
+    truth = solve(recordings.TOP)
+    for key in keys:
+        assert abs(record[key] - getattr(truth, key)) < 4 * record[f"{key}_std"], key
 
 
 def test_the_derivatives_are_those_of_what_is_left(sample: Outcome) -> None:

@@ -1,0 +1,98 @@
+"""What a report on a gyroscope needs: periods, mean rates and turning points of a fitted motion.
+
+Their uncertainties follow from the full covariance of the fit, by the exact derivatives of the
+record.  The elementary formulas of fast tops stand beside the exact numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..inputs.top import Top
+from ..motion.sensitivity.sensitivities import sensitivities
+from ..motion.solve import solve
+from .model import STATE, inputs_of
+
+_SPIN = "mean_spin_rate"
+_EXACT = {
+    "T_nutation": "nutation period",
+    "T_precession": "period of the mean precession",
+    "mean_precession_rate": "mean precession rate",
+    _SPIN: "mean spin rate",
+    "theta_min_deg": "least tilt",
+    "theta_max_deg": "greatest tilt",
+}
+"""The keys of the record that are derived, and their meanings."""
+_BY = {"a": ("g", 0.5), "b": ("r0", 1.0), "theta0": ("theta0_rad", 1.0)}
+"""The inputs of a top with A = C = m = s = 1 that stand for a, b and theta0, and their slopes."""
+
+
+class DerivedNumber(NamedTuple):
+    """A number that follows from the fitted motion."""
+
+    key: str
+    value: float
+    gradient: Mapping[str, float]
+    """Derivatives by a, b, r0 and the start."""
+    meaning: str
+    exact: str = ""
+    """The key of the exact number for which an elementary formula stands."""
+
+    def std(self, labels: Sequence[str], covariance: Array) -> float:
+        """Return the standard deviation, from a covariance in the order of the labels.
+
+        It is NaN if the number has no derivative by an uncertain quantity.
+        """
+        uncertain = np.diag(covariance) > 0
+        change = np.array([self.gradient.get(label, 0.0) for label in labels])
+        change = np.where(uncertain, change, 0.0)
+        return math.sqrt(max(float(change @ covariance @ change), 0.0))
+
+    def less(self, other: DerivedNumber) -> DerivedNumber:
+        """Return the difference from another number."""
+        names = {*self.gradient, *other.gradient}
+        gradient = {x: self.gradient.get(x, 0.0) - other.gradient.get(x, 0.0) for x in names}
+        return DerivedNumber("", self.value - other.value, gradient, "")
+
+
+def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[DerivedNumber]:
+    """Yield the numbers that follow from values of a, b and the start, and of r0 if it is known.
+
+    Keys that the motion does not have are left out.
+    """
+    a, b = values["a"], values["b"]
+    top = Top(**inputs_of(*(values[name] for name in STATE)))
+    motion, slopes = solve(top), sensitivities(top, list(_EXACT)).derivatives
+    for key, meaning in _EXACT.items():
+        if key not in slopes or (key == _SPIN and not spins):
+            continue
+        by = [_BY.get(name, (name, 1.0)) for name in STATE]
+        gradient = {name: slopes[key][x] * n for name, (x, n) in zip(STATE, by, strict=True)}
+        value = float(getattr(motion, key))
+        if key == _SPIN:  # the top has r0 = b: the spin of the body grows by (r0 - b) t more
+            value += values["r0"] - b
+            gradient |= {"r0": 1.0, "b": gradient["b"] - 1}
+        yield DerivedNumber(key, value, gradient, meaning)
+    yield DerivedNumber(
+        "stability_factor", b * b / (2 * a), {"a": -b * b / (2 * a * a), "b": b / a}, "b^2/2a"
+    )
+    if b:
+        yield DerivedNumber(
+            "T_nutation_elementary",
+            2 * math.pi / abs(b),
+            {"b": -2 * math.pi / (b * abs(b))},
+            "2 pi A/(C |r0|)",
+            "T_nutation",
+        )
+        yield DerivedNumber(
+            "precession_rate_elementary",
+            a / (2 * b),
+            {"a": 1 / (2 * b), "b": -a / (2 * b * b)},
+            "mgs/(C r0)",
+            "mean_precession_rate",
+        )
