@@ -259,11 +259,4 @@ def _write_series(
     u = None if arguments is None else next(arguments.real.decimals())
     table = SeriesTable(modulus, u, terms, in_quarters=in_quarters)
     write_functions(table, None, *destination)
-    needed = ", ".join(f"{name} {_count_text(n)}" for name, n in table.needed().items())
-    complain(f"Terms whose error is proved to be below {TOLERANCE}: {needed}")
-
-
-def _count_text(count: int) -> str:
-    """Return a whole number; one that is very long is rounded."""
-    digits = str(count)
-    return digits if len(digits) < 10 else f"{digits[0]}.{digits[1:3]}e+{len(digits) - 1}"
+    complain(f"Terms whose error is proved to be below {TOLERANCE}: {table.needed()}")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.balls import balls
+from ..arithmetic.balls import Balls, balls
 from ..arithmetic.exact_cosine import Cosine, below_quarters
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.rounding import decided, pair
@@ -66,7 +66,9 @@ def modulus(
     else:
         value = ar.convert(value)
     most = ar.pi / 2 if name == "angle" else 1
-    inside = (value >= 0) & ((value < 1) if name == "q" else (value <= most))
+    inside = value >= 0
+    if ar.everywhere(inside):  # what balls leave open asks for more digits
+        inside = value < 1 if name == "q" else value <= most
     if not ar.everywhere(inside):
         end = {"angle": "pi/2]", "q": "1)"}.get(name, "1]")
         wrong = value[~inside].flat[0] if ar.is_array and value.ndim else value
@@ -155,6 +157,10 @@ _FROM: dict[str, Callable[[FunctionArithmetic, Value], Modulus]] = {
 }
 
 
+_LEAST_BELOW_1 = Fraction("1e-17")
+"""Least 1 - q for which exp(pi^2/log q) is within the exponents of decimals."""
+
+
 class ModulusInput(NamedTuple):
     """A modulus as the user named it: k, k_prime, modular_angle (degrees, or radians) or nome."""
 
@@ -190,6 +196,8 @@ class ModulusInput(NamedTuple):
         """
         self.check()
         if self.name == "nome":
+            if isinstance(ar, Balls) and 1 - self.value < _LEAST_BELOW_1:
+                raise LagtopError("nome must be at most 1 - 1e-17: k' is beyond decimals", "nome")
             return modulus(ar, q=ar.convert(self.value))
         if self.name == "modular_angle":
             angles = (None, self.value) if self.radians else (self.value, None)

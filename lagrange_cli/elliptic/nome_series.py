@@ -28,7 +28,7 @@ from .tables import TableOfFunctions
 if TYPE_CHECKING:
     from .tables import Rows
 
-ErrorBound = Callable[[int], Value]
+ErrorBound = Callable[[Value], Value]
 """A bound of the error after n terms."""
 
 
@@ -74,7 +74,8 @@ def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     """
     q, _, scale = _parts(ar, ar.convert(0), modulus)
     first = scale * ar.sqrt(q) / (1 - q)
-    return lambda n: first * q**n / (1 - q ** (2 * n + 1))
+    power = _falling(ar, ar.log(q))
+    return lambda n: first * power(n) / (1 - power(2 * n + 1))
 
 
 def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
@@ -83,8 +84,8 @@ def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     There 1/(1 + q^(2j-1)) < 1, and the rest is as in `sn_bound`.
     """
     q, _, scale = _parts(ar, ar.convert(0), modulus)
-    first = scale * ar.sqrt(q) / (1 - q)
-    return lambda n: first * q**n
+    first, power = scale * ar.sqrt(q) / (1 - q), _falling(ar, ar.log(q))
+    return lambda n: first * power(n)
 
 
 def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
@@ -93,8 +94,8 @@ def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     There 1/(j (1 + q^2j)) < 1/(n+1) for j > n, and the sum of q^j is q^(n+1)/(1 - q).
     """
     q, _, _ = _parts(ar, ar.convert(0), modulus)
-    first = 2 * q / (1 - q)
-    return lambda n: first * q**n / (n + 1)
+    first, power = 2 * q / (1 - q), _falling(ar, ar.log(q))
+    return lambda n: first * power(n) / (n + 1)
 
 
 def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
@@ -105,8 +106,14 @@ def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     pi/2 c_j^2 k^2j, j >= n, are below k^2j/(2n + 1/2), and the sum of k^2j is k^2n/k'^2.
     """
     complement = modulus.k_prime * modulus.k_prime
-    half, fall, K = ar.convert(0.5), ar.log1p(-complement), complete_k(ar, modulus.k_prime)
-    return lambda n: min(ar.exp(n * fall) / ((2 * n + half) * complement), K)
+    half, power = ar.convert(0.5), _falling(ar, ar.log1p(-complement))
+    K = complete_k(ar, modulus.k_prime)
+    return lambda n: min(power(n) / ((2 * n + half) * complement), K)
+
+
+def _falling(ar: FunctionArithmetic, fall: Value) -> ErrorBound:
+    """Return exp(n fall) of n, or what is more: exp(-10^6), as exponents take time to reduce."""
+    return lambda n: ar.exp(max(n * fall, -(10**6)))
 
 
 def _parts(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> tuple[Value, Value, Value]:
@@ -165,9 +172,12 @@ class SeriesTable(TableOfFunctions):
             self.series |= _at(ar, argument, modulus, radians=modulus_input.radians)
         self.count, self.tolerance = terms, ar.mpf(TOLERANCE)
 
-    def needed(self) -> dict[str, int]:
-        """Return how many terms make the bound of each column at most 1e-16."""
-        return {name: terms_needed(x.bound, self.tolerance) for name, x in self.series.items()}
+    def needed(self) -> str:
+        """Return how many terms make the bound of each column at most 1e-16, in words."""
+        counts = {name: terms_needed(x.bound, self.tolerance) for name, x in self.series.items()}
+        return ", ".join(
+            f"{name} {int(n) if n < 10**9 else n.context.nstr(n, 3)}" for name, n in counts.items()
+        )
 
     def rows(self, digits: int | None = None) -> Rows:
         """Return the header, and each row as a block of texts."""
@@ -201,13 +211,26 @@ def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[st
     }
 
 
-def terms_needed(bound: ErrorBound, tolerance: Value) -> int:
-    """Return the least number of terms from which a falling bound is at most the tolerance."""
-    enough = 1  # Python's integers have no end, and k may be as close to 1 as it likes
-    while bound(enough) > tolerance:
-        enough *= 2
-    few = enough // 2
-    while enough - few > 1:
-        middle = (few + enough) // 2
-        few, enough = (middle, enough) if bound(middle) > tolerance else (few, middle)
-    return enough
+def terms_needed(bound: ErrorBound, tolerance: Value) -> Value:
+    """Return the least number of terms from which a falling bound is at most the tolerance.
+
+    It is a number of the context, right to 300 bits, as k may be as close to 1 as it likes.
+    """
+    ar = tolerance.context
+
+    def bisected(few: Value, enough: Value, terms: Callable[[Value], Value]) -> Value:
+        """Narrow the gap between too few terms and enough of them."""
+        while enough - few > max(1, ar.ldexp(enough, -min(300, ar.prec - 10))):
+            middle = (few + enough) // 2
+            few, enough = (middle, enough) if bound(terms(middle)) > tolerance else (few, middle)
+        return enough
+
+    if bound(1) <= tolerance:
+        return ar.convert(1)
+    bits = 1
+    while bound(ar.ldexp(1, bits)) > tolerance:
+        bits *= 2
+    most = ar.ldexp(
+        1, int(bisected(ar.convert(0), ar.convert(bits), lambda i: ar.ldexp(1, int(i))))
+    )
+    return bisected(most / 2, most, lambda n: n)

@@ -302,6 +302,18 @@ def test_inverse_of_the_nome(q: float) -> None:
         assert float(constants(ARRAYS, Modulus(k, k_prime)).q) == pytest.approx(q, rel=1e-13)
 
 
+def test_a_nome_next_to_1_takes_more_digits(lagtop: Lagtop) -> None:
+    """K is pi/2 theta3^2: -pi^2/(2 log q) but for a term as small as k'^2."""
+    nome = f"0.{'9' * 16}"
+    shown = json.loads(
+        lagtop("jacobi", "--nome", nome, "--digits", "30", "--format", "json").stdout
+    )
+    with mpmath.workdps(60):
+        K = -(mpmath.pi**2) / (2 * mpmath.log(mpmath.mpf(nome)))
+        assert abs(mpmath.mpf(shown["K"]) / K - 1) < 1e-29
+        assert abs(mpmath.mpf(shown["nome_prime"]) / mpmath.exp(-2 * K) - 1) < 1e-29
+
+
 @pytest.mark.parametrize("given", [{}, {"k": 0.1, "q": 0.1}, {"k": 1.1}, {"m": -0.1}, {"q": 1.0}])
 def test_one_modulus_in_range(given: dict[str, float]) -> None:
     for ar in (ARRAYS, ManyDigits(30)):

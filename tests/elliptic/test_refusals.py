@@ -12,6 +12,7 @@ JACOBI = [
     ("--k=-1", "--k must be 0 or more, or imaginary as 0.8i, got -1.0"),
     ("--k-prime -1", "--k-prime must be in [0, 1], got -1.0"),
     ("--modular-angle 91", "--modular-angle must be in [0, 90], got 91.0"),
+    (f"--nome 0.{'9' * 300}", "--nome must be at most 1 - 1e-17: k' is beyond decimals"),
     ("--nome 1", "--nome must be in [0, 1), got 1.0"),
     ("--k 0.5 --u-range 0:1", "--u-range must be a range [log:]start:stop:count"),
     ("--k 0.5 --u-range 0:1:0", "--u-range must have a whole count of 1 to 1e9"),

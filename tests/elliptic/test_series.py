@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from itertools import islice
 from typing import Any
 
@@ -88,5 +89,25 @@ def test_table_and_counts(lagtop: Lagtop) -> None:
     counts = "K 24, am_deg 9, sn 10, cn 10"
     assert result.stderr == f"Terms whose error is proved to be below 1e-16: {counts}\n"
     close = lagtop("jacobi", "--k-prime", "1e-300", "--series", "1", "--format", "json")
-    assert "K 3.26e+601" in close.stderr
+    assert "K 3.27e+601" in close.stderr
     assert "inf" not in close.stdout
+
+
+def test_counts_of_any_size_are_found_at_once(lagtop: Lagtop) -> None:
+    """For K it is about 1/k'^2, k'^2 = 16 exp(pi^2/log q); a bisection would take 140 000 steps."""
+    given = modulus(ar, q=ar.mpf("0.9999"))
+    asked, bound = [], k_bound(ar, given)
+
+    def counted(n: int) -> Any:
+        asked.append(n)
+        return bound(n)
+
+    enough = terms_needed(counted, ar.mpf("1e-16"))
+    assert len(asked) < 400
+    with mpmath.workdps(60):
+        size = mpmath.pi**2 / -mpmath.log(mpmath.mpf("0.9999"))
+        assert abs(mpmath.log(enough) / size - 1) < 1e-3
+    assert bound(enough) <= ar.mpf("1e-16") < bound(enough * 999 // 1000)
+    result = lagtop(*"jacobi --nome 0.9999 --series 1 --format csv".split())
+    assert result.exit_code == 0
+    assert re.search(r"below 1e-16: K \d\.\d\de\+4286\d$", result.stderr.strip())
