@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from matplotlib.figure import Figure
 
 import lagrange_cli as package
 from lagrange_cli import (
@@ -19,6 +20,7 @@ from lagrange_cli import (
     Top,
     angle_sensitivities,
     compare,
+    draw,
     find,
     fit,
     read_scene,
@@ -66,6 +68,10 @@ CALLS: dict[str, Callable[[Any], Any]] = {
     "Top.replace": lambda x: TOP.replace(r0=x),
     "solve": solve,
     "view": view,
+    "draw": draw,
+    "draw(kind)": lambda x: draw(MOTION, x, Figure().add_subplot()),
+    "rotation": MOTION.rotation,
+    "axis": MOTION.axis,
     "sensitivities": sensitivities,
     "sensitivities(keys)": lambda x: sensitivities(TOP, x),
     "angle_sensitivities": lambda x: angle_sensitivities(x, [0, 1]),
@@ -82,6 +88,8 @@ CALLS: dict[str, Callable[[Any], Any]] = {
     "sweep_angles": lambda x: sweep_angles(x, r0=50),
     "sweep_angles(r0)": lambda x: sweep_angles([0.0, 1.0], r0=x),
     "find": lambda x: find(x, r0="10:20"),
+    "find(mapping)": lambda x: find({"T_nutation": x}, r0=(10, 20)),
+    "find(pair)": lambda x: find(["T_nutation=0.4"], r0=(x, 60)),
     "find(r0)": lambda x: find(["T_nutation=0.4"], r0=x),
     "find(scan)": lambda x: find(["T_nutation=0.4"], scan=x, r0="40:60"),
     "fit": lambda x: fit(x, theta=TILT),

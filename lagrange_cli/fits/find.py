@@ -6,7 +6,7 @@ ranges, from the best points of the scan.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from numbers import Integral
 from types import NoneType
 from typing import Any, NamedTuple
@@ -18,12 +18,13 @@ from ..arithmetic.types import Array
 from ..errors import AbsentError, LagtopError, check_type
 from ..inputs.input_keys import warn_of
 from ..inputs.names import check_names
-from ..inputs.ranges import parse_span
 from ..inputs.top import INPUTS
+from ..motion.record import record_keys
 from ..motion.solve import Motion, record_in_range, solve
 from ..output.progress import Progress, silent
+from ..sweeps.results import TEXTS, ResultColumn, Results
 from .roots import roots
-from .search import Scan, Search, scan_of, search_of
+from .search import Scan, Search, condition_texts, read_unknown, scan_of, search_of
 
 _SWEPT = 2.0**-48
 """The relative error of a number of a sweep is less."""
@@ -49,36 +50,46 @@ class FoundTops(NamedTuple):
     """One sentence on the scan."""
 
 
-def find(
-    conditions: Sequence[str], *, scan: int | None = None, radians: bool = False, **inputs: Any
-) -> list[Motion]:
-    """Return the motions that keep all conditions, such as `find(["T_precession=2"], r0="10:200")`.
+class Found(Results):
+    """The records of the tops that `find` found, as arrays by key, and their motions."""
 
-    An input is a number, or a text `[log:]from:to` where it is unknown; there are up to three
-    unknowns, and as many conditions KEY=NUMBER.  `regime=`, `path=` and bounds KEY<NUMBER leave out
-    what does not keep them.  Found is what a `scan` of so many values of each unknown brackets.
-    One unknown is the double whose number comes nearest to the target: where that number hardly
-    changes, other doubles do as well.  The list may be empty.  Raises LagtopError, also where the
-    number has its target value in a whole range.
+    def __init__(self, motions: Sequence[Motion], *, radians: bool) -> None:
+        records = [record_in_range(motion, radians=radians)[0] for motion in motions]
+        columns: dict[str, ResultColumn] = {
+            key: np.array([x[key] for x in records], dtype=object if key in TEXTS else np.float64)
+            for key in record_keys(radians=radians)
+        }
+        super().__init__(columns, {}, ("top",))
+        self.motions = list(motions)
+
+
+def find(
+    conditions: Mapping[str, float | str] | Sequence[str],
+    *,
+    scan: int | None = None,
+    radians: bool = False,
+    **inputs: Any,
+) -> Found:
+    """Return the tops that meet all conditions: `find({"T_precession": 2}, r0=(10, 200))`.
+
+    An input is a number, or a pair (from, to) if it is unknown; there are up to three unknowns, and
+    as many conditions with a number.  Texts are accepted too: `[log:]from:to` and KEY=NUMBER.
+    `regime=`, `path=` and bounds KEY<NUMBER discard tops.  `scan` values of each unknown are
+    computed first, and roots between them are found.  One unknown is the double whose number comes
+    nearest to the target: if that number hardly changes, other doubles do as well.  The result may
+    have no tops.  Quantities of pint are converted to SI, and uncertainties are ignored.  Raises
+    LagtopError, also if the number has its target value in a whole range.
     """
     check_type("scan", scan, Integral, NoneType)
     check_names("inputs", list(inputs) or ["m"], INPUTS)
-    given = {name: _read(name, x) for name, x in inputs.items() if x is not None}
-    search, found = search_of(given, conditions, radians=radians)
+    given = {name: read_unknown(name, x) for name, x in inputs.items() if x is not None}
+    search, found = search_of(given, condition_texts(conditions), radians=radians)
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:
-        return find_tops(search, scan).motions
+        return Found(find_tops(search, scan).motions, radians=radians)
     except AbsentError:
-        return []
-
-
-def _read(name: str, value: Any) -> Any:
-    """Return a number as it is, and the range that a text stands for."""
-    try:
-        return parse_span(value) if isinstance(value, str) else value
-    except LagtopError as error:
-        raise LagtopError(f"{name} {error}", name) from None
+        return Found([], radians=radians)
 
 
 def find_tops(search: Search, count: int | None, progress: Progress = silent) -> FoundTops:

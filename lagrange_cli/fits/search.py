@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from numbers import Real
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
@@ -15,8 +18,9 @@ from ..errors import LagtopError
 from ..inputs.given import Given, gather
 from ..inputs.input_keys import overridden
 from ..inputs.names import check_names
-from ..inputs.ranges import Product, Span
+from ..inputs.ranges import Product, Span, parse_span
 from ..inputs.top import Top
+from ..inputs.value import Value
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys
 from ..motion.regime import Regime
@@ -112,6 +116,44 @@ def _number(key: str, value: str) -> float:
         return float(parse_number(value))
     except LagtopError as error:
         raise LagtopError(f"the value of {key} {error}") from None
+
+
+def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Sequence[str]:
+    """Return conditions as texts KEY=VALUE.  Raises LagtopError for a value of another type."""
+    if not isinstance(conditions, Mapping):
+        return conditions
+    texts = []
+    for key, value in conditions.items():
+        if not isinstance(value, str | Real | Decimal):
+            raise LagtopError(f"{key} must be a number or a text, got {quoted(value)}", key)
+        texts.append(f"{key}={value if isinstance(value, str) else repr(float(value))}")
+    return texts
+
+
+def read_unknown(name: str, given: Any) -> Any:
+    """Return a number or a range as it counts; a unit stays with it."""
+    if isinstance(given, str):
+        try:
+            return parse_span(given)
+        except LagtopError as error:
+            raise LagtopError(f"{name} {error}", name) from None
+    if hasattr(given, "units"):
+        number = read_unknown(name, given.magnitude)
+        return Value(number if isinstance(number, Span) else _exact(number), f"{given.units:C}")
+    given = getattr(given, "nominal_value", given)
+    if isinstance(given, tuple | list | np.ndarray):
+        if len(given) != 2 or not all(isinstance(x, Real | Decimal) for x in given):
+            raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)
+        first, last = map(_exact, given)
+        if not first < last:
+            raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
+        return Span(first, last)
+    return given
+
+
+def _exact(number: Any) -> Fraction:
+    """Return a real number as a fraction; scalars of NumPy would overflow in one."""
+    return Fraction(number.item() if hasattr(number, "item") else number)
 
 
 class Search(NamedTuple):

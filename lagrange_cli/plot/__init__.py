@@ -81,8 +81,11 @@ def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any
     The options are those of the function of the kind, such as `draw_sphere`.  Raises LagtopError
     for an unknown kind.
     """
+    from ..errors import check_type
     from ..inputs.names import check_names
+    from ..motion.solve import Motion
 
+    check_type("motion", motion, Motion)
     functions = {
         "sphere": draw_sphere,
         "angles": draw_angles,

@@ -14,9 +14,11 @@ from typing import Any
 import mpmath
 import numpy as np
 import oracle
+import pint
 import pytest
 from conftest import Lagtop, assert_one_line
 from scipy.integrate import solve_ivp
+from uncertainties import ufloat
 
 from lagrange_cli import LagtopError, MixedBodyWarning, Top, sensitivities, solve
 from lagrange_cli.fits.find import find, number_slopes
@@ -32,7 +34,7 @@ from lagrange_cli.inputs.ranges import parse_span
     [("T_precession", 2.0, 1), ("T_nutation", 0.45, 2), ("theta_max_deg", 90.0, 1)],
 )
 def test_no_neighbour_of_an_unknown_comes_nearer(key: str, wanted: float, found: int) -> None:
-    motions = find([f"{key}={wanted}"], r0="10:200")
+    motions = find([f"{key}={wanted}"], r0="10:200").motions
     assert len(motions) == found
     for motion in motions:
         r0 = float(motion.top.r0)
@@ -82,15 +84,15 @@ def test_what_is_nearest_differs_from_what_is_wanted(lagtop: Lagtop) -> None:
 
 
 def test_a_pair_of_roots_between_two_points_is_found() -> None:
-    least = min(find(["T_nutation=0.4525"], r0="10:200"), key=lambda x: float(x.top.r0))
-    assert len(find(["T_nutation=0.4525"], r0="10:200", scan=7)) == 2
+    least = min(find(["T_nutation=0.4525"], r0="10:200").motions, key=lambda x: float(x.top.r0))
+    assert len(find(["T_nutation=0.4525"], r0="10:200", scan=7).motions) == 2
     assert 30 < float(least.top.r0) < 40
 
 
 @pytest.mark.parametrize("key", ["nutation_rate_lower", "nutation_rate_upper"])
 def test_steady_precession_is_found_where_the_nutation_only_touches_0(key: str) -> None:
     """The slow and the fast root of A cos(theta) x^2 - C r0 x + mgs = 0, by mpmath."""
-    found = find([f"{key}=0"], r0=50, theta0_deg=60, psidot0="1:60")
+    found = find([f"{key}=0"], r0=50, theta0_deg=60, psidot0="1:60").motions
     a, b, c = 39032 * mpmath.cos(mpmath.pi / 3), 17458 * 50, 1587 * 4 * 981
     exact = [(b + sign * mpmath.sqrt(b * b - 4 * a * c)) / (2 * a) for sign in (-1, 1)]
     assert [x.top.psidot0 for x in found] == pytest.approx([float(x) for x in exact], rel=1e-14)
@@ -99,8 +101,8 @@ def test_steady_precession_is_found_where_the_nutation_only_touches_0(key: str) 
 def test_a_number_that_comes_near_without_touching_is_not_found() -> None:
     """The greatest period is 0.452509: a millionth more is nowhere, a millionth less twice."""
     most = max(solve(Top(r0=r0)).T_nutation or 0 for r0 in np.linspace(37, 37.6, 401))
-    assert find([f"T_nutation={most * (1 + 1e-6)}"], r0="10:200") == []
-    assert len(find([f"T_nutation={most * (1 - 1e-6)}"], r0="10:200")) == 2
+    assert find([f"T_nutation={most * (1 + 1e-6)}"], r0="10:200").motions == []
+    assert len(find([f"T_nutation={most * (1 - 1e-6)}"], r0="10:200").motions) == 2
 
 
 def test_touching_is_told_from_passing_by() -> None:
@@ -120,7 +122,7 @@ def test_a_leap_is_no_root() -> None:
     """The mean spin leaps by a turn per period where the axis starts to pass round a pole."""
     rates = [solve(Top(psidot0=x)).mean_spin_rate for x in (-11.98, -11.97)]
     assert all(math.isfinite(rate) for rate in rates)
-    found = find(["mean_spin_rate=46"], psidot0="-40:40")
+    found = find(["mean_spin_rate=46"], psidot0="-40:40").motions
     assert all(abs(motion.mean_spin_rate - 46) < 1e-12 for motion in found)
 
 
@@ -136,7 +138,7 @@ def test_a_leap_is_no_root() -> None:
     ],
 )
 def test_several_unknowns(conditions: list[str], unknowns: dict[str, Any]) -> None:
-    motions = find(conditions, **unknowns)
+    motions = find(conditions, **unknowns).motions
     assert motions
     for motion in motions:
         inputs = {name: float(getattr(motion.top, name)) for name in oracle.Scene._fields}
@@ -147,12 +149,12 @@ def test_several_unknowns(conditions: list[str], unknowns: dict[str, Any]) -> No
 
 
 def test_filters_and_bounds() -> None:
-    both = find(["T_nutation=0.45"], r0="10:60")
+    both = find(["T_nutation=0.45"], r0="10:60").motions
     assert [x.theta_max_deg < 100 for x in both] == [False, True]
-    assert find(["T_nutation=0.45", "theta_max<100"], r0="10:60") == both[1:]
-    assert find(["T_nutation=0.45", "theta_max_deg>=100"], r0="10:60") == both[:1]
-    assert find(["T_nutation=0.45", "path=looping"], r0="10:60") == []
-    assert find(["T_nutation=0.45", "regime=regular"], r0="10:60") == both
+    assert find(["T_nutation=0.45", "theta_max<100"], r0="10:60").motions == both[1:]
+    assert find(["T_nutation=0.45", "theta_max_deg>=100"], r0="10:60").motions == both[:1]
+    assert find(["T_nutation=0.45", "path=looping"], r0="10:60").motions == []
+    assert find(["T_nutation=0.45", "regime=regular"], r0="10:60").motions == both
 
 
 @pytest.mark.parametrize(
@@ -182,7 +184,7 @@ def test_bad_searches(conditions: list[str], unknowns: dict[str, Any], message: 
 def test_a_tilt_may_be_in_radians(tilt: Any) -> None:
     wanted = solve(Top(theta0_rad=0.5)).T_precession
     other: dict[str, Any] = {} if tilt == "0.1:1" else {"r0": "40:60"}
-    motions = find([f"T_precession={wanted!r}"], theta0_rad=tilt, scan=20, **other)
+    motions = find([f"T_precession={wanted!r}"], theta0_rad=tilt, scan=20, **other).motions
     assert any(abs(float(x.top.r0) - 50) < 1e-9 for x in motions)
     assert any(abs(float(x.top.theta0_rad or 0) - 0.5) < 1e-9 for x in motions)
 
@@ -449,7 +451,7 @@ def test_a_leap_at_zero_is_no_root(lagtop: Lagtop) -> None:
 
 
 def test_a_leap_at_zero_hides_no_root() -> None:
-    (motion,) = find(["mean_precession_rate=-11.5"], r0="-60:60", theta0_deg=120)
+    (motion,) = find(["mean_precession_rate=-11.5"], r0="-60:60", theta0_deg=120).motions
     scene = oracle.Scene(r0=float(motion.top.r0), theta0_deg=120)
     assert float(oracle.constants(scene, 30)["mean_precession_rate"]) == pytest.approx(-11.5)
 
@@ -461,3 +463,42 @@ def test_bounds_hold_or_not(relation: str, holds: int) -> None:
     found = [bound.holds({"r0": x}) for x in (1.0, 2.0, 3.0)]
     assert found == [bool(holds & bit) for bit in (1, 2, 4)]
     assert not bound.holds({"r0": None})
+
+
+def test_numbers_and_pairs_are_conditions_and_ranges() -> None:
+    found = find({"T_precession": 2.0}, r0=(10, 200), theta0_deg=30)
+    assert found.motions == find(["T_precession=2"], r0="10:200", theta0_deg=30).motions
+    assert found["T_precession"] == pytest.approx([2.0], rel=1e-15)
+    assert found["r0"].tolist() == [motion.top.r0 for motion in found.motions]
+    assert found.to_pandas().regime.tolist() == ["regular"]
+    looping = find({"T_nutation": 0.45, "path": "looping"}, r0=(10, 60))
+    assert looping.motions == []
+    assert len(looping["r0"]) == 0
+
+
+def test_quantities_are_conditions_of_the_known_inputs() -> None:
+    unit: Any = pint.UnitRegistry()
+    body = {"m": "1587 g", "A": "39032 g cm^2", "C": "17458 g cm^2", "s": "4 cm", "g": "981 cm/s^2"}
+    known = {name: unit.Quantity(text) for name, text in body.items()}
+    found = find({"T_precession": 2.0}, r0=unit.Quantity((100, 1900), "rpm"), **known)
+    expected = find({"T_precession": 2.0}, r0=(10, 200))
+    assert found["r0"] == pytest.approx(expected["r0"], rel=1e-12)
+    assert found["m"].tolist() == [1.587]
+    known["r0"] = ufloat(50, 1)
+    with pytest.raises(LagtopError, match="r0 must have a unit"):
+        find({"T_precession": 2.0}, theta0_deg=(10, 20), **known)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "inputs", "message"),
+    [
+        ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a number or a text"),
+        ({"T_precession": 2}, {"r0": (10, 20, 30)}, "r0 must be a real number or a pair"),
+        ({"T_precession": 2}, {"r0": (200, 10)}, "r0 must have its smaller end first"),
+    ],
+)
+def test_values_that_are_neither_are_refused(
+    conditions: Any, inputs: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(LagtopError, match=message):
+        find(conditions, **inputs)
