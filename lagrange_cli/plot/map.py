@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ..arithmetic.points import LogPoints
@@ -226,9 +227,9 @@ def _draw_threshold(axes: Axes, chart: KeyMap, look: Look) -> None:
     """Draw the line at which an upright top begins to be stable, if it crosses the map."""
     if not chart.sleeping.min() < 1.0 < chart.sleeping.max():
         return
-    for colour, width in ((look.paper, 3.2), (look.ink, 1.6)):
-        how: dict[str, Any] = {"colors": colour, "linewidths": points(width)}
-        axes.contour(chart.x.values, chart.y.values, chart.sleeping, [1.0], **how)
+    how: dict[str, Any] = {"colors": look.ink, "linewidths": points(1.6)}
+    line = axes.contour(chart.x.values, chart.y.values, chart.sleeping, [1.0], **how)
+    line.set_path_effects([withStroke(linewidth=points(3.2), foreground=look.paper)])
     label = "sleeping threshold, C²r₀² = 4Amgs: faster, an upright top is stable"
     axes.plot([], [], color=look.ink, lw=points(1.6), label=label)
 
