@@ -35,7 +35,10 @@ from .top_options import (
 )
 
 if TYPE_CHECKING:
+    from ..inputs.given import Given
     from ..inputs.value import Value
+    from ..motion.sensitivity.uncertainty import FirstOrder
+    from ..motion.solve import Motion
     from ..plot.map import InputRange
 
 FORMATS = ("png", "svg", "pdf")
@@ -161,6 +164,7 @@ def command(
         numbers=not no_numbers,
         progress=with_progress,
         stds=angle_stds(found, motion),
+        uncertain=_first_order(found, motion),
     )
     page = Page(motion, chosen, request, chosen_look(dark), inches)
     page_dpi, film_dpi = (float(dpi or usual) for usual in (PAGE_DPI, FILM_DPI))
@@ -231,6 +235,15 @@ def _camera(text: str | None, radians: bool) -> tuple[float, float] | None:
             f" {name}, got {text!r}"
         )
     return azimuth, elevation
+
+
+def _first_order(found: Given, motion: Motion) -> FirstOrder | None:
+    """Return the uncertainties of the record, if inputs have any."""
+    if not found.stds:
+        return None
+    from .uncertainty import first_order  # for few pictures only
+
+    return first_order(found, motion)
 
 
 def _input_range(name: str, text: str | None) -> InputRange | None:

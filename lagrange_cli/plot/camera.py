@@ -46,12 +46,16 @@ def camera_at(azimuth: float, elevation: float) -> Camera:
 
 
 def best_camera(path: Array) -> Camera:
-    """Return the camera, above or below, that a path faces most, with its start in sight."""
+    """Return the camera that a path faces most, with its start in sight.
+
+    It is above the horizon unless the path hangs well below it.
+    """
 
     def shown(camera: Camera) -> float:
         """Return how well the path is seen."""
         turned = (path @ camera.toward).mean()
-        return float(camera.faces(path).mean() + 0.5 * turned + camera.faces(path[:1])[0])
+        faces = camera.faces(path).mean() + 0.5 * turned + camera.faces(path[:1])[0]
+        return float(faces + 0.2 * (camera.toward[2] > 0))
 
     return _chosen(path, 25, shown)
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ..inputs.units import System
     from ..motion.quantity import Key
     from ..motion.sensitivity.angle_sensitivities import AngleStds
+    from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
     from .map import InputRange
     from .style import Look
@@ -54,6 +55,8 @@ class PlotRequest(NamedTuple):
     """Shows the progress of a map."""
     stds: AngleStds | None = None
     """Uncertainties of the angles, drawn as bands."""
+    uncertain: FirstOrder | None = None
+    """Uncertainties of the numbers beside several pictures."""
 
     def unit(self, unit: str) -> str:
         """Return a unit such as `rad/time` with the names of the units of the inputs."""

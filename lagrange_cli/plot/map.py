@@ -20,7 +20,7 @@ from ..inputs.input_keys import DECLARED, NINE
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
-from ..motion.quantity import unit_name
+from ..motion.quantity import Key, unit_name
 from ..motion.record import KEYS, NUMBER_KEYS
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
@@ -160,7 +160,16 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
         _draw_threshold(ax, chart, look)
         _mark_own(ax, motion, chart, request.radians, look)
 
-    return Drawing(f"{key.group}: {key.meaning}, {key.symbol} {key.equation}", draw)
+    return Drawing(_title(key, unit), draw)
+
+
+def _title(key: Key, unit: str) -> str:
+    """Return the quantity, its symbol, its equation and its unit."""
+    kinds = {"Periods": "period ", "Mean rates": "mean rate of ", "Rates": "rate of "}
+    kind = kinds.get(key.group, "")
+    kind = "integral of the " if key.meaning.endswith(("kind, k", "kind, k'")) else kind
+    named = f"{key.symbol}: {kind}{key.meaning} {key.equation}".rstrip()
+    return f"{named}, in {unit}" if unit else named
 
 
 def colour_limits(values: Array) -> tuple[float, float]:

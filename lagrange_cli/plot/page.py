@@ -11,7 +11,9 @@ from matplotlib.figure import Figure, FigureBase, SubFigure
 
 from ..errors import LagtopError, NothingToDrawError
 from ..motion.record import KEYS
+from ..motion.sensitivity.uncertainty import stds_of
 from ..motion.solve import Motion
+from ..output.uncertain_text import uncertain_text
 from .curves import motion_in_words
 from .files import About, figure_bytes
 from .kinds import KINDS, PlotRequest
@@ -152,6 +154,7 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     """Write the record: a line for each key, with its symbol and its unit, and the remark."""
     radians = page.request.radians
     record = page.motion.record(radians=radians)
+    stds = stds_of(record, page.request.uncertain) if page.request.uncertain else {}
     remark = textwrap.wrap(page.request.in_words(record.pop("remark") or ""), REMARK_WIDTH)
     shown = {key: value for key, value in record.items() if value is not None}
     step = min(0.0242, 0.95 / (len(shown) + len(remark) + 1.5))
@@ -161,10 +164,13 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     for name, value in shown.items():
         height -= step
         key = KEYS.get(name.replace("_rad", "_deg"))
-        symbol = key.symbol if key and key.symbol != name else ""
-        unit = page.request.unit_of(key) if key else ""
-        text = value if isinstance(value, str) else f"{number_text(float(value))} {unit}".rstrip()
-        for x, word, colour in ((0.04, symbol, page.look.ink), (0.2, name, page.look.quiet)):
+        symbol, unit = (key.symbol, page.request.unit_of(key)) if key else ("", "")
+        std = stds.get(f"{name}_std")
+        text = value if isinstance(value, str) else number_text(float(value))
+        text = uncertain_text(float(value), std).replace("-", "−") if std else text
+        text = f"{text} {unit}".rstrip()
+        quiet = name if name != symbol else ""
+        for x, word, colour in ((0.04, symbol, page.look.ink), (0.2, quiet, page.look.quiet)):
             panel.text(x, height, word, va="top", size=size, color=colour)
         panel.text(0.98, height, text, va="top", ha="right", size=size)
     for line in remark:
@@ -191,7 +197,7 @@ def _settle_layout(figure: Figure) -> None:
     engine = figure.get_layout_engine()
     assert engine is not None
     engine.execute(figure)
-    if _write_powers(figure):
+    if _write_powers(figure) | _fit_titles(figure):
         engine.execute(figure)
     figure.set_layout_engine("none")
     _round_boxes(figure)
@@ -214,6 +220,18 @@ def _write_powers(figure: Figure) -> bool:
     for formatter in with_factor:
         formatter.set_useMathText(True)
     return bool(with_factor)
+
+
+def _fit_titles(part: Figure | SubFigure) -> bool:
+    """Make titles smaller that are wider than their panel; return if any is."""
+    changed = [_fit_titles(panel) for panel in part.subfigs]
+    for title in part.texts:
+        while (
+            title.get_text() == part.get_suptitle() and title.get_window_extent().x1 > part.bbox.x1
+        ):
+            title.set_fontsize(title.get_fontsize() * 0.95)
+            changed.append(True)
+    return any(changed)
 
 
 def _round_boxes(figure: FigureBase) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from .files import About, figure_bytes
-from .style import LIGHT, scale, styled
+from .style import LIGHT, scale, styled, symbol_and_colour
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,6 +117,7 @@ class FittedCurve(NamedTuple):
     """One channel of a recording and the fitted motion, in the unit of the labels."""
 
     name: str
+    """`theta`, `phi` or `psi`, after the name of the recording and a colon if there are several."""
     t: Array
     data: Array
     """Measured values; NaN where one is missing."""
@@ -141,10 +142,11 @@ def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) ->
     )[:, 0]
     for i, curve in enumerate(curves):
         above, below = panels[2 * i], panels[2 * i + 1]
-        colour = LIGHT.lines[i % len(LIGHT.lines)]
+        recording, _, angle = curve.name.rpartition(": ")
+        symbol, colour = symbol_and_colour(angle, LIGHT)
         above.plot(curve.fine_t, curve.curve, lw=1.2, color=colour, label="fit")
         above.plot(curve.t, curve.data, ".", ms=3, color=LIGHT.ink, label="data")
-        above.set(ylabel=f"{curve.name} ({unit})")
+        above.set(ylabel=f"{symbol} ({unit})", title=recording)
         below.axhline(0, lw=0.8, color=LIGHT.quiet)
         below.plot(curve.t, curve.residual, ".", ms=3, color=colour)
         below.set(ylabel="residual")

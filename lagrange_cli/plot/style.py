@@ -1,6 +1,7 @@
 """The look of pictures, light and dark: one style for all of them.
 
-The colours of lines are Okabe and Ito's, made to be told apart by every kind of colour vision; time
+Tilt is blue, spin orange, precession green, in every picture and on the page.  The colours follow
+Okabe and Ito's; on white they are darker, so that letters have a contrast of 4.5 too.  Time
 and keys are coloured by viridis, whose lightness grows evenly, cut where it would fade into the
 background.  A test simulates the three kinds of colour blindness.
 """
@@ -35,15 +36,16 @@ class Look(NamedTuple):
     faint: str
     """Colour of areas."""
     lines: tuple[str, str, str]
+    """Colours of tilt, spin and precession, and of other curves."""
     scale: tuple[float, float]
     """The part of viridis that stands out from the paper."""
 
 
 LIGHT = Look(
-    "#ffffff", "#1a1a1a", "#6b6b6b", "#e9eef2", ("#0072b2", "#d55e00", "#009e73"), (0, 0.85)
+    "#ffffff", "#1a1a1a", "#6b6b6b", "#e9eef2", ("#0058a8", "#c04f00", "#008656"), (0, 0.85)
 )
 DARK = Look(
-    "#14181d", "#ececec", "#9a9fa5", "#252c34", ("#56b4e9", "#e69f00", "#cc79a7"), (0.25, 1)
+    "#14181d", "#ececec", "#9a9fa5", "#252c34", ("#56b4e9", "#e69f00", "#3ddc97"), (0.25, 1)
 )
 
 
@@ -110,6 +112,12 @@ def points(length: float) -> float:
     import matplotlib
 
     return length * float(matplotlib.rcParams["font.size"]) / POINTS
+
+
+def symbol_and_colour(name: str, look: Look) -> tuple[str, str]:
+    """Return the symbol and the colour of an angle: `theta`, `phi` or `psi`."""
+    symbols = {"theta": "ϑ", "phi": "φ", "psi": "ψ"}
+    return symbols[name], look.lines[[*symbols].index(name)]
 
 
 def head(panel: FigureBase, title: str) -> None:

@@ -24,6 +24,7 @@ from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
 from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
+from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
 from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest
 from lagrange_cli.plot.map import parse_input_range
@@ -92,21 +93,38 @@ def test_a_picture_that_is_missing_says_why(name: str) -> None:
             drawn(scene, ["remainders"])
 
 
-@pytest.mark.parametrize("kinds", [ON_THE_SHEET, ("angles",), ("angles", "cubic")], ids=",".join)
-@pytest.mark.parametrize("uncertain", [False, True])
-def test_no_title_is_cut_off(kinds: Sequence[str], uncertain: bool) -> None:
+@pytest.mark.parametrize("size", [None, (2.0, 2.0), (3.5, 3.0)])
+@pytest.mark.parametrize(
+    "kinds", [ON_THE_SHEET, ("angles",), ("angles", "cubic"), ("map",)], ids=",".join
+)
+def test_no_title_is_cut_off(
+    kinds: Sequence[str], size: tuple[float, float] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At any size, and with the longest titles: those of uncertain inputs."""
+    figures: list[Figure] = []
+
+    def keep(figure: Figure, *_: Any) -> bytes:
+        figures.append(figure)
+        return b""
+
+    monkeypatch.setattr("lagrange_cli.plot.page.figure_bytes", keep)
     motion = solve(Top())
-    stds = AngleStds(motion.exact, {"theta0_deg": 1.0}, ["theta0_deg"]) if uncertain else None
-    figure = Figure()
-    page = Page(motion, kinds, PlotRequest(x=X, y=Y, stds=stds), LIGHT)
-    with styled(LIGHT, page.lettering()):
-        figure.set_size_inches(*page.inches())
-        draw_page(figure, page)
-        figure.draw_without_rendering()
+    stds = AngleStds(motion.exact, {"theta0_deg": 1.0}, ["theta0_deg"])
+    request = PlotRequest(x=X, y=Y, stds=stds, key="precession_rate_start")
+    page_bytes(Page(motion, kinds, request, LIGHT, size), "png", 150)
+    (figure,) = figures
     panels = figure.subfigs if len(kinds) == 1 else figure.subfigs[1].subfigs
     for panel in panels:
         (title,) = (text for text in panel.texts if text.get_text() == panel.get_suptitle())
         assert title.get_window_extent().x1 <= panel.bbox.x1, title.get_text()
+
+
+def test_the_numbers_beside_pictures_have_uncertainties() -> None:
+    motion = solve(Top())
+    uncertain = FirstOrder(motion.top, {"theta0_deg": 1.0}, ["theta0_deg"])
+    figure = drawn(motion, ["cubic", "phase"], PlotRequest(uncertain=uncertain))
+    texts = {text.get_text() for text in figure.subfigs[0].texts}
+    assert {"30.0(1.0) deg", "73.9(8) deg", "50 rad/time", "0.429(8) time"} <= texts
 
 
 # Sizes.

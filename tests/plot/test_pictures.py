@@ -278,6 +278,21 @@ def test_maps_that_cannot_be() -> None:
             key_map(solve(Top()), key, parse_input_range("x", x), parse_input_range("y", y))
 
 
+@pytest.mark.parametrize(
+    ("key", "title"),
+    [
+        ("T_precession", "Tψ: period of the mean precession (§8), in time"),
+        ("mean_precession_rate", "ψ' mean: mean rate of precession (7,3), in rad/time"),
+        ("precession_rate_half", "ψ'(T/2): rate of precession at T/2 (4,7), in rad/time"),
+        ("K_prime", "K': integral of the first kind, k' (2,4)"),
+        ("theta_max_deg", "ϑ max: greatest tilt (4,9), in deg"),
+    ],
+)
+def test_the_title_of_a_map_names_quantity_and_unit(key: str, title: str) -> None:
+    request = PlotRequest(x=parse_input_range("x", "r0=20:80:2"), y=TILTS, key=key)
+    assert KINDS["map"].drawing(solve(Top()), request).title == title.replace("(§8)", "§8")
+
+
 # The sphere.
 
 
@@ -321,6 +336,12 @@ def test_the_eye_is_where_it_was_asked_to_be() -> None:
     assert names["x"] == pytest.approx((0, -1.34), abs=1e-12)
     assert names["y"] == pytest.approx((1.34, 0), abs=1e-12)
     assert math.hypot(*names["z"]) < 0.2
+
+
+@pytest.mark.parametrize(("tilt", "above"), [(30, True), (90, True), (150, False)])
+def test_the_camera_is_above_unless_the_top_hangs(tilt: float, above: bool) -> None:
+    motion = solve(Top(r0=200.0, theta0_deg=tilt))
+    assert (best_camera(axis_path(motion, turn_span(motion)).axis).toward[2] > 0) == above
 
 
 @pytest.mark.parametrize("sign", [1, -1])

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels
+from lagrange_cli.plot.reports import ErrorCurve, FittedCurve, draw_error_panels, draw_fit_panels
 from lagrange_cli.plot.style import LIGHT, styled
 
 T = np.linspace(0, 1, 11)
@@ -57,3 +57,19 @@ def test_what_has_no_logarithm_is_left_out(error: float | None) -> None:
     curves = [curve._replace(compared=error) for curve in CURVES]
     assert len(drawn(curves).axes) == 1
     assert len(drawn([*curves[1:], CURVES[0]]).axes[1].lines) == 1 + 3
+
+
+def test_angles_of_a_fit_have_their_own_colours_and_symbols() -> None:
+    names = {
+        "psi": ("ψ (deg)", 2),
+        "one.csv: theta": ("ϑ (deg)", 0),
+        "two.csv: phi": ("φ (deg)", 1),
+    }
+    with styled(LIGHT):
+        figure = Figure()
+        draw_fit_panels(figure, [FittedCurve(name, T, T, T, T, 0 * T) for name in names], "deg")
+    for axes, (name, (label, colour)) in zip(figure.axes[::2], names.items(), strict=True):
+        assert axes.get_ylabel() == label
+        assert axes.lines[0].get_color() == LIGHT.lines[colour]
+        assert axes.get_title("left") == name.rpartition(": ")[0]
+    assert {axes.get_ylabel() for axes in figure.axes[1::2]} == {"residual"}
