@@ -229,7 +229,7 @@ def _fit_titles(part: Figure | SubFigure) -> bool:
         while (
             title.get_text() == part.get_suptitle() and title.get_window_extent().x1 > part.bbox.x1
         ):
-            title.set_fontsize(title.get_fontsize() * 0.95)
+            title.set_fontsize(float(title.get_fontsize()) * 0.95)
             changed.append(True)
     return any(changed)
 
