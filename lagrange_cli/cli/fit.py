@@ -15,7 +15,7 @@ from .command import ExamplesFirst, complain, fail_for, write_report
 from .options import FILE, NAMES, Parsed, exclude, extension, output_options
 from .progress import with_progress
 from .row_options import dialect, reading_options, text_options
-from .top_options import INPUT, by_key, input_options, say_unused
+from .top_options import UNCERTAIN, by_key, input_options
 
 if TYPE_CHECKING:
     from ..fits.record import Outcome
@@ -64,7 +64,7 @@ def _positive(value: float) -> float:
 @click.option(
     "--scene", type=FILE, metavar="FILE|-", help="Scene file, of which --fix takes what is known."
 )
-@input_options(INPUT, units=False, whole=False)
+@input_options(UNCERTAIN, units=False, whole=False)
 @click.option(
     "--fix",
     type=NAMES,
@@ -126,7 +126,7 @@ def command(
     exclude({"--scene -": scene == "-" or None, "the recording -": recording == "-" or None})
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
-    known, system = _known(scene, fix or [], by_key(options, radians=rad))
+    known, stds, system = _known(scene, fix or [], by_key(options, radians=rad))
     conventions = Conventions(quaternion_order, euler_sequence, "body", rad).checked()
     spread = _in_radians(sigma, rad)
     reading = Reading(columns, conventions, by, spread, dialect())
@@ -135,7 +135,7 @@ def command(
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]
-    found = _fitted(groups, known, recording, rad)
+    found = _fitted(groups, known, stds, recording, rad)
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
         _write_scene(found[0], recording, scene_path)
@@ -148,21 +148,25 @@ def command(
 
 
 def _fitted(
-    groups: list[list[Recording]], known: Mapping[str, float], source: str, radians: bool
+    groups: list[list[Recording]],
+    known: Mapping[str, float],
+    stds: Mapping[str, float],
+    source: str,
+    radians: bool,
 ) -> list[Outcome]:
     from ..fits.fit import fit_recordings
     from ..inputs.files import shown_path
 
     found: list[Outcome] = []
     for group in with_progress(groups, "fits"):
-        found += fit_recordings(group, known, shown_path(source), radians=radians)
+        found += fit_recordings(group, known, shown_path(source), stds=stds, radians=radians)
     return found
 
 
 def _known(
     scene: str | None, fix: list[str], given: Mapping[str, Any]
-) -> tuple[dict[str, float], System | None]:
-    """Return the inputs that are known, those given and some of the scene, and their units.
+) -> tuple[dict[str, float], dict[str, float], System | None]:
+    """Return known inputs, given or of the scene, their standard deviations, and their units.
 
     Raises LagtopError.
     """
@@ -183,8 +187,8 @@ def _known(
             check_names("fix", [name], [*Top.fields, "theta0"])
             raise LagtopError(f"--fix {name} must be given by an option or by --scene")
         names.append(matching[0])
-    say_unused(name for name in names if name in found.stds)
-    return known_inputs({name: present[name] for name in names}), found.system
+    stds = {name: found.stds[name] for name in names if name in found.stds}
+    return (*known_inputs({name: present[name] for name in names}, stds), found.system)
 
 
 def _in_radians(

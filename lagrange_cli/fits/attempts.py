@@ -78,12 +78,14 @@ class Attempt(NamedTuple):
         return self._replace(solution=self.problem.solve(values))
 
 
-def best_attempt(recording: Recording, known: Mapping[str, float], where: str) -> Attempt:
+def best_attempt(
+    recording: Recording, known: Mapping[str, float], stds: Mapping[str, float], where: str
+) -> Attempt:
     """Return the best fit of one recording, from the starts that may lead to it.
 
     Raises LagtopError, DataError for a recording that cannot be fitted.
     """
-    parameters = parameters_of(known, [recording])
+    parameters = parameters_of(known, stds, [recording])
     _check(recording, parameters, where)
     ways = _ways(recording, known, where)
     found: list[Attempt] = []
@@ -166,6 +168,7 @@ def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | N
         **{"a": a, "b": b, "ratio": b / r0 if r0 else 1.0, "r0": r0},
         **{"theta0": theta, "thetadot0": nutation, "psidot0": precession},
         **{"psi_zero": start.psi_zero, "phi_zero": start.phi_zero},
+        **{name: parameters.known[name] for name in parameters.stds},
     }
     try:
         first = np.array([values[name] for name, _ in parameters.names])

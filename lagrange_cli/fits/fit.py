@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from types import NoneType
+from types import MappingProxyType, NoneType
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, check_type
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions
+from ..inputs.value import Value, as_value, parse_value
 from .attempts import Attempt, best_attempt, sigma_of
 from .least_squares import LEAST_SIGMA, FittedParameters, Problem
 from .nutation import NoNutationError
@@ -31,32 +32,42 @@ def fit_recordings(
     known: Mapping[str, float],
     where: str = "data",
     *,
+    stds: Mapping[str, float] = MappingProxyType({}),
     radians: bool = False,
 ) -> list[Outcome]:
     """Fit one body to some recordings by least squares, and return the results of each.
 
     A single recording whose nutation is below its noise gets a steady precession.  `known` are
-    inputs by key, theta0 in radians.  Raises LagtopError, DataError for recordings that cannot be
-    fitted.
+    inputs by key, theta0 in radians, and `stds` the standard deviations of some: those are fitted
+    too, with the known value as a prior.  Raises LagtopError, DataError for recordings that cannot
+    be fitted.
     """
     with ARRAYS.working():
         try:
-            found = _fitted(recordings, known, where)
+            found = _fitted(recordings, known, stds, where)
         except NoNutationError:
             if len(recordings) > 1 or "psi" not in recordings[0].angles:
                 raise
-            found = steady_fit(recordings[0], known, where)
+            found = steady_fit(recordings[0], known, stds, where)
             return [SteadyOutcome(found, 0, radians=radians)]
     return [Outcome(found, i, radians=radians) for i in range(len(recordings))]
 
 
-def _fitted(recordings: Sequence[Recording], known: Mapping[str, float], where: str) -> Fit:
+def _fitted(
+    recordings: Sequence[Recording],
+    known: Mapping[str, float],
+    stds: Mapping[str, float],
+    where: str,
+) -> Fit:
     names = [f"{where}, {x.name}" if x.name else where for x in recordings]
-    alone = [best_attempt(x, known, name) for x, name in zip(recordings, names, strict=True)]
+    alone = [best_attempt(x, known, stds, name) for x, name in zip(recordings, names, strict=True)]
     noise, recordings = [one.noise for one in alone], [one.recording for one in alone]
     problem, solution, rival = alone[0].problem, alone[0].solution, alone[0].rival
     if len(alone) > 1:
-        sigma, together = [*map(sigma_of, recordings, noise)], parameters_of(known, recordings)
+        sigma, together = (
+            [*map(sigma_of, recordings, noise)],
+            parameters_of(known, stds, recordings),
+        )
         problem, rival = Problem(recordings, sigma, together), None
         solution = problem.solve(_joined(together, alone))
     sigma_known = bool(recordings[0].sigma)
@@ -90,6 +101,7 @@ def _joined(together: Parameters, alone: Sequence[Attempt]) -> Array:
     ]
     for one in found:
         one["ratio"] = one["b"] / one["r0"] if one["r0"] else 1.0
+        one |= {name: together.known[name] for name in together.stds}
     values = [
         np.median([one[name] for j, one in enumerate(found) if i in {-1, j}])
         for name, i in together.names
@@ -106,15 +118,16 @@ def fit(
     axis: ArrayLike | None = None,
     quaternion: ArrayLike | None = None,
     sigma: Mapping[str, float] | float | None = None,
-    known: Mapping[str, float] | None = None,
+    known: Mapping[str, float | str] | None = None,
 ) -> Outcome:
     """Fit a top to a recording; the results are in `record()`.
 
     Times have the shape (n,), angles too (radians, within whole turns, NaN where missing).  Instead
     of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
     space, shape (n, 4).  `sigma` are standard deviations in radians, one or by channel; they are
-    estimated from the residuals by default.  `known` are known inputs by key.  Raises LagtopError,
-    DataError for a recording that cannot be fitted.
+    estimated from the residuals by default.  `known` are known inputs by key; a text such as
+    `"0.070(5)"` is an uncertain one.  Raises LagtopError, DataError for a recording that cannot be
+    fitted.
     """
     check_type("known", known, Mapping, NoneType)
     times = _numbers("t", t, ())
@@ -137,7 +150,18 @@ def fit(
     columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
     source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
     recording = recording_of("", source, columns)
-    return fit_recordings([recording], known_inputs(known or {}))[0]
+    values = {name: _value(name, x) for name, x in (known or {}).items()}
+    stds = {name: float(x.std) for name, x in values.items() if x.std is not None}
+    inputs, stds = known_inputs({name: x.number for name, x in values.items()}, stds)
+    return fit_recordings([recording], inputs, stds=stds)[0]
+
+
+def _value(name: str, given: float | str) -> Value:
+    """Return a known input as a value.  Raises LagtopError."""
+    try:
+        return parse_value(given, uncertain=True) if isinstance(given, str) else as_value(given)
+    except LagtopError as error:
+        raise LagtopError(f"{name} {error}", name) from None
 
 
 def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:

@@ -31,7 +31,7 @@ class DeterminedProduct(NamedTuple):
     powers: Mapping[str, Fraction]
     value: float
     shares: Mapping[str, Fraction]
-    """Powers of the numbers a, b and r0 in it, for its uncertainty."""
+    """Powers of the numbers a, b, r0 and of the known inputs in it, for its uncertainty."""
 
     @property
     def name(self) -> str:
@@ -68,7 +68,7 @@ def determined_products(
         size = math.prod(x ** float(n) for x, n in zip(sizes, shares.values(), strict=True))
         spin = seen["b"] if "b" in seen else seen["b/a"]
         sign = math.copysign(1.0, spin) if named.get("r0") else 1.0
-        parts = {number: shares[number] for number in seen if shares[number]}
+        parts = {name: n for name, n in shares.items() if n}
         products.append(DeterminedProduct(named, sign * size, parts))
     return products
 

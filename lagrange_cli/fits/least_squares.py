@@ -194,7 +194,8 @@ class Problem:
                 slopes.append(np.nan_to_num((change / sigma[..., np.newaxis])[known]))
                 rows = np.where(known, residual.values, np.nan)
             left.append(dict(zip(recording.channels, rows, strict=True)))
-        return np.concatenate(whole), np.concatenate(slopes), left
+        off, of_off = self.parameters.priors(values)
+        return np.concatenate([*whole, off]), np.concatenate([*slopes, of_off]), left
 
 
 def _left(

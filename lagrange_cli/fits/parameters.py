@@ -36,10 +36,10 @@ from ..inputs.top import Top
 from .model import STATE
 from .recording import Recording
 
-FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero")
-"""The quantities that a recording depends on, the state first."""
+BODY = ("m", "s", "g", "C", "A", "A_cm")
+FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero", *BODY)
+"""The quantities that a recording depends on, the state first, and the known inputs of the body."""
 _START = ("theta0", "thetadot0", "psidot0")
-_A, _B, _R0 = (FIT_QUANTITIES.index(name) for name in ("a", "b", "r0"))
 
 STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
 """The parameters of a steady precession: values of lines at the first row, and their rates."""
@@ -61,30 +61,49 @@ class Parameters(NamedTuple):
 
     known: Mapping[str, float]
     """Inputs by key, theta0 in radians."""
+    stds: Mapping[str, float]
+    """Standard deviations of the known inputs that have one: these are parameters with a prior."""
     names: Sequence[Name]
 
     def quantities(self, values: Array, i: int) -> tuple[Array, Array]:
         """Return the quantities of recording i, and their derivatives by the parameters.
 
-        They are of shape (8,) and (8, parameters), in the order of FIT_QUANTITIES.
+        They are of shape (14,) and (14, parameters), in the order of FIT_QUANTITIES; a quantity
+        that is neither known nor determined is 0.
         """
-        found = np.zeros(len(FIT_QUANTITIES))
-        slopes = np.zeros((len(FIT_QUANTITIES), len(values)))
-        for row, name in enumerate(FIT_QUANTITIES):
-            if name in self.known:
-                found[row] = self.known[name]
-            for key in ((name, -1), (name, i)):
-                if key in self.names:
-                    column = self.names.index(key)
-                    found[row], slopes[row, column] = values[column], 1.0
-        known_a = known_torque(self.known)
-        if known_a is not None:
-            found[_A] = known_a
+        steps = 1j * _STEP * np.eye(len(values))
+        slopes = [np.imag(self._computed(values + step, i)) / _STEP for step in steps]
+        return np.real(self._computed(values, i)), np.stack(slopes, axis=-1)
+
+    def _computed(self, values: Array, i: int) -> Array:
+        """Return the quantities at real or complex parameters."""
+        given: dict[str, Any] = dict(self.known)
+        for (name, recording), value in zip(self.names, values, strict=True):
+            if recording in {-1, i}:
+                given[name] = value
+        if "A_cm" in given:
+            given["A"] = given["A_cm"] + given["m"] * given["s"] ** 2
+        if _weighs(given) and "A" in given:
+            given["a"] = 2 * given["m"] * given["g"] * given["s"] / given["A"]
         if self.tied:
-            ratio, of_ratio = self._ratio(values, found[_A], slopes[_A])
-            found[_B] = ratio * found[_R0]
-            slopes[_B] = ratio * slopes[_R0] + found[_R0] * of_ratio
-        return found, slopes
+            given["b"] = self._ratio(given) * given["r0"]
+        return np.array([given.get(name, 0.0) for name in FIT_QUANTITIES])
+
+    @staticmethod
+    def _ratio(given: Mapping[str, Any]) -> Any:
+        """Return C/A: a parameter, known, or C a/(2mgs)."""
+        if "ratio" in given:
+            return given["ratio"]
+        if "A" in given:
+            return given["C"] / given["A"]
+        return given["C"] * given["a"] / (2 * given["m"] * given["g"] * given["s"])
+
+    def priors(self, values: Array) -> tuple[Array, Array]:
+        """Return what uncertain inputs are off, over their standard deviations, and its slopes."""
+        rows = [i for i, (name, _) in enumerate(self.names) if name in self.stds]
+        mean = np.array([self.known[self.names[i][0]] for i in rows])
+        std = np.array([self.stds[self.names[i][0]] for i in rows])
+        return (values[rows] - mean) / std, np.eye(values.size)[rows] / std[:, np.newaxis]
 
     @property
     def labels(self) -> Sequence[str]:
@@ -101,22 +120,13 @@ class Parameters(NamedTuple):
         """Whether r0 is in play, beside b."""
         return "r0" in self.known or ("r0", 0) in self.names
 
-    def _ratio(self, values: Array, a: float, of_a: Array) -> tuple[float, Array]:
-        """Return C/A and its derivatives: a parameter, known, or C a/(2mgs)."""
-        if ("ratio", -1) in self.names:
-            column = self.names.index(("ratio", -1))
-            return float(values[column]), np.eye(len(values))[column]
-        weight = _weight(self.known)
-        if "A" in self.known:
-            return self.known["C"] / self.known["A"], np.zeros(len(values))
-        assert weight is not None
-        return self.known["C"] * a / (2 * weight), self.known["C"] / (2 * weight) * of_a
-
 
 class SteadyParameters(NamedTuple):
     """The parameters of a steady precession, in the order of STEADY."""
 
     known: Mapping[str, float]
+    stds: Mapping[str, float]
+    """Standard deviations of known inputs."""
     angles: Collection[str]
     """The angles that were recorded."""
 
@@ -153,47 +163,50 @@ class SteadyParameters(NamedTuple):
         return np.array(found), np.array(slopes)
 
 
-def parameters_of(known: Mapping[str, float], recordings: Sequence[Recording]) -> Parameters:
-    """Return the parameters of a fit."""
-    names: list[Name] = []
+def parameters_of(
+    known: Mapping[str, float], stds: Mapping[str, float], recordings: Sequence[Recording]
+) -> Parameters:
+    """Return the parameters of a fit, from known inputs and the standard deviations of some."""
+    names: list[Name] = [(name, -1) for name in BODY if name in stds]
     if known_torque(known) is None:
         names.append(("a", -1))
-    ratio_known = "C" in known and ("A" in known or _weight(known) is not None)
+    ratio_known = "C" in known and ("A" in known or _weighs(known))
     seen = any("phi" in recording.angles for recording in recordings)
     spins = seen or ratio_known or "r0" in known
     tied = spins and (ratio_known or len(recordings) > 1)
     if tied and not ratio_known:
         names.append(("ratio", -1))
+    free = [name for name in ("r0", *_START) if name not in known or name in stds]
     for i, recording in enumerate(recordings):
         if not tied:
             names.append(("b", i))
-        if spins and "r0" not in known:
-            names.append(("r0", i))
-        names += [(name, i) for name in _START if name not in known]
+        names += [(name, i) for name in free if name != "r0" or spins]
         names += [(f"{x}_zero", i) for x in ("psi", "phi") if x in recording.angles]
-    return Parameters(dict(known), names)
+    return Parameters(known, stds, names)
 
 
-def _weight(known: Mapping[str, float]) -> float | None:
-    """Return the product m g s where all of it is known."""
-    if {"m", "g", "s"} <= known.keys():
-        return known["m"] * known["g"] * known["s"]
-    return None
+def _weighs(known: Mapping[str, Any]) -> bool:
+    """Return whether the product m g s is known."""
+    return {"m", "g", "s"} <= known.keys()
 
 
 def known_torque(known: Mapping[str, float]) -> float | None:
-    """Return a = 2mgs/A (4,4) where all of it is known."""
-    weight = _weight(known)
-    return None if weight is None or "A" not in known else 2 * weight / known["A"]
+    """Return a = 2mgs/A (4,4) if all of it is known."""
+    if not _weighs(known) or "A" not in known:
+        return None
+    return 2 * known["m"] * known["g"] * known["s"] / known["A"]
 
 
-def known_inputs(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return inputs that are known, by key of `Top`, with A for A_cm and theta0 in radians.
+def known_inputs(
+    given: Mapping[str, Any], stds: Mapping[str, float] | None = None
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Return known inputs by key of `Top`, with theta0 in radians, and their standard deviations.
 
-    Raises LagtopError for one that no top has, that a fit cannot use, or that needs others.
+    A_cm is kept beside A only if that moment is uncertain.  Raises LagtopError for an input that no
+    top has, that a fit cannot use, or that needs others.
     """
     check_names("known", [*given] or ["m"], [*Top.fields, *_INSTEAD])
-    known = {name: float(x) for name, x in given.items()}
+    known, spread = {name: float(x) for name, x in given.items()}, dict(stds or {})
     if "phidot0" in known:
         raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
     if "A_cm" in known and not {"m", "s"} <= known.keys():
@@ -204,11 +217,13 @@ def known_inputs(given: Mapping[str, Any]) -> dict[str, float]:
     _guard(known)
     if "A_cm" in known:
         known["A"] = float(moment(known))
-        del known["A_cm"]
+        if not {"A_cm", "m", "s"} & spread.keys():
+            del known["A_cm"]
     for key, unit in (("theta0_deg", math.pi / 180), ("theta0_rad", 1.0)):
-        if key in known:
-            known["theta0"] = known.pop(key) * unit
-    return known
+        for values in (known, spread):
+            if key in values:
+                values["theta0"] = values.pop(key) * unit
+    return known, spread
 
 
 def _guard(known: Mapping[str, float]) -> None:

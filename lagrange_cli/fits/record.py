@@ -16,7 +16,7 @@ from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .least_squares import FittedParameters, chi2_bounds, residual_of
 from .model import STATE, motion_angles
-from .parameters import FIT_QUANTITIES
+from .parameters import BODY, FIT_QUANTITIES
 from .recording import Recording
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
@@ -62,14 +62,17 @@ class Outcome:
         self.fit, self.index, self.radians = found, index, radians
         self.recording = found.recordings[index]
         self.known = found.solution.parameters.known
+        self.stds = found.solution.parameters.stds
         values, covariance = found.solution.quantities(index)
         self.labels = list(found.solution.parameters.labels)
         self.values = dict(zip(self.labels, values.tolist(), strict=True))
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
         self.deviations = dict(zip(self.labels, deviations.tolist(), strict=True))
-        shown = {"a", "b", "b/a", "r0"} if found.solution.parameters.spins else {"a", "b", "b/a"}
-        self.shown = {x: y for x, y in self.values.items() if x in shown - self.known.keys()}
+        self.known = {x: self.values.get(x, y) for x, y in self.known.items()}
+        exact, spins = self.known.keys() - self.stds.keys(), found.solution.parameters.spins
+        shown = {"a", "b", "b/a", *["r0"] * spins} - exact
+        self.shown = {x: y for x, y in self.values.items() if x in shown}
         self.determined = (
             determined_products(self.shown, self.known) if all(self.shown.values()) else []
         )
@@ -127,20 +130,21 @@ class Outcome:
             "phi_zero": "phi" in self.recording.angles,
         }
         for name in MEANINGS:
-            if name in self.labels and name not in self.known and has.get(name, True):
+            is_free = name not in self.known or name in self.stds
+            if name in self.labels and is_free and has.get(name, True):
                 yield name, self.values[name], self.deviations[name]
 
     def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
         """Yield the determined products of the body, but for r0, and their standard deviations."""
-        rows = [self.labels.index(name) for name in self.shown]
-        covariance = self.covariance[np.ix_(rows, rows)]
+        values = {**self.known, **self.values}
         for product in self.determined:
             if product.name != "r0":
-                change = np.array(
-                    [float(product.shares.get(x, 0)) / y for x, y in self.shown.items()]
-                )
-                variance = max(float(change @ covariance @ change), 0.0)
-                yield product, abs(product.value) * math.sqrt(variance)
+                parts = {x: float(n) / values[x] for x, n in product.shares.items()}
+                change = np.array([parts.get(label, 0.0) for label in self.labels])
+                variance = float(change @ self.covariance @ change)
+                alone = [x for x in parts if x not in self.labels and x in self.stds]
+                variance += sum((parts[x] * self.stds[x]) ** 2 for x in alone)
+                yield product, abs(product.value) * math.sqrt(max(variance, 0.0))
 
     @cached_property
     def derived(self) -> list[tuple[DerivedNumber, float, float | None]]:
@@ -167,6 +171,8 @@ class Outcome:
         for name, value, deviation in self.found():
             scale = self.scale(name)
             yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
+        for name in [x for x in BODY if x in self.known and self.deviations.get(x, 0.0)]:
+            yield name, self.known[name], self.deviations[name], "known, improved by the fit"
         for product, deviation in self.products():
             meaning = "" if len(product.powers) == 1 else "only this product is known"
             yield product.name, product.value, deviation, meaning
@@ -242,7 +248,7 @@ class Outcome:
             if x.exact:
                 record[f"{x.key}_off_sigma"] = off
         for name, value in self.known.items():
-            record[self.unit(name)] = value * self.scale(name)
+            record.setdefault(self.unit(name), value * self.scale(name))
         for first, second, value in self.correlations():
             record[f"{first}_{second}_correlation"] = value
         low, high = chi2_bounds(max(solution.dof, 1))

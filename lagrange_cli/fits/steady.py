@@ -35,7 +35,9 @@ class _Line(NamedTuple):
     chi2: float
 
 
-def steady_fit(recording: Recording, known: Mapping[str, float], where: str) -> Fit:
+def steady_fit(
+    recording: Recording, known: Mapping[str, float], stds: Mapping[str, float], where: str
+) -> Fit:
     """Fit a steady precession to a recording with psi; its tilt may be known instead of recorded.
 
     Standard deviations are those of the residuals by default.  Raises DataError if psi is constant.
@@ -55,7 +57,7 @@ def steady_fit(recording: Recording, known: Mapping[str, float], where: str) -> 
         raise DataError(f"{where}: psi must precess: its mean rate is 0")
     count = sum(int(np.isfinite(line.residuals).sum()) for line in lines.values())
     solution = FittedParameters(
-        SteadyParameters(known, lines),
+        SteadyParameters(known, stds, lines),
         values,
         covariance,
         sum(line.chi2 for line in lines.values()),

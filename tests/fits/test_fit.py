@@ -427,7 +427,7 @@ def test_what_is_known_ties_the_rest(names: str, seen: tuple[str, ...]) -> None:
     known = {name: (true | {"theta0": 0.7})[name] for name in names.split()}
     none = np.zeros(20)
     recording = Recording("", none, 0.0, "angles", dict.fromkeys(seen, none), {})
-    parameters = parameters_of(known, [recording])
+    parameters = parameters_of(known, {}, [recording])
     values = np.linspace(1, 2, len(parameters.names))
     found, slopes = parameters.quantities(values, 0)
     by = dict(zip(FIT_QUANTITIES, found, strict=True))
@@ -451,3 +451,50 @@ def test_a_known_polar_moment_gives_the_other(sample: Outcome) -> None:
     assert abs(record["A"] - 3.9032e-3) < 3 * record["A_std"]
     assert record["A_std"] < sample.record()["A_std"]
     assert record["remark"] is None
+
+
+def refitted(sample: Outcome, **known: Any) -> dict[str, Any]:
+    """Return the record of the sample with other known inputs."""
+    angles: dict[str, Any] = dict(sample.recording.angles)
+    sigma = {name: math.radians(x) for name, x in (("theta", 0.3), ("psi", 0.5), ("phi", 1))}
+    return fit(sample.recording.t, **angles, sigma=sigma, known=known).record()
+
+
+def test_an_uncertain_known_input_widens_what_depends_on_it(sample: Outcome) -> None:
+    """A = 2mgs/a: its relative variance is the sum of those of a and of m."""
+    exact = sample.record()
+    found = refitted(sample, m="1.587(2)", g=9.81, s=0.04)
+    assert found["A"] == pytest.approx(exact["A"], rel=1e-6)
+    both = math.hypot(exact["A_std"] / exact["A"], 0.002 / 1.587)
+    assert found["A_std"] / found["A"] == pytest.approx(both, rel=1e-4)
+    assert (found["m"], found["m_std"]) == pytest.approx((1.587, 0.002), rel=1e-6)
+    assert found["a_std"] == pytest.approx(exact["a_std"], rel=1e-4)
+
+
+def test_a_prior_is_between_a_known_input_and_none(sample: Outcome) -> None:
+    body = {"m": 1.587, "g": 9.81, "s": 0.04}
+    free, exact = sample.record(), refitted(sample, **body, C=1.7458e-3)
+    tight, loose, fair = (
+        refitted(sample, **body, C=f"1.7458e-3 +- {std}") for std in ("1e-12", "1", "4e-7")
+    )
+    for key in ("A", "b", "r0"):
+        for found, wanted in ((tight, exact), (loose, free)):
+            assert found[key] == pytest.approx(wanted[key], abs=0.02 * wanted[f"{key}_std"])
+            assert found[f"{key}_std"] == pytest.approx(wanted[f"{key}_std"], rel=0.02)
+    weights = [1 / free["C_std"] ** 2, 1 / 4e-7**2]
+    mean = (weights[0] * free["C"] + weights[1] * 1.7458e-3) / sum(weights)
+    assert fair["C"] == pytest.approx(mean, abs=0.05 * fair["C_std"])
+    assert fair["C_std"] == pytest.approx(sum(weights) ** -0.5, rel=0.02)
+
+
+def test_the_moment_about_the_mass_centre_may_be_uncertain(lagtop: Lagtop) -> None:
+    """The motion knows A five times better: A_cm follows it."""
+    options = ["--m", 1.587, "--g", 9.81, "--s", 0.04, "--A-cm", "0.00137(3)"]
+    shown = lagtop("fit", SAMPLE, *options, "--format", "json")
+    assert shown.exit_code == 0, shown.stderr
+    record = json.loads(shown.stdout)
+    assert record["A_cm"] == pytest.approx(3.9032e-3 - 1.587 * 0.0016, abs=4 * record["A_cm_std"])
+    assert record["A_cm_std"] == pytest.approx(record["A_std"], rel=1e-6)
+    assert record["A_cm_std"] < 0.1 * 3e-5
+    refused = lagtop("fit", SAMPLE, "--A-cm", "0.00137(3)")
+    assert_one_line(refused, 2, "--A-cm must be given with m and s")
