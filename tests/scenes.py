@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import random
 from typing import Any
 
 from conftest import ROOT
 
 from lagrange_cli import Motion
+from lagrange_cli.bench.hard_scenes import Scene, from_rest, tiny_tilt
 
 EPS = 2.0**-52
 """Distance from 1 to the next double."""
@@ -35,26 +35,10 @@ NAMED: dict[str, dict[str, float]] = {
 }
 
 
-def random_scene(rng: random.Random) -> dict[str, float]:
-    """Return a scene with m = g = s = 1; body, spin and tilt generic or at one of the extremes."""
-    A = rng.uniform(0.5, 2)
-    C = A * rng.choice([rng.uniform(0.01, 2), rng.uniform(0.2, 2), 1, 2])
-    r0, tilt = rng.uniform(-30, 30), rng.uniform(0.1, 179.9)
-    kind = rng.choice(
-        ["generic", "upright", "hanging", "any spin", "threshold", "upright any spin"]
-    )
-    if kind == "upright":
-        tilt = 10 ** rng.uniform(-12, 0)
-    elif kind == "hanging":
-        tilt = 180 - 10 ** rng.uniform(-12, 0)
-    elif kind == "any spin":
-        r0 = 10 ** rng.uniform(-12, 12)
-    elif kind == "threshold":
-        tilt = 10 ** rng.uniform(-12, 1)
-        r0 = 2 * math.sqrt(A) / C * (1 + rng.choice([-1, 1]) * 10 ** rng.uniform(-14, -1))
-    elif kind == "upright any spin":
-        tilt, r0 = 10 ** rng.uniform(-12, 0), 10 ** rng.uniform(-6, 6)
-    return {"m": 1, "A": A, "C": C, "s": 1, "g": 1, "r0": r0, "theta0_deg": tilt}
+def random_scene(rng: random.Random) -> Scene:
+    """Return a release from rest, of any body and spin, a part of them next to the vertical."""
+    scene = rng.choice([from_rest, tiny_tilt])(rng)
+    return {name: x for name, x in scene.items() if name not in {"thetadot0", "psidot0"}}
 
 
 def random_times(rng: random.Random, period: float) -> list[float]:

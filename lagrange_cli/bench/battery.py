@@ -1,29 +1,33 @@
 """One scene of the battery, judged: the worst errors of its record, angles and quaternion.
 
-Every number of the record is judged against the double nearest to its exact value, every angle and
-the quaternion in units (see `reference`), all by the many-digit reference.
+The many-digit reference judges numbers by the nearest double, angles in units (see `reference`).
 """
 
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
+import mpmath
 import numpy as np
 
 from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import ListedPoints
 from ..arithmetic.types import Array
+from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.over_time.table import rows
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
 from .closed_forms import CLOSED_FORMS
-from .hard_scenes import HardScene
+from .hard_scenes import STRATA, Scene, in_doubles, power, signed
 from .integrators import integrators
+from .measure import check_scene
 from .method import FailedError, Method, NotApplicableError
 from .reference import EPS, ExactAngles, Reference, angle_units, key_ulps, quaternion_units
 
@@ -32,15 +36,12 @@ CONTRACT = 4.0
 KEY_CONTRACT = 0.5 + 1e-9
 """Gaps between doubles that a key may be off: half of one, and a hair where two are as near."""
 
-DIGITS, MORE_DIGITS = 80, 110
-"""Digits of the reference, and of the one that it is checked against."""
-
+DIGITS, MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
+"""Least digits of the reference, how many more check it, and units by which these may differ."""
 CONSERVED = ("energy", "Lz")
 """The columns whose changes are reported."""
-
-INTEGRATOR = "DOP853-quaternion"
 INTEGRATED_PERIODS, INTEGRATOR_SECONDS = (0.7, 2.3, 4.9), 2.0
-"""The integrator would never reach the far times: it has times of its own, near the start."""
+"""Times of the integrator, which would never reach the far ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,10 +66,15 @@ class Errors:
         return max(self.theta_units, self.phi_units, self.psi_units)
 
     @property
+    def excesses(self) -> tuple[float, float, float]:
+        """Errors of angles, quaternion and keys over the promise, which more than 1 breaks."""
+        key = self.key_ulps / KEY_CONTRACT
+        return self.angle_units / CONTRACT, self.quaternion_units / CONTRACT, key
+
+    @property
     def excess(self) -> float:
-        """The worst error over what is promised; more than 1 breaks the promise."""
-        worst = max(self.angle_units, self.quaternion_units) / CONTRACT
-        return max(worst, self.key_ulps / KEY_CONTRACT)
+        """The worst of the excesses."""
+        return max(self.excesses)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,12 +95,7 @@ class Case(Errors):
 
     def command(self) -> str:
         """Return a command line that shows the worst number of the scene."""
-        options = self.top.options()
-        angle, attitude, key = (
-            self.angle_units / CONTRACT,
-            self.quaternion_units / CONTRACT,
-            self.key_ulps / KEY_CONTRACT,
-        )
+        options, (angle, attitude, key) = self.top.options(), self.excesses
         if key > max(angle, attitude):
             return f"lagtop solve {options} --format json  # {self.worst_key}"
         if attitude > angle:
@@ -137,10 +138,55 @@ def case_of(
     )
 
 
+class HardScene(NamedTuple):
+    """A scene of the battery and the times it is judged at."""
+
+    inputs: Scene
+    periods: list[float]
+    """Times anywhere, in nutation periods."""
+    quarters: list[int]
+    """Times next to which angles leap if they leap anywhere, in quarters of a period."""
+
+    def times(self, period: Any) -> list[float]:
+        """Return all the times, with both neighbours of the double next to each quarter.
+
+        `period` is the exact nutation period, in many digits.
+        """
+        times = [float(period * number) for number in self.periods]
+        for number in self.quarters:
+            t = float(period * number / 4)
+            times += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
+        return times
+
+
+def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
+    """Return the i-th scene of a stratum, with `count` times anywhere and one half period at each
+    side of the start, one of which may be a quarter or a whole number of periods instead."""
+    rng = random.Random(f"{seed} {stratum} {i}")
+    scene = judged_inputs(stratum, rng)
+    least, nearest = (11, 11) if stratum == "far times" else (-9, 0)
+    periods = [signed(rng, power(rng, least, 14)) for _ in range(count)]
+    if stratum == "half periods":
+        periods = [round(2 * x) / 2 for x in periods]
+    sides = rng.sample([-1, 1], 2)
+    halves = [4 * int(power(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
+    return HardScene(scene, periods, [side * n for side, n in zip(sides, halves, strict=True)])
+
+
+def judged_inputs(stratum: str, rng: random.Random) -> Scene:
+    """Return inputs in doubles of a scene of a stratum that the reference can judge."""
+    while True:
+        scene = in_doubles(STRATA[stratum](rng))
+        with suppress(LagtopError):
+            check_scene(solve(Top(**scene)))
+            return scene
+
+
 def judged_case(scene: HardScene, *, peers: bool = True) -> Case:
     """Return what one scene shows, with the errors of other methods or without."""
     top = Top(**scene.inputs)
-    motion, reference = solve(top), Reference(top, DIGITS)
+    motion = solve(top)
+    reference, agreement = settled_reference(top)
     times = np.array(scene.times(reference.T))
     exact = [reference.at(t) for t in times.tolist()]
     angles = _angle_errors(list(zip(*motion.angles(times), strict=True)), exact)
@@ -149,7 +195,6 @@ def judged_case(scene: HardScene, *, peers: bool = True) -> Case:
         quaternion_units(parts[:4], true)
         for parts, true in zip(values[1:].tolist(), exact, strict=True)
     ]
-    again = Reference(top, MORE_DIGITS).at(times[0].item())
     return case_of(
         top,
         times.tolist(),
@@ -158,8 +203,29 @@ def judged_case(scene: HardScene, *, peers: bool = True) -> Case:
         conserved_changes(top, values[:, -2:]),
         scipy=peer_units(CLOSED_FORMS["scipy.special"], top, times, exact) if peers else None,
         integrated=_integrated(top, reference) if peers else None,
-        agreement=max(angle_units(again[:3], exact[0])),
+        agreement=agreement,
     )
+
+
+def settled_reference(top: Top) -> tuple[Reference, float]:
+    """Return the reference in as many digits as a top takes, and how far fewer digits differ.
+
+    The difference is the greatest one of the angles after a quarter of a period, in units.
+    """
+    passes = [abs(float(mpmath.log10(x / y))) for x, y in Reference(top, DIGITS).gaps]
+    digits = DIGITS + math.ceil(max(passes))  # to tell the side of a pole
+    while True:
+        few, more = Reference(top, digits), Reference(top, digits + MORE_DIGITS)
+        with suppress(TypeError, ValueError, ZeroDivisionError):  # digits that have cancelled
+            t = float(more.T) / 4
+            exact = more.at(t)
+            agreement = max(angle_units(few.at(t)[:3], exact))
+            numbers = zip(few.record().values(), more.record().values(), strict=True)
+            if agreement < _AGREEMENT and all(
+                x is None or abs(x - y) <= _AGREEMENT * EPS * abs(y) for x, y in numbers
+            ):
+                return more, agreement
+        digits *= 2
 
 
 def tabulated(motion: Motion, times: Sequence[float], columns: Sequence[str]) -> Array:
@@ -180,7 +246,7 @@ def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
         if value is None or true is None:
             errors.append((0.0 if value is true else math.inf, key))
         else:
-            errors.append((key_ulps(value, true, DIGITS), key))
+            errors.append((key_ulps(value, true, reference.digits), key))
     return max(errors)
 
 
@@ -223,8 +289,8 @@ def peer_units(
 
 def _integrated(top: Top, reference: Reference) -> float | None:
     times = np.array(INTEGRATED_PERIODS) * float(reference.T)
-    exact = [reference.at(t) for t in times.tolist()]
-    return peer_units(integrators(INTEGRATOR_SECONDS)[INTEGRATOR], top, times, exact)
+    exact = list(map(reference.at, times.tolist()))
+    return peer_units(integrators(INTEGRATOR_SECONDS)["DOP853-quaternion"], top, times, exact)
 
 
 def _angle_errors(

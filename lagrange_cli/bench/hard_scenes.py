@@ -1,7 +1,9 @@
-"""Random scenes, a stratum for each thing that is hard; a new stratum is one function in STRATA.
+"""Random scenes of every hard kind: a function for each, whose docstring is its line of words.
 
-Starts are general, of both signs, and lengths, masses and times are of the size of 1 but for the
-stratum of units.
+Starts are general, of both signs, and lengths, masses and times are of the size of 1 except where a
+kind says otherwise.  Numbers are doubles, or fractions where a double could not be as near to what
+is hard.  An exact cusp, pass or precession uses tilts whose cosine is rational and numbers with few
+bits.  A new kind is one function in KINDS.
 """
 
 from __future__ import annotations
@@ -9,20 +11,20 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
 
-Scene = dict[str, float]
+Scene = dict[str, Any]
+TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
+"""Degrees whose cosine is rational."""
+_HALF_PI = Decimal("1.57079632679489661923132169163975144209858469968755291048747")
+_RATES = ("r0", "thetadot0", "psidot0")
 
 
-def log_uniform(rng: random.Random, low: float, high: float) -> float:
+def power(rng: random.Random, low: float, high: float) -> float:
     """Return a number between 10^low and 10^high, its logarithm uniform."""
     return 10 ** rng.uniform(low, high)
-
-
-def any_body(rng: random.Random) -> Scene:
-    """Return a top with m = s = g = 1."""
-    A = rng.uniform(0.5, 2)
-    return {"m": 1, "s": 1, "g": 1, "A": A, "C": A * rng.uniform(0.05, 2)}
 
 
 def signed(rng: random.Random, size: float) -> float:
@@ -30,9 +32,40 @@ def signed(rng: random.Random, size: float) -> float:
     return rng.choice([-1, 1]) * size
 
 
-def _generic(rng: random.Random) -> Scene:
-    """Return a scene with any tilt and moderate rates."""
-    return any_body(rng) | {
+def near(rng: random.Random, value: float) -> float:
+    """Return a double next to a value, up to a few or up to 1e-2 of it away."""
+    if rng.random() < 0.3:
+        for _ in range(rng.randrange(3)):
+            value = math.nextafter(value, signed(rng, math.inf))
+        return value
+    return value * (1 + signed(rng, power(rng, -16, -2)))
+
+
+def _body(rng: random.Random) -> Scene:
+    """Return a body, which may be a sphere, a disc (C = 2A), a needle, or nearly."""
+    A, tiny = rng.uniform(0.5, 2), rng.choice([0.0, power(rng, -15, -6)])
+    some = rng.uniform(0.01, 2), power(rng, -8, -2)
+    ratio = rng.choice([*some, 1 + signed(rng, tiny), 2 * (1 - tiny)])
+    return {"m": 1, "s": 1, "g": 1, "A": A, "C": A * ratio}
+
+
+def _threshold_spin(scene: Scene) -> float:
+    """Return the spin above which the upright top sleeps stably."""
+    return float(2 * math.sqrt(scene["A"]) / scene["C"])
+
+
+def _to_pole(scene: Scene, u: float, pole: int, speed2: float) -> Scene:
+    """Return rates at cos(theta0) = u whose angular momentum leads over a pole."""
+    rate = pole * scene["C"] * scene["r0"] / scene["A"] / (1 + pole * u)
+    theta_rate = math.sqrt(max(speed2 - rate * rate * (1 - u * u), 0))
+    return {"theta0_deg": math.degrees(math.acos(u)), "psidot0": rate, "thetadot0": theta_rate}
+
+
+def ordinary(rng: random.Random) -> Scene:
+    """Return an ordinary top with moderate rates."""
+    A = rng.uniform(0.5, 2)
+    return {
+        **{"m": 1, "s": 1, "g": 1, "A": A, "C": A * rng.uniform(0.05, 2)},
         "r0": rng.uniform(-6, 6),
         "theta0_deg": rng.uniform(1, 179),
         "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
@@ -40,217 +73,221 @@ def _generic(rng: random.Random) -> Scene:
     }
 
 
-def _from_rest(rng: random.Random) -> Scene:
-    """Return the paper's case: a release from rest, slow to fast."""
-    scene = any_body(rng) | {"theta0_deg": rng.uniform(1, 179)}
-    return scene | {"r0": signed(rng, rng.choice([log_uniform(rng, -3, 3), rng.uniform(0.1, 6)]))}
+def generic(rng: random.Random) -> Scene:
+    """Return a top with nothing special: any body, a sphere, a disc or a needle."""
+    scene = ordinary(rng) | _body(rng)
+    return scene | {"psidot0": rng.choice([0, scene["psidot0"], scene["psidot0"]])}
 
 
-def _fast(rng: random.Random) -> Scene:
-    """Return a scene with a spin of 10^2 to 10^12."""
-    return _generic(rng) | {"r0": signed(rng, log_uniform(rng, 2, 12))}
+def from_rest(rng: random.Random) -> Scene:
+    """Return a release from rest, slow to fast."""
+    scene = _body(rng) | {"theta0_deg": rng.uniform(0.1, 179.9)}
+    return scene | {"r0": signed(rng, rng.choice([power(rng, -3, 3), rng.uniform(0, 9)]))}
 
 
-def _slow(rng: random.Random) -> Scene:
-    """Return a scene with a spin of 10^-12 to 0.1."""
-    scene = _generic(rng) | {"r0": signed(rng, log_uniform(rng, -12, -1))}
-    return scene | {"psidot0": signed(rng, log_uniform(rng, -6, 0))}
-
-
-def threshold_spin(scene: Scene) -> float:
-    """Return the spin above which the upright top sleeps stably."""
-    return 2 * math.sqrt(scene["A"]) / scene["C"]
-
-
-def _upright(rng: random.Random, factor: float) -> Scene:
-    """Return a start next to the upright position; `factor` is the spin over its threshold."""
-    scene = _generic(rng)
-    scene["r0"] = signed(rng, threshold_spin(scene) * factor)
-    scene["theta0_deg"] = log_uniform(rng, -12, 0)
-    scene["thetadot0"] = rng.choice([0, signed(rng, log_uniform(rng, -12, -1))])
-    return scene
-
-
-def _upright_below(rng: random.Random) -> Scene:
-    """Return an upright start too slow to sleep, some within 10^-12 of the threshold."""
-    return _upright(rng, rng.choice([rng.uniform(0.1, 0.99), 1 - log_uniform(rng, -12, -2)]))
-
-
-def _upright_above(rng: random.Random) -> Scene:
-    """Return an upright start fast enough to sleep, some within 10^-12 of the threshold."""
-    return _upright(rng, rng.choice([rng.uniform(1.01, 5), 1 + log_uniform(rng, -12, -2)]))
-
-
-def _hanging(rng: random.Random) -> Scene:
-    """Return a start next to the lowest position."""
-    scene = _generic(rng) | {"theta0_deg": 180 - log_uniform(rng, -12, 0)}
-    return scene | {"thetadot0": rng.choice([0, signed(rng, log_uniform(rng, -12, -1))])}
-
-
-def _separatrix(rng: random.Random) -> Scene:
-    """Return a start with beta = b and alpha = a but for a small factor."""
-    scene = _generic(rng)
-    lam = rng.uniform(0.01, 0.9)
-    scene["r0"] = signed(rng, threshold_spin(scene) * math.sqrt(lam))
-    u = rng.uniform(2 * lam - 1, 1)
-    return scene | to_pole(scene, u, 1, 2 / scene["A"] * (1 - u), log_uniform(rng, -15, -6))
-
-
-def to_pole(scene: Scene, u: float, pole: int, speed2: float, miss: float = 0) -> Scene:
-    """Return rates at cos(theta0) = u whose angular momentum leads almost over a pole."""
-    b = scene["C"] * scene["r0"] / scene["A"]
-    rate = pole * b / (1 + pole * u) * (1 + miss)
-    theta_rate = math.sqrt(max(speed2 - rate * rate * (1 - u * u), 0))
-    return {"theta0_deg": math.degrees(math.acos(u)), "psidot0": rate, "thetadot0": theta_rate}
-
-
-def _bottom_pass(rng: random.Random) -> Scene:
-    """Return a start that passes the lower pole within 10^-9 to 10^-6."""
-    scene, u = _generic(rng), rng.uniform(-0.9, 0.9)
-    scene["r0"] = rng.uniform(-2, 2)
-    return scene | to_pole(scene, u, -1, rng.uniform(0, 30), log_uniform(rng, -9, -6))
-
-
-def _top_pass(rng: random.Random) -> Scene:
-    """Return a start that passes the upper pole within 10^-9 to 10^-6."""
-    scene, u = _generic(rng), rng.uniform(-0.9, 0.9)
-    scene["r0"] = rng.uniform(-2, 2)
-    return scene | to_pole(scene, u, 1, rng.uniform(10, 40), log_uniform(rng, -9, -6))
-
-
-def _tiny_nutation(rng: random.Random) -> Scene:
-    """Return a steady precession, A u psi'^2 - C r0 psi' + m g s = 0, a little disturbed."""
-    scene = _generic(rng) | {"thetadot0": 0.0}
-    scene["r0"] = signed(rng, threshold_spin(scene) * rng.uniform(1, 5))
-    u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
-    root = math.copysign(math.sqrt(b * b - 4 * scene["A"] * u), b)
-    scene["psidot0"] = 2 / (b + root) * (1 + signed(rng, log_uniform(rng, -12, -4)))
-    return scene
-
-
-def _sphere(rng: random.Random) -> Scene:
-    """Return a scene with A = C."""
-    scene = _generic(rng)
-    return scene | {"C": scene["A"]}
-
-
-def _disc(rng: random.Random) -> Scene:
-    """Return a scene with C = 2A, the most a rigid body can have."""
-    scene = _generic(rng)
-    return scene | {"C": 2 * scene["A"]}
-
-
-def _sphere_limit(rng: random.Random) -> Scene:
-    """Return a scene with C within 10^-15 to 10^-6 of A."""
-    scene = _generic(rng)
-    return scene | {"C": scene["A"] * (1 + signed(rng, log_uniform(rng, -15, -6)))}
-
-
-def _disc_limit(rng: random.Random) -> Scene:
-    """Return C less than 2A by 10^-15 to 10^-6 of it, or a needle, C = 10^-6 to 10^-2 of A."""
-    scene = _generic(rng)
-    part = rng.choice([2 * (1 - log_uniform(rng, -15, -6)), log_uniform(rng, -6, -2)])
-    return scene | {"C": scene["A"] * part}
-
-
-def _units(rng: random.Random) -> Scene:
-    """Return a generic scene in units of mass, length and time of 10^-30 to 10^30."""
-    scene, (mass, length, time) = _generic(rng), (log_uniform(rng, -30, 30) for _ in range(3))
-    scene |= {"m": mass, "s": length, "g": length / time**2}
+def units(rng: random.Random) -> Scene:
+    """Return masses, lengths and times of 1e-20 to 1e20, and rates of any size."""
+    scene, (mass, length, second) = generic(rng), (power(rng, -20, 20) for _ in range(3))
+    scene |= {"m": mass, "s": length, "g": length / second**2}
     scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
-    return scene | {key: scene[key] / time for key in ("r0", "thetadot0", "psidot0")}
+    wild = rng.random() < 0.5
+    for key in _RATES:
+        scene[key] *= power(rng, -12, 12) / second if wild else 1 / second
+    return scene
 
 
-def _far_times(rng: random.Random) -> Scene:
-    """Return a scene of another stratum, for 10^11 to 10^14 periods (see `hard_scene`)."""
-    return rng.choice(
-        [_generic, _fast, _slow, _upright_below, _hanging, _bottom_pass, _tiny_nutation]
-    )(rng)
+def stiff(rng: random.Random) -> Scene:
+    """Return a fast spin, 10 to 1e15 times the pace of the precession, or other large rates."""
+    scene = generic(rng)
+    for key in rng.choice([["r0"], ["r0"], rng.sample(_RATES, rng.choice([1, 2, 3]))]):
+        scene[key] = signed(rng, power(rng, 1, 15))
+    return scene
 
 
-def _thresholds(rng: random.Random) -> Scene:
-    """Return a scene next to where the program or the motion changes its kind, within 10^-15."""
-    return rng.choice([_series_change, _sleeping_threshold, _hardly_torque, _hardly_start])(rng)
+def slow(rng: random.Random) -> Scene:
+    """Return tiny rates, one or all of them."""
+    scene = generic(rng)
+    for key in rng.sample(_RATES, rng.choice([1, 2, 3])):
+        scene[key] = signed(rng, power(rng, -30, -1))
+    return scene
 
 
-def _series_change(rng: random.Random) -> Scene:
-    """Return a release at k = k' (lambda = cos(theta0)), where the series change their nome."""
-    scene = any_body(rng) | {"theta0_deg": rng.uniform(1, 85)}
-    lam = math.cos(math.radians(scene["theta0_deg"])) * (1 + signed(rng, log_uniform(rng, -15, -3)))
-    return scene | {"r0": signed(rng, threshold_spin(scene) * math.sqrt(lam))}
+def near_separatrix(rng: random.Random) -> Scene:
+    """Return a swing that nearly ends upright."""
+    scene = generic(rng)
+    part = rng.uniform(0.05, 0.9)
+    scene["r0"] = signed(rng, _threshold_spin(scene) * math.sqrt(part))
+    u = rng.uniform(2 * part - 1, 1)
+    scene |= _to_pole(scene, u, 1, 2 / scene["A"] * (1 - u))
+    scene["thetadot0"] = signed(rng, near(rng, scene["thetadot0"]))
+    return scene | {"psidot0": near(rng, scene["psidot0"])}
 
 
-def _sleeping_threshold(rng: random.Random) -> Scene:
-    """Return a release next to the vertical, at the spin that just makes it sleep."""
-    scene = any_body(rng) | {"theta0_deg": log_uniform(rng, -9, 0)}
-    miss = 1 + signed(rng, log_uniform(rng, -15, -3))
-    return scene | {"r0": signed(rng, threshold_spin(scene) * miss)}
+def near_steady(rng: random.Random) -> Scene:
+    """Return a steady precession, a little disturbed."""
+    scene = generic(rng) | {"thetadot0": rng.choice([0, signed(rng, power(rng, -16, -3))])}
+    scene["r0"] = signed(rng, _threshold_spin(scene) * rng.uniform(1, 5))
+    u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
+    root = math.copysign(math.sqrt(max(b * b - 4 * scene["A"] * u, 0)), b)
+    return scene | {"psidot0": near(rng, 2 / (b + root))}
 
 
-def _hardly_torque(rng: random.Random) -> Scene:
-    """Return a scene that is nearly torque-free."""
-    return _generic(rng) | {"g": log_uniform(rng, -15, -6)}
+def next_to_a_cusp(rng: random.Random) -> Scene:
+    """Return a start off a cusp, by 1e-2 to 1e-60 of its rates.
+
+    It is just off rest, or b N^2 + P (b P - a) sin^2 nearly 0.
+    """
+    scene = generic(rng)
+    if rng.random() < 0.4:
+        tiny = {key: signed(rng, power(rng, -18, -3)) for key in ("thetadot0", "psidot0")}
+        tiny[rng.choice(["thetadot0", "psidot0"])] *= rng.choice([0, 1])
+        return scene | tiny
+    b, a = scene["C"] * scene["r0"] / scene["A"], 2 / scene["A"]
+    turn = near(rng, a / b * rng.random())
+    sine = math.sin(math.radians(scene["theta0_deg"]))
+    rise = math.sqrt(max(turn * (a - b * turn) / b, 0)) * sine
+    off = Fraction(rng.choice(["0", f"{rng.uniform(-9, 9):.3f}e-{rng.randrange(20, 60)}"]))
+    return scene | {
+        "psidot0": (1 + off) * Fraction(turn),
+        "thetadot0": signed(rng, near(rng, rise)),
+    }
 
 
-def _hardly_start(rng: random.Random) -> Scene:
-    """Return a scene next to a release from rest, and next to no spin."""
-    scene = _generic(rng) | {"r0": signed(rng, log_uniform(rng, -15, -12))}
-    return scene | {key: signed(rng, log_uniform(rng, -15, -6)) for key in ("thetadot0", "psidot0")}
+def double_cusp(rng: random.Random) -> Scene:
+    """Return a start off two cusps that coincide, by 1e-60 to 1e-3."""
+    turn = Fraction(rng.randrange(1, 9), 4)  # b = a/2: the cubic at beta/b has a double root
+    m = rng.choice([1, 2, 5])
+    off = Fraction(f"{rng.choice([-1, 1])}e{rng.randrange(-60, -2)}")
+    scene: Scene = {"m": m, "A": 1, "C": 1, "s": 1, "g": 1, "r0": m / turn}
+    rise = rng.choice([Fraction(1), Fraction(1, 2)])
+    return scene | {"theta0_deg": 90, "thetadot0": rise, "psidot0": turn * (1 + off)}
 
 
+def near_a_pole(rng: random.Random) -> Scene:
+    """Return a start whose axis passes within 1e-16 to 1e-2 of a pole."""
+    scene = generic(rng) | {"r0": rng.uniform(-3, 3)}
+    u = math.cos(math.radians(scene["theta0_deg"]))
+    scene |= _to_pole(scene, u, rng.choice([-1, 1]), rng.uniform(0, 40))
+    return scene | {"psidot0": near(rng, scene["psidot0"])}
+
+
+def no_spin(rng: random.Random) -> Scene:
+    """Return a pendulum, plane or spherical, or nearly."""
+    scene = generic(rng) | {"r0": rng.choice([0, 0, signed(rng, power(rng, -60, -6))])}
+    scene["psidot0"] *= rng.choice([0, 1])
+    return scene | {"theta0_deg": rng.choice([60, 90, 120, scene["theta0_deg"]])}
+
+
+def tiny_tilt(rng: random.Random) -> Scene:
+    """Return a start next to the vertical, upright or hanging, with a spin next to the threshold.
+
+    The tilt is 1e-30 to 1 degree, and the threshold that above which an upright top sleeps.
+    """
+    tilt = rng.choice([power(rng, -12, 0), power(rng, -30, 0), 180 - power(rng, -12, 0)])
+    scene = generic(rng) | {"theta0_deg": tilt}
+    factor = rng.choice([rng.uniform(0.1, 3), near(rng, 1), near(rng, 1)])
+    return scene | {
+        "r0": signed(rng, _threshold_spin(scene) * factor),
+        "thetadot0": rng.choice([0, signed(rng, power(rng, -20, -1))]),
+        "psidot0": rng.choice([0, 1, -2.5]),
+    }
+
+
+def tiny_tilt_with_rates(rng: random.Random) -> Scene:
+    """Return a start with rates at 1e-150 to 0.1 degrees, or 1e-300 to 0.1 degrees below 180.
+
+    Smaller tilts are refused; the latter are decimals.
+    """
+    tilt: float | Fraction = power(rng, -150, -1)
+    if rng.random() < 0.4:
+        tilt = 180 - Fraction(f"{rng.uniform(1, 9):.3f}e{rng.randrange(-300, -1)}")
+    scene = _body(rng) | {"r0": signed(rng, power(rng, -3, 3)), "theta0_deg": tilt}
+    for key in ("thetadot0", "psidot0"):
+        scene[key] = rng.choice([0, signed(rng, power(rng, -25, 1)), 1])
+    return scene
+
+
+def radians(rng: random.Random) -> Scene:
+    """Return a tilt in radians, most within 1e-30 to 0.1 of 0, pi/2 or pi."""
+    scene, digits, quarters = generic(rng), rng.randrange(20, 60), rng.randrange(3)
+    degrees = scene.pop("theta0_deg")
+    if rng.random() < 0.2:
+        return scene | {"theta0_rad": math.radians(degrees)}
+    inwards = 1 if quarters == 0 else -1 if quarters == 2 else rng.choice([-1, 1])
+    exact = quarters * _HALF_PI + inwards * Decimal(power(rng, -30, -1))
+    tilt: float | Fraction = Fraction(f"{exact:.{digits}f}")
+    if rng.random() < 0.5:
+        tilt = float(exact) if 0 < float(exact) < math.pi else math.nextafter(math.pi, 0)
+    if rng.random() < 0.5:
+        scene |= {"thetadot0": 0, "psidot0": 0}
+    return scene | {"theta0_rad": tilt if tilt > 0 else 1e-9}
+
+
+def any_spin(rng: random.Random) -> Scene:
+    """Return a spin from 1e-300 to 1e100, with both rates."""
+    scene = generic(rng) | {"r0": signed(rng, power(rng, -300, 100))}
+    return scene | {
+        "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
+        "psidot0": signed(rng, rng.choice([1, 3, power(rng, -6, 6)])),
+    }
+
+
+def thresholds(rng: random.Random) -> Scene:
+    """Return a start next to another kind of motion or of series: k = k', no torque, rest."""
+    kind, miss = rng.randrange(3), 1 + signed(rng, power(rng, -15, -3))
+    if kind == 0:
+        scene = _body(rng) | {"theta0_deg": rng.uniform(1, 85)}
+        lam = math.cos(math.radians(scene["theta0_deg"])) * miss  # where k = k'
+        return scene | {"r0": signed(rng, _threshold_spin(scene) * math.sqrt(lam))}
+    if kind == 1:
+        return ordinary(rng) | {"g": power(rng, -15, -6)}
+    return ordinary(rng) | {key: signed(rng, power(rng, -15, -6)) for key in _RATES}
+
+
+def half_periods(rng: random.Random) -> Scene:
+    """Return an ordinary start; all times are next to half periods."""
+    return ordinary(rng)
+
+
+def far_times(rng: random.Random) -> Scene:
+    """Return a start of another kind; the times are 1e11 to 1e14 periods away."""
+    return rng.choice([ordinary, stiff, slow, tiny_tilt, near_a_pole, near_steady])(rng)
+
+
+_FUNCTIONS = (
+    generic,
+    from_rest,
+    stiff,
+    slow,
+    tiny_tilt,
+    tiny_tilt_with_rates,
+    near_a_pole,
+    near_separatrix,
+    near_steady,
+    next_to_a_cusp,
+    double_cusp,
+    no_spin,
+    radians,
+    units,
+    any_spin,
+    thresholds,
+    half_periods,
+    far_times,
+)
+_NAMES = {"stiff": "stiff (fast spin)"}
 STRATA: dict[str, Callable[[random.Random], Scene]] = {
-    function.__name__[1:].replace("_", " "): function
-    for function in (
-        _generic,
-        _from_rest,
-        _fast,
-        _slow,
-        _upright_below,
-        _upright_above,
-        _hanging,
-        _separatrix,
-        _bottom_pass,
-        _top_pass,
-        _tiny_nutation,
-        _sphere,
-        _disc,
-        _sphere_limit,
-        _disc_limit,
-        _units,
-        _thresholds,
-        _far_times,
-    )
+    _NAMES.get(function.__name__, function.__name__.replace("_", " ")): function
+    for function in _FUNCTIONS
 }
+"""The kinds by name."""
 
 
-class HardScene(NamedTuple):
-    """A scene of the battery and the times it is judged at."""
-
-    inputs: Scene
-    periods: list[float]
-    """Times anywhere, in nutation periods."""
-    quarters: list[int]
-    """Times next to which angles leap if they leap anywhere, in quarters of a period."""
-
-    def times(self, period: Any) -> list[float]:
-        """Return all the times, with both neighbours of the double next to each quarter.
-
-        `period` is the exact nutation period, in many digits.
-        """
-        times = [float(period * number) for number in self.periods]
-        for number in self.quarters:
-            t = float(period * number / 4)
-            times += [t, math.nextafter(t, math.inf), math.nextafter(t, -math.inf)]
-        return times
+def words_of(stratum: str) -> str:
+    """Return a line that says what the scenes of a stratum are."""
+    first = (STRATA[stratum].__doc__ or "").partition("\n")[0]
+    return first.removeprefix("Return ").rstrip(".")
 
 
-def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
-    """Return the i-th scene of a stratum, with `count` times anywhere and one half period at each
-    side of the start, one of which may be a quarter or a whole number of periods instead."""
-    rng = random.Random(f"{seed} {stratum} {i}")
-    scene = STRATA[stratum](rng)
-    least, nearest = (11, 11) if stratum == "far times" else (-9, 0)
-    periods = [signed(rng, log_uniform(rng, least, 14)) for _ in range(count)]
-    sides = rng.sample([-1, 1], 2)
-    halves = [4 * int(log_uniform(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
-    return HardScene(scene, periods, [side * n for side, n in zip(sides, halves, strict=True)])
+def in_doubles(scene: Scene) -> Scene:
+    """Return a scene with each input rounded to the nearest double."""
+    return {name: float(value) for name, value in scene.items()}

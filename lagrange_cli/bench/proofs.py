@@ -21,8 +21,7 @@ from ..inputs.top import Top
 from ..motion.over_time.proved_table import BallSample, ProvedTable
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
-from .battery import CONSERVED, Case, case_of, conserved_changes, tabulated
-from .hard_scenes import HardScene
+from .battery import CONSERVED, Case, HardScene, case_of, conserved_changes, tabulated
 from .reference import Many
 
 _COLUMNS = ("theta", "phi", "psi", "quaternion")

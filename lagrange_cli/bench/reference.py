@@ -22,6 +22,9 @@ from ..inputs.top import Top
 
 EPS = 2.0**-52
 
+_ROOT_DIGITS = 1000
+"""Digits of the roots, whose differences may be as small as 1e-600."""
+
 Many = Any
 """An mpf with many digits."""
 
@@ -135,47 +138,55 @@ class Reference:
     def __init__(self, top: Top, digits: int = 50) -> None:
         """Raise LagtopError for a top that does not nutate."""
         self.digits = digits
-        with mpmath.workdps(2 * digits):  # a double root takes half of them
-            self._constants(top)
+        with mpmath.workdps(max(2 * digits, _ROOT_DIGITS)):  # differences of roots cancel
+            self._roots(top)
+        with mpmath.workdps(digits):
+            self.speed = mpmath.sqrt(self.a * self.u3_u2) / 2
+            self.m, self.mc = self.band / self.u3_u2, self.u3_u1 / self.u3_u2
+            self.K = mpmath.ellipk(self.m)
+            self.T = 2 * self.K / self.speed
+            self.w0 = self._argument(mpmath.sign(mpmath.mpf(top.thetadot0)))
+            self.wholes = [self._whole(*gaps) for gaps in self.gaps]
+            self.start = self._halves(mpmath.mpf(0))
 
-    def _constants(self, top: Top) -> None:
+    def _roots(self, top: Top) -> None:
+        """Set the constants, the roots, and all differences that may cancel."""
         body = (top.m, top.A, top.C, top.s, top.g, top.r0)
         m, A, C, s, g, r0 = (mpmath.mpf(x) for x in body)
         self.r0, self.a, self.b = r0, 2 * m * g * s / A, C * r0 / A
         tilt = mpmath.mpf(top.theta0_rad or 0)
         if top.theta0_deg is not None:
             tilt = mpmath.mpf(top.theta0_deg) * mpmath.pi / 180
-        self.tilt, self.u0 = tilt, mpmath.cos(tilt)
+        self.tilt, u0 = tilt, mpmath.cos(tilt)
         self.psi_rate, self.at_rest = mpmath.mpf(top.psidot0), top.is_released
-        around = mpmath.mpf(top.psidot0) * mpmath.sin(tilt) ** 2
-        self.beta = around + self.b * self.u0
-        energy = mpmath.mpf(top.thetadot0) ** 2 + around * mpmath.mpf(top.psidot0)
-        alpha = energy + self.a * self.u0
+        around = self.psi_rate * mpmath.sin(tilt) ** 2
+        beta = around + self.b * u0
+        alpha = mpmath.mpf(top.thetadot0) ** 2 + around * self.psi_rate + self.a * u0
         if not self.a:
             raise LagtopError("the reference needs a torque")
-        self.u2, self.u1, self.u3 = _three_real_roots(
+        u2, u1, u3 = _three_real_roots(
             -(alpha + self.b**2) / self.a,
-            2 * self.b * self.beta / self.a - 1,
-            (alpha - self.beta**2) / self.a,
+            2 * self.b * beta / self.a - 1,
+            (alpha - beta**2) / self.a,
         )
-        near_u1 = abs(self.u0 - self.u1) < abs(self.u0 - self.u2)
+        near_u1 = abs(u0 - u1) < abs(u0 - u2)
         self.starts_highest = near_u1 and not top.thetadot0
         self.starts_lowest = not (near_u1 or top.thetadot0)
         if not top.thetadot0:  # the start is a root, to all digits
-            self.u1, self.u2 = (self.u0, self.u2) if near_u1 else (self.u1, self.u0)
-        self.speed = mpmath.sqrt(self.a * (self.u3 - self.u2)) / 2
-        self.m = (self.u1 - self.u2) / (self.u3 - self.u2)
-        self.K = mpmath.ellipk(self.m)
-        self.T = 2 * self.K / self.speed
-        self.w0 = self._argument(self.u0, mpmath.sign(mpmath.mpf(top.thetadot0)))
-        self.whole_south = self._whole(1 + self.u2, self.u2 - self.u1)
-        self.whole_north = self._whole(1 - self.u2, self.u1 - self.u2)
-        self.start = self._halves(mpmath.mpf(0))
+            u1, u2 = (u0, u2) if near_u1 else (u1, u0)
+        self.u1, self.u2, self.u3 = u1, u2, u3
+        self.band, self.u3_u1, self.u3_u2 = u1 - u2, u3 - u1, u3 - u2
+        self.gaps = (1 + u1, 1 + u2), (1 - u1, 1 - u2)
+        """1 + u and 1 - u at u1 and at u2."""
+        self.from_poles = beta + self.b, beta - self.b
+        self.drift = (r0 - self.b) / 2
+        self.spin_start = r0 - self.psi_rate * u0
+        self.of_start = u0 - u2, u1 - u0, u3 - u0
 
-    def _argument(self, u: Many, theta_sign: Many) -> Many:
+    def _argument(self, theta_sign: Many) -> Many:
         """Return w at t = 0, negative (before the lowest point) while the tilt grows."""
-        s2 = (u - self.u2) / (self.u1 - self.u2)
-        c2, d2 = (self.u1 - u) / (self.u1 - self.u2), (self.u3 - u) / (self.u3 - self.u2)
+        from_u2, to_u1, to_u3 = self.of_start
+        s2, c2, d2 = from_u2 / self.band, to_u1 / self.band, to_u3 / self.u3_u2
         w = mpmath.sqrt(s2) * mpmath.elliprf(max(c2, 0), d2, 1)
         return -w if theta_sign > 0 else w
 
@@ -187,25 +198,24 @@ class Reference:
 
     def _halves(self, t: Many) -> tuple[Many, Many]:
         """Return (psi + phi)/2 and (psi - phi)/2, but for their start."""
-        now, drift = self._jacobi(t), (self.r0 - self.b) * t / 2
-        band = self.u1 - self.u2
-        plus = self._third(1 + self.u2, -band, now, self.whole_south)
-        minus = self._third(1 - self.u2, band, now, self.whole_north)
-        return (
-            drift + (self.beta + self.b) / 2 * plus,
-            -drift + (self.beta - self.b) / 2 * minus,
+        now, drift = self._jacobi(t), self.drift * t
+        plus, minus = (
+            momentum / 2 * self._third(*gaps, now, whole)
+            for momentum, gaps, whole in zip(self.from_poles, self.gaps, self.wholes, strict=True)
         )
+        return drift + plus, -drift + minus
 
-    def _whole(self, gap: Many, slope: Many) -> Many:
-        """Return the complete integral of dw/(1 - n sn^2) with n = slope/gap."""
-        n = slope / gap
-        return self.K + n / 3 * mpmath.elliprj(0, 1 - self.m, 1, 1 - n)
+    def _whole(self, at_u1: Many, at_u2: Many) -> Many:
+        """Return the complete integral of dw/(1 - n sn^2) with 1 - n = at_u1/at_u2."""
+        rest = at_u1 / at_u2
+        return self.K + (1 - rest) / 3 * mpmath.elliprj(0, self.mc, 1, rest)
 
-    def _third(self, gap: Many, slope: Many, now: _Jacobi, whole: Many) -> Many:
-        """Return the integral of dt/(gap - slope sn^2): Legendre's Pi with n = slope/gap."""
-        n, sn2, cn2, dn2 = slope / gap, now.sn**2, now.cn**2, now.dn**2
-        part = mpmath.elliprf(cn2, dn2, 1) + n / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, 1 - n * sn2)
-        return (2 * now.turns * whole + now.sn * part) / (gap * self.speed)
+    def _third(self, at_u1: Many, at_u2: Many, now: _Jacobi, whole: Many) -> Many:
+        """Return the integral of dt/(at_u2 + (at_u1 - at_u2) sn^2): Legendre's Pi, cut off."""
+        sn2, cn2, dn2, rest = now.sn**2, now.cn**2, now.dn**2, at_u1 / at_u2
+        part = mpmath.elliprf(cn2, dn2, 1)
+        part += (1 - rest) / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn2)
+        return (2 * now.turns * whole + now.sn * part) / (at_u2 * self.speed)
 
     def at(self, t: float) -> ExactAngles:
         """Return the exact angles and rates at a time."""
@@ -213,21 +223,20 @@ class Reference:
             time = mpmath.mpf(t)
             _, sn, cn, dn = self._jacobi(time)
             halves = zip(self._halves(time), self.start, strict=True)
-            band = self.u1 - self.u2
-            u = self.u2 + band * sn**2
-            below, above = (1 + self.u2) + band * sn**2, (1 - self.u2) - band * sn**2
+            below, above = (at_u1 * sn**2 + at_u2 * cn**2 for at_u1, at_u2 in self.gaps)
             theta = 2 * mpmath.atan2(mpmath.sqrt(above), mpmath.sqrt(below))
             plus, minus = (now - then for now, then in halves)
             sine2 = below * above
-            psi_rate = (self.beta - self.b * u) / sine2
-            theta_rate = -2 * band * sn * cn * dn * self.speed / mpmath.sqrt(sine2)
+            south, north = self.from_poles[0] / below / 2, self.from_poles[1] / above / 2
+            psi_rate = south + north
+            theta_rate = -2 * self.band * sn * cn * dn * self.speed / mpmath.sqrt(sine2)
             x, y = mpmath.sqrt(below / 2), mpmath.sqrt(above / 2)
             return ExactAngles(
                 theta=theta,
                 phi=plus - minus,
                 psi=plus + minus,
                 theta_rate=theta_rate,
-                phi_rate=self.r0 - psi_rate * u,
+                phi_rate=2 * self.drift + south - north,
                 psi_rate=psi_rate,
                 tau=time - mpmath.nint(time / self.T) * self.T,
                 quaternion=(
@@ -246,7 +255,7 @@ class Reference:
                 last - first for last, first in zip(self._halves(self.T), self.start, strict=True)
             )
             spin, precession = (plus - minus) / self.T, (plus + minus) / self.T
-            half, K_prime = self.at(self.T / 2), mpmath.ellipk(1 - self.m)
+            half, K_prime = self.at(self.T / 2), mpmath.ellipk(self.mc)
             return self._turning_points() | {
                 "a": self.a,
                 "b": self.b,
@@ -254,7 +263,7 @@ class Reference:
                 "u2": self.u2,
                 "u3": self.u3,
                 "k": mpmath.sqrt(self.m),
-                "k_prime": mpmath.sqrt((self.u3 - self.u1) / (self.u3 - self.u2)),
+                "k_prime": mpmath.sqrt(self.mc),
                 "modular_angle_deg": mpmath.degrees(mpmath.asin(mpmath.sqrt(self.m))),
                 "nome": mpmath.exp(-mpmath.pi * K_prime / self.K),
                 "K": self.K,
@@ -265,7 +274,7 @@ class Reference:
                 "T_precession": 2 * mpmath.pi / abs(precession),
                 "mean_spin_rate": spin,
                 "mean_precession_rate": precession,
-                "spin_rate_start": self.r0 - self.psi_rate * self.u0,
+                "spin_rate_start": self.spin_start,
                 "spin_rate_half": half.phi_rate,
                 "precession_rate_start": self.psi_rate,
                 "precession_rate_half": half.psi_rate,
@@ -274,15 +283,18 @@ class Reference:
     def _turning_points(self) -> dict[str, Many]:
         """Return the tilts, u(T/4) of a start at the highest point, and (7,2) of one at rest."""
         at_rest, highest = self.at_rest, self.starts_highest
-        amplitude = mpmath.asin(mpmath.sqrt((self.u3 - self.u2) / (self.u3 + 1)))
-        k_prime2 = (self.u3 - self.u1) / (self.u3 - self.u2)
+        amplitude = mpmath.asin(mpmath.sqrt(self.u3_u2 / (self.u3 + 1)))
         quarter = mpmath.ellipfun("sn", self.K / 2, m=self.m)
-        least = self.tilt if highest else mpmath.acos(self.u1)
-        most = self.tilt if self.starts_lowest else mpmath.acos(self.u2)
+        at_u1, at_u2 = (
+            2 * mpmath.atan2(mpmath.sqrt(above), mpmath.sqrt(below))
+            for below, above in zip(*self.gaps, strict=True)
+        )
+        least = self.tilt if highest else at_u1
+        most = self.tilt if self.starts_lowest else at_u2
         return {
             "theta_min_deg": mpmath.degrees(least),
             "theta_max_deg": mpmath.degrees(most),
-            "u_quarter": self.u2 + (self.u1 - self.u2) * quarter**2 if highest else None,
+            "u_quarter": self.u2 + self.band * quarter**2 if highest else None,
             "amplitude_deg": mpmath.degrees(amplitude) if at_rest else None,
-            "alpha": mpmath.ellipf(amplitude, k_prime2) if at_rest else None,
+            "alpha": mpmath.ellipf(amplitude, self.mc) if at_rest else None,
         }

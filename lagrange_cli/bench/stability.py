@@ -21,10 +21,11 @@ from .battery import (
     MORE_DIGITS,
     Case,
     Errors,
+    hard_scene,
     judged_case,
 )
 from .closed_forms import CLOSED_FORMS
-from .hard_scenes import STRATA, hard_scene
+from .hard_scenes import STRATA
 from .integrators import TIGHTEST
 from .measure import common_conditions
 from .method import NotApplicableError
@@ -178,8 +179,8 @@ def _conditions(samples: int, seed: int, agreement: float | None) -> dict[str, s
         "and to a quarter, half or whole number of periods on the other, from 1 to 1e14",
         "reference": PROVED
         if agreement is None
-        else f"Legendre's third integral by mpmath, {DIGITS} digits; with {MORE_DIGITS} "
-        f"digits it differs by {agreement:.0e} units at most",
+        else f"Legendre's third integral by mpmath, {DIGITS} digits or more; with "
+        f"{MORE_DIGITS} digits fewer it differs by {agreement:.0e} units at most",
         "errors": f"worst, in units (angles, quaternion; at most {CONTRACT:g} are promised) and in "
         f"gaps between doubles (every key of the record; at most {KEY_CONTRACT:g}, the nearest)",
         "conserved": "changes of energy and Lz since the start, in eps of the sum of their terms",

@@ -20,7 +20,8 @@ from conftest import Lagtop, assert_one_line
 from lagrange_cli import Top, solve
 from lagrange_cli.bench import battery, stability
 from lagrange_cli.bench import method as methods
-from lagrange_cli.bench.hard_scenes import STRATA, HardScene, hard_scene
+from lagrange_cli.bench.battery import HardScene, hard_scene
+from lagrange_cli.bench.hard_scenes import STRATA, words_of
 from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS
@@ -40,6 +41,16 @@ def test_stratum(stratum: str) -> None:
         assert case.key_ulps <= 0.5, case
         assert max(case.energy_eps, case.Lz_eps) <= 20, case
         assert case.agreement < 1e-9
+
+
+def test_a_reference_with_too_few_digits_is_not_settled() -> None:
+    """At 80 digits and at 110 the side of the pole is guessed, alike, and 60 times off."""
+    top = Top(theta0_deg=1e-116, thetadot0=1, psidot0=1, r0=18, C=2, A=1, m=1, s=1, g=1)
+    exact, guessed = Judge(top.as_dict()).record["T_spin"], Reference(top, 110).record()["T_spin"]
+    settled = battery.settled_reference(top)[0].record()["T_spin"]
+    assert exact is not None
+    assert abs(float(exact) / float(settled) - 1) < 1e-15
+    assert abs(float(exact) / float(guessed) - 1) > 0.5
 
 
 def test_scenes_and_times_are_those_of_the_seed() -> None:
@@ -68,17 +79,23 @@ def test_half_periods_and_their_neighbours_are_among_the_times(stratum: str) -> 
 
 def test_strata_are_what_their_names_say() -> None:
     scenes = {name: [hard_scene(name, 1, i, 1).inputs for i in range(40)] for name in STRATA}
-    assert all(0 < abs(x["C"] / x["A"] - 1) < 1e-5 for x in scenes["sphere limit"])
-    ratios = [x["C"] / x["A"] for x in scenes["disc limit"]]
+    ratios = [x["C"] / x["A"] for x in scenes["generic"]]
+    assert {1.0, 2.0} < set(ratios)
+    assert any(0 < abs(ratio - 1) < 1e-5 for ratio in ratios)
     assert any(2 - 1e-5 < ratio < 2 for ratio in ratios)
     assert any(ratio < 0.02 for ratio in ratios)
     sizes = [abs(math.log10(x[key])) for x in scenes["units"] for key in ("m", "s")]
-    assert 25 < max(sizes) <= 30
+    assert 15 < max(sizes) <= 20
     gaps = [abs(solve(Top(**x)).modular_angle_deg or 0) for x in scenes["thresholds"]]
-    assert any(0 < abs(gap - 45) < 1e-6 for gap in gaps)
+    assert any(0 < abs(gap - 45) < 1e-2 for gap in gaps)
+    assert max(abs(x["r0"]) for x in scenes["any spin"]) > 1e80
+    assert min(x["theta0_deg"] for x in scenes["tiny tilt with rates"]) < 1e-100
+    assert any(0 < math.pi - x["theta0_rad"] < 1e-15 for x in scenes["radians"])
+    assert all(2 * x == round(2 * x) for x in hard_scene("half periods", 1, 0, 9).periods)
+    assert all(words_of(name)[0].islower() for name in STRATA)
 
 
-FEW = ["--samples", 2, "--strata", "bottom pass,fast"]
+FEW = ["--samples", 2, "--strata", "near a pole,slow"]
 
 
 @pytest.mark.slow
@@ -86,23 +103,23 @@ def test_report_is_repeatable_in_every_format(
     lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The battery runs twice with one seed; the formats are written from the second run."""
-    first = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent)
-    second = stability.run_battery(["bottom pass", "fast"], 2, 1952, silent)
+    first = stability.run_battery(["near a pole", "slow"], 2, 1952, silent)
+    second = stability.run_battery(["near a pole", "slow"], 2, 1952, silent)
     assert first.rows == second.rows
     monkeypatch.setattr(stability, "run_battery", lambda *_, **__: second)
     picture = tmp_path / "error.svg"
     shown = lagtop("stability", *FEW, "--format", "json", "--plot", picture)
     assert shown.exit_code == bool(stability.exceeded(second))
     whole = json.loads(shown.stdout)
-    assert [row["stratum"] for row in whole["rows"]] == ["bottom pass", "fast"]
+    assert [row["stratum"] for row in whole["rows"]] == ["near a pole", "slow"]
     assert "seed 1952" in whole["conditions"]["scenes"]
     listed = lagtop("stability", *FEW, "--format", "csv")
     lines = list(csv.DictReader(io.StringIO(listed.stdout)))
     for one, other in zip(lines, whole["rows"], strict=True):
         assert {key: ("" if value is None else str(value)) for key, value in other.items()} == one
     assert "scenes: 2 per stratum" in listed.stderr
-    assert ">bottom pass<" in picture.read_text()
-    assert "Worst cases:\nbottom pass: lagtop " in lagtop("stability", *FEW).stdout
+    assert ">near a pole<" in picture.read_text()
+    assert "Worst cases:\nnear a pole: lagtop " in lagtop("stability", *FEW).stdout
 
 
 def test_the_seed_and_the_samples_reach_the_battery(
@@ -116,9 +133,9 @@ def test_the_seed_and_the_samples_reach_the_battery(
 
     monkeypatch.setattr(stability, "run_battery", no_battery)
     for line in ("--seed 7 --samples 3", "--thorough", "--certify"):
-        assert lagtop("stability", "--strata", "fast", *line.split()).exit_code == 0
-    whole, few = (["fast"], 200, 1952, False), (["fast"], 4, 1952, True)
-    assert asked == [(["fast"], 3, 7, False), whole, few]
+        assert lagtop("stability", "--strata", "slow", *line.split()).exit_code == 0
+    whole, few = (["slow"], 200, 1952, False), (["slow"], 4, 1952, True)
+    assert asked == [(["slow"], 3, 7, False), whole, few]
 
 
 NEAR = [0.3, -7.1]
@@ -130,7 +147,7 @@ def near(inputs: dict[str, float]) -> HardScene:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stratum", ["bottom pass", "units", "fast"])
+@pytest.mark.parametrize("stratum", ["near a pole", "units", "slow"])
 def test_command_line_of_an_angle_shows_it(stratum: str, lagtop: Lagtop) -> None:
     case = battery.judged_case(near(hard_scene(stratum, 5, 0, 2).inputs), peers=False)
     case = replace(case, key_ulps=0.0, quaternion_units=0.0)
@@ -231,7 +248,7 @@ def test_a_quaternion_with_the_other_sign_is_seen(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.slow
 def test_what_is_wrong_exits_with_1(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
     bend(monkeypatch, "a", lambda value: value * (1 + 1e-15))
-    line = ["--samples", 1, "--strata", "generic,sphere", "--format", "json"]
+    line = ["--samples", 1, "--strata", "generic,slow", "--format", "json"]
     result = lagtop("stability", *line)
     assert result.exit_code == 1
     assert result.stderr.startswith(
@@ -239,7 +256,7 @@ def test_what_is_wrong_exits_with_1(lagtop: Lagtop, monkeypatch: pytest.MonkeyPa
     )
     whole = json.loads(result.stdout)
     assert [row["verdict"] for row in whole["rows"]] == ["EXCEEDED"] * 2
-    assert whole["conclusions"][0] == "Exceeded in: generic, sphere."
+    assert whole["conclusions"][0] == "Exceeded in: generic, slow."
     for row in whole["rows"]:
         assert row["worst_key"] == "a"
 
@@ -273,7 +290,7 @@ def test_failures_of_others_are_counted(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 BAD = {
-    "--strata hard": "--strata must be among generic, from rest, fast,",
+    "--strata hard": "--strata must be among generic, from rest, stiff (fast spin),",
     "--samples 0": "--samples must be in [1, 100000], got 0",
     "--samples 3 --thorough": "--samples and --thorough exclude each other",
     "--seed x": "--seed must be a finite decimal number, got 'x'",

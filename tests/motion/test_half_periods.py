@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from ball_judge import Judge
-from fuzz_scenes import KINDS
+from exact_scenes import KINDS
 from scenes import EPS, UNIT
 
 from lagrange_cli import LagtopError, Motion, Top, solve

@@ -7,7 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 import pytest
-from fuzz_scenes import KINDS
+from exact_scenes import KINDS
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Motion, Top, solve

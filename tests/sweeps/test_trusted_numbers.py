@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 from ball_judge import EPS, Judge
 from conftest import Lagtop
-from fuzz_scenes import KINDS, in_doubles
+from exact_scenes import KINDS
 from scenes import UNIT
 
 from lagrange_cli import Top
+from lagrange_cli.bench.hard_scenes import in_doubles
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.sweeps.records import sweep
 from lagrange_cli.sweeps.start_arrays import StartArrays

@@ -38,11 +38,12 @@ from ball_judge import Judge
 from balls.requested import Requested
 from balls.scene import Undecided, ball
 from balls.scene import arb_bits as precision
+from exact_scenes import KINDS, as_decimals
 from flint import arb
-from fuzz_scenes import KINDS, Scene, as_decimals
 
 from lagrange_cli import LagtopError, Motion, Top, solve, sweep
 from lagrange_cli.arithmetic.points import ListedPoints
+from lagrange_cli.bench.hard_scenes import Scene
 from lagrange_cli.errors import OutOfRangeError
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
