@@ -43,7 +43,9 @@ def table(text: str) -> list[Record]:
 
 
 def arrays(scenes: list[dict[str, float]]) -> dict[str, Any]:
-    return {key: [scene[key] for scene in scenes] for key in scenes[0]}
+    """Return inputs of many tops, NaN for a tilt in the unit that it is not given in."""
+    names = sorted({name for scene in scenes for name in scene})
+    return {name: [scene.get(name, math.nan) for scene in scenes] for name in names}
 
 
 # Accuracy
@@ -131,8 +133,7 @@ def test_only_what_is_unusual_is_solved_one_by_one(monkeypatch: pytest.MonkeyPat
 def test_starts_with_other_rates(name: str) -> None:
     """Worst seen in 9000 scenes: mean rates and their periods 9.3 eps, all others 3.8."""
     rng = random.Random(name)
-    drawn = [judged_inputs(name, rng) for _ in range(25)]
-    scenes = [scene for scene in drawn if "theta0_deg" in scene]
+    scenes = [judged_inputs(name, rng) for _ in range(25)]
     found = sweep(**arrays([{"thetadot0": 0.0, "psidot0": 0.0} | scene for scene in scenes]))
     for i, scene in enumerate(scenes):
         motion = solve(Top(**scene))
