@@ -11,7 +11,7 @@ import click
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, fail_for, write_report
+from .command import ExamplesFirst, complain, fail_for, write_report
 from .options import FILE, NAMES, NUMBER, Parsed, exclude, output_options
 from .progress import with_progress
 from .row_options import dialect, reading_options, text_options
@@ -132,13 +132,16 @@ def command(
     conventions = Conventions(quaternion_order, euler_sequence, rates_frame, rad).checked()
     frames = alignment(align or [])
     request = ComparisonRequest(columns, conventions, frames, limit, step_sizes, dialect())
+    is_named = scene is not None or any(x is not None for x in options.values())
     motion = solved(scene, rad, False, options)
 
     def find() -> Report:
-        comparison = compare_files(motion, trajectories, request, with_progress)
+        comparison = compare_files(motion, trajectories, request, with_progress, is_named=is_named)
+        for text in comparison.warnings:
+            complain(f"Warning: {text}")
         if plot:
             _draw(comparison, limit, plot)
-        return comparison_report(motion, comparison, request)
+        return comparison_report(comparison.motion, comparison, request)
 
     findings = write_report(find, fmt, output)
     if not exit_zero:

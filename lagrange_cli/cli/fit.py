@@ -20,6 +20,7 @@ from .top_options import UNCERTAIN, by_key, input_options
 if TYPE_CHECKING:
     from ..fits.record import Outcome
     from ..fits.recording import Recording
+    from ..inputs.top import Top
     from ..inputs.units import System
 
 
@@ -126,11 +127,12 @@ def command(
     exclude({"--scene -": scene == "-" or None, "the recording -": recording == "-" or None})
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
-    known, stds, system = _known(scene, fix or [], by_key(options, radians=rad))
     conventions = Conventions(quaternion_order, euler_sequence, "body", rad).checked()
     spread = _in_radians(sigma, rad)
     reading = Reading(columns, conventions, by, spread, dialect())
     recordings = read_recordings(recording, reading)
+    given = by_key(options, radians=rad)
+    known, stds, system = _known(scene, recordings[0].scene, fix or [], given)
     scene_path = output if extension(output) == "toml" else None
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
@@ -164,20 +166,23 @@ def _fitted(
 
 
 def _known(
-    scene: str | None, fix: list[str], given: Mapping[str, Any]
+    scene: str | None, described: Top | None, fix: list[str], given: Mapping[str, Any]
 ) -> tuple[dict[str, float], dict[str, float], System | None]:
     """Return known inputs, given or of the scene, their standard deviations, and their units.
 
-    Raises LagtopError.
+    Without a scene file, the scene is the one that the recording describes.  Raises LagtopError.
     """
     from ..fits.parameters import known_inputs
     from ..inputs.given import gather
+    from ..inputs.input_keys import overridden
     from ..inputs.measured import moment
     from ..inputs.names import check_names
     from ..inputs.top import Top
 
     found = gather(given, scene)
     present = dict(found.inputs)
+    if described is not None and scene is None and found.system is None:
+        present = overridden(described.inputs(), present)
     names = [x for x in present if x in given]
     if {"A_cm", "m", "s"} <= present.keys() and "A_cm" not in given:
         present["A"] = moment(present)  # of the scene: m and s need not be known for that

@@ -77,7 +77,29 @@ def text_options(command: F) -> F:
     return command
 
 
-def _keep(ctx: click.Context, param: click.Parameter, mark: str | None) -> None:
+def header_comments_option(command: F) -> F:
+    """Add --header-comments, which `is_described` looks up."""
+    return click.option(
+        "--header-comments",
+        is_flag=True,
+        expose_value=False,
+        callback=_keep,
+        help="Describe scene, version, units and conventions above the CSV, in # lines.",
+    )(command)
+
+
+def is_described(fmt: str) -> bool:
+    """Return whether the output has a description: Parquet always, CSV with --header-comments.
+
+    Raises LagtopError for --header-comments with a format that has no place for it.
+    """
+    asked = bool(click.get_current_context().meta["lagtop.header_comments"])
+    if asked and fmt not in {"csv", "parquet"}:
+        raise LagtopError(f"--header-comments describes CSV and Parquet, got --format {fmt}")
+    return asked or fmt == "parquet"
+
+
+def _keep(ctx: click.Context, param: click.Parameter, mark: str | bool | None) -> None:
     ctx.meta[f"lagtop.{param.name}"] = mark or ""
 
 

@@ -14,7 +14,7 @@ from ..output.write import write_text_blocks
 from .command import ExamplesFirst, write_keys
 from .options import FILE, KEY_NAMES, Parsed, exclude, output_options
 from .progress import with_progress
-from .row_options import dialect, jobs_option, text_options
+from .row_options import dialect, header_comments_option, is_described, jobs_option, text_options
 from .top_options import by_key, input_options, say_missing, say_no_tops, value_type
 
 if TYPE_CHECKING:
@@ -70,6 +70,7 @@ def _parse_shard(text: str) -> tuple[int, int]:
     help="Write a file per part; resume a folder that is not complete.",
 )
 @text_options
+@header_comments_option
 @output_options("csv", "ndjson", "json", "parquet")
 def command(
     files: tuple[str, ...],
@@ -124,6 +125,7 @@ def command(
         until_error=fail_fast and to_stdout,
         described=folder is not None,
         dialect=dialect(),
+        is_described=is_described(fmt),
     )
     say_missing(todo.given)
     tally = Tally(fail_fast=fail_fast)

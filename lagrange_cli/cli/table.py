@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..arithmetic.text import value_text
 from ..errors import LagtopError
+from ..output.formats import Header
 from ..output.write import MAX_TABLE_ROWS, write_table, write_text_blocks
 from .command import ExamplesFirst, write_columns
 from .options import (
@@ -22,7 +24,7 @@ from .options import (
     output_options,
 )
 from .progress import with_progress
-from .row_options import dialect, jobs_option, text_options
+from .row_options import dialect, header_comments_option, is_described, jobs_option, text_options
 from .top_options import (
     TIME,
     UNCERTAIN,
@@ -41,6 +43,7 @@ from .top_options import (
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..inputs.given import Given
+    from ..inputs.units import System
     from ..inputs.value import Value
     from ..motion.over_time.times import TableRequest
     from ..motion.solve import Motion
@@ -90,6 +93,7 @@ if TYPE_CHECKING:
 @digits_option(MOST_TABLE_DIGITS)
 @certify_option
 @text_options
+@header_comments_option
 @output_options("csv", "json", "table", "parquet", "npy")
 def command(
     scene: str | None,
@@ -148,7 +152,7 @@ def command(
             exclude({name: value, "uncertain inputs": found.stds or None})
         with blaming(times):
             if certify or digits is not None:
-                _write_proved(motion, request, digits, certify, fmt, output)
+                _write_proved(motion, request, found, digits, certify, fmt, output)
             else:
                 _write_one(motion, request, found, fmt, output)
     else:
@@ -217,19 +221,43 @@ def _write_one(motion: Motion, request: TableRequest, found: Given, fmt: str, ou
             units = [found.system.named(unit) for unit in units]
         named = [f"{x} [{unit}]" if unit else x for x, unit in zip(header, units, strict=False)]
         header = [*named, *header[len(named) :]]
+    if is_described(fmt):
+        header = _described(header, motion.top.texts(), found.system, request)
     write_table(
         header, with_progress(parts, "rows", times.count or None, len), fmt, output, times.count
     )
 
 
+def _described(
+    header: Sequence[str],
+    scene: Mapping[str, str],
+    system: System | None,
+    request: TableRequest,
+    *,
+    is_whole: bool = True,
+) -> Header:
+    """Return the names of columns with the description of the file."""
+    from ..inputs.descriptions import described
+
+    return Header(header, described(scene, system, radians=request.radians, is_whole=is_whole))
+
+
 def _write_proved(
-    motion: Motion, request: TableRequest, digits: int | None, radii: bool, fmt: str, output: str
+    motion: Motion,
+    request: TableRequest,
+    found: Given,
+    digits: int | None,
+    radii: bool,
+    fmt: str,
+    output: str,
 ) -> None:
     """Write a table whose numbers are rounded from enclosures."""
     from ..motion.over_time.proved_table import ProvedTable
 
     times, shown = _times(motion, request, fmt), {"radians": request.radians, "wrap": request.wrap}
     header, parts = ProvedTable(motion, request.columns, digits, **shown).rows(times, radii=radii)
+    if is_described(fmt):
+        header = _described(header, motion.top.texts(), found.system, request)
     write_table(
         header, with_progress(parts, "rows", times.count or None, len), fmt, output, times.count
     )
@@ -254,9 +282,13 @@ def _write_many(
     )
     exclude({"--tops": tops, "uncertain inputs": given.stds or None})
     say_missing(given)
+    header: Sequence[str] = tables.header
+    if is_described(fmt):
+        shared = {key: value_text(x) for key, x in tables.shared.items()}
+        header = _described(header, shared, given.system, request, is_whole=False)
     tally = Tally()
     texts = (part.text for part in tally.passing(tables.computed(lines, jobs)))
-    write_text_blocks(fmt, tables.header, with_progress(texts, "blocks"), output)
+    write_text_blocks(fmt, header, with_progress(texts, "blocks"), output)
     tally.check()
     if not tally.count:
         say_no_tops(tops)

@@ -12,10 +12,12 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array, Mask
 from ..errors import DataError, LagtopError
 from ..inputs import rotations
+from ..inputs.descriptions import scene_in
 from ..inputs.given import checked_double
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions, Quantities, Said, angles_in, see
 from ..inputs.text_lines import UNDECIDED, Dialect
+from ..inputs.top import Top
 from ..inputs.trajectory import Clock, Trajectory, open_trajectory
 from ..inputs.trajectory_columns import plain_name
 
@@ -51,6 +53,8 @@ class Recording:
     """Angles, those of theta, phi and psi that are known, in radians; within whole turns."""
     sigma: Mapping[str, Array]
     """Standard deviations in radians by channel; empty where nobody gave them."""
+    scene: Top | None = None
+    """The top that the file describes, if any."""
 
     @property
     def channels(self) -> list[str]:
@@ -104,7 +108,8 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
         for name, given in parts.items():
             where = f"{trajectory.name}{f', {reading.by} {name}' if name else ''}"
             made.append(recording_of(name, Source(where, reading, said, spread), given))
-    return made
+        scene = scene_in(trajectory.description, trajectory.name)
+    return [replace(one, scene=scene) for one in made]
 
 
 def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:

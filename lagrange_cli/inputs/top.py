@@ -127,6 +127,10 @@ class Top(Values):
             return wanted
         return ar.convert(_known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
 
+    def texts(self) -> dict[str, str]:
+        """Return the inputs by key as decimals, which have all digits of a double."""
+        return {key: _shown(x) for key, x in self.as_dict().items() if x is not None}
+
     def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
         """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""
         return self.cosine.tilt(ar)

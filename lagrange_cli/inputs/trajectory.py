@@ -39,6 +39,7 @@ class Trajectory:
     def __init__(self, path: str, table: Table, columns: Sequence[str] | None) -> None:
         """Find the quantities.  Raises DataError where there is no time, or nothing else."""
         self.name, self._table = shown_path(path), table
+        self.description = table.description
         self.names = self._column_names(columns)
         self.quantities: dict[str, Found] = quantities_in(self.names)
         if "t" not in self.quantities or len(self.quantities) < 2:

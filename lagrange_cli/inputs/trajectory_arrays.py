@@ -12,12 +12,14 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import UnsupportedOperation
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
 from ..arithmetic.text import quoted, shortened
 from ..errors import DataError, LagtopError, UnavailableError
+from .descriptions import Description, description_in
 from .names import repeated
 from .trajectory_columns import quantities_in
 from .trajectory_rows import Block, PlainNumbers, Words
@@ -41,6 +43,7 @@ class _Numbers:
     """A table that holds nothing but numbers."""
 
     place = "row"
+    description: Description = MappingProxyType({})
 
     def __init__(self, name: str, form: str, names: Sequence[str] | None, width: int) -> None:
         self.name, self.form, self.names, self.width = name, form, names, width
@@ -218,12 +221,15 @@ class ParquetTable(_Numbers):
         form = "a Parquet"
         with _sound(name, form):
             self.file = parquet.ParquetFile(stream)
+            metadata = self.file.schema_arrow.metadata or {}
             fields = [x for x in self.file.schema_arrow if _is_numeric(x.type)]
         self.fields = [x.name for x in fields]
         if (twice := repeated(self.fields)) is not None:
             raise DataError(f"{name} must name each column once, got {quoted(twice)} twice")
         names = [part for x in fields for part in parts(x.name, getattr(x.type, "list_size", 0))]
         super().__init__(name, form, names, len(names))
+        texts = (b": ".join(pair).decode(errors="replace") for pair in metadata.items())
+        self.description = description_in(texts)
 
     def _tables(self, most: int) -> Iterator[Array]:
         for batch in self.file.iter_batches(most, columns=self.fields):

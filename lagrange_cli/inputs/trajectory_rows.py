@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from .descriptions import Description
+
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
 
@@ -55,6 +57,10 @@ class Table(Protocol):
     @property
     def width(self) -> int:
         """The number of columns."""
+
+    @property
+    def description(self) -> Description:
+        """What the file says of its numbers; empty if it has no description."""
 
     @property
     def names(self) -> Sequence[str] | None:

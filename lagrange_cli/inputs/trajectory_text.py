@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from ..arithmetic.text import quoted
 from ..errors import DataError
+from .descriptions import description_in
 from .text_lines import (
     SWAP,
     Dialect,
@@ -58,6 +59,7 @@ class TextTable:
     def __init__(self, name: str, head: TableHead) -> None:
         self.name, self._head, self._words = name, head, dict[int, Words]()
         self._dialect = head.dialect
+        self.description = description_in(head.comments)
         rows = head.rows()
         self.names = head.headings
         if head.headings is None:
@@ -141,6 +143,7 @@ class JsonTable:
 
     def __init__(self, name: str, head: TableHead) -> None:
         self.name, self._around = name, head.around
+        self.description = description_in(head.comments)
         self._lines = _lines(head)
         number, bare = next(
             ((i, x) for i, line in head.kept if (x := line.strip(head.around))), (1, b"")

@@ -11,11 +11,12 @@ import numpy as np
 from ..arithmetic.arrays import doubles_of
 from ..arithmetic.types import Array
 from ..errors import DataError, LagtopError, check_type
+from ..inputs.descriptions import difference, scene_in
 from ..inputs.files import shown_path, utf8_path
 from ..inputs.seen import Conventions, Quantities
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import Top
-from ..inputs.trajectory import open_trajectory
+from ..inputs.trajectory import Trajectory, open_trajectory
 from ..inputs.trajectory_columns import QUANTITIES
 from ..motion.solve import Motion, solve
 from ..output.progress import Progress, silent
@@ -181,39 +182,62 @@ class Comparison(NamedTuple):
 
     judgements: Sequence[Judgement]
     convergence: Convergence | None
+    motion: Motion
+    """The motion that they were compared with."""
+    warnings: Sequence[str]
+    """Files that describe another scene."""
 
 
 def compare_files(
-    motion: Motion, paths: Sequence[str], request: ComparisonRequest, progress: Progress = silent
+    motion: Motion,
+    paths: Sequence[str],
+    request: ComparisonRequest,
+    progress: Progress = silent,
+    *,
+    is_named: bool = True,
 ) -> Comparison:
     """Compare the trajectories in files with a motion.
 
-    Raises LagtopError for a bad request, DataError for a file that cannot be read or is bad.
+    If the scene is not named, a description in the first file gives it.  Raises LagtopError for a
+    bad request, DataError for a file that cannot be read or is bad.
     """
     if paths.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")
     if request.step_sizes is not None:
         check_step_sizes(request.step_sizes, len(paths))
-    cases = [_judged(motion, path, request, progress) for path in paths]
-    return Comparison(*with_verdicts(motion, cases, request.limit, request.step_sizes))
+    cases, warnings = [], []
+    for path in paths:
+        with open_trajectory(path, request.columns, request.dialect) as trajectory:
+            top = scene_in(trajectory.description, trajectory.name)
+            if top is not None and not is_named:
+                motion = solve(top)
+            elif top is not None and (wrong := difference(top, motion.top)):
+                warnings.append(f"{trajectory.name} describes another scene: {wrong}")
+            is_named = True
+            cases.append(_judged(motion, path, trajectory, request, progress))
+    found = with_verdicts(motion, cases, request.limit, request.step_sizes)
+    return Comparison(*found, motion, warnings)
 
 
 def _judged(
-    motion: Motion, path: str, request: ComparisonRequest, progress: Progress
+    motion: Motion,
+    path: str,
+    trajectory: Trajectory,
+    request: ComparisonRequest,
+    progress: Progress,
 ) -> tuple[JudgedRun, ReadTrajectory]:
-    with open_trajectory(path, request.columns, request.dialect) as trajectory:
-        said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
-        rows = (block for block, _ in trajectory.blocks())
-        blocks = progress(rows, "rows", size=lambda block: len(block["t"]))
-        given = ReadTrajectory(blocks, said, request.conventions, request.align)
-        try:
-            run = judge(motion, given)
-        except DataError:
+    said = {key: (found.says, found.unit) for key, found in trajectory.quantities.items()}
+    rows = (block for block, _ in trajectory.blocks())
+    blocks = progress(rows, "rows", size=lambda block: len(block["t"]))
+    given = ReadTrajectory(blocks, said, request.conventions, request.align)
+    try:
+        run = judge(motion, given)
+    except DataError:
+        raise
+    except LagtopError as error:
+        if error.key not in {None, *_OF_THE_FILE}:
             raise
-        except LagtopError as error:
-            if error.key not in {None, *_OF_THE_FILE}:
-                raise
-            kind = DataError if error.key in _OF_THE_FILE else LagtopError
-            raise kind(f"{shown_path(path)}: {error}") from None
+        kind = DataError if error.key in _OF_THE_FILE else LagtopError
+        raise kind(f"{shown_path(path)}: {error}") from None
     named = replace(run.judgement, file=utf8_path(path))
     return run._replace(judgement=named), given

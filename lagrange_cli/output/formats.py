@@ -26,6 +26,19 @@ Texts = Sequence[Sequence[str]]
 """A block of rows whose numbers are written out; an empty text stands for none."""
 
 
+class Header(list[str]):
+    """The names of columns, with a description of their numbers."""
+
+    def __init__(self, names: Iterable[str], description: Mapping[str, str]) -> None:
+        super().__init__(names)
+        self.description = description
+
+
+def description_of(names: Sequence[str]) -> Mapping[str, str]:
+    """Return the description that goes with names of columns, if any."""
+    return names.description if isinstance(names, Header) else {}
+
+
 class Format:
     """A format: the bytes before, between and after blocks of rows, and of a block itself."""
 
@@ -94,8 +107,9 @@ class Csv(Format):
     name = "csv"
 
     def opening(self, names: Sequence[str]) -> bytes:
-        """Return the header."""
-        return (",".join(map(csv_text, names)) + "\n").encode()
+        """Return the header, below comments that describe it."""
+        comments = "".join(f"# {key}: {text}\n" for key, text in description_of(names).items())
+        return f"{comments}{','.join(map(csv_text, names))}\n".encode()
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return a line per row."""
@@ -179,7 +193,7 @@ class Parquet(Format):
         """Write one file of all blocks."""
         from .parquet import write_parquet
 
-        write_parquet(stream, names, filter(None, blocks))
+        write_parquet(stream, names, filter(None, blocks), description_of(names))
 
     def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
         """Return the file of a part of a sweep, which is whole."""

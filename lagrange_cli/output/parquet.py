@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any, BinaryIO
 
@@ -39,17 +39,27 @@ def arrow_block(columns: Sequence[Any], names: Sequence[str]) -> bytes:
         return stream.getvalue().to_pybytes()  # type: ignore[no-any-return]
 
 
-def write_parquet(stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes]) -> None:
-    """Write Arrow streams as one Parquet file, a row group per stream."""
+def write_parquet(
+    stream: BinaryIO,
+    names: Sequence[str],
+    blocks: Iterable[bytes],
+    description: Mapping[str, str],
+) -> None:
+    """Write Arrow streams as one Parquet file, a row group per stream.
+
+    The description goes into the metadata of the schema.
+    """
     import pyarrow as pa
     from pyarrow import parquet
 
     writer = None
     for block in blocks:
-        table = pa.ipc.open_stream(block).read_all()
+        table = pa.ipc.open_stream(block).read_all().replace_schema_metadata(description)
         writer = writer or parquet.ParquetWriter(stream, table.schema)
         writer.write_table(table)
-    writer = writer or parquet.ParquetWriter(stream, pa.schema([(x, pa.null()) for x in names]))
+    writer = writer or parquet.ParquetWriter(
+        stream, pa.schema([(x, pa.null()) for x in names], description)
+    )
     writer.close()
 
 

@@ -17,7 +17,9 @@ import numpy as np
 
 from .. import __version__
 from ..arithmetic.points import Points
+from ..arithmetic.text import value_text
 from ..errors import LagtopError, SomeFailedError
+from ..inputs.descriptions import described
 from ..inputs.files import reading, shown_path, temporary_copy
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
@@ -26,6 +28,7 @@ from ..inputs.text_lines import UNDECIDED, Dialect, NumberedLines
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value
+from ..output.formats import Header
 from ..output.row_texts import Columns
 from ..output.write import block_text
 from .records import BLOCK_ROWS, check_keys, column_keys, records
@@ -71,6 +74,8 @@ class Sweep(NamedTuple):
     """Standard uncertainties of inputs that all tops share, by name."""
     system: System | None = None
     """The units of the output, which remarks name, where inputs have units."""
+    is_described: bool = False
+    """Whether the output begins with a description of what all tops share."""
 
     @property
     def computed_keys(self) -> list[str]:
@@ -125,6 +130,7 @@ def plan(
     until_error: bool = False,
     described: bool = False,
     dialect: Dialect = UNDECIDED,
+    is_described: bool = False,
 ) -> Plan:
     """Return the plan for a scene (a `.toml` file) and a grid, or for a scene and a file of tops.
 
@@ -137,7 +143,7 @@ def plan(
         raise LagtopError(f"a sweep has one scene and one file of tops, got {' '.join(files)}")
     scene = scenes[0] if scenes else None
     chosen = list(check_keys(keys, radians=radians))
-    wanted = Sweep((), {}, chosen, radians, fmt, until_error)
+    wanted = Sweep((), {}, chosen, radians, fmt, until_error, is_described=is_described)
     if not tables:
         return _of_grid(wanted, gather(axes, scene, system=system))
     if ranges := ranges_of({name: as_value(x).number for name, x in axes.items()}):
@@ -149,7 +155,7 @@ def plan(
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     stds = {name: std for name, std in found.stds.items() if name not in file.named}
     wanted = wanted._replace(keys=list(dict.fromkeys([*chosen, "error"])))
-    sweep = _with_inputs(wanted, found, shared, stds, source.carried)
+    sweep = _with_inputs(wanted, found, shared, stds, varying=file.named, carried=source.carried)
     blocks = (block._replace(file=source) for block in lines)
     description = _described(sweep, inputs=shared, file=digest, parts=None)
     return Plan(sweep, enumerate(blocks), 0, description, found, tables[0])
@@ -162,7 +168,7 @@ def _of_grid(wanted: Sweep, found: Given) -> Plan:
     grid.check()
     ranges = ranges_of(points)
     shared = shared_inputs(found, varying=ranges)
-    sweep = _with_inputs(wanted, found, shared, found.stds)
+    sweep = _with_inputs(wanted, found, shared, found.stds, varying=ranges)
     inputs = shared | {name: str(axis) for name, axis in ranges.items()}
     parts = -(-grid.size // BLOCK_ROWS)
     description = _described(sweep, inputs=inputs, file=None, parts=parts)
@@ -174,17 +180,25 @@ def _with_inputs(
     found: Given,
     shared: Mapping[str, float],
     stds: Mapping[str, float],
+    *,
+    varying: Collection[str],
     carried: Sequence[str] = (),
 ) -> Sweep:
     """Return a sweep with the inputs that all tops share, and the columns it carries through."""
     sweep = wanted._replace(shared=shared, stds=tuple(stds.items()), system=found.system)
-    return sweep._replace(header=[*carried, *sweep.computed_keys])
+    header = [*carried, *sweep.computed_keys]
+    if not sweep.is_described:
+        return sweep._replace(header=header)
+    texts = {key: value_text(x) for key, x in shared.items() if key not in varying}
+    notes = described(texts, found.system, radians=sweep.radians, is_whole=False)
+    return sweep._replace(header=Header(header, notes))
 
 
 def _described(sweep: Sweep, **decides: Any) -> dict[str, Any]:
     """Return what decides about the bytes of the parts; some of it only if it is given."""
     told: dict[str, Any] = {"lagtop": __version__, "format": sweep.fmt, "radians": sweep.radians}
     told |= {"keys": sweep.keys, **decides}
+    told |= {"header_comments": True} if sweep.is_described and sweep.fmt == "csv" else {}
     told |= {"uncertainties": dict(sweep.stds)} if sweep.stds else {}
     return told | ({"units": [sweep.system.mass, sweep.system.length]} if sweep.system else {})
 
