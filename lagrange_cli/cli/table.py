@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .. import __version__
 from ..arithmetic.text import value_text
 from ..errors import LagtopError
 from ..output.formats import Header
@@ -237,9 +238,11 @@ def _described(
     is_whole: bool = True,
 ) -> Header:
     """Return the names of columns with the description of the file."""
-    from ..inputs.descriptions import described
+    from ..inputs.descriptions import describe
 
-    return Header(header, described(scene, system, radians=request.radians, is_whole=is_whole))
+    return Header(
+        header, describe(__version__, scene, system, radians=request.radians, is_whole=is_whole)
+    )
 
 
 def _write_proved(

@@ -10,7 +10,6 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from .. import __version__
 from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
 from .names import ANGLES
@@ -28,13 +27,18 @@ _FRAMES = (
 )
 
 
-def described(
-    scene: Mapping[str, str], system: System | None, *, radians: bool, is_whole: bool = True
+def describe(
+    version: str,
+    scene: Mapping[str, str],
+    system: System | None,
+    *,
+    radians: bool,
+    is_whole: bool = True,
 ) -> Description:
     """Return the description of numbers of a top, or of tops that share some inputs."""
     angles = "radians" if radians else "degrees"
     return {
-        "lagtop": __version__,
+        "lagtop": version,
         "scene" if is_whole else "shared inputs": ", ".join(
             f"{x} = {scene[x]}" for x in INPUTS if x in scene
         ),

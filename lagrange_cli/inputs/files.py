@@ -5,6 +5,7 @@ Whatever is wrong with a file of inputs is a DataError, that it is not there amo
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -12,6 +13,7 @@ from io import BufferedIOBase, BufferedReader, BytesIO, RawIOBase
 from typing import Any, BinaryIO, cast
 
 from ..errors import CannotWriteError, DataError
+from .text_lines import NumberedLines
 
 _AT_ONCE = 1 << 16
 _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
@@ -131,3 +133,22 @@ def utf8_path(path: str) -> str:
 def shown_path(path: str) -> str:
     """Return the name of a file for messages."""
     return "standard input" if path == "-" else utf8_path(path) or "''"
+
+
+def digested(path: str) -> tuple[BufferedIOBase | None, str]:
+    """Return the digest of a file, and a copy of it on disk if it can be read only once."""
+    with reading(path) as file:
+        if file.seekable():
+            next(iter(NumberedLines(file, shown_path(path))), None)  # /dev/zero has no digest
+            return None, _digest(file)
+        with temporary_copy(file) as copy:
+            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(cast(BufferedIOBase, copy))
+
+
+def _digest(stream: BufferedIOBase) -> str:
+    from hashlib import file_digest  # for sweeps in parts only
+
+    stream.seek(0)
+    digest = file_digest(stream, "sha256").hexdigest()
+    stream.seek(0)
+    return f"sha256:{digest}"

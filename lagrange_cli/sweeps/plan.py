@@ -7,11 +7,8 @@ them was made.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from hashlib import file_digest
-from io import BufferedIOBase
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,12 +16,12 @@ from .. import __version__
 from ..arithmetic.points import Points
 from ..arithmetic.text import value_text
 from ..errors import LagtopError, SomeFailedError
-from ..inputs.descriptions import described
-from ..inputs.files import reading, shown_path, temporary_copy
+from ..inputs.descriptions import describe
+from ..inputs.files import digested
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
 from ..inputs.ranges import Block, Product
-from ..inputs.text_lines import UNDECIDED, Dialect, NumberedLines
+from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value
@@ -148,7 +145,7 @@ def plan(
         return _of_grid(wanted, gather(axes, scene, system=system))
     if ranges := ranges_of({name: as_value(x).number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
-    stream, digest = _digested(tables[0]) if described else (None, "")
+    stream, digest = digested(tables[0]) if described else (None, "")
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
     file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream, dialect)
     found, source = file.among(axes, scene, system)
@@ -190,7 +187,7 @@ def _with_inputs(
     if not sweep.is_described:
         return sweep._replace(header=header)
     texts = {key: value_text(x) for key, x in shared.items() if key not in varying}
-    notes = described(texts, found.system, radians=sweep.radians, is_whole=False)
+    notes = describe(__version__, texts, found.system, radians=sweep.radians, is_whole=False)
     return sweep._replace(header=Header(header, notes))
 
 
@@ -222,23 +219,6 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
     top = found.replace(inputs=numbers).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})
-
-
-def _digested(path: str) -> tuple[BufferedIOBase | None, str]:
-    """Return the digest of a file, and a copy of it on disk if it can be read only once."""
-    with reading(path) as file:
-        if file.seekable():
-            next(iter(NumberedLines(file, shown_path(path))), None)  # /dev/zero has no digest
-            return None, _digest(file)
-        with temporary_copy(file) as copy:
-            return os.fdopen(os.dup(copy.fileno()), "rb"), _digest(cast(BufferedIOBase, copy))
-
-
-def _digest(stream: BufferedIOBase) -> str:
-    stream.seek(0)
-    digest = file_digest(stream, "sha256").hexdigest()
-    stream.seek(0)
-    return f"sha256:{digest}"
 
 
 def runs_of(columns: Iterable[ResultColumn]) -> Columns:

@@ -13,7 +13,7 @@ from pyarrow import parquet
 import lagrange_cli
 from lagrange_cli import Top
 from lagrange_cli.errors import DataError
-from lagrange_cli.inputs.descriptions import described, description_in, difference, scene_in
+from lagrange_cli.inputs.descriptions import describe, description_in, difference, scene_in
 
 SCENE = ["--m", "0.35", "--A", "8.5e-4", "--C", "4e-4", "--s", "0.03", "--g", "9.81", "--r0", "200"]
 TOP = Top(m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=200.0, theta0_deg=20.0)
@@ -21,12 +21,12 @@ TOP = Top(m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=200.0, theta0_deg=20.0)
 
 def test_a_scene_is_read_back_as_it_was() -> None:
     for top in (TOP, TOP.replace(theta0_rad=0.1), Top(r0=1e-99, psidot0=-1 / 3)):
-        told = described(top.texts(), None, radians=False)
+        told = describe("0.1", top.texts(), None, radians=False)
         again = description_in(f"# {key}: {text}".strip("# ") for key, text in told.items())
         assert again == told
         assert scene_in(again, "file") == top
     exact = Top(r0=Fraction(1, 10))
-    assert scene_in(described(exact.texts(), None, radians=False), "file") == Top(r0=0.1)
+    assert scene_in(describe("0.1", exact.texts(), None, radians=False), "file") == Top(r0=0.1)
 
 
 def test_another_program_describes_nothing() -> None:
