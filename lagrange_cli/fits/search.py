@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from numbers import Real
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
@@ -122,12 +121,10 @@ def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Se
     """Return conditions as texts KEY=VALUE.  Raises LagtopError for a value of another type."""
     if not isinstance(conditions, Mapping):
         return conditions
-    texts = []
-    for key, value in conditions.items():
-        if not isinstance(value, str | Real | Decimal):
-            raise LagtopError(f"{key} must be a number or a text, got {quoted(value)}", key)
-        texts.append(f"{key}={value if isinstance(value, str) else repr(float(value))}")
-    return texts
+    return [
+        f"{key}={value if isinstance(value, str) else repr(float(_exact(key, value)))}"
+        for key, value in conditions.items()
+    ]
 
 
 def read_unknown(name: str, given: Any) -> Any:
@@ -139,21 +136,30 @@ def read_unknown(name: str, given: Any) -> Any:
             raise LagtopError(f"{name} {error}", name) from None
     if hasattr(given, "units"):
         number = read_unknown(name, given.magnitude)
-        return Value(number if isinstance(number, Span) else _exact(number), f"{given.units:C}")
+        return Value(
+            number if isinstance(number, Span) else _exact(name, number), f"{given.units:C}"
+        )
     given = getattr(given, "nominal_value", given)
-    if isinstance(given, tuple | list | np.ndarray):
-        if len(given) != 2 or not all(isinstance(x, Real | Decimal) for x in given):
-            raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)
-        first, last = map(_exact, given)
-        if not first < last:
-            raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
-        return Span(first, last)
-    return given
+    if not isinstance(given, tuple | list | np.ndarray):
+        return given
+    if (isinstance(given, np.ndarray) and given.ndim != 1) or len(given) != 2:
+        raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)
+    first, last = (_exact(name, x) for x in given)
+    if not first < last:
+        raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
+    return Span(first, last)
 
 
-def _exact(number: Any) -> Fraction:
-    """Return a real number as a fraction; scalars of NumPy would overflow in one."""
-    return Fraction(number.item() if hasattr(number, "item") else number)
+def _exact(name: str, number: Any) -> Fraction:
+    """Return a real number as a fraction.  Raises LagtopError for anything else."""
+    number = number.item() if isinstance(number, np.generic) else number  # NumPy's would overflow
+    try:
+        if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
+            float(number)
+            return Fraction(number)
+    except (ValueError, OverflowError):
+        pass
+    raise LagtopError(f"{name} must be a finite number, got {quoted(number)}", name)
 
 
 class Search(NamedTuple):

@@ -86,6 +86,7 @@ def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any
     from ..motion.solve import Motion
 
     check_type("motion", motion, Motion)
+    check_type("kind", kind, str)
     functions = {
         "sphere": draw_sphere,
         "angles": draw_angles,

@@ -492,7 +492,7 @@ def test_quantities_are_conditions_of_the_known_inputs() -> None:
 @pytest.mark.parametrize(
     ("conditions", "inputs", "message"),
     [
-        ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a number or a text"),
+        ({"T_precession": None}, {"r0": (10, 200)}, "T_precession must be a finite number"),
         ({"T_precession": 2}, {"r0": (10, 20, 30)}, "r0 must be a real number or a pair"),
         ({"T_precession": 2}, {"r0": (200, 10)}, "r0 must have its smaller end first"),
     ],
