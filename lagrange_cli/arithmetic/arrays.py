@@ -75,7 +75,6 @@ class ArrayFunctions(Arrays):
     cosh = staticmethod(np.cosh)
     asinh = staticmethod(np.arcsinh)
     tanh = staticmethod(np.tanh)
-    atan = staticmethod(np.arctan)
     atanh = staticmethod(np.arctanh)
     sign = staticmethod(np.sign)
     nint = staticmethod(np.rint)

@@ -22,6 +22,8 @@ Truth = Any
 ZERO, INFINITE = Decimal(0), Decimal("Infinity")
 SHORT = 6
 """Digits of a radius."""
+LEAST = Decimal("1e-300000000000000000")
+"""A size far above all that exponents of decimals cannot hold, of which products can be formed."""
 
 
 def _rounded(rounding: str) -> decimal.Context:
@@ -37,6 +39,10 @@ add_up, multiply_up, fma_up, divide_up = UP.add, UP.multiply, UP.fma, UP.divide
 
 class TooFewDigitsError(Exception):
     """A question that the digits at hand leave open."""
+
+
+class TooSmallError(TooFewDigitsError):
+    """A number too close to 0 for the exponents of decimals, so that no digits decide it."""
 
 
 class UndefinedError(ArithmeticError):
@@ -251,7 +257,7 @@ class Ring:
         self._context, self._tight = context, own_context(digits, [*TRAPS, Inexact])
         self.unit = Decimal((0, (5,), -digits))
         """Half a unit in the last digit, beside the largest number with this exponent."""
-        self.unbounded = Ball(self, ZERO, INFINITE)
+        self.unbounded = self.inf = Ball(self, ZERO, INFINITE)
         self.nan = Ball(self, Decimal("NaN"), Decimal("NaN"))
 
     @cached_property

@@ -32,6 +32,8 @@ from .ball import (
 from .decimals import Decimals, decimals, pi_to
 from .numbers import Scalars
 
+_LOWEST, _TINY = -23 * 10**17, Decimal("1e-310000000000000000")
+"""An exponent below which a power of e may leave the range of decimals, and half a bound of it."""
 _MARGIN = 6
 """Digits of elementary functions beyond those of the balls, besides the digits of that number."""
 
@@ -61,11 +63,6 @@ class Balls(Ring, Scalars):
     def pi(self) -> Ball:
         """The number pi."""
         return self.about(self._context.plus(pi_to(self.digits + 2)), 2)
-
-    @property
-    def inf(self) -> Ball:
-        """What stands for infinity: a ball that says nothing."""
-        return self.unbounded
 
     def convert(self, value: Ball | float | Fraction) -> Ball:
         """Return a ball that holds an exact value, or a ball as it is."""
@@ -130,11 +127,12 @@ class Balls(Ring, Scalars):
 
     def _turned(self, x: Ball, quarters: int) -> Ball:
         """Return the sine of x and so many quarter turns; its slope is 1 at most."""
-        if not x.radius < 2:
+        turns, is_known = 0, x.radius < 2 and x.middle.adjusted() < self.digits
+        if is_known:
+            turns = self.plain.nint(self.divide(self.multiply(x.middle, 2), self.pi.middle))
+            x = x - self.pi * turns / 2 if turns else x
+        if not (is_known and x.radius < 1):
             return self.within(Decimal(1))
-        turns = self.plain.nint(self.divide(self.multiply(x.middle, 2), self.pi.middle))
-        if turns:
-            x = x - self.pi * turns / 2
         which = (quarters + turns) % 4
         function = self.plain.cos if which % 2 else self.plain.sin
         value = self._value(function, x.middle).enlarged(x.radius)
@@ -142,6 +140,8 @@ class Balls(Ring, Scalars):
 
     def exp(self, x: Ball) -> Ball:
         """Return e to the power x; e^r - 1 <= 2 r for r <= 1."""
+        if (x < _LOWEST) is True:
+            return Ball(self, _TINY, _TINY)
         return self._growing(self.plain.exp, x, 2)
 
     def sinh(self, x: Ball) -> Ball:
@@ -155,8 +155,7 @@ class Balls(Ring, Scalars):
     def _growing(
         self, function: Callable[[Decimal], Decimal], x: Ball, factor: int, more: int = 0
     ) -> Ball:
-        """Return a function of x whose slope, within 1 of x, is at most its size and `more`,
-        times a factor."""
+        """Return a function whose slope within 1 of x is at most factor (its size + `more`)."""
         if not x.radius <= 1:
             return self.unbounded
         value = self._value(function, x.middle)
@@ -168,12 +167,20 @@ class Balls(Ring, Scalars):
 
     def expm1(self, x: Ball) -> Ball:
         """Return e to the power x, less 1."""
+        if (x < -1) is True:
+            return self.exp(x) - 1
         return 2 * self.sinh(x / 2) * self.exp(x / 2)
 
     def tanh(self, x: Ball) -> Ball:
-        """Return the hyperbolic tangent of x."""
+        """Return the hyperbolic tangent of x, from exp -2|x|."""
+        if x.middle > 0:
+            return -self.tanh(-x)
         twice = self.expm1(2 * x)
         return twice / (twice + 2)
+
+    def sech(self, x: Ball) -> Ball:
+        """Return 1/cosh x, from exp -|x|."""
+        return 2 * self.exp(-abs(x)) / (1 + self.exp(-2 * abs(x)))
 
     def log(self, x: Ball) -> Ball:
         """Return the natural logarithm of x > 0."""
@@ -191,6 +198,8 @@ class Balls(Ring, Scalars):
 
     def atanh(self, x: Ball) -> Ball:
         """Return the number whose hyperbolic tangent is x."""
+        if x.middle < 0:
+            return -self.atanh(-x)
         return self.log1p(2 * x / (1 - x)) / 2
 
     def asinh(self, x: Ball) -> Ball:
@@ -214,10 +223,6 @@ class Balls(Ring, Scalars):
         moved = fma_up(x.greatest, s, multiply_up(y.greatest, r))
         value = self._value(self.plain.atan2, y.middle, x.middle)
         return value.enlarged(divide_up(moved, square))
-
-    def atan(self, x: Ball) -> Ball:
-        """Return the arc whose tangent is x."""
-        return self.atan2(x, self.exact(1))
 
     def nint(self, x: Ball) -> int:
         """Return an integer within 3/4 of all of x.

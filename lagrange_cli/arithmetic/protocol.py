@@ -115,7 +115,7 @@ Value = Any
 FunctionArithmetic = Any
 """The arithmetic of Jacobi's, the theta and Omega functions: balls, arrays of doubles, or mpmath.
 
-It is a `SeriesArithmetic` with inf, expm1, log, log1p, tanh, atan, atanh, sign, re and im.  Its
+It is a `SeriesArithmetic` with inf, expm1, log, log1p, tanh, sech, atanh, sign, re and im.  Its
 numbers may be complex and mix with floats, and mpmath has no types, so that it has none either.
 """
 

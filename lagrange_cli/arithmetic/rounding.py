@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..errors import LagtopError, OutOfRangeError
-from .ball import Ball, TooFewDigitsError
+from .ball import LEAST, Ball, TooFewDigitsError, TooSmallError
 from .decimals import own_context
 from .text import NumberText
 
@@ -59,6 +59,13 @@ def precisions(digits: int = 0, more: int = 0) -> Iterator[int]:
         working = working * 3 // 2 if working < 100 else working * 2
 
 
+def too_small(what: str) -> LagtopError:
+    """Return the error of a number that decimals cannot hold, whatever their digits."""
+    return OutOfRangeError(
+        f"{what} is below {LEAST:e} in size, too small for --digits: take a smaller argument"
+    )
+
+
 def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0) -> S:
     """Return the first result that some number of digits decides.
 
@@ -67,6 +74,8 @@ def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int =
     for working in precisions(digits, more):
         try:
             return compute(working)
+        except TooSmallError:
+            raise too_small(what) from None
         except TooFewDigitsError:
             continue
     raise LagtopError(f"{what} cannot be told from 0 or a tie with {MOST_DIGITS} digits")
@@ -111,7 +120,7 @@ def alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
     """
     low, high = ball.ends()
     if not ball.is_sharp:
-        raise TooFewDigitsError
+        raise TooSmallError if 0 < ball.greatest <= LEAST else TooFewDigitsError
     value = rounding(low)
     if value != rounding(high):
         raise TooFewDigitsError

@@ -47,8 +47,8 @@ def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
         return complex_jacobi(ar, u, AnyModulus(ModulusKind.UNIT, modulus))
     u = ar.re(u)
     if not modulus.k_prime:
-        am = 2 * ar.atan(ar.tanh(u / 2))
-        return Jacobi(am, ar.tanh(u), 1 / ar.cosh(u), 1 / ar.cosh(u))
+        am = 2 * ar.atan2(ar.tanh(u / 2), 1 + 0 * u)
+        return Jacobi(am, ar.tanh(u), ar.sech(u), ar.sech(u))
     if not modulus.k:
         return Jacobi(u, ar.sin(u), ar.cos(u), 1 + 0 * u)
     x = whole_and_rest(ar, u / (2 * complete_k(ar, modulus.k_prime)))

@@ -219,7 +219,7 @@ def terms_needed(bound: ErrorBound, tolerance: Value) -> Value:
     ar = tolerance.context
 
     def bisected(few: Value, enough: Value, terms: Callable[[Value], Value]) -> Value:
-        """Narrow the gap between too few terms and enough of them."""
+        """Return enough terms, next to too few of them."""
         while enough - few > max(1, ar.ldexp(enough, -min(300, ar.prec - 10))):
             middle = (few + enough) // 2
             few, enough = (middle, enough) if bound(terms(middle)) > tolerance else (few, middle)

@@ -17,10 +17,10 @@ from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
-from ..arithmetic.ball import Ball, TooFewDigitsError
+from ..arithmetic.ball import Ball, TooFewDigitsError, TooSmallError
 from ..arithmetic.balls import Balls, balls
 from ..arithmetic.protocol import FunctionArithmetic, Value
-from ..arithmetic.rounding import MOST_DIGITS, alike, precisions, text_of
+from ..arithmetic.rounding import MOST_DIGITS, alike, precisions, text_of, too_small
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
 
@@ -64,10 +64,15 @@ class ProvedNumbers:
                 raise TooFewDigitsError
             with suppress(TooFewDigitsError):
                 values = compute(balls(working))
-                for name in values.keys() - found.keys():
+                for name in [name for name in values if name not in found]:
                     value = None if values[name] is None else known.get(name, values[name])
-                    with suppress(TooFewDigitsError):
+                    try:
                         found[name] = self._settled(value)
+                    except TooSmallError:
+                        if self.most == MOST_DIGITS:
+                            raise too_small(name) from None
+                    except TooFewDigitsError:
+                        continue
                 if len(found) == len(values):
                     return {name: found[name] for name in values}
         raise LagtopError(f"{MOST_DIGITS} digits do not decide these numbers")

@@ -40,7 +40,7 @@ OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "quotient": lambda x, y: x / y,
     "with an integer": lambda x, y: 3 - (7 * x + 2) / 5,
 }
-FUNCTIONS = "sqrt sin cos exp sinh cosh asinh log log1p expm1 tanh atan atanh".split()
+FUNCTIONS = "sqrt sin cos exp sinh cosh asinh log log1p expm1 tanh sech atanh".split()
 DOMAINS: dict[str, Callable[[arb], bool]] = {
     "sqrt": lambda x: x >= 0,
     "log": lambda x: x > 0,
@@ -118,6 +118,27 @@ def test_large_arguments_are_reduced() -> None:
             wide = balls(400).convert(Fraction(text))
             assert holds(balls(400).sin(wide), exact_arb(text).sin())
             assert balls(400).sin(wide).radius < Decimal("1e-90")
+
+
+def test_a_sine_of_too_large_an_argument_is_at_most_1() -> None:
+    """Turns of 1e60 are not known in 40 digits; the series of what is left had no end."""
+    rng = random.Random(60)
+    for _ in range(60):
+        x = AR.exact(Decimal(rng.uniform(1, 10)) * Decimal(10) ** rng.choice([39, 40, 41, 60, 300]))
+        for value in (AR.sin(x), AR.cos(-x)):
+            assert value.greatest <= 2
+            with arb_bits(2000):
+                assert holds(AR.sin(x), exact_arb(x.middle).sin())
+
+
+@pytest.mark.parametrize("name", ["atanh", "log1p"])
+def test_next_to_minus_1_no_digits_are_lost(name: str) -> None:
+    for digits in range(1, 40):
+        x = AR.exact(Decimal(f"-0.{'9' * digits}"))
+        value = getattr(AR, name)(x)
+        assert value.radius <= Decimal("1e-37") * value.greatest
+        with arb_bits(400):
+            assert holds(value, getattr(exact_arb(x.middle), name)())
 
 
 def test_an_exact_number_stays_exact() -> None:
@@ -202,7 +223,6 @@ def test_what_has_no_bounds_raises_only_the_request_for_more_digits() -> None:
         AR.sqrt(-AR.exact(1)),
         AR.exp(quotient),
         AR.exp(AR.exact(Decimal("1e19"))),
-        AR.exp(AR.exact(Decimal("-1e19"))),
         AR.log(about_0),
         AR.where(OPEN, quotient, 1),
     ):
@@ -211,6 +231,24 @@ def test_what_has_no_bounds_raises_only_the_request_for_more_digits() -> None:
             ball.ends()
         assert (ball < 1) is OPEN
     assert AR.sin(quotient).radius == 1
+
+
+@pytest.mark.parametrize("x", ["1e19", "3e18", "1e300"])
+def test_exponentials_below_all_exponents_are_tiny(x: str) -> None:
+    """Decimals end at 1e-999999999999999999, and exp(-1e19) is 1e-4342944819032518276."""
+    far, tiny = AR.exact(Decimal(x)), Decimal("1e-300000000000000000")
+    low, high = AR.exp(-far).middle - AR.exp(-far).radius, AR.exp(-far).greatest
+    assert 0 <= low < high <= tiny
+    for value, limit in (
+        (AR.sech(far), 0),
+        (AR.sech(-far), 0),
+        (AR.tanh(far), 1),
+        (AR.tanh(-far), -1),
+        (AR.expm1(-far), -1),
+    ):
+        assert abs(value - limit).greatest <= (Decimal("1e-38") if limit else tiny)
+        assert (value == limit) is not False
+    assert (AR.sech(far) * AR.sech(far)).greatest <= tiny
 
 
 def test_a_quotient_by_an_exact_0_does_not_exist() -> None:

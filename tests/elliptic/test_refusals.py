@@ -60,6 +60,10 @@ JACOBI = [
     ("--k 1 --u K", "--u must be a number, without K, for k = 1, where K is infinite"),
     ("--k 1 --u K --digits 9", "--u must be a number, without K, for k = 1"),
     ("--k 1 --u K --series 2", "the nome series need 0 < k < 1, got k = 1.0"),
+    (
+        "--k 1 --u 1e19 --digits 20",
+        "cn is below 1e-300000000000000000 in size, too small for --dig",
+    ),
     # some of these never ended, others gave inf or warnings (which are errors in these tests)
     ("--k 0.9 --u 1 --pi --param 1e17", "--param must be within 2^50 periods = 5.14e+15 of 0"),
     ("--k 0.5 --u 1 --pi --param=-4e15", "--param must be within 2^50 periods"),

@@ -321,3 +321,14 @@ def test_radii_need_no_package(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setitem(sys.modules, "flint", None)
     for command in ("solve", "table"):
         assert lagtop(command, "--certify").exit_code == 0
+
+
+def test_the_separatrix_is_decided_at_once_at_any_time(lagtop: Lagtop) -> None:
+    """The tilt falls as exp(-t), below the exponents of decimals; what stays finite is printed."""
+    top = "--m 1 --A 1 --C 1 --s 1 --g 1 --r0 0 --theta0 60 --thetadot0 1".split()
+    args = [*top, "--t-min", "1e20", "--t-max", "1e20", "--n", "1", "--digits", "20"]
+    refused = lagtop("table", *args, "--format", "csv", "--columns", "theta")
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "theta at t = 1e+20 is below 1e-300000000000000000 in size, too small" in refused.stderr
+    shown = lagtop("table", *args, "--format", "csv", "--columns", "phi,psi,axis_z,quaternion_w")
+    assert shown.stdout.splitlines()[1:] == ["180.0,180.0,1.0,-1.0"]

@@ -211,14 +211,13 @@ def separatrix_pose(motion: Separatrix[R]) -> Callable[[R], Pose[R]]:
     def pose(t: R) -> Pose[R]:
         with ar.working():
             h = motion.argument_rate * t + swing.offset
-            sinh, cosh = ar.sinh(h), ar.cosh(h)
-            real, imag = swing.x * cosh, swing.sign * swing.y * sinh
+            real, imag = swing.x, swing.sign * swing.y * ar.tanh(h)
             turned = ar.atan2(imag, real) - swing.start if t else 0 * t
             half_b = motion.b * t / 2
             phi, psi = motion.r0 * t - half_b + turned, half_b + turned
             if motion.facts.plane:
                 phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
             x = ar.sqrt(real * real + imag * imag)
-            return Pose(x, swing.y, phi, psi, -h)
+            return Pose(x, swing.y * ar.sech(h), phi, psi, -h)
 
     return pose
