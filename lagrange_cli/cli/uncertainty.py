@@ -12,6 +12,7 @@ from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
 from ..motion.quantity import unit_name
 from ..motion.record import NUMBER_KEYS
+from ..motion.sensitivity.sensitivities import DIFFERENTIABLE
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
 from ..output.report import Field, Report, with_unit
 from ..output.uncertain_text import uncertain_text
@@ -45,7 +46,7 @@ def asked_report(
     """Return what makes the budget of a key, or else the report on random samples."""
     if key is None:
         return sampled(found, motion, samples=samples or 0, seed=seed, radians=radians)
-    check_names("budget", [key], [unit_name(name, radians=radians) for name in NUMBER_KEYS])
+    check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
     findings = budget(found, motion, key, radians)
     return lambda: findings
 
@@ -61,7 +62,7 @@ def with_stds(
     stds = stds_of(record, uncertain)
     lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
     if lost := [key for key in lost if stds[f"{key}_std"] is None]:
-        known = next((key for key in map(uncertain.name_of, lost) if key in NUMBER_KEYS), None)
+        known = next((key for key in map(uncertain.name_of, lost) if key in DIFFERENTIABLE), None)
         reason = "keys on request have none" if known is None else uncertain.slopes.reason(known)
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
     return shown_with(record, stds) if shown else dict(record) | stds

@@ -19,7 +19,6 @@ from .regime import Exact, Facts, Regime
 
 if TYPE_CHECKING:
     from .over_time.samplers import Sampler
-    from .paper.worked_example import WorkedExample
 
 S = TypeVar("S")
 
@@ -46,7 +45,7 @@ class Numbers:
         self.exact = scene
         self.kind_class = kind_of(scene.facts)
         self._kinds: dict[int, Kind[Ball]] = {}
-        self._requested: dict[int, WorkedExample[Ball]] = {}
+        self._requested: dict[int, tuple[Any, Any]] = {}
         self._doubles: dict[str, Settled | None] = {}
         self._sampler: Sampler | None = None
 
@@ -112,7 +111,7 @@ class Numbers:
             return None
         kind = self.kind(digits)
         try:
-            source = kind if name in NUMBER_KEYS else self._on_request(digits)
+            source = kind if name in NUMBER_KEYS else self._on_request(name, digits)
             value: Ball | None = getattr(source, name)
         except TooFewDigitsError:
             from .exact.rational_keys import is_endless  # start-up: for few tops only
@@ -122,15 +121,17 @@ class Numbers:
             raise
         return value * kind.degree if radians and value is not None else value
 
-    def _on_request(self, digits: int) -> WorkedExample[Ball]:
-        """Return the keys on request in balls of so many digits."""
-        from .paper.worked_example import (
-            WorkedExample,  # start-up; the last of the classes with such keys
-        )
+    def _on_request(self, name: str, digits: int) -> Any:
+        """Return what has a key on request, in balls of so many digits."""
+        from .paper.requested import TEXTBOOK, Textbook, WorkedExample  # start-up
 
         if digits not in self._requested:
-            self._requested[digits] = WorkedExample(self.kind(digits), self.exact)
-        return self._requested[digits]
+            kind = self.kind(digits)
+            self._requested[digits] = (
+                WorkedExample(kind, self.exact),
+                Textbook(kind.ar, self.exact, kind.state),
+            )
+        return self._requested[digits][name in TEXTBOOK]
 
     def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
         """Return an answer of the motion, at the first precision that decides it.

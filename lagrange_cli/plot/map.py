@@ -21,7 +21,7 @@ from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
 from ..motion.quantity import Key, unit_name
-from ..motion.record import KEYS, NUMBER_KEYS
+from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
 from ..sweeps.records import BLOCK_ROWS, sweep
@@ -114,7 +114,8 @@ def key_map(
     Raises LagtopError for a key that is no number, for one input on both axes, for too many cells,
     and where a top of the grid cannot be.
     """
-    check_names("key", [key], [unit_name(name, radians=radians) for name in NUMBER_KEYS])
+    names = [*NUMBER_KEYS, *requested_keys()]
+    check_names("key", [key], [unit_name(name, radians=radians) for name in names])
     if x.name == y.name:
         raise LagtopError(f"x must be another input than y, got {x.name} twice", "x")
     cells = x.values.size * y.values.size
@@ -145,7 +146,8 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     usual = default_ranges(motion.top, radians=request.radians)
     x, y = request.x or usual[0], request.y or usual[1]
     chart = key_map(motion, request.key, x, y, request.progress, radians=request.radians)
-    key = KEYS[chart.key.replace("_rad", "_deg")]
+    key = number_key(chart.key.replace("_rad", "_deg"))
+    assert key is not None
     unit = request.unit_of(key)
 
     def draw(axes: Sequence[Axes], look: Look) -> None:

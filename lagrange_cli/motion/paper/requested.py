@@ -1,8 +1,8 @@
 """Keys on request: numbers of a motion that are not part of its record.
 
 They are declared like those of the record, where their formulas stand: sections 4 to 7 in
-`quarters`, section 8 in `worked_example`.  Neither is imported before one of their keys is asked
-for.
+`quarters`, section 8 in `worked_example`, and elementary theory in `textbook`.  None of these is
+imported before one of their keys is asked for.
 """
 
 from __future__ import annotations
@@ -13,9 +13,12 @@ from ...arithmetic.exact_cosine import Polynomial, U
 from ..exact.rational_keys import rational_keys, starts_at_u1, starts_at_u2
 from ..quantity import keys_of
 from ..regime import Exact
+from .textbook import TEXTBOOK, Textbook, textbook_fractions
 from .worked_example import WorkedExample
 
-REQUESTED = keys_of(WorkedExample)
+__all__ = ["REQUESTED", "TEXTBOOK", "Textbook", "WorkedExample", "requested_fractions"]
+
+REQUESTED = keys_of(WorkedExample) | TEXTBOOK
 """The keys and how they are shown."""
 
 
@@ -23,7 +26,7 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
     """Return the keys on request that are known as fractions."""
     known = rational_keys(exact)
     keys = {"spin_share": 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))}
-    keys |= _constants(exact)
+    keys |= _constants(exact) | textbook_fractions(exact)
     if known.get("u2") == 0:
         keys |= {"u2_criterion": Fraction(0), "u2_twice": Fraction(0)}
     turning = starts_at_u1(exact) or starts_at_u2(exact)

@@ -269,8 +269,8 @@ class AngleStds:
         """How far one uncertainty moves each parameter."""
         for row, (name, std) in zip(self.moved, stds.items(), strict=True):
             for one, slope in inputs[name].items():
-                for by, factor in solved[one].items():
-                    row[PARAMETERS.index(by)] += std * slope * float(factor)
+                for i, by in enumerate(PARAMETERS):
+                    row[i] += std * slope * float(solved[one].get(by, 0))
         used = set(np.flatnonzero(self.moved.any(axis=0)).tolist())
         self.reason = None if used <= self.neighbours.known else self.neighbours.reason
         """Why there are no uncertainties after the start, where there are none."""

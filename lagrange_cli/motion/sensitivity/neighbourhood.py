@@ -16,6 +16,7 @@ from ...arithmetic.duals import Dual, Duals, independent
 from ...arithmetic.values import Values
 from ..any_start import gaps_from_start, largest_root
 from ..gaps import Gaps, State, are_told_apart, state
+from ..paper.textbook import STEADY_KEYS, WITH_RATIO, Textbook
 from ..regime import Exact, Facts, Regime
 
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
@@ -143,8 +144,29 @@ def moving_root(c3: Dual, c2: Dual, c1: Dual, c0: Dual, x: Ball) -> Dual:
     return Dual(x, [-partial / slope for partial in cubic.partials or ()])
 
 
+def textbook_partials(exact: Exact, key: str, digits: int) -> dict[str, Ball] | None:
+    """Return the derivatives of a key of elementary theory, by a, b, the tilt and A/C.
+
+    They are NaN next to a root that is 0, where the key has a kink or grows without bound.
+    """
+    ar = Duals(balls(digits))
+    book = Textbook(ar, exact, dual_state(ar, exact))
+    with ar.working():
+        found: Dual | None = getattr(book, key)
+        if found is None:
+            return None
+        none = [ar.plain.convert(0)] * len(PARAMETERS)
+        if key in STEADY_KEYS and exact.cosine.vanishes(book.steady.discriminant):
+            found, none = Dual(found.value), [ar.plain.nan] * len(PARAMETERS)
+        by_ratio = found.value / book.ratio.value if key in WITH_RATIO else ar.plain.convert(0)
+        return dict(zip(PARAMETERS, found.partials or none, strict=True)) | {"A/C": by_ratio}
+
+
 def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
-    """Return the derivatives of a = 2mgs/A, b = C r0/A and the start by each input, but for 0."""
+    """Return the derivatives of a = 2mgs/A, b = C r0/A, A/C and the start by each input, but for 0.
+
+    Only keys of elementary theory depend on A/C, which is none of `PARAMETERS`.
+    """
     top = exact.top
     m, A, C, s, g = (Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g))
     a, b, r0 = exact.a, exact.b, exact.r0
@@ -152,8 +174,8 @@ def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
     one = Fraction(1)
     derivatives = {
         "m": {"a": a / m},
-        "A": {"a": -a / A, "b": -b / A},
-        "C": {"b": r0 / A},
+        "A": {"a": -a / A, "b": -b / A, "A/C": 1 / C},
+        "C": {"b": r0 / A, "A/C": -A / C / C},
         "s": {"a": 2 * m * g / A},
         "g": {"a": 2 * m * s / A},
         "r0": {"b": C / A, "r0": one},

@@ -24,6 +24,7 @@ from ..degenerate import Steady
 from ..exact.rational_keys import is_endless
 from ..gaps import Gaps, State
 from ..kinds import kind_of
+from ..paper.textbook import TEXTBOOK
 from ..quantity import quantity
 from ..record import NUMBER_KEYS
 from ..regime import Exact, Regime, exact
@@ -34,11 +35,14 @@ from .neighbourhood import (
     generic_gaps,
     moving_root,
     neighbourhood,
+    textbook_partials,
 )
 
 _MEANS = frozenset("mean_spin_rate mean_precession_rate T_spin T_precession".split())
 _OF_THE_START = frozenset("spin_rate_start precession_rate_start".split())
 _AFTER_REST = frozenset("amplitude_deg alpha".split())
+DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
+"""The keys that have derivatives."""
 
 
 class Sensitivities(Values):
@@ -56,17 +60,18 @@ class Sensitivities(Values):
 def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivities:
     """Return the derivatives of all numbers of the record of a top by all inputs, or of some keys.
 
-    Each is the nearest double, proved by an enclosure.  Angles are in degrees, by `theta0_rad` too.
-    Next to a steady precession, over a pole or on the separatrix some numbers have a kink or leap:
-    their derivatives are NaN.  Raises LagtopError for an unknown key.
+    Those of elementary theory have derivatives too, if they are named.  Each derivative is the
+    nearest double, proved by an enclosure.  Angles are in degrees, by `theta0_rad` too.  Next to a
+    steady precession, over a pole or on the separatrix some numbers have a kink or leap: their
+    derivatives are NaN.  Raises LagtopError for an unknown key.
     """
-    check_names("keys", list(NUMBER_KEYS if keys is None else keys), NUMBER_KEYS)
+    chosen = check_names("keys", list(NUMBER_KEYS if keys is None else keys), DIFFERENTIABLE)
     slopes = Slopes(exact(top))
     names = tuple(slopes.chain)
     rows = {
         key: {name: slopes.derivative(key, name) for name in names}
-        for key in NUMBER_KEYS
-        if (keys is None or key in keys) and slopes.has(key)
+        for key in DIFFERENTIABLE
+        if key in chosen and slopes.has(key)
     }
     missing = [key for key, row in rows.items() if any(map(math.isnan, row.values()))]
     return Sensitivities(top, names, rows, {key: slopes.reason(key) for key in missing})
@@ -90,21 +95,28 @@ class Slopes:
 
     def has(self, key: str) -> bool:
         """Return whether the motion has a key."""
-        return decided(key, lambda digits: self.at(digits).of(key)) is not None
+        return decided(key, lambda digits: self._by_parameters(key, digits)) is not None
+
+    def _by_parameters(self, key: str, digits: int) -> dict[str, Ball] | None:
+        """Return the derivatives of a key by the parameters that it may depend on."""
+        if key in TEXTBOOK:
+            return textbook_partials(self.exact, key, digits)
+        partials = self.at(digits).of(key)
+        return None if partials is None else dict(zip(PARAMETERS, partials, strict=True))
 
     def enclosure(self, key: str, by: Mapping[str, Ball | int], digits: int) -> Ball:
         """Return a ball that holds the sum of derivatives by inputs, each with its weight.
 
         It is NaN where one of them does not exist, or where the motion has no such key.
         """
-        partials, ar = self.at(digits).of(key), balls(digits)
+        partials, ar = self._by_parameters(key, digits), balls(digits)
         if partials is None:
             return ar.nan
         total = ar.convert(0)
         for name, weight in by.items():
             for parameter, factor in self.chain[name].items():
-                slope = partials[PARAMETERS.index(parameter)] * ar.convert(factor)
-                total = total + slope * weight
+                if parameter in partials:
+                    total = total + partials[parameter] * ar.convert(factor) * weight
         return total
 
     def derivative(self, key: str, name: str) -> float:
@@ -113,6 +125,8 @@ class Slopes:
 
     def reason(self, key: str) -> str:
         """Return why a key has no derivative along some parameters."""
+        if key in TEXTBOOK:
+            return f"{key} grows without bound, or has a kink, next to a root that is 0"
         return decided(key, lambda digits: self.at(digits).reason(key))
 
 

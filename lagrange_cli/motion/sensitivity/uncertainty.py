@@ -18,9 +18,9 @@ from ...arithmetic.protocol import Arithmetic
 from ...arithmetic.rounding import rounded
 from ...inputs.top import Top
 from ..numbers import Numbers
-from ..record import NUMBER_KEYS, TEXT_KEYS
+from ..record import TEXT_KEYS
 from ..regime import exact
-from .sensitivities import Slopes
+from .sensitivities import DIFFERENTIABLE, Slopes
 
 
 class Contribution(NamedTuple):
@@ -64,7 +64,7 @@ class FirstOrder:
         name = self.name_of(key)
         if name in self.top.fields or name in self.given:
             return True
-        return name in NUMBER_KEYS and self.slopes.has(name)
+        return name in DIFFERENTIABLE and self.slopes.has(name)
 
     def slope(self, key: str, name: str, digits: int) -> Ball:
         """Return the derivative of a key, or an input, by an input that was given; NaN for none."""

@@ -1,0 +1,92 @@
+"""The rates of steady precession at a given tilt: the roots of a quadratic equation.
+
+The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0, which is
+cos(theta) Omega^2 - b Omega + a/2 = 0 by a = 2mgs/A (4,4) and b = C r0/A (4,5).
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ..arithmetic.exact_cosine import Cosine, Polynomial, U
+from ..arithmetic.numbers import R
+from ..arithmetic.values import Values
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
+
+SLOW, FAST = "steady", "steady-fast"
+STEADY_WORDS = (SLOW, FAST)
+"""The words that stand for a rate of precession: the root of smaller and of larger size."""
+
+
+class SteadyRate(float):
+    """A rate of steady precession: the nearest double, which is written as its word."""
+
+    word: str
+
+    def __new__(cls, word: str, value: float) -> SteadyRate:
+        """Return the rate for one of `STEADY_WORDS`."""
+        rate = super().__new__(cls, value)
+        rate.word = word
+        return rate
+
+    def __repr__(self) -> str:
+        return repr(self.word)
+
+    def __reduce__(self) -> tuple[type, tuple[str, float]]:
+        """Return how copies and pickles are made."""
+        return SteadyRate, (self.word, float(self))
+
+
+class SteadyRates(Values):
+    """The rates of steady precession of a top at its tilt."""
+
+    a: Fraction
+    b: Fraction
+    cosine: Cosine
+
+    @property
+    def discriminant(self) -> Polynomial:
+        """The discriminant b^2 - 2 a cos(theta) of the equation, by the cosine."""
+        return Polynomial(self.b * self.b, -2 * self.a)
+
+    def exists(self, word: str) -> bool:
+        """Return whether a root is real and finite; at 90 degrees there is only the slow one."""
+        if self.cosine.vanishes(U):
+            return word == SLOW and bool(self.b)
+        return self.cosine.sign(self.discriminant) >= 0
+
+    def rate(self, ar: Arithmetic[R], a: R, b: R, cos: R, word: str) -> R:
+        """Return a root that exists, by a, b and the cosine in an arithmetic.
+
+        Nothing cancels: with q = b + sgn(b) sqrt(b^2 - 2 a cos(theta)) the fast root is
+        q/(2 cos(theta)) and the slow one a/q.  If r0 = 0 both have the same size, and the slow root
+        is the positive one, as in the limit of small positive r0.
+        """
+        if not (self.a or self.b):
+            return 0 * a
+        root = 0 * b if self.cosine.vanishes(self.discriminant) else ar.sqrt(b * b - 2 * a * cos)
+        q = b - root if self.b < 0 else b + root
+        return q / (2 * cos) if word == FAST else a / q
+
+    def fraction(self, word: str) -> Fraction | None:
+        """Return a root if it is rational; without torque the slow one is 0."""
+        u = self.cosine.rational
+        if not self.exists(word):
+            return None
+        if not self.a and (word == SLOW or not self.b):
+            return Fraction(0)
+        root = None if u is None else rational_root(self.b * self.b - 2 * self.a * u)
+        if u is None or root is None:
+            return None
+        q = self.b - root if self.b < 0 else self.b + root
+        return q / (2 * u) if word == FAST else self.a / q
+
+
+def rational_root(square: Fraction) -> Fraction | None:
+    """Return the square root of a fraction that is not negative, if it is rational."""
+    root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
+    return root if root * root == square else None

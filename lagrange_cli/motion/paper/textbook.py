@@ -1,0 +1,111 @@
+"""The elementary theory of the top on request: stability, steady precession, fast tops.
+
+With a = 2mgs/A (4,4) and b = C r0/A (4,5) all of it depends on a, b, the tilt and A/C alone, so
+that it needs no solution of the motion.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING
+
+from ...arithmetic.exact_cosine import U
+from ...arithmetic.numbers import R, absolute
+from ...arithmetic.values import Over
+from ...inputs.steady_rate import FAST, SLOW, SteadyRates, rational_root
+from ..gaps import State
+from ..quantity import key, keys_of
+from ..regime import Exact
+
+if TYPE_CHECKING:
+    from ...arithmetic.protocol import Arithmetic
+
+textbook_key = partial(key, "Steady precession and elementary theory")
+rate_key = partial(textbook_key, unit="rad/time")
+
+
+class Textbook(Over[R]):
+    """Numbers of the elementary theory of any start; None where there is no such number."""
+
+    def __init__(self, ar: Arithmetic[R], exact: Exact, start: State[R]) -> None:
+        self.ar, self.exact, self.steady = ar, exact, SteadyRates(exact.a, exact.b, exact.cosine)
+        self.a, self.b, self.cos = start.a, start.b, start.cos
+        with ar.working():
+            self.ratio = ar.convert(ratio_of(exact))
+
+    @textbook_key("λ", "C²r0²/(4Amgs), 1 where sleeping begins", equation="b²/2a")
+    def stability_factor(self) -> R | None:
+        """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
+        return self.b * self.b / (2 * self.a) if self.exact.a else None
+
+    @rate_key("r0 sleeping", "least r0 of a stable upright top", equation="λ = 1")
+    def r0_sleeping(self) -> R:
+        """The least total spin rate 2 sqrt(A mgs)/C of a stable upright top."""
+        return self.ratio * self.ar.sqrt(2 * self.a)
+
+    @rate_key("Ω slow", "slow steady precession", equation="ϑ'' = 0")
+    def steady_rate_slow(self) -> R | None:
+        """The root of smaller size of A cos(theta) Omega^2 - C r0 Omega + mgs = 0."""
+        return self._steady(SLOW)
+
+    @rate_key("Ω fast", "fast steady precession", equation="ϑ'' = 0")
+    def steady_rate_fast(self) -> R | None:
+        """The root of larger size; None at 90 degrees, where it is infinite."""
+        return self._steady(FAST)
+
+    def _steady(self, word: str) -> R | None:
+        if not self.steady.exists(word):
+            return None
+        return self.steady.rate(self.ar, self.a, self.b, self.cos, word)
+
+    @rate_key("r0 steady", "least r0 of steady precession", equation="Ω slow = Ω fast")
+    def r0_steady_min(self) -> R:
+        """The least total spin rate 2 sqrt(A mgs cos(theta))/C of a steady precession at the tilt.
+
+        It is 0 from 90 degrees on.
+        """
+        if self.exact.cosine.sign(U) < 0:
+            return 0 * self.a
+        return self.ratio * self.ar.sqrt(2 * self.a * self.cos)
+
+    @rate_key("ψ' elementary", "mgs/(C r0), of a fast top", equation="a/2b")
+    def precession_rate_elementary(self) -> R | None:
+        """The precession rate mgs/(C r0) of a fast top; None if r0 = 0."""
+        return self.a / (2 * self.b) if self.exact.b else None
+
+    @textbook_key("T elementary", "2πA/(C|r0|), of a fast top", "time", "2π/|b|")
+    def T_nutation_elementary(self) -> R | None:
+        """The nutation period 2 pi A/(C |r0|) of a fast top; None if r0 = 0."""
+        return 2 * self.ar.pi / absolute(self.b) if self.exact.b else None
+
+
+TEXTBOOK = keys_of(Textbook)
+"""The keys of this module and how they are shown."""
+
+
+STEADY_KEYS = frozenset({"steady_rate_slow", "steady_rate_fast"})
+WITH_RATIO = frozenset({"r0_sleeping", "r0_steady_min"})
+"""The keys that A/C is a factor of."""
+
+
+def ratio_of(exact: Exact) -> Fraction:
+    """Return A/C."""
+    return Fraction(exact.top.A) / Fraction(exact.top.C)
+
+
+def textbook_fractions(exact: Exact) -> dict[str, Fraction]:
+    """Return the keys of this module that are known as fractions."""
+    a, b, u, ratio = exact.a, exact.b, exact.cosine.rational, ratio_of(exact)
+    steady, side = SteadyRates(a, b, exact.cosine), exact.cosine.sign(U)
+    sleeping = rational_root(2 * a)
+    least = Fraction(0) if side <= 0 or not a else None if u is None else rational_root(2 * a * u)
+    known = {
+        "stability_factor": b * b / (2 * a) if a else None,
+        "r0_sleeping": None if sleeping is None else ratio * sleeping,
+        "steady_rate_slow": steady.fraction(SLOW),
+        "steady_rate_fast": steady.fraction(FAST),
+        "r0_steady_min": None if least is None else ratio * least,
+        "precession_rate_elementary": a / (2 * b) if b else None,
+    }
+    return {name: value for name, value in known.items() if value is not None}
