@@ -13,7 +13,7 @@ from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
 from .input_keys import BODY, from_example, one_of_each, overridden, warn_of
 from .top import Top
-from .value import Value, as_value
+from .value import STEADY_WORDS, Value, as_value
 
 if TYPE_CHECKING:
     from .scene_file import SceneFile
@@ -49,7 +49,11 @@ class Given(Values):
         kept = {key: x for key, x in self.inputs.items() if key not in without}
         numbers = overridden(self.body, kept).items()
         try:
-            return Top(**{key: x if exact else checked_double(key, x) for key, x in numbers})
+            kept = {
+                key: x if exact or x in STEADY_WORDS else checked_double(key, x)
+                for key, x in numbers
+            }
+            return Top(**kept)
         except LagtopError as error:
             raise self.blame(_not_given(error, self.missing)) from None
 

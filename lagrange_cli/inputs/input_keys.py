@@ -48,7 +48,8 @@ phidot0 | φ'0 | spin rate at start
 theta0 | ϑ0 | tilt at the start
     | tilt of the axis from the upward vertical | 0 to 180 degrees | angle | 30
 thetadot0 | ϑ'0 | nutation rate at start | nutation rate at the start | | rad/time | 0
-psidot0 | ψ'0 | precession rate at start | precession rate at the start | | rad/time | 0
+psidot0 | ψ'0 | precession rate at start
+    | precession rate at the start; of one top also steady or steady-fast | | rad/time | 0
 """
 
 

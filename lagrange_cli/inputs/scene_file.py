@@ -12,7 +12,7 @@ from .files import reading, shown_path
 from .input_keys import TILT
 from .names import suggestion
 from .top import INPUTS
-from .value import Value, parse_value
+from .value import STEADY_WORDS, Value, parse_value
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
@@ -65,7 +65,8 @@ class SceneFile:
             value = parse_value(text, uncertain=True)
         except LagtopError as error:
             raise self.error(LagtopError(f"{key} {error}", key)) from None
-        if not value.unit and (value.std is None or key == TILT):
+        is_word = key == "psidot0" and value.number in STEADY_WORDS
+        if not value.unit and not is_word and (value.std is None or key == TILT):
             wrong = (
                 f"{key} must have a unit between quotes, or be a number without, got {quoted(text)}"
             )

@@ -8,18 +8,22 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.ball import Ball
+from ..arithmetic.balls import balls
 from ..arithmetic.exact_cosine import Cosine, Polynomial, U
-from ..arithmetic.numbers import R
+from ..arithmetic.numbers import DOUBLES, R
+from ..arithmetic.rounding import nearest_double, settled
+from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
+from ..errors import LagtopError
+from .value import STEADY_WORDS
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
-SLOW, FAST = "steady", "steady-fast"
-STEADY_WORDS = (SLOW, FAST)
-"""The words that stand for a rate of precession: the root of smaller and of larger size."""
+SLOW, FAST = STEADY_WORDS
 
 
 class SteadyRate(float):
@@ -72,6 +76,13 @@ class SteadyRates(Values):
         q = b - root if self.b < 0 else b + root
         return q / (2 * cos) if word == FAST else a / q
 
+    def in_balls(self, digits: int, word: str) -> Ball:
+        """Return a ball that holds a root that exists."""
+        ar = balls(digits)
+        with ar.working():
+            a, b = ar.convert(self.a), ar.convert(self.b)
+            return self.rate(ar, a, b, self.cosine.value(ar), word)
+
     def fraction(self, word: str) -> Fraction | None:
         """Return a root if it is rational; without torque the slow one is 0."""
         u = self.cosine.rational
@@ -84,6 +95,52 @@ class SteadyRates(Values):
             return None
         q = self.b - root if self.b < 0 else self.b + root
         return q / (2 * u) if word == FAST else self.a / q
+
+
+def steady_rate_of(top: Any, word: str) -> SteadyRate:
+    """Return the rate of steady precession of a top whose own precession rate is not used.
+
+    Raises LagtopError for a word that is unknown, and for a top that has no such rate.
+    """
+    if word not in STEADY_WORDS:
+        raise LagtopError(
+            f"psidot0 must be a real number, steady or steady-fast, got {quoted(word)}", "psidot0"
+        )
+    if top.thetadot0:
+        raise LagtopError(
+            f"thetadot0 must be 0 for psidot0 = {word}, got {float(top.thetadot0)}", "thetadot0"
+        )
+    rates = rates_of(top)
+    if top.pole:
+        raise LagtopError(
+            f"psidot0 must be 0 where the axis is vertical, got {word} (nothing precesses there)",
+            "psidot0",
+        )
+    if not rates.exists(word):
+        raise LagtopError(f"psidot0 must be a number, got {word}: {_why(top, rates)}", "psidot0")
+    found = settled(
+        "psidot0",
+        lambda digits: rates.in_balls(digits, word),
+        nearest_double("psidot0"),
+        exactly=lambda: rates.fraction(word),
+    )
+    assert found is not None
+    return SteadyRate(word, found.value)
+
+
+def rates_of(top: Any) -> SteadyRates:
+    """Return the rates of steady precession of a top."""
+    m, A, C, s, g, r0 = (Fraction(getattr(top, x)) for x in ("m", "A", "C", "s", "g", "r0"))
+    return SteadyRates(2 * m * g * s / A, C * r0 / A, top.cosine)
+
+
+def _why(top: Any, rates: SteadyRates) -> str:
+    """Return why a top has no such rate of steady precession."""
+    if rates.cosine.vanishes(U):
+        return f"at 90 degrees {'the fast rate is infinite' if rates.b else 'r0 must not be 0'}"
+    ratio = float(Fraction(top.A) / Fraction(top.C))
+    least = ratio * math.sqrt(2 * float(rates.a) * rates.cosine.value(DOUBLES))
+    return f"|r0| must be at least {least:.6g} at this tilt, got r0 = {float(top.r0)}"
 
 
 def rational_root(square: Fraction) -> Fraction | None:

@@ -43,7 +43,8 @@ class Top(Values):
     theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
     theta0_rad  or the same in radians, 0 to pi; not both
     thetadot0   nutation rate at t = 0
-    psidot0     precession rate at t = 0
+    psidot0     precession rate at t = 0; "steady" or "steady-fast" is the exact rate of smaller or
+                larger size at which the tilt stays constant, for thetadot0 = 0
 
     What A_cm and phidot0 stand for is a double, rounded once, unless a Fraction is among the inputs
     it comes from.  Raises LagtopError for a body or a start that
@@ -73,11 +74,13 @@ class Top(Values):
         r0: Number | None = None,
         theta0_deg: Number | None = None,
         thetadot0: Number | None = None,
-        psidot0: Number | None = None,
+        psidot0: Number | str | None = None,
         theta0_rad: Number | None = None,
         A_cm: Number | None = None,
         phidot0: Number | None = None,
     ) -> None:
+        word = psidot0 if isinstance(psidot0, str) else getattr(psidot0, "word", None)
+        psidot0 = 0.0 if word else psidot0
         values = m, A, C, s, g, r0, theta0_deg, thetadot0, psidot0, theta0_rad, A_cm, phidot0
         given = {
             name: _finite(name, value)
@@ -93,6 +96,12 @@ class Top(Values):
             inputs = as_solved(inputs)
         super().__init__(*map(inputs.get, self.fields))
         _check_ranges(self)
+        if word:
+            from .steady_rate import steady_rate_of  # for few tops only
+
+            if phidot0 is not None:
+                raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
+            super().__init__(**self.as_dict() | {"psidot0": steady_rate_of(self, word)})
         if missing:
             warn_of(missing, stacklevel=3)
 
@@ -142,6 +151,11 @@ class Top(Values):
         return Cosine(*(None if x is None else Fraction(x) for x in tilts))
 
     @property
+    def steady_word(self) -> str | None:
+        """The word that was given for psidot0, or None for a number."""
+        return getattr(self.psidot0, "word", None)
+
+    @property
     def is_released(self) -> bool:
         """Whether the top starts at rest in nutation and precession, the case of the paper."""
         return self.thetadot0 == 0 and self.psidot0 == 0
@@ -176,8 +190,9 @@ class Top(Values):
         else:
             words.append(f"--rad --theta0 {self.theta0_rad!r}")
         for name in ("thetadot0", "psidot0"):
-            if getattr(self, name):
-                words.append(f"--{name} {getattr(self, name)!r}")
+            value = getattr(self, name)
+            if word := getattr(value, "word", None) or (repr(value) if value else ""):
+                words.append(f"--{name} {word}")
         return " ".join(words)
 
 

@@ -27,11 +27,16 @@ _FORMS = (
 )
 
 
+STEADY_WORDS = ("steady", "steady-fast")
+"""Words in place of a precession rate: the rate of steady precession of smaller or larger size."""
+
+
 class Value(Values):
     """An input as it was given; nothing is converted yet."""
 
     number: Any
-    """A real number; in a sweep the `Points` of an input, in a search its `Span`."""
+    """A real number or one of `STEADY_WORDS`; in a sweep the `Points` of an input, in a search its
+    `Span`."""
     unit: str = ""
     std: Fraction | None = None
     """Standard uncertainty, in the same unit; None for a number that is certain."""
@@ -57,6 +62,8 @@ def parse_value(
     with the whole text in place of the number, and for an uncertainty that is none.
     """
     number, unit = split_unit(text)
+    if number in STEADY_WORDS and parse is parse_number:
+        return Value(number)
     try:
         if uncertain and not is_decimal(number) and re.search(r"[(±%]|\+/?-", number):
             return _uncertain(number, parse).replace(unit=unit)

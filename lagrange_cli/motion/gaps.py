@@ -89,11 +89,19 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
     """Return constants and start of one top in an arithmetic."""
     a, b, r0 = exact.a, exact.b, exact.r0
     tilt, u = exact.cosine.tilt(ar), exact.cosine.rational
+    psi_rate = exact.psi_rate
     if u is None:
         cos_half, sin_half = tilt.cos_half, tilt.sin_half
         below, cos, above = 2 * cos_half * cos_half, tilt.cos, 2 * sin_half * sin_half
     else:
         below, cos, above = ar.convert(1 + u), ar.convert(u), ar.convert(1 - u)
+    if psi_rate is None:
+        from ..inputs.steady_rate import rates_of  # start-up: for few tops
+
+        rates, word = rates_of(exact.top), str(exact.top.steady_word)
+        rate = rates.rate(ar, ar.convert(a), ar.convert(b), cos, word)
+    else:
+        rate = ar.convert(psi_rate)
     return State(
         a=ar.convert(a),
         b=ar.convert(b),
@@ -108,7 +116,7 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
         below=below,
         above=above,
         theta_rate=ar.convert(exact.theta_rate),
-        psi_rate=ar.convert(exact.psi_rate),
+        psi_rate=rate,
     )
 
 

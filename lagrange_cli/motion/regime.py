@@ -98,19 +98,20 @@ class Exact(Values):
     """C r0/A (4,5)."""
     r0: Fraction
     theta_rate: Fraction
-    psi_rate: Fraction
+    psi_rate: Any
+    """A fraction; None for a rate of steady precession that is irrational."""
     cosine: Cosine
     facts: Facts
 
     @property
     def energy(self) -> Polynomial:
         """theta'^2 + psi'^2 sin^2(theta0) by u0; alpha less a u0 (4,4)."""
-        return self.theta_rate**2 + self.psi_rate**2 * (1 - U * U)
+        return self.momentum * Polynomial(self.psi_rate) + self.theta_rate**2
 
     @property
     def momentum(self) -> Polynomial:
         """psi' sin^2(theta0) by u0; beta less b u0 (4,5)."""
-        return self.psi_rate * (1 - U * U)
+        return Polynomial(self.psi_rate, 0, -self.psi_rate)
 
     @property
     def alpha(self) -> Polynomial:
@@ -138,9 +139,12 @@ def exact(top: Top) -> Exact:
     Raises LagtopError for a start that describes no motion: precession on the vertical.
     """
     check_type("top", top, Top)
-    m, A, C, s, g, r0, theta_rate, psi_rate = (
-        Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.thetadot0, top.psidot0)
+    m, A, C, s, g, r0, theta_rate = (
+        Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g, top.r0, top.thetadot0)
     )
+    if top.steady_word:
+        return _exact_steady(top, r0)
+    psi_rate = Fraction(top.psidot0)
     if top.pole and psi_rate:
         raise LagtopError(
             f"psidot0 must be 0 where the axis is vertical, got {float(psi_rate)} "
@@ -154,6 +158,21 @@ def exact(top: Top) -> Exact:
     cosine = Cosine(degrees, radians)
     facts = _facts(top.pole, a, b, (theta_rate, psi_rate), cosine)
     return Exact(top, a, b, r0, theta_rate, psi_rate, cosine, facts)
+
+
+def _exact_steady(top: Top, r0: Fraction) -> Exact:
+    """Return a top in steady precession, whose rate is the root of a quadratic equation."""
+    from ..inputs.steady_rate import rates_of  # start-up: for few tops
+
+    rates = rates_of(top)
+    a, b, cosine = rates.a, rates.b, rates.cosine
+    psi_rate = rates.fraction(str(top.steady_word))
+    if psi_rate is not None:
+        facts = _facts(top.pole, a, b, (Fraction(0), psi_rate), cosine)
+    else:
+        regime = Regime.STEADY if a else Regime.TORQUE_FREE
+        facts = Facts(regime, at_rest=False, steady=True, free=not a, spins=bool(b))
+    return Exact(top, a, b, r0, Fraction(0), psi_rate, cosine, facts)
 
 
 def _facts(

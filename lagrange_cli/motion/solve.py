@@ -221,6 +221,8 @@ def record_in_range(
                 beyond.append(error)
     values = {name: None if number is None else number.value for name, number in found.items()}
     values["regime"] = motion.regime.value
+    if motion.top.steady_word:
+        values["psidot0"] = motion.top.steady_word
     if "path" in wanted:
         values["path"] = motion.path
     if "remark" in wanted:
@@ -233,7 +235,7 @@ def record_in_range(
 
 
 def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
-    """Return the inputs as they are printed."""
+    """Return the inputs as they are printed; a word is None."""
 
     def shown(name: str, value: Any) -> Settled | None:
         rounding = rounding_of(name, digits)
@@ -247,4 +249,5 @@ def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled
         )
 
     given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))
-    return {name: shown(name, value) for name, value in given.items()}
+    words = {"psidot0": None} if top.steady_word else {}
+    return {name: shown(name, value) for name, value in given.items()} | words

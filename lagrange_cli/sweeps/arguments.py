@@ -35,6 +35,8 @@ class Together:
         one_of_each(name for name in inputs if not name.startswith("theta0_"))
         if missing := from_example(inputs):
             warn_of(missing, stacklevel=4)
+        if word := getattr(inputs.get("psidot0"), "word", None):
+            raise LagtopError(f"psidot0 must be a number for many tops, got {word}", "psidot0")
         read = read_arguments(inputs)
         self.stds, self._given, self._system = read.stds, read.arrays, read.system
         example = Top().inputs() | (read.system.worked_example() if read.system else {})

@@ -216,6 +216,8 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
     numbers = {
         name: x.bounds()[0] if isinstance(x, Points) else x for name, x in found.inputs.items()
     }
+    if isinstance(word := numbers.get("psidot0"), str):
+        raise LagtopError(f"psidot0 must be a number for many tops, got {word}", "psidot0")
     top = found.replace(inputs=numbers).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})

@@ -24,11 +24,12 @@ def known_column(
     """
     if method == "r":
         return exact.r0
-    if method in {"energy", "vertical_momentum"}:
-        return _conserved(exact, method)
-    known = _of_some_tops(exact, method)
-    if known is not None:
-        return known
+    if exact.psi_rate is not None:
+        if method in {"energy", "vertical_momentum"}:
+            return _conserved(exact, method)
+        known = _of_some_tops(exact, method)
+        if known is not None:
+            return known
     if exact.facts.steady:
         return _of_steady(exact, method, t, radians=radians, wrap=wrap)
     if exact.facts.free and exact.facts.plane:
@@ -95,7 +96,7 @@ def _of_steady(
         known = rate is not None and (not rate or (radians and not wrap))
         return rate * t if rate is not None and known else None
     if method in {"p", "q"}:
-        stays = not (t and exact.psi_rate) or known_fraction(exact, "mean_spin_rate") == 0
+        stays = not (t and exact.psi_rate != 0) or known_fraction(exact, "mean_spin_rate") == 0
         return _at_start(exact, method, radians=radians) if stays else None
     if method in {"phi_rate", "psi_rate"}:
         return known_fraction(exact, _MEANS[method])
@@ -113,8 +114,8 @@ def _at_start(exact: Exact, method: str, *, radians: bool) -> Fraction | None:
         return exact.theta_rate
     if method in {"q", "moment"}:
         factor = exact.psi_rate if method == "q" else Fraction(exact.top.A) * exact.a / 2
-        sine = _sine(cosine) if factor else Fraction(0)
-        return None if sine is None else sine * factor
+        sine = Fraction(0) if factor == 0 else _sine(cosine)
+        return None if sine is None or factor is None else sine * factor
     if method in {"phi_rate", "psi_rate"}:
         key = {"phi_rate": "spin_rate_start", "psi_rate": "precession_rate_start"}[method]
         pole, half = exact.facts.pole, exact.b / 2

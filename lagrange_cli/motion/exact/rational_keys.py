@@ -50,7 +50,11 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
     keys = {"a": exact.a, "b": exact.b}
     facts = exact.facts
     keys |= _tilt_keys(exact)
-    spin = exact.r0 if facts.pole else exact.cosine.fraction(exact.r0 - exact.psi_rate * U)
+    if exact.psi_rate is None:
+        # without torque this is the fast rate, with psi' cos(theta0) = b
+        rates = dict.fromkeys(("mean_spin_rate", "spin_rate_start"), exact.r0 - exact.b)
+        return keys | (rates if facts.free else {})
+    spin = exact.cosine.fraction(exact.r0 - (0 if facts.pole else exact.psi_rate) * U)
     if facts.steady or not facts.pole:  # on the vertical neither rate has a meaning of its own
         keys["precession_rate_start"] = exact.psi_rate
         keys |= {} if spin is None else {"spin_rate_start": spin}
@@ -114,6 +118,8 @@ def rational_root(
 
     Only this root is in its enclosure, so that a fraction in there that is a root is this one.
     """
+    if exact.psi_rate is None:
+        return None
     roots = {root: enclosure(root) for root in ("u1", "u2", "u3")}
     ball = roots.pop(name)
     others = [other for other in roots.values() if other is not None]

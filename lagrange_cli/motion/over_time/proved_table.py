@@ -111,7 +111,8 @@ class ProvedTable:
         self.chosen = chosen_columns(columns)
         self.header = headings(columns, radians=radians)
         scene = motion.exact
-        rates = (scene.b, scene.r0, scene.theta_rate, scene.psi_rate)
+        psi_rate = Fraction(scene.top.psidot0) if scene.psi_rate is None else scene.psi_rate
+        rates = (scene.b, scene.r0, scene.theta_rate, psi_rate)
         self._speed = sum(map(abs, rates)) + scene.a + 1
         self._poses: dict[int, Callable[[Ball], Pose[Ball]]] = {}
         self._constants: dict[int, ColumnConstants[Ball]] = {}

@@ -48,6 +48,10 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
 
 def _constants(exact: Exact) -> dict[str, Fraction]:
     """Return what is rational of the constants of section 4."""
+    steady = exact.facts.steady
+    keys = {"f_slope_u1": Fraction(0)} if steady or exact.facts.regime == "separatrix" else {}
+    if exact.psi_rate is None:
+        return keys
     alpha, beta = exact.alpha, exact.beta
     half, whole = Fraction(exact.top.A) / 2, Fraction(exact.top.A)
     polynomials: dict[str, Polynomial] = {
@@ -58,11 +62,8 @@ def _constants(exact: Exact) -> dict[str, Fraction]:
         "f_upright": -1 * (beta - exact.b) * (beta - exact.b),
         "f_hanging": -1 * (beta + exact.b) * (beta + exact.b),
     }
-    if exact.facts.steady:
+    if steady:
         wide = exact.energy + exact.b * exact.b - 2 * exact.a * U
         polynomials |= {"discriminant": wide * wide, "u2_criterion": U * (wide + exact.a * U)}
     values = {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
-    keys = {name: value for name, value in values.items() if value is not None}
-    if exact.facts.steady or exact.facts.regime == "separatrix":
-        keys["f_slope_u1"] = Fraction(0)
-    return keys
+    return keys | {name: value for name, value in values.items() if value is not None}

@@ -34,12 +34,12 @@ class Textbook(Over[R]):
         with ar.working():
             self.ratio = ar.convert(ratio_of(exact))
 
-    @textbook_key("λ", "C²r0²/(4Amgs), 1 where sleeping begins", equation="b²/2a")
+    @textbook_key("λ", "stability factor C²r0²/(4Amgs)", equation="b²/2a")
     def stability_factor(self) -> R | None:
         """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
         return self.b * self.b / (2 * self.a) if self.exact.a else None
 
-    @rate_key("r0 sleeping", "least r0 of a stable upright top", equation="λ = 1")
+    @rate_key("r0 sleeping", "least r0 of a stable upright top", equation="2√(Amgs)/C")
     def r0_sleeping(self) -> R:
         """The least total spin rate 2 sqrt(A mgs)/C of a stable upright top."""
         return self.ratio * self.ar.sqrt(2 * self.a)
@@ -59,7 +59,7 @@ class Textbook(Over[R]):
             return None
         return self.steady.rate(self.ar, self.a, self.b, self.cos, word)
 
-    @rate_key("r0 steady", "least r0 of steady precession", equation="Ω slow = Ω fast")
+    @rate_key("r0 steady", "least r0 of steady precession", equation="2√(Amgs u0)/C")
     def r0_steady_min(self) -> R:
         """The least total spin rate 2 sqrt(A mgs cos(theta))/C of a steady precession at the tilt.
 
@@ -69,12 +69,12 @@ class Textbook(Over[R]):
             return 0 * self.a
         return self.ratio * self.ar.sqrt(2 * self.a * self.cos)
 
-    @rate_key("ψ' elementary", "mgs/(C r0), of a fast top", equation="a/2b")
+    @rate_key("ψ' elementary", "precession of a fast top", equation="mgs/(C r0)")
     def precession_rate_elementary(self) -> R | None:
         """The precession rate mgs/(C r0) of a fast top; None if r0 = 0."""
         return self.a / (2 * self.b) if self.exact.b else None
 
-    @textbook_key("T elementary", "2πA/(C|r0|), of a fast top", "time", "2π/|b|")
+    @textbook_key("T elementary", "nutation of a fast top", "time", "2πA/(C r0)")
     def T_nutation_elementary(self) -> R | None:
         """The nutation period 2 pi A/(C |r0|) of a fast top; None if r0 = 0."""
         return 2 * self.ar.pi / absolute(self.b) if self.exact.b else None

@@ -14,6 +14,7 @@ from ...arithmetic.ball import Ball, TooFewDigitsError
 from ...arithmetic.balls import balls
 from ...arithmetic.duals import Dual, Duals, independent
 from ...arithmetic.values import Values
+from ...inputs.steady_rate import rates_of
 from ..any_start import gaps_from_start, largest_root
 from ..gaps import Gaps, State, are_told_apart, state
 from ..paper.textbook import STEADY_KEYS, WITH_RATIO, Textbook
@@ -73,9 +74,14 @@ def smallness(near: Neighbourhood) -> int:
 
 
 def broken_by(exact: Exact) -> Iterable[str]:
-    """Yield the parameters along which a degenerate fact of the top does not hold."""
+    """Yield the parameters along which a degenerate fact of the top does not hold.
+
+    If the precession rate follows the other inputs, the motion stays steady along these.
+    """
     facts = exact.facts
-    if facts.regime is Regime.SEPARATRIX:
+    if exact.top.steady_word:
+        yield "theta_rate"
+    elif facts.regime is Regime.SEPARATRIX:
         yield from ("a", "b", "tilt", "theta_rate", "psi_rate")
     elif facts.steady:
         vertical, still = bool(facts.pole), facts.free and facts.at_rest
@@ -104,6 +110,13 @@ def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
         """Return a function of the tilt by its value and slope."""
         return Dual(value) + tilt * Dual(slope * arc)
 
+    cos = turned(plain.cos, -plain.sin)
+    if word := exact.top.steady_word:
+        rates = rates_of(exact.top)
+        double = exact.cosine.vanishes(rates.discriminant)
+        none = [ar.plain.nan] * len(PARAMETERS)
+        found = Dual(plain.psi_rate, none) if double else rates.rate(ar, a, b, cos, word)
+        psi_rate = _with_value(found, plain.psi_rate)
     return State(
         a=a,
         b=b,
@@ -112,7 +125,7 @@ def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
         spin_drift=_with_value(r0 - b / 2, plain.spin_drift),
         pole_drift=_with_value(r0 - b, plain.pole_drift),
         sin=turned(plain.sin, plain.cos),
-        cos=turned(plain.cos, -plain.sin),
+        cos=cos,
         sin_half=turned(plain.sin_half, plain.cos_half / 2),
         cos_half=turned(plain.cos_half, -plain.sin_half / 2),
         below=turned(plain.below, -plain.sin),
@@ -183,6 +196,8 @@ def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
         "thetadot0": {"theta_rate": one},
         "psidot0": {"psi_rate": one},
     }
+    if top.steady_word:
+        del derivatives["psidot0"]
     return {name: {by: x for by, x in row.items() if x} for name, row in derivatives.items()}
 
 

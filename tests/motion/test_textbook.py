@@ -1,0 +1,240 @@
+"""Steady precession and elementary theory: keys on request, and rates of steady precession.
+
+The judge is mpmath: roots of the quadratic in m, A, C ... and its own derivatives of them.
+"""
+
+from __future__ import annotations
+
+import math
+import pickle
+import random
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, cast
+
+import mpmath
+import pytest
+from scenes import EPS, UNIT
+
+from lagrange_cli import (
+    LagtopError,
+    Regime,
+    Top,
+    angle_sensitivities,
+    read_scene,
+    sensitivities,
+    solve,
+    sweep,
+)
+from lagrange_cli.motion.over_time.columns import COLUMNS
+from lagrange_cli.motion.over_time.proved_table import ProvedTable
+from lagrange_cli.motion.paper.textbook import TEXTBOOK
+from lagrange_cli.motion.record import all_keys
+
+DIGITS = 50
+BODY = ("m", "A", "C", "s", "g", "r0", "theta0_deg")
+WORDS = {"steady": "steady_rate_slow", "steady-fast": "steady_rate_fast"}
+
+
+def judged(key: str, *inputs: Any) -> Any:
+    """Return a key from the inputs, in mpmath's precision; NaN where there is none."""
+    m, A, C, s, g, r0, tilt = map(mpmath.mpf, inputs)
+    mgs, cos = m * g * s, mpmath.cos(mpmath.radians(tilt))
+    if key.startswith("steady_rate"):
+        square = (C * r0) ** 2 - 4 * A * mgs * cos
+        if square < 0:
+            return mpmath.nan
+        roots = [(C * r0 + sign * mpmath.sqrt(square)) / (2 * A * cos) for sign in (1, -1)]
+        return sorted(roots, key=abs)[key.endswith("fast")]
+    return {
+        "stability_factor": lambda: C**2 * r0**2 / (4 * A * mgs),
+        "r0_sleeping": lambda: 2 * mpmath.sqrt(A * mgs) / C,
+        "r0_steady_min": lambda: 2 * mpmath.sqrt(A * mgs * max(cos, 0)) / C,
+        "precession_rate_elementary": lambda: mgs / (C * r0),
+        "T_nutation_elementary": lambda: 2 * mpmath.pi * A / (C * abs(r0)),
+    }[key]()
+
+
+def random_inputs(rng: random.Random) -> dict[str, float]:
+    A = rng.uniform(0.5, 4)
+    return {
+        **{"m": rng.uniform(0.1, 5), "A": A, "C": rng.uniform(0.1, 2) * A, "s": rng.uniform(0, 2)},
+        **{"g": rng.uniform(0.1, 10), "theta0_deg": rng.uniform(1, 179)},
+        "r0": rng.choice([-1, 1]) * 10 ** rng.uniform(-1, 3),
+    }
+
+
+def test_every_key_is_the_nearest_double_and_has_50_digits() -> None:
+    rng = random.Random(71)
+    some = dict.fromkeys(TEXTBOOK, 0)
+    with mpmath.workdps(120):
+        for _ in range(60):
+            inputs = random_inputs(rng)
+            motion = solve(Top(**inputs))
+            printed = motion.record(digits=DIGITS, keys=list(TEXTBOOK))
+            for key in TEXTBOOK:
+                exact = judged(key, *(inputs[x] for x in BODY))
+                if getattr(motion, key) is None:
+                    assert mpmath.isnan(exact), (key, inputs)
+                    continue
+                assert getattr(motion, key) == float(exact), (key, inputs)
+                assert abs(mpmath.mpf(printed[key]) - exact) <= 1e-49 * abs(exact), (key, inputs)
+                some[key] += 1
+    assert min(some.values()) > 25
+
+
+def test_derivatives_are_those_of_mpmath() -> None:
+    rng = random.Random(28)
+    compared = 0
+    with mpmath.workdps(60):
+        for _ in range(8):
+            inputs = random_inputs(rng)
+            found = sensitivities(Top(**inputs), list(TEXTBOOK)).derivatives
+            for key, row in found.items():
+                for i, name in enumerate(BODY):
+                    order = tuple(int(j == i) for j in range(len(BODY)))
+                    values = [mpmath.mpf(inputs[x]) for x in BODY]
+                    slope = mpmath.diff(lambda *x, key=key: judged(key, *x), values, order)
+                    assert row[name] == pytest.approx(float(slope), rel=4 * EPS, abs=1e-30)
+                    compared += 1
+    assert compared > 300
+
+
+@pytest.mark.parametrize(
+    ("inputs", "wanted"),
+    [
+        ({"r0": 2, "theta0_deg": 90}, {"steady_rate_slow": 0.5, "steady_rate_fast": None}),
+        ({"r0": 2, "theta0_deg": 90}, {"r0_steady_min": 0, "r0_sleeping": 2}),
+        ({"r0": 0, "theta0_deg": 90}, {"steady_rate_slow": None, "steady_rate_fast": None}),
+        ({"r0": 0, "theta0_deg": 120, "A": 2}, {"steady_rate_slow": 1, "steady_rate_fast": -1}),
+        ({"r0": 0, "theta0_deg": 60}, {"steady_rate_slow": None, "r0_steady_min": math.sqrt(2)}),
+        ({"r0": 0}, {"stability_factor": 0, "precession_rate_elementary": None}),
+        ({"r0": 0}, {"T_nutation_elementary": None, "r0_sleeping": 2}),
+        ({"r0": 3, "g": 0}, {"stability_factor": None, "r0_sleeping": 0, "steady_rate_slow": 0}),
+        ({"r0": 3, "g": 0, "theta0_deg": 60}, {"steady_rate_fast": 6, "r0_steady_min": 0}),
+        ({"r0": 2, "theta0_deg": 0}, {"steady_rate_slow": 1, "steady_rate_fast": 1}),
+        ({"r0": 2, "theta0_deg": 150}, {"r0_steady_min": 0, "stability_factor": 1}),
+    ],
+)
+def test_exact_values_of_degenerate_tops(inputs: Any, wanted: dict[str, float | None]) -> None:
+    motion = solve(Top(**{**UNIT, "theta0_deg": 30, **inputs}))
+    assert {key: getattr(motion, key) for key in wanted} == wanted
+
+
+def test_next_to_a_double_root_both_rates_are_told_apart() -> None:
+    """One ulp above the least spin they differ in the eighth digit; one below there are none."""
+    least = solve(Top(**UNIT, r0=5, theta0_deg=30)).r0_steady_min
+    above, below = (
+        solve(Top(**UNIT, r0=math.nextafter(least, up), theta0_deg=30)) for up in (9, 0)
+    )
+    assert 1e-8 < above.steady_rate_fast / above.steady_rate_slow - 1 < 1e-7
+    assert below.steady_rate_slow is below.steady_rate_fast is None
+
+
+def test_a_derivative_next_to_a_root_that_is_0_does_not_exist() -> None:
+    double = sensitivities(Top(**UNIT, r0=2, theta0_deg=0), ["steady_rate_slow"])
+    assert all(math.isnan(x) for x in double.derivatives["steady_rate_slow"].values())
+    level = sensitivities(Top(**UNIT, r0=2, theta0_deg=90), ["r0_steady_min", "stability_factor"])
+    assert math.isnan(level.derivatives["r0_steady_min"]["theta0_deg"])
+    assert set(level.reasons) == {"r0_steady_min"}
+
+
+def test_sweeps_have_the_keys() -> None:
+    found = sweep(r0=[40, 60], keys=["stability_factor", "steady_rate_fast"])
+    alone = [solve(Top(r0=r0)) for r0 in (40, 60)]
+    assert found["stability_factor"].tolist() == [x.stability_factor for x in alone]
+    assert math.isnan(found["steady_rate_fast"][0])
+    assert found["steady_rate_fast"][1] == alone[1].steady_rate_fast
+
+
+# Words for psidot0
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {"r0": 60.0, "theta0_deg": 30.0},
+        {"r0": -60.0, "theta0_rad": 0.5},
+        {"r0": 3, "theta0_deg": 120, **UNIT},
+        {"r0": 0.5, "theta0_deg": 100, **UNIT},
+        {"r0": 5, "theta0_deg": 40, **UNIT, "g": 0},
+    ],
+)
+def test_the_tilt_of_a_steady_precession_stays_exactly(inputs: Any, word: str) -> None:
+    top = Top(**inputs, psidot0=word)
+    motion = solve(top)
+    rate = getattr(solve(Top(**inputs)), WORDS[word])
+    assert motion.regime is (Regime.TORQUE_FREE if inputs.get("g") == 0 else Regime.STEADY)
+    assert (motion.mean_precession_rate, float(top.psidot0)) == (rate, rate)
+    assert motion.theta_min_deg == motion.theta_max_deg
+    record = motion.record(keys=all_keys(), digits=30, radii=True)
+    assert record["psidot0"] == word
+    assert len(record["mean_precession_rate"].replace("-", "").replace(".", "").lstrip("0")) <= 30
+    table = ProvedTable(motion, list(COLUMNS), DIGITS, radians=True)
+    late, start = ([x.value for x in table.row(Fraction(t))] for t in (10**6, 0))
+    same = [i for i, name in enumerate(table.header) if name in {"theta_rad", "u", "energy", "Lz"}]
+    assert [late[i] for i in same] == [start[i] for i in same]
+
+
+def test_the_steady_motion_is_that_of_the_exact_root() -> None:
+    """The nearest double is off by half a unit, and that top nutates."""
+    word = solve(Top(r0=60, psidot0="steady"))
+    double = solve(Top(r0=60, psidot0=float(word.top.psidot0)))
+    assert (word.regime, double.regime) == (Regime.STEADY, Regime.REGULAR)
+    assert word.k == 0
+    assert 0 < double.k < 1e-7
+
+
+def test_derivatives_follow_the_steady_motions() -> None:
+    """Slopes between steady motions, by differences; the tilt stays what it is."""
+    top, step = Top(r0=60, theta0_deg=40, psidot0="steady-fast"), 1e-5
+    found = sensitivities(top)
+    for name in ("r0", "theta0_deg", "A"):
+        ends = [top.replace(**{name: getattr(top, name) + x}) for x in (step, -step)]
+        assert {end.steady_word for end in ends} == {"steady-fast"}
+        for key in ("mean_precession_rate", "mean_spin_rate", "T_nutation", "u3", "theta_max_deg"):
+            one, other = (getattr(solve(end), key) for end in ends)
+            difference = (one - other) / (2 * step)
+            assert found.derivatives[key][name] == pytest.approx(difference, rel=1e-6, abs=1e-8)
+        angles = angle_sensitivities(top, [3.0], [name])
+        for mine, one, other in zip(
+            angles[2:], *(solve(end).angles([3.0]) for end in ends), strict=True
+        ):
+            assert mine[0, 0] == pytest.approx((one - other)[0] / (2 * step), rel=1e-6, abs=1e-7)
+    assert "psidot0" not in found.inputs
+
+
+def test_the_word_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "steady.toml"
+    path.write_text('r0 = 60\npsidot0 = "steady"\n')
+    top = read_scene(path)
+    assert top == pickle.loads(pickle.dumps(top))
+    for same in (top, pickle.loads(pickle.dumps(top)), Top(r0=60, psidot0=top.psidot0)):
+        assert same.steady_word == "steady"
+        assert "--psidot0 steady" in same.options()
+    assert top.replace(r0=70).psidot0 < top.psidot0
+    assert solve(top).record()["psidot0"] == "steady"
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        ({"r0": 50}, r"psidot0 .* steady: \|r0\| must be at least 52.5611 at this tilt, got .* 50"),
+        ({"r0": 60, "thetadot0": 1}, "thetadot0 must be 0 for psidot0 = steady, got 1.0"),
+        ({"r0": 60, "theta0_deg": 180}, "psidot0 must be 0 where the axis is vertical, got steady"),
+        ({"r0": 0, "theta0_deg": 90}, "psidot0 .* got steady: at 90 degrees r0 must not be 0"),
+        ({"psidot0": "steady-fast", "theta0_deg": 90}, "at 90 degrees the fast rate is infinite"),
+        ({"psidot0": "fast"}, "psidot0 must be a real number, steady or steady-fast, got 'fast'"),
+        ({"r0": "steady"}, "r0 must be a real number, got 'steady'"),
+        ({"phidot0": 3}, "psidot0 = steady needs r0 in place of phidot0"),
+    ],
+)
+def test_words_that_fit_no_motion_are_refused(inputs: Any, message: str) -> None:
+    with pytest.raises(LagtopError, match=message):
+        Top(**{"psidot0": "steady", **inputs})
+
+
+def test_many_tops_need_a_number() -> None:
+    with pytest.raises(LagtopError, match="psidot0 must be a number for many tops, got steady"):
+        sweep(r0=[50, 60], psidot0=cast(float, Top(r0=60, psidot0="steady").psidot0))
