@@ -20,7 +20,7 @@ class Requested(Motion):
 
     def requested(self) -> dict[str, arb | None]:
         """Return every key on request."""
-        found: dict[str, arb | None] = self._constants()
+        found: dict[str, arb | None] = self._constants() | self._textbook()
         nutates = not (self.facts.steady or self.facts.separatrix)
         if nutates:
             found |= self._grown() | self._quarters()
@@ -47,6 +47,30 @@ class Requested(Motion):
             "u2_criterion": None if self.facts.vertical else self._criterion(),
             "spin_share": ball(1 - self.C / (2 * self.A)),
         }
+
+    def _textbook(self) -> dict[str, arb | None]:
+        """Return the keys of elementary theory; steady rates by the quadratic formula as it is."""
+        scene, ratio = self.scene, ball(self.A / self.C)
+        a, b = ball(scene.a), ball(scene.b)
+        level, cosine = scene.vanishes(Fraction(0), Fraction(1)), self.u0
+        hangs = not level and _is_negative(cosine)
+        least = arb(0) if level or hangs else ratio * (2 * a * cosine).sqrt()
+        found: dict[str, arb | None] = {
+            "stability_factor": b**2 / (2 * a) if scene.a else None,
+            "r0_sleeping": ratio * (2 * a).sqrt(),
+            "r0_steady_min": least,
+            "precession_rate_elementary": a / (2 * b) if scene.b else None,
+            "T_nutation_elementary": 2 * arb.pi() / abs(b) if scene.b else None,
+        }
+        if level:
+            return found | {"steady_rate_slow": found["precession_rate_elementary"]}
+        double = scene.vanishes(scene.b**2, -2 * scene.a)
+        square = arb(0) if double else b**2 - 2 * a * cosine
+        if not double and _is_negative(square):
+            return found
+        root = square.sqrt() if scene.b >= 0 else -square.sqrt()
+        slow = (b - root) / (2 * cosine) if scene.a else arb(0)
+        return found | {"steady_rate_slow": slow, "steady_rate_fast": (b + root) / (2 * cosine)}
 
     def _criterion(self) -> arb:
         """Return a u2 u3 by the sum of the roots."""
@@ -122,3 +146,10 @@ class Requested(Motion):
             "comodular_angle_deg": in_degrees(arb.atan2(m1.sqrt(), m.sqrt())),
             "E_amplitude": acb.elliptic_e_inc(acb(amplitude), acb(m1)).real,
         }
+
+
+def _is_negative(x: arb) -> bool:
+    """Return the sign of a ball that is not 0.  Raises Undecided where it holds 0."""
+    if x.contains(0):
+        raise Undecided
+    return bool(x < 0)
