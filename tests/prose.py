@@ -39,7 +39,7 @@ VERBS = frozenset(
 """Imperatives that a function's docstring may begin with; further plain ones are welcome."""
 
 NOUN_DECORATORS = {"property", "cached_property", "quantity", "key", "setter"}
-NOUN_DECORATORS |= {"constant_key", "angle_key", "rate_key", "step_key"}
+NOUN_DECORATORS |= {"constant_key", "angle_key", "rate_key", "step_key", "elementary_key"}
 HELP_DECORATORS = {"command", "group"}
 
 

@@ -21,8 +21,8 @@ from ..regime import Exact
 if TYPE_CHECKING:
     from ...arithmetic.protocol import Arithmetic
 
-textbook_key = partial(key, "Steady precession and elementary theory")
-rate_key = partial(textbook_key, unit="rad/time")
+elementary_key = partial(key, "Steady precession and elementary theory")
+rate_key = partial(elementary_key, unit="rad/time")
 
 
 class Textbook(Over[R]):
@@ -34,7 +34,7 @@ class Textbook(Over[R]):
         with ar.working():
             self.ratio = ar.convert(ratio_of(exact))
 
-    @textbook_key("λ", "stability factor C²r0²/(4Amgs)", equation="b²/2a")
+    @elementary_key("λ", "stability factor C²r0²/(4Amgs)", equation="b²/2a")
     def stability_factor(self) -> R | None:
         """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
         return self.b * self.b / (2 * self.a) if self.exact.a else None
@@ -74,7 +74,7 @@ class Textbook(Over[R]):
         """The precession rate mgs/(C r0) of a fast top; None if r0 = 0."""
         return self.a / (2 * self.b) if self.exact.b else None
 
-    @textbook_key("T elementary", "nutation of a fast top", "time", "2πA/(C r0)")
+    @elementary_key("T elementary", "nutation of a fast top", "time", "2πA/(C r0)")
     def T_nutation_elementary(self) -> R | None:
         """The nutation period 2 pi A/(C |r0|) of a fast top; None if r0 = 0."""
         return 2 * self.ar.pi / absolute(self.b) if self.exact.b else None
