@@ -247,10 +247,13 @@ def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, 
 def plain_name(name: str) -> tuple[str, str | None]:
     """Return a name in small letters and digits only, and its unit.
 
-    An angle may have its unit at the end of its name, as in `theta_deg`.
+    An angle may have its unit at the end of its name, as in `theta_deg`.  Of the path of a message
+    in ROS the last two parts count, as in `/imu/orientation/x`.
     """
     text, unit = name_and_unit(name)
     text = text.lower()
+    if text.startswith("/"):
+        text = "/".join(text.split("/")[-2:])
     match = re.fullmatch(r"(.+?)[\s_.]*(deg|rad)(?:rees|ians)?", text)
     if not unit and match and not match[2].startswith(match[1]):
         text, unit = match[1], match[2]

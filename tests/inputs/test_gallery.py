@@ -1,0 +1,86 @@
+"""The files in sample_inputs/files, as other programs write them, read by every command that may.
+
+Each shows the worked example at 26 times, rounded as its program rounds, or has tops.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, Lagtop
+
+FILES = ROOT / "sample_inputs" / "files"
+TOPS = {
+    "tops-excel-german.csv": [(477.5, 30.0), (954.9, 30.0), (477.5, 12.5)],
+    "tops-pandas.csv": [
+        (50 * 30 / math.pi, 30.0),
+        (100 * 30 / math.pi, 30.0),
+        (1500 / math.pi, 12.5),
+    ],
+}
+"""Files of tops, with the spin in turns a minute and the tilt of each."""
+COLUMNS = {"matlab.txt": "t,theta,psi,phi"}
+"""The columns of files without headings."""
+RUNS = sorted({x.name for x in FILES.iterdir()} - TOPS.keys())
+ROUNDED = 2e-4
+"""Radians that two decimals of degrees in three angles may be off."""
+TIMES = [i / 50 for i in range(26)]
+A, B = 2 * 1587 * 981 * 4 / 39032, 17458 * 50 / 39032
+"""a = 2mgs/A and b = C r0/A of the worked example."""
+
+
+def words(path: Path) -> list[str]:
+    """Return a file as an argument, with the names of its columns if it has no headings."""
+    name = path.name.removesuffix(".gz")
+    return [str(path), *(["--columns", COLUMNS[name]] if name in COLUMNS else [])]
+
+
+def test_every_grammar_has_a_file() -> None:
+    assert len(RUNS) == 12
+    assert {x.name for x in FILES.iterdir()} == {*RUNS, *TOPS}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_compare_reads_it(name: str, tmp_path: Path, lagtop: Lagtop) -> None:
+    zipped = tmp_path / f"{name}.gz"
+    zipped.write_bytes(gzip.compress((FILES / name).read_bytes()))
+    for path in (FILES / name, zipped):
+        result = lagtop("compare", *words(path), "--format", "json")
+        assert result.exit_code == 0, result.stderr
+        row = json.loads(result.stdout)["rows"][0]
+        assert (row["verdict"], row["rows"]) == ("fine", 26)
+        assert row["error_max"] < ROUNDED
+    wrong = lagtop("compare", *words(FILES / name), "--r0", "51")
+    assert wrong.exit_code == 1
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_fit_reads_it(name: str, lagtop: Lagtop) -> None:
+    result = lagtop("fit", *words(FILES / name), "--format", "json")
+    record = json.loads(result.stdout)
+    assert record["rows"] == 26
+    assert record["a"] == pytest.approx(A, rel=2e-3)
+    assert record["b"] == pytest.approx(B, rel=2e-3)
+    assert record["theta0_deg"] == pytest.approx(30, abs=0.02)
+
+
+@pytest.mark.parametrize("name", sorted({*RUNS} - COLUMNS.keys()))
+def test_its_times_are_read(name: str, lagtop: Lagtop) -> None:
+    result = lagtop("table", "--times", FILES / name, "--columns", "t")
+    assert [float(x) for x in result.stdout.split()[1:]] == TIMES
+
+
+@pytest.mark.parametrize("name", TOPS)
+def test_its_tops_are_read(name: str, lagtop: Lagtop) -> None:
+    wanted = [(rpm * math.pi / 30, tilt) for rpm, tilt in TOPS[name]]
+    swept = lagtop("sweep", FILES / name, "--keys", "r0,theta0_deg", "--format", "json")
+    assert swept.exit_code == 0, swept.stderr
+    found = [(row["r0"], row["theta0_deg"]) for row in json.loads(swept.stdout)]
+    assert found == [pytest.approx(x, rel=1e-15) for x in wanted]
+    tables = lagtop("table", "--tops", FILES / name, "--n", 1, "--columns", "r", "--format", "json")
+    spins = [row["r"] for row in json.loads(tables.stdout)]
+    assert spins == pytest.approx([spin for spin, _ in wanted], rel=1e-15)
