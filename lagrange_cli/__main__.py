@@ -14,7 +14,7 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) == signal.default_int_handler:  # it may be ignored instead
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     gc.disable()  # until the command is loaded: imports leave no garbage, see `LagtopGroup`
-    from .cli.group import main as run
+    from .cli.app import main as run
 
     run(prog_name="lagtop")
 

@@ -2,13 +2,13 @@
 
 | code | meaning |
 |---|---|
-| 0 | fine |
-| 1 | a top or a check failed, a number does not exist, nothing was found, or a promise was broken |
-| 2 | bad usage or a bad value |
-| 65 | a file cannot be read or has bad data |
-| 69 | a cluster, a method or a package is not available |
-| 74 | the output cannot be written |
-| 128 + N | ended by the signal N |
+| 0 | success |
+| 1 | a top or a check failed, a quantity is undefined, or nothing was found |
+| 2 | wrong usage or a bad value |
+| 65 | a file cannot be read or holds bad data |
+| 69 | a package, an engine or a cluster is not available |
+| 74 | output cannot be written |
+| 128 + N | ended by signal N |
 
 N is 2 for Ctrl-C and 13 for a reader that went away.
 """

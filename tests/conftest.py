@@ -16,7 +16,7 @@ import pytest
 from click.testing import CliRunner, Result
 from hypothesis import HealthCheck, settings
 
-from lagrange_cli.cli.group import main
+from lagrange_cli.cli.app import main
 
 ROOT = Path(__file__).parent.parent
 LAGTOP = [sys.executable, "-m", "lagrange_cli"]

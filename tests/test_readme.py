@@ -16,7 +16,7 @@ from errata import errata_table, figures_table
 from judge_tables import JUDGE_TABLES
 from published import published_table
 
-from lagrange_cli.cli.group import main
+from lagrange_cli.cli.app import main
 from lagrange_cli.inputs.input_keys import DECLARED, TILT
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, dataclass_transform
 
-__all__ = ["Over", "Values"]
+__all__ = ["Key", "Over", "Values"]
 
 if TYPE_CHECKING:
     from typing import Generic as Over
@@ -83,3 +83,15 @@ class Values:
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value!r}" for name, value in self.as_dict().items())
         return f"{type(self).__name__}({inside})"
+
+
+class Key(Values):
+    """How a number of a record is shown; the unit `angle` stands for degrees or radians."""
+
+    group: str
+    symbol: str
+    meaning: str
+    unit: str = ""
+    equation: str = ""
+    formula: str = ""
+    """The formula in names of keys, such as `2*m*g*s/A`; see `motion.formulas`."""

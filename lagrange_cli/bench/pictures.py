@@ -12,8 +12,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..output.destination import write_bytes
 from ..output.report import Report
-from ..output.write import write_bytes
 from ..plot.files import About, figure_bytes
 from ..plot.style import LIGHT, head, styled
 from .battery import CONTRACT

@@ -1,4 +1,4 @@
-"""`lagtop bench`: error against run time."""
+"""The tests of lagtop itself: `lagtop bench` and `lagtop stability`."""
 
 from __future__ import annotations
 
@@ -9,12 +9,23 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst, write_report
-from .options import COUNT, FILE, METHOD_NAMES, NUMBER, exclude, output_options
+from .app import Command, fail_for, write_report
+from .options import (
+    COUNT,
+    NUMBER,
+    Parsed,
+    exclude,
+    jobs_option,
+    late,
+    output_options,
+    plot_option,
+    seed_option,
+)
 from .progress import with_progress
-from .top_options import scene_options, solved
+from .top import INPUT, TopOptions, top_options
 
 if TYPE_CHECKING:
+    from ..output.destination import Output
     from ..output.report import Report
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
@@ -23,67 +34,58 @@ PERIODS = 20.3
 MOST_TIMES = 10_000_000
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables that say how many threads the linear algebra of packages has."""
+SCENES, MOST_SCENES = 4, 100_000
+SEED = 1952
+_split = late("inputs.names", "split_names")
 
 
-def _write_methods(formatter: click.HelpFormatter) -> None:
-    """Write the names of the methods and of their groups."""
+def _methods() -> list[str]:
     from ..bench.measure import all_methods, groups
 
-    with formatter.section("Methods"):
-        formatter.write_text(", ".join(all_methods(1.0)))
-    with formatter.section("Groups of methods"):
-        formatter.write_text(", ".join(groups()))
+    return list(dict.fromkeys([*all_methods(1.0), *groups()]))
 
 
 @click.command(
     "bench",
-    cls=ExamplesFirst,
-    shows=_write_methods,
+    cls=Command,
     examples="""
-        lagtop bench
-        lagtop bench sample_inputs/stiff-top.toml --plot work-precision.svg
-        lagtop bench --methods lagtop,DOP853-quaternion --t-max 100 --n 1e5 --format csv
-        lagtop bench --long --plot drift.png
-        lagtop bench --methods lagtop,engines --n 1000
+        lagtop bench --methods lagtop,DOP853-quaternion --n 1000
+        lagtop bench stiff-top --methods lagtop,theta-series --n 100 --plot p.svg
+        lagtop bench --long --methods lagtop,theta-series --n 100
     """,
 )
-@scene_options
+@top_options(INPUT)
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
 @click.option(
-    "--methods", type=METHOD_NAMES, help="These, with commas between.  [default: all but engines]"
+    "--methods",
+    type=Parsed("NAME,...", _split, _methods),
+    help="Methods, or groups such as engines.  [default: all but engines]",
 )
 @click.option(
-    "--timeout",
-    "limit",
-    type=NUMBER,
-    default="3",
-    show_default=True,
-    help="Seconds a run may take.",
+    "--timeout", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
 )
 @click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
-@click.option("--plot", type=FILE, metavar="FILE", help="Draw it too: FILE.svg or .png.")
-@output_options("table", "csv", "json")
-def command(
-    scene: str | None,
-    rad: bool,
+@plot_option
+@output_options("table", "csv", "json", "ndjson", "markdown")
+def bench_command(
+    top: TopOptions,
     t_max: Fraction | None,
     count: int | None,
     methods: list[str] | None,
-    limit: Fraction,
+    timeout: Fraction,
     is_long: bool,
     plot: str | None,
-    fmt: str,
-    output: str,
-    **options: Any,
+    out: Output,
 ) -> None:
-    """Compare closed forms and integrators: error against run time at the same times.
+    """Measure the error of many methods against their run time.
 
-    Every method is judged by a reference of 80 digits that shares no formula with lagtop, and
-    timed on one thread.  Taylor's method needs heyoka (extra `bench`), and engines need themselves
-    (extra `engines`); a method whose package is missing says so.  The setting of an engine is steps
+    The methods are closed forms, integrators and physics engines, each on one thread.  The
+    reference has 80 digits and shares no formula with lagtop.  The setting of an engine is steps
     per nutation period, or a tolerance.  A * marks the Pareto front: no other run is both faster
     and more accurate.
+
+    Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method heyoka.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before these packages are imported
     from ..bench.compare_methods import compare_methods, compare_spans
@@ -91,31 +93,91 @@ def command(
     from ..bench.pictures import draw_long_spans, draw_work_precision
     from ..plot.files import check_plot
 
-    exclude({"--long": is_long or None, "--t-max": t_max})
-    _check(t_max, count, limit)
-    check_plot(plot, output)
-    chosen = chosen_methods(methods, float(limit))
-    motion = solved(scene, rad, False, options)
-    check_scene(motion)
-    how: dict[str, Any] = {"limit": float(limit), "progress": with_progress}
-    end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
-
-    def find() -> Report:
-        if is_long:
-            findings = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
-        else:
-            findings = compare_methods(motion, end, count or SAMPLES, chosen, **how)
-        if plot:
-            (draw_long_spans if is_long else draw_work_precision)(findings, plot)
-        return findings
-
-    write_report(find, fmt, output)
-
-
-def _check(t_max: Fraction | None, count: int | None, limit: Fraction) -> None:
+    exclude({"--long": is_long, "--t-max": t_max})
     if t_max == 0:
         raise LagtopError("--t-max must be other than 0: nothing has moved by then")
     if count is not None and not 1 <= count <= MOST_TIMES:
         raise LagtopError(f"--n must be in [1, {MOST_TIMES}], got {count}")
-    if not limit > 0:
-        raise LagtopError(f"--timeout must be > 0, got {float(limit)}")
+    if not timeout > 0:
+        raise LagtopError(f"--timeout must be > 0, got {float(timeout)}")
+    check_plot(plot, out.path)
+    chosen = chosen_methods(methods, float(timeout))
+    motion = top.solved()
+    check_scene(motion)
+    how: dict[str, Any] = {"limit": float(timeout), "progress": with_progress}
+    end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
+
+    def find() -> Report:
+        if is_long:
+            report = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
+        else:
+            report = compare_methods(motion, end, count or SAMPLES, chosen, **how)
+        if plot:
+            (draw_long_spans if is_long else draw_work_precision)(report, plot)
+        return report
+
+    write_report(out, find)
+
+
+@click.command(
+    "stability",
+    cls=Command,
+    examples="""
+        lagtop stability --strata separatrix,thresholds --samples 1
+        lagtop stability --strata fast --samples 2 --seed 7 -o battery.csv
+        lagtop stability --strata fast --samples 1 --plot stability.svg
+    """,
+)
+@click.option(
+    "--samples",
+    type=COUNT,
+    default=str(SCENES),
+    show_default=True,
+    help="Scenes per stratum; 200 make a thorough test.",
+)
+@seed_option(default=str(SEED), show_default=True, help="Seed of the random scenes.")
+@click.option(
+    "--strata",
+    type=Parsed("NAME,...", _split, late("bench.hard_scenes", "STRATA")),
+    help="Only these kinds of scenes.  [default: all]",
+)
+@jobs_option
+@click.option("--certify", is_flag=True, help="Print proved bounds of lagtop's errors alone.")
+@plot_option
+@output_options("table", "csv", "json", "ndjson", "markdown")
+def stability_command(
+    samples: int,
+    seed: int,
+    strata: list[str] | None,
+    jobs: int | None,
+    certify: bool,
+    plot: str | None,
+    out: Output,
+) -> None:
+    """Test lagtop on random difficult scenes in 80 digits.
+
+    Every key of the record must be correctly rounded.  The angles and the quaternion must be within
+    4 units, at times up to 1e14 periods before and after the start, some of them next to half,
+    quarter and whole periods.  scipy.special and DOP853 compute the same scenes.
+
+    The exit code is 1 if a bound is exceeded.
+    """
+    if not 1 <= samples <= MOST_SCENES:
+        raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {samples}")
+    from ..bench import stability
+    from ..bench.pictures import draw_stability
+    from ..plot.files import check_plot
+
+    check_plot(plot, out.path)
+    chosen = stability.chosen_strata(strata)
+
+    def find() -> Report:
+        report = stability.run_battery(
+            chosen, samples, seed, with_progress, jobs or 1, certify=certify
+        )
+        if plot:
+            draw_stability(report, plot)
+        return report
+
+    report = write_report(out, find)
+    fail_for(stability.exceeded(report), len(report.rows), "strata")

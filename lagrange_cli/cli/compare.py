@@ -1,102 +1,83 @@
-"""`lagtop compare`: the judge of trajectories."""
+"""`lagtop compare`: trajectories against the exact motion."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, complain, fail_for, write_report
-from .options import FILE, NAMES, NUMBER, Parsed, exclude, output_options
+from .app import Command, complain, fail_for, write_report
+from .options import (
+    FILE,
+    NUMBER,
+    Parsed,
+    late,
+    output_options,
+    plot_option,
+    reading_options,
+    text_options,
+)
 from .progress import with_progress
-from .row_options import dialect, reading_options, text_options
-from .top_options import INPUT, input_options, solved
+from .top import INPUT, TopOptions, scene_among, top_options
 
 if TYPE_CHECKING:
+    from ..inputs.text_lines import Dialect
     from ..judge.compare import Comparison
+    from ..output.destination import Output
     from ..output.report import Report
 
 
-def _write_names(formatter: click.HelpFormatter) -> None:
-    """Write the quantities of a trajectory, and the names of columns by which each is known."""
-    from ..inputs.trajectory_columns import shown_quantities
-
-    with formatter.section("Columns of a trajectory, by name"):
-        formatter.write_dl(list(shown_quantities().items()))
-
-
-def _parse_steps(text: str) -> list[float]:
+def _parse_step_sizes(text: str) -> list[float]:
     return [float(parse_number(name)) for name in split_names(text)]
 
 
 @click.command(
     "compare",
-    cls=ExamplesFirst,
-    shows=_write_names,
+    cls=Command,
     examples="""
-        lagtop compare mujoco.csv --m 1.587 --A 3.9032e-3 --C 1.7458e-3 --s 0.04 --g 9.81
-        lagtop compare sensor.txt --scene top.toml --align axis=y,start --max-error 1e-6
-        lagtop compare h1.csv h2.csv h3.csv --step-sizes 1e-3,5e-4,2.5e-4 --plot errors.svg
-        lagtop compare state.npy --columns t,quaternion,_,_,_ --quaternion-order xyzw --format json
-        lagtop table --t-max 5 --columns t,quaternion | lagtop compare -
+        lagtop table looping-top --t-max 5 --columns t,quaternion -o run.csv
+        lagtop compare looping-top run.csv --max-error 1e-6 --plot errors.svg
+        lagtop table --columns t,axis --r0 -50 | lagtop compare - --exit-zero
     """,
 )
-@click.argument(
-    "trajectories",
-    nargs=-1,
-    required=True,
-    type=FILE,
-    metavar="TRAJECTORY...",
-)
-@click.option("--scene", type=FILE, metavar="FILE|-", help="Scene file; options win over it.")
-@input_options(INPUT)
+@click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] TRAJECTORY...")
+@top_options(INPUT, scene=False)
 @reading_options(quaternion=None)
-@text_options
 @click.option(
     "--rates-frame",
     type=click.Choice(["body", "space"]),
+    metavar="FRAME",
     default="body",
     show_default=True,
-    help="Frame of an angular velocity whose names do not tell.",
+    help="Frame of p, q, r: body or space.",
 )
 @click.option(
     "--align",
-    type=NAMES,
-    help="What is done first, with commas between: axis=y (the figure axis is the body's y; x, y, "
-    "z, -x, -y or -z), up=y (so is up in space), start (spin and precession count from the first "
-    "row), body or space (one rotation of that frame, taken from the first row), time (the first "
-    "row is at the time 0).",
+    type=Parsed("WORD,...", split_names, late("judge.alignment", "WORDS")),
+    help="First set the figure axis (axis=y), the vertical (up=y), the angles (start), a frame "
+    "(body, space) or the clock (time) by the first row.",
 )
 @click.option(
     "--step-sizes",
-    type=Parsed("numbers", _parse_steps),
-    help="Steps of the trajectories, with commas between, for the order of convergence.",
+    type=Parsed("X,...", _parse_step_sizes),
+    help="Step size of each trajectory, for the order of convergence.",
 )
 @click.option(
-    "--max-error",
-    type=NUMBER,
-    help="Greatest error in radians up to which a trajectory is fine.  [default: 0.001]",
+    "--max-error", type=NUMBER, help="Greatest error (rad) of a fine trajectory.  [default: 0.001]"
 )
-@click.option(
-    "--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine: look only."
-)
-@click.option(
-    "--plot",
-    type=FILE,
-    metavar="FILE",
-    help="Draw the error too, over time and over the step: FILE.svg or .png.",
-)
-@output_options("table", "csv", "json")
-def command(
-    trajectories: tuple[str, ...],
-    scene: str | None,
-    rad: bool,
-    columns: list[str] | None,
+@click.option("--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine.")
+@text_options
+@plot_option
+@output_options("table", "csv", "json", "ndjson", "markdown")
+def compare_command(
+    words: tuple[str, ...],
+    top: TopOptions,
+    names: list[str] | None,
     quaternion_order: str | None,
     euler_sequence: str,
     rates_frame: str,
@@ -105,19 +86,18 @@ def command(
     max_error: Fraction | None,
     exit_zero: bool,
     plot: str | None,
-    fmt: str,
-    output: str,
-    **options: Any,
+    dialect: Dialect,
+    out: Output,
 ) -> None:
-    """Judge trajectories that engines or integrators made, by the exact motion.
+    """Compare computed or measured trajectories with the exact motion.
 
-    A trajectory is a file (CSV, TSV, text with or without a header, JSON lines, npy, npz or
-    Parquet) or - for standard input.  Its columns are known by their names, which stand below.
-    Angles are in degrees where neither names nor --rad say otherwise; all errors are in radians.
+    A trajectory is a file (CSV, text, JSON lines, npy, npz or Parquet), or - for standard input.
+    Its columns are recognised by name, such as t, theta, axis, quaternion or matrix.  Angles are in
+    degrees unless their names or --rad say otherwise; errors are in radians.
 
-    The verdict is one of fine, drifts, another top, off from the start and lost.  The exit code is
-    1 if a trajectory is not fine, unless --exit-zero is given.
+    The exit code is 1 unless the verdict on every trajectory is fine.
     """
+    from ..inputs.scene_file import is_scene_file
     from ..inputs.seen import Conventions
     from ..judge.alignment import alignment
     from ..judge.compare import ComparisonRequest, compare_files
@@ -126,14 +106,20 @@ def command(
 
     if max_error is not None and not max_error > 0:
         raise LagtopError(f"--max-error must be > 0, got {float(max_error)}")
-    check_plot(plot, output)
-    exclude({"--scene -": scene == "-" or None, "the trajectory -": "-" in trajectories or None})
+    check_plot(plot, out.path)
+    scene, trajectories = scene_among(words, is_scene_file)
+    if not trajectories:
+        raise LagtopError("no trajectory: give a file, or - for standard input")
+    top = top.replace(scene=scene)
     limit = None if max_error is None else float(max_error)
-    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, rad).checked()
-    frames = alignment(align or [])
-    request = ComparisonRequest(columns, conventions, frames, limit, step_sizes, dialect())
-    is_named = scene is not None or any(x is not None for x in options.values())
-    motion = solved(scene, rad, False, options)
+    conventions = Conventions(quaternion_order, euler_sequence, rates_frame, top.radians).checked()
+    request = ComparisonRequest(
+        names, conventions, alignment(align or []), limit, step_sizes, dialect
+    )
+    is_named = scene is not None or bool(top.by_key())
+    motion = top.solved()
+    if scene is None and not top.by_key():
+        complain("Warning: no scene and no inputs: comparing with the worked example")
 
     def find() -> Report:
         comparison = compare_files(motion, trajectories, request, with_progress, is_named=is_named)
@@ -143,19 +129,15 @@ def command(
             _draw(comparison, limit, plot)
         return comparison_report(comparison.motion, comparison, request)
 
-    findings = write_report(find, fmt, output)
+    report = write_report(out, find)
     if not exit_zero:
-        fail_for(
-            failures(findings),
-            len(findings.rows),
-            "trajectories",
-            remedy="use --exit-zero to look only",
-        )
+        remedy = "use --exit-zero to look only"
+        fail_for(failures(report), len(report.rows), "trajectories", remedy=remedy)
 
 
 def _draw(comparison: Comparison, limit: float | None, path: str) -> None:
     from ..judge.judgement import LIMIT
-    from ..output.write import write_bytes
+    from ..output.destination import write_bytes
     from ..plot.reports import ErrorCurve, draw_errors
 
     found = comparison.convergence

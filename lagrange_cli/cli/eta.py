@@ -9,15 +9,42 @@ import click
 
 from ..arithmetic.points import ExactComplex, parse_complex
 from ..errors import LagtopError
-from ..output.layouts import ETA
-from ..output.write import write_record
-from .command import ExamplesFirst
-from .options import MOST_TABLE_DIGITS, NUMBER, Parsed, digits_option, exclude, output_options
-from .row_options import RANGE, listed, write_functions
+from .app import Command
+from .jacobi import function_formats, rad_option, write_constants, write_functions
+from .options import MOST_TABLE_DIGITS, NUMBER, RANGE, Parsed, digits_option, exclude, late
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.eta import Quadrature
+    from ..output.destination import Output
+
+_split = late("inputs.names", "split_names")
+_ETA = """
+delta | δ | upper end of the band | | (3.2.1)
+delta_star | δ* | lower end of the band | | (3.2.1)
+p | p' | middle of the outer roots | | (3.2.1)
+q | q' | half the distance of the outer roots | | (3.2.1)
+q_imag | q'/i | the same for a complex pair | | (3.2.1)
+outer_root | | the finite outer root | |
+layout | | outer roots | |
+kind | | radicand | |
+g | g | -2 α1 c² | 1/time² | (3.2.1)
+Constants
+m_prime | m' | at δ | | (3.2.3)
+m_double_prime | m" | at δ* | | (3.2.3)
+k | k | modulus of (3.2.4) | | (3.2.5)
+k_imag | k/i | imaginary modulus of (3.2.4) | | (3.2.5)
+k1 | k1 | modulus | | (3.2.8)
+k1_imag | k1/i | imaginary modulus | | (3.2.8)
+k1_prime | k1' | complementary modulus | |
+K1 | K1 | first kind, k1 | | (3.2.8)
+sigma1 | σ1 | rate of the argument | 1/time | (3.2.8)
+s | s | amplitude of sn | | (3.2.12)
+d | d | of the denominator | | (3.2.12)
+gamma | γ | shift | | (3.2.12)
+period | T | of η, 4 K1/σ1 | time | (3.2.10)
+tau3 | τ3 | -K1/σ1 | time | (3.2.10)
+"""
 
 
 def _parse_distance(text: str) -> ExactComplex:
@@ -28,97 +55,76 @@ def _parse_distance(text: str) -> ExactComplex:
     return value
 
 
-DISTANCE = Parsed("number", _parse_distance)
-
-
 @click.command(
     "eta",
-    cls=ExamplesFirst,
+    cls=Command,
     examples="""
         lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4
-        lagtop eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --tau-range 0:10:101 --format csv
-        lagtop eta --delta 0.7 --delta-star 0.2 --gap-above 1e-12 --gap-below 2 --digits 30
-        lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0.1 --tau 0.2 --chain
-        lagtop eta --delta 0.5 --delta-star -0.5 --p 0.1 --q 0.7i
+        lagtop eta --delta 0.5 --delta-star -0.5 --p 3 --q 1 --tau 0:9:99 -o e.csv
         lagtop eta --delta 0.866 --delta-star 0.277 --gap-above 0.424 --g 319
     """,
 )
 @click.option("--delta", type=NUMBER, required=True, help="Upper end of the band.")
 @click.option("--delta-star", type=NUMBER, required=True, help="Lower end of the band.")
 @click.option("--p", type=NUMBER, help="Middle of the two outer roots p - q and p + q.")
-@click.option("--q", type=DISTANCE, help="Half their distance; 0.7i for the roots p +- 0.7i.")
-@click.option("--gap-above", type=NUMBER, help="From delta up to an outer root, instead.")
-@click.option("--gap-below", type=NUMBER, help="From delta* down to an outer root, instead.")
-@click.option("--quadratic", is_flag=True, help="Both outer roots are at infinity, instead.")
 @click.option(
-    "--g",
-    type=NUMBER,
-    default="1",
-    show_default=True,
-    help="Leading coefficient, -2 alpha1 c^2.",
+    "--q",
+    type=Parsed("X", _parse_distance),
+    help="Half the distance of the outer roots; 0.7i for the roots p +- 0.7i.",
 )
+@click.option("--gap-above", type=NUMBER, help="Distance from delta up to an outer root.")
+@click.option("--gap-below", type=NUMBER, help="Distance from delta* down to an outer root.")
+@click.option("--g", type=NUMBER, default="1", help="Leading coefficient.  [default: 1]")
+@click.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
 @click.option(
-    "--c3", type=NUMBER, default="0", show_default=True, help="eta = delta* at tau = -c3."
+    "--columns",
+    type=Parsed("NAME,...", _split, late("elliptic.eta_table", "COLUMNS")),
+    help="Columns beside tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
 )
-@click.option("--tau", "single", type=NUMBER, multiple=True, help="Time; may be repeated.")
-@click.option("--tau-range", "grid", type=RANGE, help="Times, as [log:]start:stop:count.")
-@click.option("--rate", is_flag=True, help="d eta/d tau of every tau too.")
-@click.option("--chain", is_flag=True, help="h1, theta and xi' of every tau too.")
-@click.option("--rad", is_flag=True, help="theta in radians.")
+@rad_option
 @digits_option(MOST_TABLE_DIGITS)
-@output_options("table", "csv", "json")
-def command(
+@function_formats
+def eta_command(
     delta: Fraction,
     delta_star: Fraction,
     p: Fraction | None,
     q: ExactComplex | None,
     gap_above: Fraction | None,
     gap_below: Fraction | None,
-    quadratic: bool,
     g: Fraction,
-    c3: Fraction,
-    single: tuple[Fraction, ...],
-    grid: Points | None,
-    rate: bool,
-    chain: bool,
+    tau: Points | None,
+    columns: list[str] | None,
     rad: bool,
     digits: int | None,
-    fmt: str,
-    output: str,
+    out: Output,
 ) -> None:
-    """The oscillation of eta between delta* and delta, from its quadrature (Aksenov, 3.2).
+    """Compute the oscillation of eta in Aksenov's section 3.2.
 
+    Eta swings between delta* and delta:
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2), the motion of a satellite
     in latitude.
 
-    Without --tau the constants are written; with it eta, under --rate also its rate, and under
-    --chain also h1, theta and xi' of (3.2.9) to (3.2.11).  The outer roots are given by --p and --q
-    (imaginary, as 0.7i, for a complex pair), or by the gaps to them; with one gap alone the other
-    outer root is at infinity, as for Lagrange's top, and under --quadratic both are.
+    Give the outer roots with --p and --q (0.7i for a complex pair), or with the gaps to them.  With
+    one gap, the other outer root is at infinity, as for Lagrange's top; without any, both are.
+
+    Without --tau the constants are printed.  At tau = 0, eta is delta*.  h1, theta and xi' are
+    those of (3.2.9) to (3.2.11).
     """
     from ..elliptic.eta_table import record
 
-    times = listed("tau", single, grid)
-    if quadratic:
-        ways = {"--p": p, "--q": q, "--gap-above": gap_above, "--gap-below": gap_below}
-        for name, value in ways.items():
-            exclude({"--quadratic": quadratic, name: value})
-        from ..elliptic.eta import Quadrature
-
-        quadrature = Quadrature(delta_star, delta, (), g)
-    else:
-        quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
-    if times is None:
-        for name, asked in {"--rate": rate, "--chain": chain}.items():
-            if asked:
-                raise LagtopError(f"{name} needs --tau or --tau-range")
-        write_record(record(quadrature, digits, c3), fmt, output, lambda: ETA)
+    quadrature = _quadrature(delta, delta_star, (p, q), (gap_above, gap_below), g)
+    if tau is None:
+        if columns is not None:
+            raise LagtopError("--columns needs --tau")
+        write_constants(record(quadrature, digits), "Roots", _ETA, out)
         return
-    from ..elliptic.eta_table import EtaTable
+    from ..elliptic.eta_table import COLUMNS, EtaTable
+    from ..inputs.names import check_names
 
-    angle = ("rad" if rad else "deg") if chain else ""
-    table = EtaTable(times, quadrature, c3, rate=rate, angle=angle)
-    write_functions(table, digits, fmt, output)
+    names = check_names("columns", columns or ["eta"], COLUMNS)
+    write_functions(
+        EtaTable(tau, quadrature, names=names, angle="rad" if rad else "deg"), digits, out
+    )
 
 
 def _quadrature(
@@ -128,15 +134,14 @@ def _quadrature(
     gaps: tuple[Fraction | None, Fraction | None],
     g: Fraction,
 ) -> Quadrature:
-    """Return the quadrature from either way to give the outer roots; it is checked when used."""
+    """Return the quadrature with its outer roots, by their middle or by the gaps to them."""
     from ..elliptic.eta import Quadrature
 
-    p, q = middle
-    above, below = gaps
-    if (p is None) != (q is None) or (p is None) == (above is None and below is None):
-        raise LagtopError(
-            "give either --p and --q or one or both of --gap-above, --gap-below, or --quadratic"
-        )
+    (p, q), (above, below) = middle, gaps
+    if (p is None) != (q is None):
+        raise LagtopError("--p and --q belong together: give both, or neither")
+    exclude({"--p": p, "--gap-above": above})
+    exclude({"--p": p, "--gap-below": below})
     if p is not None and q is not None:
         if q.real < 0 or q.imag < 0:
             raise LagtopError(f"--q must be >= 0, or imaginary as 0.7i, got {q}")

@@ -1,4 +1,4 @@
-"""The command `lagtop find`: inputs for wanted numbers."""
+"""The command `lagtop find`: inputs that give target values."""
 
 from __future__ import annotations
 
@@ -7,143 +7,125 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LagtopError
-from .command import ExamplesFirst, complain, write_keys
-from .options import COUNT, KEY_NAMES, exclude, output_options
+from .app import Command, complain
+from .options import COUNT, Parsed, keys_option, output_options
 from .progress import with_progress
-from .top_options import by_key, input_options, is_scene, say_missing, say_unused, value_type
+from .top import TopOptions, scene_among, top_options, value_type, warn_missing, warn_unused
 
 if TYPE_CHECKING:
     from ..inputs.units import System
     from ..motion.solve import Motion
+    from ..output.destination import Output
+
+
+def _beginnings() -> list[str]:
+    """Return how words of the command may begin: keys and shipped scenes."""
+    from ..inputs.scene_file import scene_names
+    from ..motion.record import all_keys
+
+    return [*(f"{key}=" for key in all_keys()), *scene_names()]
+
+
+CONDITION = Parsed("CONDITION", str, _beginnings)
 
 
 @click.command(
     "find",
-    cls=ExamplesFirst,
-    shows=write_keys,
+    cls=Command,
     examples="""
         lagtop find --r0 10:200 T_precession=2
         lagtop find --r0 10:200 --theta0 5:150 T_precession=0.8 T_nutation=0.43
-        lagtop find --psidot0 -20:20 mean_precession_rate=6 path=looping 'theta_max_deg<120'
-        lagtop find sample_inputs/hanging-top.toml --r0 log:1:40 T_nutation=0.25 --scan 1e4
-        lagtop find --from theta_min=30 theta_max=60 T_nutation=0.4 mean_precession_rate=5
+        lagtop find theta_min=3 theta_max=6 T_nutation=4 mean_precession_rate=5
     """,
 )
-@click.argument("words", nargs=-1, metavar="[SCENE.toml|-] CONDITION...")
-@input_options(value_type("number or from:to", "parse_number_or_span"), units=False)
+@click.argument("words", nargs=-1, type=CONDITION, metavar="[SCENE] CONDITION...")
+@top_options(value_type("parse_number_or_span"), scene=False, units=False)
 @click.option(
     "--scan",
     type=COUNT,
-    metavar="N",
-    help="Values of each unknown in the scan.  [default: 1000, 60 or 20 of 1, 2 or 3 unknowns]",
+    help="Values of each unknown in the scan.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
 )
-@click.option(
-    "--from",
-    "seen",
-    is_flag=True,
-    help="The conditions are theta_min, theta_max, T_nutation and mean_precession_rate, and may be "
-    "mean_spin_rate: they tell a and b in closed form.",
-)
-@click.option("--keys", type=KEY_NAMES, help="Print only these keys, with commas between.")
-@output_options("csv", "ndjson", "json")
-def command(
+@keys_option
+@output_options("csv", "ndjson", "json", "table", "markdown", on_terminal="table")
+def find_command(
     words: tuple[str, ...],
-    rad: bool,
+    top: TopOptions,
     scan: int | None,
-    seen: bool,
     keys: list[str] | None,
-    fmt: str,
-    output: str,
-    **options: Any,
+    out: Output,
 ) -> None:
-    """Tops whose records have wanted numbers.
+    """Find the inputs for which results take given values.
 
-    An input that is a range from:to (or log:from:to) is unknown, up to three of them; a unit stands
-    once, at the end: --r0 '400:600 rpm'.  There are as many conditions KEY=NUMBER, which with units
-    are in SI.  regime=WORD, path=WORD and bounds such as KEY<NUMBER leave out what does not keep
-    them; an angle may leave out its unit.
+    An input given as a range from:to (or log:from:to) is unknown, up to three of them.  Give as
+    many conditions KEY=NUMBER as unknowns, in SI if inputs have units.  Conditions such as
+    regime=regular, path=looping or 'theta_max<120' restrict the solutions.
 
-    With one unknown all solutions are found that the scan brackets: each is the double whose number
-    comes nearest to the wanted one, but where that number hardly changes, others do as well.  With
-    several, those are found to which its best points lead.  The exit code is 1 where there is none.
+    With one unknown, every root that the scan brackets is found, to the last bit.  With several,
+    Newton's method starts at the best points of the scan and can miss solutions.  The exit code is
+    1 if there is none.
 
-    With --from inputs of the body, and a scene, may be given too; what these numbers cannot tell of
-    it is 1, or such that C = A.  The tops start at their least tilt.
+    Without an unknown, theta_min, theta_max, T_nutation and mean_precession_rate (and
+    mean_spin_rate) determine a and b in closed form.  You may then give inputs of the body; those
+    that the numbers leave undetermined are 1, or such that C = A.  The tops start at their least
+    tilt.
     """
     from ..inputs.names import check_names
+    from ..inputs.ranges import Span
     from ..motion.record import all_keys, record_keys
 
-    exclude({"--from": seen or None, "--scan": scan})
-    chosen = record_keys(radians=rad)
+    radians = top.radians
+    chosen = record_keys(radians=radians)
     if keys is not None:
-        chosen = check_names("keys", keys, all_keys(radians=rad))
-    scenes = [word for word in words if is_scene(word)]
-    conditions = [word for word in words if word not in scenes]
-    if len(scenes) > 1:
-        raise LagtopError(f"find takes one scene, got {' '.join(scenes)}")
-    inputs = by_key(options, radians=rad)
-    if seen:
-        motions, system = _inverted(scenes, conditions, inputs, rad)
+        chosen = check_names("keys", keys, all_keys(radians=radians))
+    scene, conditions = scene_among(words)
+    top = top.replace(scene=scene)
+    if scan is None and not any(isinstance(x.number, Span) for x in top.by_key().values()):
+        motions, system = _inverted(top, conditions)
     else:
-        motions, system = _found(scenes, conditions, inputs, scan, rad)
-    _write(motions, system, chosen, rad, fmt, output)
+        motions, system = _found(top, conditions, scan)
+    _write(motions, system, chosen, radians, out)
 
 
 def _found(
-    scenes: list[str],
-    conditions: list[str],
-    inputs: dict[str, Any],
-    count: int | None,
-    radians: bool,
+    top: TopOptions, conditions: list[str], count: int | None
 ) -> tuple[list[Motion], System | None]:
     from ..fits.find import find_tops
     from ..fits.search import search_of
 
-    scene = scenes[0] if scenes else None
-    search, given = search_of(inputs, conditions, scene=scene, radians=radians)
+    search, given = search_of(top.by_key(), conditions, scene=top.scene, radians=top.radians)
     found = find_tops(search, count, with_progress)
-    say_missing(given)
-    say_unused(given.stds)
+    warn_missing(given)
+    warn_unused(given.stds)
     complain(f"{len(found.motions)} found; {found.looked}")
     return found.motions, given.system
 
 
-def _inverted(
-    scenes: list[str], conditions: list[str], inputs: dict[str, Any], radians: bool
-) -> tuple[list[Motion], System | None]:
+def _inverted(top: TopOptions, conditions: list[str]) -> tuple[list[Motion], System | None]:
     from ..fits.implied_body import BODY_INPUTS
     from ..fits.invert import invert
-    from ..inputs.given import gather
-    from ..inputs.ranges import Span
 
-    for name, x in inputs.items():
-        if name not in BODY_INPUTS or isinstance(x.number, Span):
-            option = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
-            raise LagtopError(
-                f"--from goes with numbers for {' '.join(BODY_INPUTS)}, got --{option}"
-            )
-    found = gather(inputs, scenes[0] if scenes else None)
-    given = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
-    say_unused(name for name in found.stds if name in given)
-    return invert(conditions, radians=radians, known=given), found.system
+    for name in top.by_key():
+        if name not in BODY_INPUTS:
+            flag = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
+            raise LagtopError(f"no input is unknown: give a range, such as --{flag} 10:200")
+    found = top.given()
+    known = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
+    warn_unused(name for name in found.stds if name in known)
+    return invert(conditions, radians=top.radians, known=known), found.system
 
 
 def _write(
-    motions: list[Motion],
-    system: System | None,
-    keys: list[str],
-    radians: bool,
-    fmt: str,
-    output: str,
+    motions: list[Motion], system: System | None, keys: list[str], radians: bool, out: Output
 ) -> None:
     """Write the records as `lagtop sweep` does, a row for each motion."""
     from ..motion.solve import record_in_range
-    from ..output.write import block_text, write_text_blocks
+    from ..output.formats import block_text
 
-    records = [record_in_range(motion, radians=radians, keys=keys)[0] for motion in motions]
-    if system is not None:
-        for record in records:
-            if record.get("remark"):
-                record["remark"] = system.in_words(record["remark"])
+    records: list[dict[str, Any]] = [
+        record_in_range(motion, radians=radians, keys=keys)[0] for motion in motions
+    ]
+    for record in records:
+        if system is not None and record.get("remark"):
+            record["remark"] = system.in_words(record["remark"])
     columns = [[record[key] for record in records] for key in keys]
-    write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)
+    out.blocks(keys, [block_text(columns, keys, out.fmt)])

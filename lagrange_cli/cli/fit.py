@@ -11,139 +11,124 @@ import click
 from ..arithmetic.numbers import unit_in_radians
 from ..errors import LagtopError
 from ..inputs.names import split_names
-from .command import ExamplesFirst, complain, fail_for, write_report
-from .options import FILE, NAMES, Parsed, exclude, extension, output_options
+from .app import Command, complain, fail_for, write_report
+from .options import (
+    FILE,
+    NAMES,
+    Parsed,
+    extension,
+    output_options,
+    plot_option,
+    reading_options,
+    text_options,
+)
 from .progress import with_progress
-from .row_options import dialect, reading_options, text_options
-from .top_options import UNCERTAIN, by_key, input_options
+from .top import UNCERTAIN, TopOptions, scene_among, top_options
 
 if TYPE_CHECKING:
     from ..fits.record import Outcome
     from ..fits.recording import Recording
+    from ..inputs.text_lines import Dialect
     from ..inputs.top import Top
     from ..inputs.units import System
-
-
-def _write_names(formatter: click.HelpFormatter) -> None:
-    """Write the quantities of a recording, and the names of columns by which each is known."""
-    from ..inputs.trajectory_columns import shown_quantities
-
-    with formatter.section("Columns of a recording, by name; NAME_std is a standard deviation"):
-        left_out = {"position", "rates", "angle_rates"}
-        shown = shown_quantities().items()
-        formatter.write_dl([(name, text) for name, text in shown if name not in left_out])
+    from ..output.destination import Output
 
 
 def _parse_sigma(text: str) -> float | dict[str, float]:
     from ..arithmetic.text import parse_number
 
+    def positive(number: str) -> float:
+        value = float(parse_number(number))
+        if not value > 0:
+            raise LagtopError(f"must be > 0, got {value:g}")
+        return value
+
     parts = [part.partition("=") for part in split_names(text)]
-    if len(parts) == 1 and not parts[0][1]:
-        return _positive(float(parse_number(parts[0][0])))
-    return {name.strip(): _positive(float(parse_number(value))) for name, _, value in parts}
-
-
-def _positive(value: float) -> float:
-    if not value > 0:
-        raise LagtopError(f"must be > 0, got {value:g}")
-    return value
+    if "=" not in text:
+        return positive(text)
+    return {name.strip(): positive(value) for name, _, value in parts}
 
 
 @click.command(
     "fit",
-    cls=ExamplesFirst,
-    shows=_write_names,
+    cls=Command,
     examples="""
-        lagtop fit sample_inputs/recording.csv
-        lagtop fit sample_inputs/recording.csv --sigma theta=0.3,psi=0.5,phi=1 --m 1.587 --g 9.81
-        lagtop fit sample_inputs/recording.csv --format json
-        lagtop fit sample_inputs/recording.csv --g 9.81 -o fitted.toml
-        lagtop table --t-max 2 --n 200 --columns t,axis | lagtop fit -
+        lagtop table --t-max 2 --n 200 -o recording.csv
+        lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
+        lagtop fit recording.csv --sigma theta=0.3,psi=0.5 --plot residuals.svg
     """,
 )
-@click.argument("recording", type=FILE)
-@click.option(
-    "--scene", type=FILE, metavar="FILE|-", help="Scene file, of which --fix takes what is known."
-)
-@input_options(UNCERTAIN, units=False, whole=False)
-@click.option(
-    "--fix",
-    type=NAMES,
-    help="Inputs of the scene that are known, with commas between; those given by options are.",
-)
+@click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] RECORDING")
+@top_options(UNCERTAIN, scene=False, units=False, whole=False)
+@click.option("--fix", type=NAMES, help="Inputs of the scene that are known, such as m,g.")
 @click.option(
     "--sigma",
-    type=Parsed("sigma", _parse_sigma),
-    help="Standard deviation of all angles, or of each, such as theta=0.3,psi=0.5; columns "
-    "NAME_std win.  [default: that of what is left]",
+    type=Parsed("SIGMA", _parse_sigma),
+    help="Standard deviation of all angles, or theta=0.3,psi=0.5; columns NAME_std override it.  "
+    "[default: estimated from the residuals]",
 )
-@click.option("--by", metavar="COLUMN", help="Column that tells several recordings apart.")
-@click.option(
-    "--together", is_flag=True, help="The recordings of --by are of one body: a and C/A are shared."
-)
+@click.option("--by", metavar="COLUMN", help="Column that distinguishes several recordings.")
+@click.option("--together", is_flag=True, help="All recordings of --by are of one body.")
 @reading_options(quaternion="wxyz")
 @text_options
-@click.option(
-    "--plot",
-    type=FILE,
-    metavar="FILE",
-    help="Draw data, motion and what is left: FILE.svg or .png.",
-)
-@output_options("table", "csv", "json", extensions=["toml"])
-def command(
-    recording: str,
-    scene: str | None,
-    rad: bool,
+@plot_option
+@output_options("table", "csv", "json", "ndjson", "markdown", extensions=["toml"])
+def fit_command(
+    words: tuple[str, ...],
+    top: TopOptions,
     fix: list[str] | None,
     sigma: float | dict[str, float] | None,
     by: str | None,
     together: bool,
-    columns: list[str] | None,
+    names: list[str] | None,
     quaternion_order: str,
     euler_sequence: str,
     plot: str | None,
-    fmt: str,
-    output: str,
-    **options: Any,
+    dialect: Dialect,
+    out: Output,
 ) -> None:
-    """The top behind a recording: a, b and the start, and what they tell of the body.
+    """Fit a top to a recording, with uncertainties.
 
-    A recording is a file, as of `lagtop compare`, or - for standard input: times, and tilt, spin
-    and precession, the axis or the attitude.  Cells may be missing, angles may be wrapped, and psi
-    and phi may count from anywhere.  The start is that of the first row.
+    The results are a, b, the initial state, and what they imply for the body.
 
-    Nothing is taken from the worked example: what is known are the inputs given by options, and
-    those of the scene that --fix names.  What cannot be told apart is named.
+    A recording is a file as in lagtop compare, or - for standard input: times with tilt, spin and
+    precession, the axis or the attitude.  Cells may be missing, and angles may be wrapped.
 
-    -o FILE.toml writes a scene that every other command reads, beside the report.  The exit code
-    is 1 if a fit has failed, and no scene is written then.
+    Only the inputs given as options, and those of the scene named by --fix, count as known.
+    Parameters that the data cannot separate are listed.
+
+    -o FILE.toml writes the fitted top as a scene, beside the report.  If a fit has failed, the exit
+    code is 1 and no scene is written.
     """
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings
+    from ..inputs.scene_file import is_scene_file
     from ..inputs.seen import Conventions
     from ..plot.files import check_plot
 
-    check_plot(plot, output)
-    exclude({"--scene -": scene == "-" or None, "the recording -": recording == "-" or None})
+    check_plot(plot, out.path)
+    scene, recordings_given = scene_among(words, is_scene_file)
+    if len(recordings_given) != 1:
+        raise LagtopError(f"fit takes one recording, got {len(recordings_given)}: use --by COLUMN")
+    recording, radians = recordings_given[0], top.radians
     if together and by is None:
-        raise LagtopError("--together needs --by COLUMN, which tells recordings apart")
-    conventions = Conventions(quaternion_order, euler_sequence, "body", rad).checked()
-    spread = _in_radians(sigma, rad)
-    reading = Reading(columns, conventions, by, spread, dialect())
+        raise LagtopError("--together needs --by COLUMN")
+    conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
+    reading = Reading(names, conventions, by, _in_radians(sigma, radians), dialect)
     recordings = read_recordings(recording, reading)
-    given = by_key(options, radians=rad)
-    known, stds, system = _known(scene, recordings[0].scene, fix or [], given)
-    scene_path = output if extension(output) == "toml" else None
+    top = top.replace(scene=scene)
+    known, stds, system = _known(top, recordings[0].scene, fix or [])
+    scene_path = out.path if extension(out.path) == "toml" else None
     if scene_path and len(recordings) > 1:
-        raise LagtopError(f"--output {output} holds one top, got {len(recordings)} recordings")
+        raise LagtopError(f"--output {out.path} holds one top, got {len(recordings)} recordings")
     groups = [recordings] if together else [[one] for one in recordings]
-    found = _fitted(groups, known, stds, recording, rad)
+    found = _fitted(groups, known, stds, recording, radians)
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
         _write_scene(found[0], recording, scene_path)
     if plot:
-        _draw(found, plot, rad)
-    _write(found, recording, system, fmt, "-" if scene_path else output)
+        _draw(found, plot, radians)
+    _write(found, recording, system, out.replace(path="-") if scene_path else out)
     if failed and scene_path:
         complain(f"Warning: {scene_path} is not written: the fit has failed")
     fail_for([outcome.failure() for outcome in failed], len(found), "fits")
@@ -166,22 +151,21 @@ def _fitted(
 
 
 def _known(
-    scene: str | None, described: Top | None, fix: list[str], given: Mapping[str, Any]
+    top: TopOptions, described: Top | None, fix: list[str]
 ) -> tuple[dict[str, float], dict[str, float], System | None]:
     """Return known inputs, given or of the scene, their standard deviations, and their units.
 
     Without a scene file, the scene is the one that the recording describes.  Raises LagtopError.
     """
     from ..fits.parameters import known_inputs
-    from ..inputs.given import gather
     from ..inputs.input_keys import overridden
     from ..inputs.measured import moment
     from ..inputs.names import check_names
     from ..inputs.top import Top
 
-    found = gather(given, scene)
+    found, given = top.given(), top.by_key()
     present = dict(found.inputs)
-    if described is not None and scene is None and found.system is None:
+    if described is not None and top.scene is None and found.system is None:
         present = overridden(described.inputs(), present)
     names = [x for x in present if x in given]
     if {"A_cm", "m", "s"} <= present.keys() and "A_cm" not in given:
@@ -190,7 +174,7 @@ def _known(
         matching = [x for x in (name, f"{name}_deg", f"{name}_rad") if x in present]
         if not matching:
             check_names("fix", [name], [*Top.fields, "theta0"])
-            raise LagtopError(f"--fix {name} must be given by an option or by --scene")
+            raise LagtopError(f"--fix {name} needs {name}: give it as an option or in a scene")
         names.append(matching[0])
     stds = {name: found.stds[name] for name in names if name in found.stds}
     return (*known_inputs({name: present[name] for name in names}, stds), found.system)
@@ -205,27 +189,27 @@ def _in_radians(
     return None if sigma is None else sigma * unit
 
 
-def _write(found: list[Outcome], source: str, system: System | None, fmt: str, output: str) -> None:
-    """Write a report, or one record for each recording, with units where known inputs have any."""
+def _write(found: list[Outcome], source: str, system: System | None, out: Output) -> None:
+    """Write a report, or one record for each recording, with units if known inputs have any."""
     from ..fits.report import fit_report, outcome_units
 
-    if fmt == "table":
+    if out.fmt in {"table", "markdown"}:
         from ..inputs.files import shown_path
 
-        write_report(lambda: fit_report(found, shown_path(source), system), fmt, output)
+        write_report(out, lambda: fit_report(found, shown_path(source), system))
         return
-    from ..output.write import block_text, write_record, write_text_blocks
+    from ..output.formats import block_text
 
-    records = [outcome.record() for outcome in found]
-    if system is not None and fmt == "json":
-        units = [{"units": outcome_units(outcome, system)} for outcome in found]
-        records = [record | unit for record, unit in zip(records, units, strict=True)]
-    if len(records) == 1 and fmt == "json":
-        write_record(records[0], fmt, output, dict)
+    records: list[dict[str, Any]] = [outcome.record() for outcome in found]
+    if system is not None and out.fmt != "csv":
+        for outcome, record in zip(found, records, strict=True):
+            record["units"] = outcome_units(outcome, system)
+    if len(records) == 1 and out.fmt == "json":
+        out.record(records[0], dict)
     else:
         keys = list(dict.fromkeys(key for record in records for key in record))
         columns = [[record.get(key) for record in records] for key in keys]
-        write_text_blocks(fmt, keys, [block_text(columns, keys, fmt)], output)
+        out.blocks(keys, [block_text(columns, keys, out.fmt)])
     for outcome in found:
         name = f"{outcome.recording.name}: " if outcome.recording.name else ""
         notes = [*outcome.notes(), *outcome.undetermined()]
@@ -236,14 +220,14 @@ def _write(found: list[Outcome], source: str, system: System | None, fmt: str, o
 
 def _write_scene(outcome: Outcome, source: str, path: str) -> None:
     from ..fits.report import scene_text
-    from ..output.write import write_bytes
+    from ..output.destination import write_bytes
 
     write_bytes(path, lambda: scene_text(outcome, source).encode())
 
 
 def _draw(found: list[Outcome], path: str, radians: bool) -> None:
     from ..fits.report import curves_of
-    from ..output.write import write_bytes
+    from ..output.destination import write_bytes
     from ..plot.reports import FittedCurve, draw_fit
 
     curves = [FittedCurve(*x) for outcome in found for x in curves_of(outcome)]

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
+from ..arithmetic.values import Key
 from ..errors import LagtopError
-from ..output.layouts import JACOBI
-from ..output.write import write_record
-from .command import ExamplesFirst, complain
+from .app import Command, complain
 from .options import (
     COUNT,
     MOST_TABLE_DIGITS,
     NUMBER,
+    RANGE,
     Parsed,
     digits_option,
     exclude,
+    late,
     output_options,
 )
-from .row_options import RANGE, listed, write_functions
+from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
@@ -29,206 +31,180 @@ if TYPE_CHECKING:
     from ..elliptic.request import Arguments, FunctionRequest
     from ..elliptic.tables import TableOfFunctions
     from ..inputs.multiples import Multiple, Multiples
+    from ..output.destination import Output
 
 MOST_TERMS = 10_000
+FAMILIES = ("am", "theta", "zeta", "omega", "pi")
+_JACOBI = """
+k | k | modulus | |
+k_prime | k' | complementary modulus | |
+modular_angle_deg | arcsin k | modular angle | deg |
+modular_angle_rad | arcsin k | modular angle | rad |
+nome | q | nome | | (3.1.6)
+nome_prime | q' | nome of k' | | (3.1.6)
+Complete integrals
+K | K | first kind, k | | (3.1.2)
+K_prime | K' | first kind, k' | | (3.1.2)
+E | E | second kind, k | |
+E_prime | E' | second kind, k' | |
+"""
 
 
-def _parse_multiple(text: str) -> Multiple:
-    from ..inputs.multiples import parse_multiple
+def constant_keys(group: str, table: str) -> dict[str, Key]:
+    """Return the keys of a table, a line each; a line without columns begins another group.
 
-    return parse_multiple(text)
+    Complex numbers have the keys of their parts too.
+    """
+    keys = {}
+    for line in table.strip().split("\n"):
+        if "|" not in line:
+            group = line
+            continue
+        name, symbol, *others = re.split(r"\s*\|\s*", line)
+        keys[name] = Key(group, symbol, *others)
+        for part, sign in (("re", "Re"), ("im", "Im")):
+            keys[f"{name}_{part}"] = Key(group, f"{sign} {symbol}", *others)
+    return keys
 
 
 def _parse_argument(text: str) -> Multiple | ExactComplex:
-    return parse_complex(text) if looks_complex(text) else _parse_multiple(text)
+    from ..inputs.multiples import parse_multiple
+
+    return parse_complex(text) if looks_complex(text) else parse_multiple(text)
 
 
-def _parse_multiples(text: str) -> Multiples:
-    from ..inputs.multiples import parse_multiples
+def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
+    """Return a range, or the arguments of a comma-separated list."""
+    if ":" in text:
+        from ..inputs.multiples import parse_multiples
 
-    return parse_multiples(text)
+        return parse_multiples(text)
+    return [_parse_argument(part) for part in text.split(",")]
 
 
-ARGUMENT = Parsed("number", _parse_argument)
-COMPLEX = Parsed("number", parse_complex)
-MULTIPLES = Parsed("range", _parse_multiples)
+def write_functions(table: TableOfFunctions, digits: int | None, out: Output) -> None:
+    """Write a table of functions, with its progress."""
+    if digits is not None and out.fmt in {"npy", "parquet"}:
+        raise LagtopError(f"--format {out.fmt} holds doubles: with --digits use csv or json")
+    header, blocks = table.rows(digits)
+    out.table(header, with_progress(blocks, "rows", table.count or None, len), table.count)
+
+
+function_formats = output_options("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
+rad_option = click.option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
 
 
 @click.command(
     "jacobi",
-    cls=ExamplesFirst,
+    cls=Command,
     examples="""
         lagtop jacobi --k 0.8
-        lagtop jacobi --k-prime 1e-9 --u 0.5 --u 20
-        lagtop jacobi --modular-angle 45 --u-range 0:10:101 -o sn.csv
-        lagtop jacobi --k 0.8 --u 0.3 --theta --pi --param 0.7i
-        lagtop jacobi --nome 0.1 --u 1 --digits 40
-        lagtop jacobi --k 0.8 --u-range 0:4K:5
-        lagtop jacobi --modular-angle 45 --phi 30 --phi 60
-        lagtop jacobi --k 0.99 --u 1 --series 10
-        lagtop jacobi --k 0.8i --u 0.3+0.7i --pi --param 0.2+0.1i
+        lagtop jacobi --modular-angle 45 --u 0:4K:101 -o sn.csv
+        lagtop jacobi --k 0.8 --u 0.3,1 --functions theta,pi --param 0.7i
     """,
 )
-@click.option("--k", type=COMPLEX, help="Modulus, 0 to 1, above 1, or imaginary as 0.8i.")
-@click.option("--k-prime", type=NUMBER, help="Its complement, for k close to 1.")
-@click.option("--modular-angle", "angle", type=NUMBER, help="arcsin k, 0 to 90 degrees.")
-@click.option("--nome", "q", type=NUMBER, help="exp(-pi K'/K), below 1.")
 @click.option(
-    *("--u", "single"),
-    type=ARGUMENT,
-    multiple=True,
-    help="Argument, as 0.5, 0.3+0.7i or, in units of K, K, -2.5K, K/2, 3K/4; may be repeated.",
+    "--k", type=Parsed("X", parse_complex), help="Modulus, 0 to 1, above 1, or imaginary as 0.8i."
 )
-@click.option("--u-range", "grid", type=MULTIPLES, help="Arguments, as [log:]start:stop:count.")
-@click.option("--phi", "amplitudes", type=NUMBER, multiple=True, help="F and E of it instead.")
-@click.option("--phi-range", "fan", type=RANGE, help="Amplitudes, as [log:]start:stop:count.")
-@click.option("--am", is_flag=True, help="am, sn, cn, dn of u; the default.")
-@click.option("--theta", is_flag=True, help="Theta functions of u.")
-@click.option("--zeta", is_flag=True, help="Their logarithmic derivatives.")
-@click.option("--omega", is_flag=True, help="Chrapan's Omega functions of u and --param.")
-@click.option("--pi", is_flag=True, help="Chrapan's Pi functions of u and --param.")
+@click.option("--k-prime", type=NUMBER, help="Complementary modulus k', for k close to 1.")
+@click.option("--modular-angle", type=NUMBER, help="Modular angle arcsin k, 0 to 90 degrees.")
+@click.option("--nome", type=NUMBER, help="Nome q = exp(-pi K'/K), below 1.")
 @click.option(
-    "--param", metavar="NUMBER", help="Parameter of Omega and Pi, as 0.7, 0.7i, 0.2+0.7i."
+    "--u",
+    type=Parsed("X", _parse_arguments),
+    help="Arguments: a list such as 0.5,0.3+0.7i, a range [log:]start:stop:count, or multiples of "
+    "K such as K/2,-2.5K.",
 )
 @click.option(
-    "--series", "terms", type=COUNT, metavar="N", help="Partial sums of the nome series instead."
+    "--functions",
+    "families",
+    type=Parsed("NAME,...", late("inputs.names", "split_names"), lambda: FAMILIES),
+    help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
+    "omega, pi (of u and --param, after Chrapan).  [default: am]",
 )
-@click.option("--rad", is_flag=True, help="Angles in radians, in and out.")
+@click.option("--param", help="Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i.")
+@click.option(
+    "--phi", type=RANGE, help="Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
+)
+@click.option(
+    "--series", type=COUNT, help="Print the first N partial sums of the nome series instead."
+)
+@rad_option
 @digits_option(MOST_TABLE_DIGITS)
-@output_options("table", "csv", "json")
-def command(
+@function_formats
+def jacobi_command(
     k: ExactComplex | None,
     k_prime: Fraction | None,
-    angle: Fraction | None,
-    q: Fraction | None,
-    single: tuple[Multiple | ExactComplex, ...],
-    grid: Multiples | None,
-    amplitudes: tuple[Fraction, ...],
-    fan: Points | None,
-    am: bool,
-    theta: bool,
-    zeta: bool,
-    omega: bool,
-    pi: bool,
+    modular_angle: Fraction | None,
+    nome: Fraction | None,
+    u: Multiples | list[Multiple | ExactComplex] | None,
+    families: list[str] | None,
     param: str | None,
-    terms: int | None,
+    phi: Points | None,
+    series: int | None,
     rad: bool,
     digits: int | None,
-    fmt: str,
-    output: str,
+    out: Output,
 ) -> None:
-    """Elliptic integrals, Jacobi's functions and theta functions of one modulus.
+    """Compute elliptic integrals, Jacobi's and theta functions.
 
-    Without --u the constants of the modulus are written; with it am, sn, cn, dn of every u or, of
-    --am, --theta, --zeta, --omega and --pi, what is asked for.  With --phi it is Legendre's
-    F(phi, k) and E(phi, k) of every phi, which is in degrees and may be any number.
+    Without --u and --phi, the constants of the modulus are printed.
 
     Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param.
-    Here u and a real v are reduced by whole periods; for k > 1 only in am, sn, cn and dn.  In
-    small tables every value is the nearest double.  u and a real v go up to 2^50 periods, an
-    imaginary v up to K'; what is beyond is refused.  An empty cell is a pole.
+    Here u and a real v are reduced by whole periods; for k > 1 only in am, sn, cn and dn.  In small
+    tables every value is correctly rounded.  u and a real v go up to 2^50 periods, an imaginary v
+    up to K'.  An empty cell is a pole.
 
-    The modulus counts as the decimal that you type, u and --param as the nearest doubles; with
-    --digits all of them count as decimals.
-
-    Where a modulus is imaginary or above 1, an argument complex, or a parameter neither real nor
-    imaginary, columns end in _re and _im, and imaginary parts go up to 2^50 periods too.  Omega and
-    Pi are continuous between the lines of zeros of theta; am is empty beyond its branch points.
+    The modulus is read as an exact decimal, u and --param as doubles unless --digits is given.
+    Complex results have columns that end in _re and _im.
     """
-    from ..elliptic.modulus import ModulusInput, constants_record
+    from ..elliptic.modulus import ModulusInput
+    from ..inputs.names import check_names
 
     beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
     real_k = None if k is None else k.real
-    named = {"k": real_k, "k_prime": k_prime, "modular_angle": angle, "nome": q}
+    way = _modulus(k=real_k, k_prime=k_prime, modular_angle=modular_angle, nome=nome)
+    modulus = ModulusInput(*way, radians=rad)
+    if families is not None:
+        check_names("functions", families, FAMILIES)
+    asked = tuple(name for name in FAMILIES if name in (families or ["am"]))
+    parameter, imaginary = _parameter(param, asked)
+    has_complex = isinstance(u, list) and any(isinstance(x, ExactComplex) for x in u)
+    real = not (beyond or has_complex or (parameter.real and parameter.imag))
+    if not real:
+        for name, wanted in (("--phi", phi), ("--series", series)):
+            if wanted:
+                raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
+    others = {"--u": u, "--series": series, "--functions": families, "--param": param}
+    for name, value in others.items():
+        exclude({"--phi": phi, name: value})
+    for name, value in {"--digits": digits, "--functions": families}.items():
+        exclude({"--series": series, name: value})
+    arguments, in_quarters = (None, False) if u is None else _arguments(u, real=real)
+    given = k if k is not None and beyond else modulus
+    if phi is not None:
+        from ..elliptic.incomplete import AmplitudeTable
+
+        write_functions(AmplitudeTable(phi, modulus), digits, out)
+    elif series is not None:
+        _write_series(modulus, arguments, in_quarters, series, out)
+    elif arguments is not None:
+        from ..elliptic.request import FunctionRequest
+
+        request = FunctionRequest(given, asked, parameter, imaginary, rad, in_quarters)
+        write_functions(_table(arguments, request, real=real), digits, out)
+    elif families is not None:
+        raise LagtopError("--functions needs --u")
+    else:
+        write_constants(_constants(given, digits), "Moduli", _JACOBI, out)
+
+
+def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
+    """Return the one way in which a modulus is given.  Raises LagtopError."""
     chosen = [(name, value) for name, value in named.items() if value is not None]
     if len(chosen) != 1:
         raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
-    modulus = ModulusInput(*chosen[0], radians=rad)
-    flags = {"am": am, "theta": theta, "zeta": zeta, "omega": omega, "pi": pi}
-    asked = tuple(name for name, wanted in flags.items() if wanted)
-    families = asked or ("am",)
-    parameter, imaginary = _parameter(param, families)
-    real = not (
-        beyond
-        or any(isinstance(u, ExactComplex) for u in single)
-        or (parameter.real and parameter.imag)
-    )
-    if not real:
-        for name, wanted in (("--phi", amplitudes or fan), ("--series", terms)):
-            if wanted:
-                raise LagtopError(f"{name} needs a real --u, and a --k in [0, 1]")
-    arguments, in_quarters = _arguments(single, grid, real=real)
-    angles = listed("phi", amplitudes, fan)
-    if angles:
-        others = {"--u": arguments, "--series": terms, f"--{(*asked, '')[0]}": asked or None}
-        for name, value in {**others, "--param": param}.items():
-            exclude({"--phi": angles, name: value})
-        from ..elliptic.incomplete import AmplitudeTable
-
-        write_functions(AmplitudeTable(angles, modulus), digits, fmt, output)
-        return
-    if terms is not None:
-        exclude({"--series": terms, "--digits": digits})
-        exclude({"--series": terms, f"--{(*asked, '')[0]}": asked or None})
-        _write_series(modulus, arguments, in_quarters, terms, (fmt, output))
-        return
-    if arguments is None:
-        if asked:
-            raise LagtopError(f"--{asked[0]} needs --u or --u-range")
-        if k is None or not beyond:
-            write_record(constants_record(modulus, digits), fmt, output, lambda: JACOBI)
-            return
-        from ..elliptic.complex_table import any_constants_record
-        from ..output.layouts import in_parts
-
-        record = any_constants_record(k, digits)
-        write_record(record, fmt, output, lambda: in_parts(JACOBI, record))
-        return
-    from ..elliptic.request import FunctionRequest
-
-    given = k if k is not None and beyond else modulus
-    request = FunctionRequest(given, families, parameter, imaginary, rad, in_quarters)
-    write_functions(_table(arguments, request, real=real), digits, fmt, output)
-
-
-def _arguments(
-    single: tuple[Multiple | ExactComplex, ...], grid: Multiples | None, *, real: bool
-) -> tuple[Arguments | None, bool]:
-    """Return the arguments, if any, and whether they are factors of K.
-
-    Raises LagtopError for factors of K unless all is real.
-    """
-    exclude({"--u": single or None, "--u-range": grid})
-    if not (single or grid):
-        return None, False
-    from ..arithmetic.points import ListedPoints
-    from ..elliptic.request import Arguments
-    from ..inputs.multiples import Multiple, listed_multiples
-
-    reals = [Multiple(u.real, False) if isinstance(u, ExactComplex) else u for u in single]
-    units = [grid.in_quarters] if grid else [u.in_quarters for u in reals]
-    if not real and any(units):
-        raise LagtopError(
-            "--u must be without K beside complex numbers, and where --k is not in [0, 1]"
-        )
-    points, in_quarters = grid if grid else listed_multiples(tuple(reals))
-    imag = [u.imag if isinstance(u, ExactComplex) else Fraction(0) for u in single]
-    return Arguments(points, ListedPoints(imag) if any(imag) else None), in_quarters
-
-
-def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactComplex, bool]:
-    """Return the value of --param, 0 where it is not needed, and whether it is imaginary."""
-    if not {"omega", "pi"} & set(families):
-        if param is not None:
-            raise LagtopError("--param needs --omega or --pi")
-        return ExactComplex(Fraction(0)), False
-    if param is None:
-        raise LagtopError("--omega and --pi need --param, as 0.7, 0.7i or 0.2+0.7i")
-    try:
-        value = parse_complex(param)
-    except LagtopError as error:
-        raise LagtopError(f"--param {error}") from None
-    return value, not value.real and param.strip().endswith("i")
+    return chosen[0]
 
 
 def _table(arguments: Arguments, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
@@ -242,12 +218,66 @@ def _table(arguments: Arguments, request: FunctionRequest, *, real: bool) -> Tab
     return ComplexTable(arguments, request)
 
 
+def _constants(given: ModulusInput | ExactComplex, digits: int | None) -> dict[str, Any]:
+    if isinstance(given, ExactComplex):
+        from ..elliptic.complex_table import any_constants_record
+
+        return any_constants_record(given, digits)
+    from ..elliptic.modulus import constants_record
+
+    return constants_record(given, digits)
+
+
+def write_constants(record: dict[str, Any], group: str, table: str, out: Output) -> None:
+    """Write the constants of a modulus or of a quadrature."""
+    if out.fmt in {"npy", "parquet"}:
+        raise LagtopError(f"--format {out.fmt} holds tables: use json or csv for constants")
+    out.record(record, lambda: constant_keys(group, table))
+
+
+def _arguments(
+    u: Multiples | list[Multiple | ExactComplex], *, real: bool
+) -> tuple[Arguments, bool]:
+    """Return the arguments, and whether they are factors of K.
+
+    Raises LagtopError for factors of K unless all is real.
+    """
+    from ..arithmetic.points import ListedPoints
+    from ..elliptic.request import Arguments
+    from ..inputs.multiples import Multiple, listed_multiples
+
+    imag: list[Fraction] = []
+    if isinstance(u, list):
+        reals = [Multiple(x.real, False) if isinstance(x, ExactComplex) else x for x in u]
+        imag = [x.imag if isinstance(x, ExactComplex) else Fraction(0) for x in u]
+        units = [x.in_quarters for x in reals]
+    else:
+        units = [u.in_quarters]
+    if not real and any(units):
+        raise LagtopError(
+            "--u must be without K beside complex numbers, and if --k is not in [0, 1]"
+        )
+    points, in_quarters = listed_multiples(tuple(reals)) if isinstance(u, list) else u
+    return Arguments(points, ListedPoints(imag) if any(imag) else None), in_quarters
+
+
+def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactComplex, bool]:
+    """Return the value of --param, 0 if it is not needed, and whether it is imaginary."""
+    if not {"omega", "pi"} & set(families):
+        if param is not None:
+            raise LagtopError("--param needs --functions omega or pi")
+        return ExactComplex(Fraction(0)), False
+    if param is None:
+        raise LagtopError("the functions omega and pi need --param, as 0.7, 0.7i or 0.2+0.7i")
+    try:
+        value = parse_complex(param)
+    except LagtopError as error:
+        raise LagtopError(f"--param {error}") from None
+    return value, not value.real and param.strip().endswith("i")
+
+
 def _write_series(
-    modulus: ModulusInput,
-    arguments: Arguments | None,
-    in_quarters: bool,
-    terms: int,
-    destination: tuple[str, str],
+    modulus: ModulusInput, arguments: Arguments | None, in_quarters: bool, terms: int, out: Output
 ) -> None:
     """Write the sums, and on standard error how many terms are enough."""
     from ..elliptic.nome_series import TOLERANCE, SeriesTable
@@ -258,5 +288,5 @@ def _write_series(
         raise LagtopError(f"--series takes one --u, got {arguments.real.count}")
     u = None if arguments is None else next(arguments.real.decimals())
     table = SeriesTable(modulus, u, terms, in_quarters=in_quarters)
-    write_functions(table, None, *destination)
+    write_functions(table, None, out)
     complain(f"Terms whose error is proved to be below {TOLERANCE}: {table.needed()}")

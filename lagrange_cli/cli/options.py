@@ -1,8 +1,10 @@
-"""Options that the commands share, and the types of their parameters."""
+"""Options that commands share: each is declared here once, with its type and its help."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+import sys
+from collections.abc import Callable, Iterable
+from functools import wraps
 from importlib import import_module
 from os.path import splitext
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,23 +13,42 @@ import click
 
 from ..arithmetic.text import parse_number, quoted
 from ..errors import LagtopError
+from ..output.destination import Output
+from ..output.terminal import is_terminal
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
 MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
+BINARY = ("parquet", "npy")
+"""Formats that are not written to a terminal."""
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+def late(module: str, name: str, **how: Any) -> Callable[..., Any]:
+    """Return a function of the package, or a constant, that is imported when it is called."""
+
+    def call(*args: Any) -> Any:
+        found: Any = getattr(import_module(f"...{module}", __name__), name)
+        return found(*args, **how) if callable(found) else found
+
+    return call
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
     """A parameter type: what a function makes of a text.  Errors begin with the option's name.
 
-    A shell completes it by a list of `completion.py`, where one is named.
+    `names` returns the names that a shell offers, of which commas may separate several.
     """
 
-    def __init__(self, name: str, parse: Callable[[str], Any], words: str = "") -> None:
-        self.name, self.parse, self.words = name, parse, words
+    def __init__(
+        self,
+        metavar: str,
+        parse: Callable[[str], Any],
+        names: Callable[[], Iterable[str]] | None = None,
+    ) -> None:
+        self.name, self.parse, self.names = metavar, parse, names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the value; click may hand it in a second time, when it is no text any more."""
@@ -36,38 +57,20 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         try:
             return self.parse(value)
         except LagtopError as error:
-            raise click.UsageError(f"{param.opts[0] if param else 'value'} {error}", ctx) from None
+            name = param.opts[0] if param and param.opts[0].startswith("-") else ""
+            raise LagtopError(f"{name} {error}".lstrip()) from None
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        """Return the names that go on like what is there."""
-        from .completion import completed
+        """Return the names that continue the last word; files if there is none."""
+        from click.shell_completion import CompletionItem
 
-        return completed(self.words, incomplete)
-
-
-def late(module: str, function: str, **how: Any) -> Callable[[str], Any]:
-    """Return a function of the package that is imported when it is called, not at start-up."""
-
-    def parse(text: str) -> Any:
-        return getattr(import_module(f"...{module}", __name__), function)(text, **how)
-
-    return parse
-
-
-class FileName(click.ParamType):  # type: ignore[type-arg]
-    """A name of a file, which a shell may complete; that of click would look for translations."""
-
-    name = "path"
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        """Return the request that the shell offers its files."""
-        from .completion import files
-
-        return files(incomplete)
+        before, comma, begun = incomplete.rpartition(",")
+        known = self.names() if self.names else ()
+        found = [CompletionItem(before + comma + x) for x in known if x.startswith(begun)]
+        is_file = param.param_type_name == "argument" or self is FILE
+        return found or ([CompletionItem(incomplete, type="file")] if is_file else [])
 
 
 def _parse_count(text: str) -> int:
@@ -79,10 +82,10 @@ def _parse_count(text: str) -> int:
 
 
 def exclude(options: dict[str, Any]) -> None:
-    """Raise LagtopError where more than one of these options was given."""
-    given = [name for name, value in options.items() if value is not None]
+    """Raise LagtopError if more than one of these options was given."""
+    given = [name for name, value in options.items() if value is not None and value is not False]
     if len(given) > 1:
-        raise LagtopError(f"{given[0]} and {given[1]} exclude each other: leave one out")
+        raise LagtopError(f"use {given[0]} or {given[1]}, not both")
 
 
 def on_command_line(name: str) -> bool:
@@ -92,14 +95,16 @@ def on_command_line(name: str) -> bool:
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
 
 
-FILE = FileName()
-NUMBER = Parsed("number", parse_number)
-COUNT = Parsed("integer", _parse_count)
-NAMES, KEY_NAMES, COLUMN_NAMES, METHOD_NAMES, STRATUM_NAMES = (
-    Parsed("names", late("inputs.names", "split_names"), words)
-    for words in ("", "keys", "columns", "methods", "strata")
-)
-PICTURES = Parsed("text", str, "pictures")
+_split = late("inputs.names", "split_names")
+_all_keys = late("motion.record", "all_keys")
+FILE = Parsed("FILE", str)
+NUMBER = Parsed("X", parse_number)
+COUNT = Parsed("N", _parse_count)
+RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
+NAMES = Parsed("NAME,...", _split)
+KEY_NAMES = Parsed("KEY,...", _split, _all_keys)
+KEY = Parsed("KEY", str, _all_keys)
+COLUMN_NAMES = Parsed("NAME,...", _split, late("motion.over_time.columns", "column_names"))
 
 
 def digits_option(most: int) -> Callable[[F], F]:
@@ -110,14 +115,28 @@ def digits_option(most: int) -> Callable[[F], F]:
             raise LagtopError(f"--digits must be in [1, {most}], got {digits}")
         return digits
 
-    text = f"So many significant digits, 1 to {most}, all of them right; inputs count as decimals."
-    return click.option("--digits", type=COUNT, callback=check, metavar="N", help=text)
+    text = f"Print N correct digits, 1 to {most}; inputs are read as exact decimals."
+    return click.option("--digits", type=COUNT, callback=check, help=text)
 
 
 certify_option = click.option(
-    "--certify",
-    is_flag=True,
-    help="Print KEY_radius as well: a proved bound of the distance from the exact value.",
+    "--certify", is_flag=True, help="Print KEY_radius too, a proved bound of the error."
+)
+keys_option = click.option(
+    "--keys", type=KEY_NAMES, help="Compute and print only these keys (see lagtop explain)."
+)
+
+
+def seed_option(**how: Any) -> Callable[[F], F]:
+    """Add the option --seed."""
+    return click.option("--seed", type=COUNT, **how)
+
+
+plot_option = click.option("--plot", type=FILE, help="Draw the report too: FILE.svg or FILE.png.")
+jobs_option = click.option(
+    "--jobs",
+    type=Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
+    help="Processes that share the work; auto: one per core.  [default: 1]",
 )
 
 
@@ -126,42 +145,130 @@ def extension(path: str) -> str:
     return splitext(path)[1][1:].lower()
 
 
-def output_options(*formats: str, extensions: Collection[str] = ()) -> Callable[[F], F]:
-    """Add the options --output and --format.
+def output_options(
+    *formats: str, extensions: Iterable[str] = (), on_terminal: str = ""
+) -> Callable[[F], F]:
+    """Add the options --output and --format; the command receives an `Output` as `out`.
 
-    The default format is that of the extension of the file, or the first one if there is no
-    extension, if it is txt, or if it is one of `extensions`.
+    The default format is the extension of the file.  Without one it is the first of the formats, or
+    `on_terminal` if standard output is a terminal.
     """
+    default = f"{formats[0]}; on a terminal {on_terminal}" if on_terminal else formats[0]
 
-    def chosen(ctx: click.Context, _: click.Parameter, fmt: str | None) -> str:
-        path = ctx.params["output"]
+    def chosen(name: str, path: str, fmt: str | None) -> str:
         ending = extension(path)
-        if fmt or ending in {"", "txt", *extensions}:
-            return fmt or formats[0]
-        if ending == "table" or ending not in formats:
-            known = f"{ctx.command.name} writes {', '.join(formats)}"
+        if fmt is None and ending in {"", "txt", *extensions}:
+            at_screen = path == "-" and on_terminal and is_terminal(sys.stdout)
+            return on_terminal if at_screen else formats[0]
+        ending = "markdown" if ending == "md" else ending
+        if fmt is None and (ending == "table" or ending not in formats):
             raise LagtopError(
-                f"{known} and no {ending}, got --output {quoted(path)}: "
-                "change the extension, or add --format"
+                f"{name} writes {', '.join(formats)} and no {extension(path)}, "
+                f"got --output {quoted(path)}: change the extension, or add --format"
             )
-        return ending
+        fmt = fmt or ending
+        if fmt in BINARY and path == "-" and is_terminal(sys.stdout):
+            raise LagtopError(f"--format {fmt} is not for a terminal: use -o FILE.{fmt}")
+        return fmt
 
     def decorate(command: F) -> F:
-        command = click.option(
-            "-o",
-            "--output",
-            type=FILE,
-            default="-",
-            metavar="FILE|-",
-            is_eager=True,  # the format looks at it
-            help="Output file (replaced only on success).",
-        )(command)
-        return click.option(
+        @wraps(command)
+        def run(*args: Any, output: str, fmt: str | None, **options: Any) -> Any:
+            name = click.get_current_context().command.name or ""
+            return command(*args, out=Output(output, chosen(name, output, fmt)), **options)
+
+        decorated: Any = click.option(
             "--format",
             "fmt",
             type=click.Choice(formats),
-            callback=chosen,
-            help=f"Output format.  [default: by the extension of FILE, else {formats[0]}]",
+            metavar="FORMAT",
+            help=f"{', '.join(formats)}.  [default: extension of FILE, or {default}]",
+        )(run)
+        return click.option(  # type: ignore[no-any-return]
+            "-o", "--output", type=FILE, default="-", help="Output file (replaced only on success)."
+        )(decorated)
+
+    return decorate
+
+
+_DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
+_DECIMALS = {"point": ".", "comma": ","}
+
+
+def _mark(marks: dict[str, str]) -> Callable[[str], str]:
+    """Return a parser of the name of a mark, or of the mark itself."""
+
+    def parse(text: str) -> str:
+        if text not in {*marks, *marks.values()}:
+            raise LagtopError(f"must be {', '.join(marks)} or the character, got {quoted(text)}")
+        return marks.get(text, text)
+
+    return parse
+
+
+def text_options(command: F) -> F:
+    """Add --delimiter and --decimal; the command receives a `dialect`."""
+
+    @wraps(command)
+    def run(*args: Any, delimiter: str | None, decimal: str | None, **options: Any) -> Any:
+        from ..inputs.text_lines import Dialect
+
+        if delimiter == decimal == ",":
+            raise LagtopError("use --delimiter comma or --decimal comma, not both")
+        return command(*args, dialect=Dialect(delimiter or "", decimal or ""), **options)
+
+    decorated: Any = run
+    for name, marks in (("decimal", _DECIMALS), ("delimiter", _DELIMITERS)):
+        decorated = click.option(
+            f"--{name}",
+            type=Parsed("MARK", _mark(marks), lambda marks=marks: marks),  # type: ignore[misc]
+            help=f"{', '.join(marks)}.  [default: found in each file]",
+        )(decorated)
+    return decorated  # type: ignore[no-any-return]
+
+
+header_comments_option = click.option(
+    "--header-comments",
+    is_flag=True,
+    help="Describe scene, version, units and conventions above the CSV, in # lines.",
+)
+
+
+def is_described(out: Output, header_comments: bool) -> bool:
+    """Return whether the output has a description: Parquet always, CSV with --header-comments.
+
+    Raises LagtopError for --header-comments with a format that has no place for it.
+    """
+    if header_comments and out.fmt not in {"csv", "parquet"}:
+        raise LagtopError(f"--header-comments describes CSV and Parquet, got --format {out.fmt}")
+    return header_comments or out.fmt == "parquet"
+
+
+def reading_options(quaternion: str | None) -> Callable[[F], F]:
+    """Add the options for the columns of a trajectory; `quaternion` is the default order."""
+    order = quaternion or "see first row"
+
+    def decorate(command: F) -> F:
+        command = click.option(
+            "--euler-sequence",
+            type=Parsed("SEQ", late("inputs.seen", "euler_sequence")),
+            default="xyz",
+            show_default=True,
+            help="Axes of `euler` as in scipy: xyz about those of space, XYZ of the body.",
+        )(command)
+        command = click.option(
+            "--quaternion-order",
+            type=click.Choice(["wxyz", "xyzw"]),
+            metavar="ORDER",
+            default=quaternion,
+            help=f"wxyz or xyzw, if the names do not say.  [default: {order}]",
+        )(command)
+        return click.option(
+            "--columns",
+            "names",
+            type=NAMES,
+            help="Names of all columns from the left; axis, quaternion and matrix stand for all "
+            "of their parts, _ skips a column.",
         )(command)
 
     return decorate

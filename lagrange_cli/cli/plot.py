@@ -1,13 +1,13 @@
-"""The command `lagtop plot`: pictures of one motion."""
+"""The commands `lagtop plot`, pictures of one motion, and `lagtop view`, a page for the browser."""
 
 from __future__ import annotations
 
 import math
 import re
 import sys
-from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from pathlib import PurePath
+from typing import TYPE_CHECKING
 
 import click
 
@@ -15,23 +15,24 @@ from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
 from ..inputs.names import check_names
+from ..output.destination import write_bytes
 from ..output.terminal import is_terminal
-from ..output.write import write_bytes
 from ..plot.files import require_matplotlib
 from ..plot.kinds import KINDS, MAP_KEY, ON_THE_SHEET, SHEET, PlotRequest, help_lines
 from ..plot.style import chosen_look
-from .command import ExamplesFirst
-from .options import FILE, NUMBER, PICTURES
+from .app import Command
+from .options import FILE, KEY, NUMBER, Parsed
 from .progress import with_progress
-from .top_options import (
+from .top import (
+    INPUT,
     TIME,
     UNCERTAIN,
+    TopOptions,
     angle_stds,
-    in_seconds,
-    input_options,
-    inputs_of,
-    is_scene,
     motion_of,
+    scene_among,
+    top_options,
+    warn_unused,
 )
 
 if TYPE_CHECKING:
@@ -43,105 +44,94 @@ if TYPE_CHECKING:
 
 FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
-HELP = """Pictures of a top; several kinds come on one page.
+HELP = """Draw pictures of one motion.
 
 \b
 {kinds}
-
-Needs matplotlib: pip install 'lagtop[plot]'.
 """
+
+
+def _kinds_and_scenes() -> list[str]:
+    from ..inputs.scene_file import scene_names
+
+    return [*KINDS, SHEET, *scene_names()]
+
+
+def _axis_names() -> list[str]:
+    from ..inputs.input_keys import NINE
+
+    return [f"{name}=" for name in NINE]
+
+
+AXIS = Parsed("RANGE", str, _axis_names)
 
 
 @click.command(
     "plot",
-    cls=ExamplesFirst,
+    cls=Command,
     help=HELP.format(kinds="\n".join(help_lines())),
     examples="""
-        lagtop plot -o top.png
-        lagtop plot sample_inputs/looping-top.toml sphere -o loops.svg
-        lagtop plot angles phase --r0 20 --dark -o page.pdf
-        lagtop plot angles --theta0 '30(1)' --r0 '50.0(5)' -o bands.svg
-        lagtop plot map --x r0=5:120:80 --y theta0=2:178:60 --key T_nutation -o map.png
-        lagtop plot sphere --camera 40,15 -o from-the-side.pdf
-        lagtop plot --r0 30 --animate top.gif --duration 10 --speed 0.1
+        lagtop plot looping-top sphere -o loops.svg
+        lagtop plot map --x r0=5:120:40 --y theta0=2:178:9 -o map.png
+        lagtop plot --r0 30 --animate top.gif --duration 2
     """,
 )
-@click.argument("words", nargs=-1, type=PICTURES, metavar="[SCENE.toml|-] [KIND]...")
-@input_options(UNCERTAIN)
-@click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
-@click.option("--key", default=MAP_KEY, show_default=True, help="Key of the record for `map`.")
-@click.option(
-    "--x",
-    metavar="RANGE",
-    help="Horizontal axis of `map`: INPUT=[log:]start:stop:count.  [default: over r0]",
+@click.argument(
+    "words", nargs=-1, type=Parsed("KIND", str, _kinds_and_scenes), metavar="[SCENE] [KIND]..."
 )
-@click.option("--y", metavar="RANGE", help="Vertical axis of `map`.  [default: over theta0]")
+@top_options(UNCERTAIN, scene=False)
+@click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
+@click.option("--key", type=KEY, default=MAP_KEY, show_default=True, help="Key of `map`.")
+@click.option("--x", type=AXIS, help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
+@click.option("--y", type=AXIS, help="Vertical axis of `map`.  [default: theta0]")
 @click.option(
     "--colour-limits",
-    "limits",
     metavar="LOW:HIGH",
-    help="Ends of the colours of `map`.  [default: all but the outermost 1 % of the values]",
+    help="Colour limits of `map`.  [default: 1st and 99th percentile]",
 )
 @click.option(
     "--camera",
     metavar="AZ,EL",
-    help="Azimuth and elevation of the eye.  [default: whence most of the path is seen]",
+    help="Azimuth and elevation of the camera.",
 )
-@click.option("--no-numbers", is_flag=True, help="Leave out the numbers beside several pictures.")
-@click.option("--dark", is_flag=True, help="Light on dark.")
-@click.option("--size", metavar="WxH", help="Width and height of the page in inches, as 8x6.")
-@click.option(
-    "--dpi",
-    type=NUMBER,
-    help="Pixels per inch, 20 to 1000; small letters need more than 20.  [default: 150, film 100]",
-)
-@click.option("--animate", metavar="FILE", help="A film of the top: FILE.gif or FILE.mp4.")
-@click.option("--fps", type=NUMBER, help="Frames per second of the film, 1 to 60.  [default: 25]")
+@click.option("--dark", is_flag=True, help="Dark background.")
+@click.option("--size", metavar="WxH", help="Size of the page in inches, such as 8x6.")
+@click.option("--dpi", type=NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
+@click.option("--animate", type=FILE, help="Write a film of the top: FILE.gif or FILE.mp4.")
 @click.option("--duration", type=NUMBER, help="Seconds that the film lasts.  [default: 6]")
-@click.option(
-    "--speed",
-    type=NUMBER,
-    help="Time of the motion in a second of the film.  [default: as --t-max needs]",
-)
+@click.option("--speed", type=NUMBER, help="Simulated time per second of film.")
 @click.option("--show", is_flag=True, help="Open a window.")
-@click.option("--format", "fmt", type=click.Choice(FORMATS), help="[default: as FILE ends]")
 @click.option(
-    "-o",
-    "--output",
-    type=FILE,
-    metavar="FILE|-",
-    help="FILE.png, .svg or .pdf, replaced when all is written.",
+    "--format", "fmt", type=click.Choice(FORMATS), metavar="FORMAT", help="png, svg or pdf."
 )
-def command(
+@click.option("-o", "--output", type=FILE, help="FILE.png, .svg or .pdf (replaced on success).")
+def plot_command(
     words: tuple[str, ...],
-    rad: bool,
+    top: TopOptions,
     t_max: Value | None,
     key: str,
     x: str | None,
     y: str | None,
-    limits: str | None,
+    colour_limits: str | None,
     camera: str | None,
-    no_numbers: bool,
     dark: bool,
     size: str | None,
     dpi: Fraction | None,
     animate: str | None,
-    fps: Fraction | None,
     duration: Fraction | None,
     speed: Fraction | None,
     show: bool,
     fmt: str | None,
     output: str | None,
-    **options: Any,
 ) -> None:
     """Write, film and show the pictures that the options ask for."""
     if not (output or show or animate):
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
-    scene, chosen = _scene_and_kinds(words)
+    top, chosen = _scene_and_kinds(top, words)
     written = _format_of(fmt, output)
     inches = _inches(size)
-    eye, ends = _camera(camera, rad), _ends(limits)
-    pacing = {"fps": fps, "duration": duration, "speed": speed}
+    eye, ends = _camera(camera, top.radians), _ends(colour_limits)
+    pacing = {"duration": duration, "speed": speed}
     for name, value in pacing.items():
         if value is not None and animate is None:
             raise LagtopError(f"--{name} needs --animate FILE.gif")
@@ -149,19 +139,18 @@ def command(
     from ..plot.curves import checked_span
     from ..plot.page import Page, page_bytes, show_page
 
-    options, times = in_seconds(options, t_max=t_max)
-    found = inputs_of(scene, rad, options)
-    motion = motion_of(found, False)
+    top, times = top.in_seconds(t_max=t_max)
+    found = top.given()
+    motion = motion_of(found)
     request = PlotRequest(
         t_max=checked_span(motion, times["t_max"]),
-        radians=rad,
+        radians=top.radians,
         system=found.system,
         key=key,
         x=_input_range("x", x),
         y=_input_range("y", y),
         camera=eye,
         limits=ends,
-        numbers=not no_numbers,
         progress=with_progress,
         stds=angle_stds(found, motion),
         uncertain=_first_order(found, motion),
@@ -184,19 +173,16 @@ def command(
         show_page(page)
 
 
-def _scene_and_kinds(words: Sequence[str]) -> tuple[str | None, tuple[str, ...]]:
-    """Return the scene file among the words, if any, and the kinds of picture."""
-    known = (*KINDS, SHEET)
-    scenes = [word for word in words if word not in known]
-    for word in scenes[1:] or [word for word in scenes if not is_scene(word)]:
-        check_names("KIND", [word], known)
-    kinds = [kind for word in words for kind in (ON_THE_SHEET if word == SHEET else [word])]
-    chosen = tuple(dict.fromkeys(kind for kind in kinds if kind in KINDS))
-    return scenes[0] if scenes else None, chosen or ON_THE_SHEET
+def _scene_and_kinds(top: TopOptions, words: tuple[str, ...]) -> tuple[TopOptions, tuple[str, ...]]:
+    """Return the options with the scene among the words, if any, and the kinds of picture."""
+    scene, names = scene_among(words)
+    check_names("KIND", names or [SHEET], [*KINDS, SHEET])
+    kinds = [kind for name in names for kind in (ON_THE_SHEET if name == SHEET else [name])]
+    return top.replace(scene=scene), tuple(dict.fromkeys(kinds)) or ON_THE_SHEET
 
 
 def _format_of(fmt: str | None, output: str | None) -> str:
-    """Return `png`, `svg` or `pdf`, as it was asked for or as the file's name ends."""
+    """Return `png`, `svg` or `pdf`: --format, or the extension of the file."""
     if output == "-" and is_terminal(sys.stdout):
         raise LagtopError("a picture does not go to a terminal: give -o FILE.png")
     if fmt or output in (None, "-"):
@@ -219,15 +205,21 @@ def _inches(size: str | None) -> tuple[float, float] | None:
     return width, height
 
 
+def _pair(text: str, separator: str, fallback: tuple[float, float]) -> tuple[float, float]:
+    """Return the two numbers of a text, or the fallback if it is no such pair."""
+    try:
+        first, second = (float(parse_number(part)) for part in text.split(separator))
+    except (LagtopError, ValueError):
+        return fallback
+    return first, second
+
+
 def _camera(text: str | None, radians: bool) -> tuple[float, float] | None:
     """Return azimuth and elevation (radians) of a text such as `30,-15`."""
     if text is None:
         return None
     unit = unit_in_radians(radians=radians)
-    try:
-        azimuth, elevation = (float(parse_number(part)) * unit for part in text.split(","))
-    except (LagtopError, ValueError):
-        azimuth = elevation = math.inf
+    azimuth, elevation = (x * unit for x in _pair(text, ",", (math.inf, math.inf)))
     if abs(azimuth) > 2 * math.pi or abs(elevation) > math.pi / 2:
         turn, quarter, name = ("2π", "π/2", "rad") if radians else ("360", "90", "deg")
         raise LagtopError(
@@ -259,10 +251,44 @@ def _ends(text: str | None) -> tuple[float, float] | None:
     """Return the two numbers of a text such as `0:12.5`, the lower one first."""
     if text is None:
         return None
-    try:
-        low, high = (float(parse_number(part)) for part in text.split(":"))
-    except (LagtopError, ValueError):
-        low = high = 0.0
+    low, high = _pair(text, ":", (0.0, 0.0))
     if not low < high:
         raise LagtopError(f"--colour-limits must be LOW:HIGH with LOW < HIGH, got {text!r}")
     return low, high
+
+
+@click.command(
+    "view",
+    cls=Command,
+    examples="""
+        lagtop view -o top.html
+        lagtop view looping-top -o loops.html
+        lagtop view --r0 60 --theta0 0 -o sleeping.html
+    """,
+)
+@top_options(INPUT)
+@click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
+@click.option("-o", "--output", type=FILE, help="FILE.html (replaced only on success).")
+def view_command(top: TopOptions, opens: bool, output: str | None) -> None:
+    """Write an interactive page for the browser.
+
+    It shows the top in space, its angles and its record.  Sliders change every input, and the page
+    computes the motion in closed form.  The file needs no network and no other file.
+    """
+    if not (output or opens):
+        raise LagtopError("nothing to do: give -o FILE.html or --open")
+    if output == "-" and (opens or is_terminal(sys.stdout)):
+        why = "to open" if opens else "for a terminal"
+        raise LagtopError(f"a page on standard output is not {why}: give -o FILE.html")
+    suffix = PurePath(output or "").suffix
+    if suffix.lower() not in {"", ".html", ".htm"}:
+        raise LagtopError(f"-o must be a file that ends in .html, got {output!r}: a page is HTML")
+    from ..plot.browser import open_page, view
+
+    found = top.given()
+    warn_unused(found.stds)
+    page = view(motion_of(found), found.system.named if found.system else str)
+    if output:
+        write_bytes(output, page.encode)
+    if opens:
+        open_page(page, output)

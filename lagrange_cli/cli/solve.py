@@ -7,21 +7,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import AbsentError, LagtopError
-from ..motion.record import all_keys, record_keys
+from ..motion.record import all_keys, record_keys, shown_keys
 from ..motion.solve import record_in_range
-from ..output.write import write_record, write_values
-from .command import (
-    ExamplesFirst,
-    chain_layout,
-    complain,
-    in_units,
-    top_layout,
-    units_of,
-    write_keys,
-    write_report,
-)
+from .app import Command, complain, write_report
 from .options import (
     COUNT,
+    KEY,
     KEY_NAMES,
     MOST_RECORD_DIGITS,
     certify_option,
@@ -29,130 +20,93 @@ from .options import (
     exclude,
     on_command_line,
     output_options,
+    seed_option,
 )
-from .top_options import UNCERTAIN, input_options, inputs_of, motion_of, scene_argument
+from .top import UNCERTAIN, TopOptions, motion_of, top_options
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from ..arithmetic.values import Key
     from ..inputs.units import System
     from ..motion.solve import Motion
-    from ..output.layouts import Layout
+    from ..output.destination import Output
 
 
 @click.command(
     "solve",
-    cls=ExamplesFirst,
-    shows=write_keys,
+    cls=Command,
     examples="""
-        lagtop solve --theta0 30
-        lagtop solve sample_inputs/simo-wong-1991.toml --r0 40
-        lagtop solve --r0 -20 --theta0 120 --format json | jq .T_nutation
-        lagtop solve --theta0 60 --psidot0 -3 --digits 50
-        period=$(lagtop solve --r0 80 --get T_nutation)
-        lagtop solve --r0 80 --get theta_min_deg,theta_max_deg
-        lagtop solve --theta0 60 --get psi_period_deg
-        lagtop solve --m 350g --A 8.5e-4kg*m^2 --C 4e-4kg*m^2 --s 3cm --g 1g_0 --r0 12000rpm
-        lagtop solve --theta0 60 --derivation
-        lagtop solve --digits 30 --certify --format json
-        lagtop solve --m '1587(2)' --theta0 '30 +/- 1 %'
-        lagtop solve --m '1587(2)' --theta0 '30(1)' --budget T_nutation
-        lagtop solve --theta0 '30(1)' --samples 100000 --seed 1
-        lagtop solve --rad --theta0 0.05 -o solved.csv
+        lagtop solve simo-wong-1991 --r0 40
+        lagtop solve --theta0 60 --get T_nutation,theta_max_deg --digits 30
+        lagtop solve --r0 '477(2) rpm' --budget T_nutation
     """,
 )
-@scene_argument
-@input_options(UNCERTAIN)
+@top_options(UNCERTAIN)
+@click.option(
+    "--get", "keys", type=KEY_NAMES, help="Print values of these keys, bare, one per line."
+)
+@click.option(
+    "--derivation", is_flag=True, help="The steps of the paper's worked example (section 8)."
+)
 @digits_option(MOST_RECORD_DIGITS)
-@click.option(
-    "--derivation",
-    is_flag=True,
-    help="The steps of the paper's worked example, section 8, for a top released from rest.",
-)
-@click.option(
-    "--get",
-    "keys",
-    type=KEY_NAMES,
-    metavar="KEY,...",
-    help="Print values of the record, bare, one per line; the keys stand below.",
-)
 @certify_option
-@click.option(
-    "--budget", metavar="KEY", help="What each uncertain input contributes to a number (GUM)."
-)
-@click.option(
-    "--samples",
-    type=COUNT,
-    metavar="N",
-    help="Monte Carlo: quantiles of N random tops, and whether first order holds.",
-)
-@click.option("--seed", type=COUNT, metavar="N", help="Seed of the random tops.")
-@output_options("table", "json", "csv")
-def command(
-    scene: str | None,
-    rad: bool,
+@click.option("--budget", type=KEY, help="Uncertainty budget of KEY: the share of each input.")
+@click.option("--samples", type=COUNT, help="Check linear propagation with N random tops.")
+@seed_option(help="Seed of the random tops.")
+@output_options("table", "json", "csv", "ndjson", "markdown")
+def solve_command(
+    top: TopOptions,
+    keys: list[str] | None,
+    derivation: bool,
     digits: int | None,
     certify: bool,
-    derivation: bool,
-    keys: list[str] | None,
     budget: str | None,
     samples: int | None,
     seed: int | None,
-    fmt: str,
-    output: str,
-    **options: Any,
+    out: Output,
 ) -> None:
-    """Roots, moduli, periods and mean rates of one top.
+    """Compute the periods, turning points and mean rates of one top.
 
-    Every number is the double nearest to its exact value, or has --digits right digits.  JSON and
-    CSV hold the same keys; what a regime does not have is null or empty.
+    Every number is correctly rounded, or has N correct digits with --digits N.  Quantities that a
+    regime does not have are null in JSON and empty in CSV.  lagtop explain lists all keys.
 
-    All inputs or none may have units (pip install 'lagtop[units]'); the output is then in SI, or in
-    --units cgs, and JSON names them.
-
-    An input may be uncertain: '1587(2)', '1587+/-2' or '1587 +/- 0.1 %'.  Then numbers
-    are shown with their standard uncertainties, of first order by exact derivatives; JSON and CSV
-    have them as KEY_std after the record.
+    An input may have a unit ('480 rpm') if all have one, and an uncertainty ('1587(2)').
     """
-    exclude(
-        {
-            "--get": keys,
-            "--derivation": derivation or None,
-            "--budget": budget,
-            "--samples": samples,
-        }
-    )
+    exclude({"--get": keys, "--derivation": derivation, "--budget": budget, "--samples": samples})
     if keys is not None:
-        exclude({"--get": keys, "--format": fmt if on_command_line("fmt") else None})
-        _check_keys(keys, rad)
+        _check_keys(keys, top.radians)
     if seed is not None and samples is None:
-        raise LagtopError("--seed is that of random tops: it needs --samples")
-    found = inputs_of(scene, rad, options)
+        raise LagtopError("--seed needs --samples")
+    found = top.given()
     on_request = any(key.endswith("_std") for key in keys or ())
     if found.stds or on_request or budget is not None or samples is not None:
         from . import uncertainty
 
         uncertainty.check(found, digits, derivation, certify)
-    motion = motion_of(found, digits is not None)
+    motion = motion_of(found, exact=digits is not None)
     if budget is not None or samples is not None:
-        find = uncertainty.asked_report(found, motion, budget, samples, seed, rad)
-        write_report(find, fmt, output)
+        find = uncertainty.asked_report(found, motion, budget, samples, seed, top.radians)
+        write_report(out, find)
         return
-    chosen = _steps(motion, rad) if derivation else keys
+    chosen = _steps(motion, top.radians) if derivation else keys
     wanted = list(dict.fromkeys(key.removesuffix("_std") for key in chosen)) if chosen else None
-    record = _record(motion, digits, rad, wanted, certify)
+    record = _record(motion, digits, top.radians, wanted, certify)
     if found.system is not None and record.get("remark"):
         record["remark"] = found.system.in_words(record["remark"])
+    bare = keys is not None and not on_command_line("fmt")
     if found.stds:
-        record = uncertainty.with_stds(found, motion, record, fmt == "table" and keys is None)
+        record = uncertainty.with_stds(found, motion, record, out.fmt == "table" and not bare)
     if keys is not None:
-        write_values([_number(motion, record, key) for key in keys], output)
+        values = {key: _number(motion, record, key) for key in keys}
+        if out.fmt == "table":
+            out.values(values.values())
+        else:
+            out.record(values, lambda: _keys(found.system, top.radians, requested=True))
     elif derivation:
         more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
         steps = {name: record[name] for name in chosen or ()}
-        _write(steps | more, found.system, fmt, output, chain_layout)
+        out.record(steps | more, lambda: _chain(found.system, top.radians))
     else:
-        _write(record, found.system, fmt, output, top_layout)
+        _write(record, found.system, top.radians, out)
 
 
 def _check_keys(keys: list[str], radians: bool) -> None:
@@ -166,27 +120,33 @@ def _check_keys(keys: list[str], radians: bool) -> None:
     check_names("get", values, known if set(values) <= {*known} else all_keys(radians=radians))
 
 
-def _write(
-    record: dict[str, Any],
-    system: System | None,
-    fmt: str,
-    output: str,
-    layout: Callable[[], Layout],
-) -> None:
-    """Write a record, with units where its inputs had any."""
-    if system is None:
-        write_record(record, fmt, output, layout)
-        return
-    named = in_units(layout(), system.named)
-    if fmt == "json":
-        record = record | {"units": units_of(record, named)}
-    write_record(record, fmt, output, lambda: named)
+def _keys(system: System | None, radians: bool, *, requested: bool = False) -> dict[str, Key]:
+    named = str if system is None else system.named
+    return shown_keys(radians=radians, named=named, requested=requested)
+
+
+def _chain(system: System | None, radians: bool) -> dict[str, Key]:
+    """Return the keys of the steps of section 8, step by step."""
+    from ..motion.paper.worked_example import CHAIN
+    from ..motion.quantity import unit_name
+
+    keys = _keys(system, radians, requested=True)
+    chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
+    return {name: keys[name].replace(group=step) for name, step in chain.items()}
+
+
+def _write(record: dict[str, Any], system: System | None, radians: bool, out: Output) -> None:
+    """Write a record, with units if its inputs have any."""
+    if system is not None and out.fmt in {"json", "ndjson"}:
+        keys = _keys(system, radians).items()
+        record |= {"units": {name: key.unit for name, key in keys if name in record and key.unit}}
+    out.record(record, lambda: _keys(system, radians))
 
 
 def _record(
     motion: Motion, digits: int | None, radians: bool, keys: list[str] | None, certify: bool
 ) -> dict[str, Any]:
-    """Return the record, or some keys of it; of what is beyond the range of doubles, say so."""
+    """Return the record, or some keys of it; warn of numbers beyond the range of doubles."""
     record, beyond = record_in_range(
         motion, digits=digits, radii=certify, radians=radians, keys=keys
     )
@@ -198,14 +158,14 @@ def _record(
 
 
 def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:
-    """Return a value of the record.  Raises AbsentError where the regime has none."""
+    """Return a value of the record.  Raises AbsentError if the regime has none."""
     if record[key] is None:
         raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
     return record[key]
 
 
 def _steps(motion: Motion, radians: bool) -> list[str]:
-    """Return the keys of the steps of section 8.  Raises AbsentError where they do not hold."""
+    """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
     from ..motion.paper.worked_example import derivation_keys
 
     if motion.roots_sum is None:

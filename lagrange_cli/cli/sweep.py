@@ -10,16 +10,29 @@ import click
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from ..output.write import write_text_blocks
-from .command import ExamplesFirst, write_keys
-from .options import FILE, KEY_NAMES, Parsed, exclude, output_options
+from .app import Command
+from .options import (
+    FILE,
+    Parsed,
+    exclude,
+    header_comments_option,
+    is_described,
+    jobs_option,
+    keys_option,
+    on_command_line,
+    output_options,
+    text_options,
+)
 from .progress import with_progress
-from .row_options import dialect, header_comments_option, is_described, jobs_option, text_options
-from .top_options import by_key, input_options, say_missing, say_no_tops, value_type
+from .top import SCENE, TopOptions, top_options, value_type, warn_missing, warn_no_tops
 
 if TYPE_CHECKING:
-    from ..inputs.value import Value
+    from ..inputs.text_lines import Dialect
+    from ..output.destination import Output
     from ..sweeps.plan import Make
+
+FEW = 50
+"""Tops whose records are drawn as a table on a terminal."""
 
 
 def _parse_shard(text: str) -> tuple[int, int]:
@@ -32,110 +45,90 @@ def _parse_shard(text: str) -> tuple[int, int]:
 
 @click.command(
     "sweep",
-    cls=ExamplesFirst,
-    shows=write_keys,
+    cls=Command,
     examples="""
-        lagtop sweep --r0 10:200:1000 --theta0 5,10,30 > tops.csv
+        lagtop sweep --r0 10:200:1000 --theta0 5,10,30 -o tops.csv
         lagtop sweep --r0 log:1:1e4:50 --keys r0,mean_precession_rate
-        lagtop sweep --r0 10:100:10 --m '1587(2)' --keys r0,T_nutation
-        lagtop sweep tops.csv -o solved.ndjson
-        jq -c .top log.json | lagtop sweep - --keys T_nutation,error
-        lagtop sweep --r0 10:200:1e5 --jobs auto -o solved.csv
-        lagtop sweep --r0 10:200:1e5 --parts out
-        lagtop sweep --r0 10:200:1e5 --shard $SLURM_ARRAY_TASK_ID/100 --parts out
-        lagtop sweep tops.csv --dask local -o solved.csv
+        lagtop sweep tops.csv --keys r0,T_nutation -o solved.ndjson
     """,
 )
-@click.argument("files", nargs=-1, type=FILE, metavar="[SCENE.toml] [TOPS.csv|.ndjson|-]")
-@input_options(value_type("range", "parse_values", uncertain=True))
-@click.option(
-    "--keys", type=KEY_NAMES, help="Compute and print only these keys, with commas between."
-)
+@click.argument("files", nargs=-1, type=SCENE, metavar="[SCENE] [TOPS.csv|.ndjson|-]")
+@top_options(value_type("parse_values", uncertain=True), scene=False)
+@keys_option
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
-@click.option(
-    "--shard", type=Parsed("I/N", _parse_shard), help="Only every N-th part, from the I-th on."
-)
 @jobs_option
+@click.option("--parts", "folder", type=FILE, help="Write a file per part into this folder.")
 @click.option(
-    "--dask",
-    "cluster",
-    metavar="ADDRESS|local",
-    help="Compute the parts on a Dask cluster, or on one of this machine.",
+    "--shard", type=Parsed("I/N", _parse_shard), help="Compute only every N-th part, from the I-th."
 )
 @click.option(
-    "--parts",
-    "folder",
-    type=FILE,
-    metavar="DIR",
-    help="Write a file per part; resume a folder that is not complete.",
+    "--dask", "cluster", metavar="ADDRESS", help="Use a Dask cluster, or `local` for this machine."
 )
 @text_options
 @header_comments_option
-@output_options("csv", "ndjson", "json", "parquet")
-def command(
+@output_options("csv", "ndjson", "json", "parquet", "table", "markdown", on_terminal="table")
+def sweep_command(
     files: tuple[str, ...],
-    rad: bool,
+    top: TopOptions,
     keys: list[str] | None,
     fail_fast: bool,
-    shard: tuple[int, int] | None,
     jobs: int | None,
-    cluster: str | None,
     folder: str | None,
-    fmt: str,
-    output: str,
-    units: str | None,
-    **axes: Value | None,
+    shard: tuple[int, int] | None,
+    cluster: str | None,
+    dialect: Dialect,
+    header_comments: bool,
+    out: Output,
 ) -> None:
-    """The record of `solve` for each top of a grid or of a file.
+    """Compute the record of solve for each top of a grid or of a file.
 
-    An input is a number, a list 1,2,3 or a range [log:]start:stop:count.  The grid is the product
-    of all; the last option varies fastest.  A unit stands once, at the end: --r0 '1e3:9e3:5 rpm'.
+    An input is a number, a list 1,2,3 or a range [log:]start:stop:count, with its unit at the end:
+    --r0 '1e3:9e3:5 rpm'.  The grid is the product of all; the last option varies fastest.
 
-    A file is CSV with a header, or JSON lines, whose names are those of a record.  What a row lacks
-    comes from the options and the scene; other columns are carried through.  A heading may have a
-    unit, as in m [g], if all have one.  A top that cannot be
-    solved has its `error` in its row, and the exit code is 1.
+    A file is CSV with a header or JSON lines, with keys of a record as names.  Options and the
+    scene complete its rows, and other columns are copied.  A heading may have a unit: m [g].  A top
+    that cannot be solved has its error in its row; the exit code is then 1.
 
-    Where inputs of all tops are uncertain (see lagtop solve --help), the standard uncertainty of
-    each number is its KEY_std, a column of its own.
-
-    A folder of --parts belongs to one sweep: any number of runs, shards among them, may fill it,
-    and a run that was killed is resumed by the same command.
+    The folder of --parts belongs to one sweep: the same command resumes a run that was killed.
     """
-    from ..output.parquet import check_parquet
+    from ..output.rows import check_parquet
     from ..sweeps.cluster import computed, connected
     from ..sweeps.folder import Folder
     from ..sweeps.plan import Tally, plan, shard_of
 
     exclude({"--jobs": jobs, "--dask": cluster})
-    exclude({"--parts": folder, "--output": None if output == "-" else output})
-    if folder is not None and fmt == "json":
-        raise LagtopError("--format json is one array: with --parts take csv or ndjson")
-    if fmt == "parquet":
+    exclude({"--parts": folder, "--output": out.path != "-"})
+    if folder is not None:
+        out = out.replace(fmt="csv") if not on_command_line("fmt") else out
+        if out.fmt in {"json", "table", "markdown"}:
+            raise LagtopError(f"--format {out.fmt} is one document: with --parts use csv or ndjson")
+    if out.fmt == "parquet":
         check_parquet()
-    inputs = by_key(axes, radians=rad)
-    to_stdout = folder is None and output == "-"
+    to_stdout = folder is None and out.path == "-"
     todo = plan(
         files,
-        inputs,
+        top.by_key(),
         keys=keys,
-        radians=rad,
-        fmt=fmt,
-        system=units,
+        radians=top.radians,
+        fmt=out.fmt,
+        system=top.units,
         until_error=fail_fast and to_stdout,
         described=folder is not None,
-        dialect=dialect(),
-        is_described=is_described(fmt),
+        dialect=dialect,
+        is_described=is_described(out, header_comments),
     )
-    say_missing(todo.given)
+    warn_missing(todo.given)
+    sweep = todo.sweep
+    if not (on_command_line("fmt") or 0 < todo.size <= FEW) and out.fmt == "table":
+        sweep, out = sweep._replace(fmt="csv"), out.replace(fmt="csv")
     tally = Tally(fail_fast=fail_fast)
     blocks = shard_of(todo.blocks, shard)
     parts_folder: Folder | None = None
     with ExitStack() as stack:
         client = stack.enter_context(connected(cluster))  # before anything is written
-        make: Make = todo.sweep.part
+        make: Make = sweep.part
         if folder is not None:
-            parts_folder = Folder(folder, todo.sweep, todo.description)
+            parts_folder = Folder(folder, sweep, todo.description)
             blocks = parts_folder.missing(blocks, tally)
             if client is not None and not fail_fast:
                 make = stack.enter_context(parts_folder.made_by_workers())
@@ -150,7 +143,7 @@ def command(
             parts_folder.write(passing)
         else:
             texts = (part.text for part in passing)
-            write_text_blocks(fmt, todo.sweep.header, texts, output)
+            out.blocks(sweep.header, texts)
     tally.check()
     if todo.file is not None and shard is None and not tally.count:
-        say_no_tops(todo.file)
+        warn_no_tops(todo.file)

@@ -11,26 +11,25 @@ from ..errors import AbsentError, LagtopError
 from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
 from ..motion.quantity import unit_name
-from ..motion.record import NUMBER_KEYS
+from ..motion.record import NUMBER_KEYS, shown_keys
 from ..motion.sensitivity.sensitivities import DIFFERENTIABLE
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
-from ..output.report import Field, Report, with_unit
-from ..output.uncertain_text import uncertain_text
-from .command import complain, in_units, top_layout, units_of
+from ..output.report import Field, Report, uncertain_text, with_unit
+from .app import complain
 from .options import exclude
 from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..motion.solve import Motion
-    from ..sweeps.monte_carlo import Propagated, Spread
+    from ..sweeps.monte_carlo import Propagated
 
 
 def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> None:
-    """Raise LagtopError for what does not go with uncertain inputs, or where there are none."""
+    """Raise LagtopError if no input is uncertain, and for options without uncertainties."""
     if not found.stds:
         raise LagtopError("no input is uncertain: give one as in --m '1587(2)'")
-    others = {"--digits": digits, "--derivation": derivation or None, "--certify": certify or None}
+    others = {"--digits": digits, "--derivation": derivation, "--certify": certify}
     for name, value in others.items():
         exclude({name: value, "uncertain inputs": True})
 
@@ -43,20 +42,20 @@ def asked_report(
     seed: int | None,
     radians: bool,
 ) -> Callable[[], Report]:
-    """Return what makes the budget of a key, or else the report on random samples."""
+    """Return a function that makes the budget of a key or, without one, the Monte Carlo report."""
     if key is None:
-        return sampled(found, motion, samples=samples or 0, seed=seed, radians=radians)
+        return lambda: _sampled(found, motion, samples or 0, seed, radians)
     check_names("budget", [key], [unit_name(name, radians=radians) for name in DIFFERENTIABLE])
-    findings = budget(found, motion, key, radians)
-    return lambda: findings
+    report = _budget(found, motion, key, radians)
+    return lambda: report
 
 
 def with_stds(
     found: Given, motion: Motion, record: Mapping[str, Any], shown: bool
 ) -> dict[str, Any]:
-    """Return a record with uncertainties: `shown` with the numbers, or as keys of their own.
+    """Return a record with uncertainties: `shown` as `value(uncertainty)`, or as keys KEY_std.
 
-    A line names the numbers that have none.
+    A warning names the numbers that have none.
     """
     uncertain = first_order(found, motion)
     stds = stds_of(record, uncertain)
@@ -65,7 +64,14 @@ def with_stds(
         known = next((key for key in map(uncertain.name_of, lost) if key in DIFFERENTIABLE), None)
         reason = "keys on request have none" if known is None else uncertain.slopes.reason(known)
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
-    return shown_with(record, stds) if shown else dict(record) | stds
+    if not shown:
+        return dict(record) | stds
+    texts = {
+        name: NumberText(uncertain_text(float(value), std))
+        for name, value in record.items()
+        if value is not None and (std := stds.get(f"{name}_std"))
+    }
+    return dict(record) | texts
 
 
 def first_order(found: Given, motion: Motion) -> FirstOrder:
@@ -73,17 +79,8 @@ def first_order(found: Given, motion: Motion) -> FirstOrder:
     return FirstOrder(motion.top, found.stds, found.inputs.keys())
 
 
-def shown_with(record: Mapping[str, Any], stds: Mapping[str, float | None]) -> dict[str, Any]:
-    """Return a record in which numbers are written with their uncertainties, for a table."""
-    shown = dict(record)
-    for name, value in record.items():
-        if value is not None and (std := stds.get(f"{name}_std")):
-            shown[name] = NumberText(uncertain_text(float(value), std))
-    return shown
-
-
 class _BudgetLine(NamedTuple):
-    """A line of a budget: an input, or last of all the result, as in EA-4/02."""
+    """A line of a budget: an input or, last of all, the result, as in EA-4/02."""
 
     quantity: str
     value: float
@@ -96,14 +93,14 @@ class _BudgetLine(NamedTuple):
 
     @property
     def noise(self) -> float:
-        """What the digits of the value are measured by."""
+        """The uncertainty of the value, which decides about its digits."""
         return self.std
 
 
-def budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
-    """Return the budget of a key: what each uncertain input contributes, and the key itself.
+def _budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
+    """Return the budget of a key: the contribution of each uncertain input, and the key itself.
 
-    Raises AbsentError where the motion has no such key, or it has no derivative.
+    Raises AbsentError if the motion has no such key, or it has no derivative.
     """
     value, uncertain = motion.record(radians=radians, keys=[key])[key], first_order(found, motion)
     if value is None:
@@ -116,31 +113,36 @@ def budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
     units = _units(found, [key, *given])
     lines = [
         _BudgetLine(
-            line.input,
-            line.value,
-            line.std,
-            line.sensitivity,
+            *(line.input, line.value, line.std, line.sensitivity),
             _over(units.get(key, "1"), units.get(line.input, "1")),
-            line.contribution,
-            line.elasticity,
-            line.share,
+            *(line.contribution, line.elasticity, line.share),
         )
         for line in uncertain.budget(key, given)
     ]
-    lines.append(_BudgetLine(key, value, whole))
     shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
     conclusions = [f"{shown}, to first order; inputs are taken as independent."]
-    return Report({"key": key}, _budget_fields(units, key), lines, conclusions, units)
+    fields = [
+        _names("quantity", units),
+        _Measured("value", "value"),
+        Field("std", "uncertainty", _figures),
+        Field("sensitivity", "sensitivity", _figures),
+        *([Field("sensitivity_unit", "sensitivity unit", is_text=True)] if units else []),
+        Field("contribution", with_unit("contribution", units.get(key)), _figures),
+        Field("elasticity", "elasticity", _figures),
+        Field("share", "share", lambda x: f"{100 * x:.1f} %"),
+    ]
+    rows = [*lines, _BudgetLine(key, value, whole)]
+    return Report({"key": key}, fields, rows, conclusions, units)
 
 
 def _units(found: Given, keys: Iterable[str]) -> dict[str, str]:
-    """Return the units of inputs and of keys of the record, where inputs have units."""
+    """Return the units of inputs and of keys of the record, if inputs have units."""
     if found.system is None:
         return {}
-    named = in_units(top_layout(), found.system.named)
-    solved = {key: STANDS_FOR.get(key, key) for key in keys}
-    units = units_of(set(solved.values()), named)
-    return {key: units[one] for key, one in solved.items() if one in units}
+    named = found.system.named
+    shown = shown_keys(named=named) | shown_keys(named=named, radians=True)
+    solved = {key: shown.get(STANDS_FOR.get(key, key)) for key in keys}
+    return {key: x.unit for key, x in solved.items() if x is not None and x.unit}
 
 
 def _over(above: str, below: str) -> str:
@@ -159,48 +161,32 @@ def _names(key: str, units: Mapping[str, str]) -> Field:
     return Field(key, key, lambda x: with_unit(x, units.get(x)), is_text=True, names_the_row=True)
 
 
-def _budget_fields(units: Mapping[str, str], key: str) -> list[Field]:
-    per = [Field("sensitivity_unit", "sensitivity unit", is_text=True)] if units else []
-    return [
-        _names("quantity", units),
-        _Measured("value", "value"),
-        Field("std", "uncertainty", _figures),
-        Field("sensitivity", "sensitivity", _figures),
-        *per,
-        Field("contribution", with_unit("contribution", units.get(key)), _figures),
-        Field("elasticity", "elasticity", _figures),
-        Field("share", "share", lambda x: f"{100 * x:.1f} %"),
-    ]
-
-
-def sampled(
-    found: Given, motion: Motion, *, samples: int, seed: int | None, radians: bool
-) -> Callable[[], Report]:
-    """Return what makes the report on random samples of the inputs."""
+def _sampled(found: Given, motion: Motion, samples: int, seed: int | None, radians: bool) -> Report:
+    """Return the report on random samples of the inputs."""
     from ..sweeps import monte_carlo
 
-    uncertain = first_order(found, motion)
+    uncertain, record = first_order(found, motion), motion.record(radians=radians)
     numbers = {}
-    record = motion.record(radians=radians)
     for key in NUMBER_KEYS:
         name = unit_name(key, radians=radians)
         if record[name] is not None and (std := uncertain.std(name)) != 0:
             numbers[key] = record[name], std
-
-    def find() -> Report:
-        outcome = monte_carlo.propagate(
-            _all_inputs(found, motion),
-            found.stds,
-            numbers,
-            samples=samples,
-            seed=seed,
-            radians=radians,
-            progress=with_progress,
-        )
-        units = _units(found, [spread.key for spread in outcome.spreads])
-        return _report(outcome, samples, seed, units)
-
-    return find
+    outcome = monte_carlo.propagate(
+        _all_inputs(found, motion),
+        found.stds,
+        numbers,
+        samples=samples,
+        seed=seed,
+        radians=radians,
+        progress=with_progress,
+    )
+    conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})
+    shares = [f"{name} {100 * share:.3g} %" for name, share in outcome.regimes.items()]
+    conditions["regimes"] = ", ".join(shares)
+    units = _units(found, [spread.key for spread in outcome.spreads])
+    linear = Field("first_order", "linear?", is_text=True)
+    fields = [_names("key", units), *(_Measured(x, y) for x, y in _SAMPLED.items()), linear]
+    return Report(conditions, fields, outcome.spreads, _verdicts(outcome), units)
 
 
 def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
@@ -213,44 +199,38 @@ def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
     return inputs
 
 
-def _report(
-    outcome: Propagated, samples: int, seed: int | None, units: Mapping[str, str]
-) -> Report:
+def _verdicts(outcome: Propagated) -> list[str]:
+    """Return a sentence on linear propagation for each verdict that occurs."""
     from ..sweeps.monte_carlo import FAILS, OPEN
 
-    conditions = {"samples": str(samples)} | ({} if seed is None else {"seed": str(seed)})
-    shares = [f"{name} {100 * share:.3g} %" for name, share in outcome.regimes.items()]
-    conditions["regimes"] = ", ".join(shares)
-    conclusions = []
-    for verdict, said in ((FAILS, "does not hold"), (OPEN, "is left open by so few samples")):
+    sentences = []
+    for verdict, said in (
+        (FAILS, "not adequate for {}: use the sampled quantiles"),
+        (OPEN, "not decided for {}: increase --samples"),
+    ):
         if keys := [spread.key for spread in outcome.spreads if spread.first_order == verdict]:
-            conclusions.append(f"First order {said} for {', '.join(keys)}.")
-    if not conclusions:
-        conclusions.append("First order holds for every number.")
-    numbers = [_Measured(key, heading) for key, heading in _SAMPLED.items()]
-    holds = Field("first_order", "first order", is_text=True)
-    fields = [_names("key", units), *numbers, holds]
-    return Report(conditions, fields, outcome.spreads, conclusions, units)
+            sentences.append(f"Linear propagation is {said.format(', '.join(keys))}.")
+    return sentences or ["Linear propagation is adequate for every number."]
 
 
 _SAMPLED = {
     "value": "value",
-    "first_order_std": "first-order std",
-    "sampled_mean": "sampled mean",
+    "first_order_std": "linear std",
+    "sampled_mean": "",
     "sampled_std": "sampled std",
     "q2_5": "2.5 %",
-    "q16": "16 %",
-    "q50": "50 %",
-    "q84": "84 %",
+    "q16": "",
+    "q50": "",
+    "q84": "",
     "q97_5": "97.5 %",
 }
-"""The numbers of a report on random samples, and their headings."""
+"""The numbers of a report on random samples, and the headings of those in a table."""
 
 
 class _Measured(Field):
     """A number that is shown to one digit below the first one of the noise of its row."""
 
-    def cell(self, row: Spread | _BudgetLine) -> str:
+    def cell(self, row: Any) -> str:
         """Return the text in a table: all such numbers of a row end at the same place."""
         value = getattr(row, self.key)
         if value is None:

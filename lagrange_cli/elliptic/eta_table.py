@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from .tables import Known
 
 
+_CHAIN = ("h1", "theta", "xi_prime")
+COLUMNS = ("tau", "eta", "etadot", *_CHAIN)
+"""The columns; tau is always there."""
+
+
 class EtaMotion(NamedTuple):
     """How eta moves in its band."""
 
@@ -35,7 +40,7 @@ class EtaMotion(NamedTuple):
 
 
 class EtaTable(RealTable):
-    """Eta of times tau, eta = delta* at tau = -c3, with its rate, and with h1, theta and xi'.
+    """Eta of times tau, eta = delta* at tau = -c3, its rate, and h1, theta and xi'.
 
     Raises LagtopError as `Quadrature.check` does and, in doubles, as `Quadrature.check_doubles`
     does and for times beyond 2^50 periods.
@@ -47,12 +52,12 @@ class EtaTable(RealTable):
         quadrature: Quadrature,
         c3: Fraction = Fraction(0),
         *,
-        rate: bool = False,
-        angle: str = "",
+        names: Collection[str] = ("eta",),
+        angle: str = "deg",
     ) -> None:
-        """Take the inputs; `angle` is the unit of theta, deg or rad, if h1, theta, xi' are due."""
+        """Take the inputs: `names` are some of COLUMNS, `angle` the unit of theta, deg or rad."""
         super().__init__(points)
-        self.quadrature, self.c3, self.rate, self.angle = quadrature, c3, rate, angle
+        self.quadrature, self.c3, self.names, self.angle = quadrature, c3, names, angle
 
     def in_doubles(self) -> EtaTable:
         """Return the table itself."""
@@ -106,12 +111,14 @@ class EtaTable(RealTable):
         turns, rest = periods(x)
         place = place_in_band(ar, half_period * rest, c, band)
         columns = {"tau": x, "eta": place.eta}
-        if self.rate:
+        if "etadot" in self.names:
             columns["etadot"] = place.rate(ar, band)
-        if self.angle:
-            names = "h1", f"theta_{self.angle}", "xi_prime"
-            columns |= zip(names, chain(ar, (turns, rest), c, band, self.angle), strict=True)
-        return columns
+        if not set(_CHAIN).isdisjoint(self.names):
+            found = chain(ar, (turns, rest), c, band, self.angle)
+            columns |= zip(_CHAIN, found, strict=True)
+        angle = f"theta_{self.angle}"
+        chosen = {name: columns[name] for name in COLUMNS if name in {"tau", *self.names}}
+        return {angle if name == "theta" else name: value for name, value in chosen.items()}
 
     def known(self, x: Fraction) -> dict[str, float]:
         """Return the columns that are 0 at tau.

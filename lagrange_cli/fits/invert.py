@@ -1,4 +1,4 @@
-"""The top behind its turning points, its period and its mean precession: a and b; `find --from`.
+"""The top behind its turning points, period and mean precession: a and b, for `find`.
 
 The roots u2 < u1 < u3 of (4,9) are known but for h = u3 - 1 > 0.  (4,19) and (5,1) give
 
@@ -219,7 +219,10 @@ def _numbers(seen: Sequence[str], radians: bool) -> Mapping[str, float]:
     if conditions.words or conditions.bounds or not needed <= given <= needed | {_SPIN}:
         wanted = "=.. ".join([*_SEEN, ""]).replace("_deg", "")
         shown = " ".join(seen)[:100] or "nothing"
-        raise LagtopError(f"from must have {wanted}and may have {_SPIN}=.., got {shown}", "from")
+        raise LagtopError(
+            f"without an unknown input, such as r0 = 10:200, the conditions must be {wanted}and "
+            f"may have {_SPIN}=.., got {shown}"
+        )
     return conditions.numbers
 
 

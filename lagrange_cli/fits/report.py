@@ -11,9 +11,8 @@ from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
 from ..motion.record import KEYS
-from ..output.report import Field, Report, with_unit
+from ..output.report import Field, Report, uncertain_text, with_unit
 from ..output.terminal import one_line
-from ..output.uncertain_text import uncertain_text
 from .least_squares import chi2_bounds
 from .record import Outcome
 

@@ -35,21 +35,21 @@ class Input(Values):
 _TABLE = """
 m | m | mass | mass | positive | mass | 1587
 A | A | equatorial moment
-    | equatorial moment of inertia about the pivot | positive | mass len² | 39032
+    | equatorial moment about the pivot | positive | mass len² | 39032
 A_cm | A_cm | moment about the mass centre
-    | equatorial moment about the mass centre, in place of A: A = A_cm + m s^2 | | mass len² |
+    | equatorial moment about the mass centre: A = A_cm + m s^2 | | mass len² |
 C | C | polar moment | polar moment of inertia | positive, at most 2A | mass len² | 17458
 s | s | pivot to mass centre | distance from the pivot to the mass centre | 0 or more | len | 4
 g | g | gravity | gravity | 0 or more | len/time² | 981
 r0 | r0 | total spin rate
-    | total rate about the figure axis, phi' + psi' cos(theta) | | rad/time | 50
+    | total rate about the axis, phi' + psi' cos(theta) | | rad/time | 50
 phidot0 | φ'0 | spin rate at start
-    | rate of the spin angle, in place of r0: r0 = phidot0 + psidot0 cos(theta0) | | rad/time |
+    | spin rate at start, in place of r0 = phidot0 + psidot0 cos(theta0) | | rad/time |
 theta0 | ϑ0 | tilt at the start
-    | tilt of the axis from the upward vertical | 0 to 180 degrees | angle | 30
-thetadot0 | ϑ'0 | nutation rate at start | nutation rate at the start | | rad/time | 0
+    | tilt from the upward vertical | 0 to 180 degrees | angle | 30
+thetadot0 | ϑ'0 | nutation rate at start | nutation rate at start | | rad/time | 0
 psidot0 | ψ'0 | precession rate at start
-    | precession rate at the start; of one top also steady or steady-fast | | rad/time | 0
+    | precession rate at start, or steady or steady-fast | | rad/time | 0
 """
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from fractions import Fraction
@@ -18,6 +19,38 @@ _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
 """Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
 SCENE_KEYS = (*INPUTS, TILT)
+_ENDING = ".toml"
+
+
+def _shipped() -> str:
+    """Return the folder of the shipped scenes: inside the package or, in a checkout, beside it."""
+    package = os.path.dirname(os.path.dirname(__file__))
+    inside = os.path.join(package, "scenes")
+    return inside if os.path.isdir(inside) else os.path.join(package, "..", "sample_inputs")
+
+
+def scene_names() -> list[str]:
+    """Return the names of the shipped scenes."""
+    names = os.listdir(_shipped())
+    return sorted(name.removesuffix(_ENDING) for name in names if name.endswith(_ENDING))
+
+
+def scene_path(name: str) -> str:
+    """Return the path of a scene: a file as it is, or the file of a shipped scene."""
+    is_word = name.replace("-", "").isalnum() and not os.path.exists(name)
+    path = os.path.join(_shipped(), name + _ENDING) if is_word else name
+    return path if os.path.exists(path) else name
+
+
+def scene_remark(name: str) -> str:
+    """Return the first line of a shipped scene, which says what its top shows."""
+    with open(scene_path(name), encoding="utf-8") as file:
+        return file.readline().removeprefix("#").strip()
+
+
+def is_scene_file(word: str) -> bool:
+    """Return whether a word ends in `.toml` or is the name of a shipped scene."""
+    return word.endswith(_ENDING) or scene_path(word) != word
 
 
 class SceneFile:
@@ -27,10 +60,10 @@ class SceneFile:
         """Read a file, or standard input for `-`.  Raises SceneError."""
         self.name, self.text = shown_path(path), ""
         try:
-            with reading(path) as file:
+            with reading(scene_path(path)) as file:
                 raw = file.read(_MOST_BYTES + 1)
         except DataError as error:
-            raise SceneError(str(error)) from None
+            raise SceneError(f"{error}{suggestion(path, scene_names())}") from None
         if len(raw) > _MOST_BYTES:
             raise SceneError(f"{self.name}: more than 64 KiB is no scene file")
         try:

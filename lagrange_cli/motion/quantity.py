@@ -5,19 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from ..arithmetic.values import Over, Values
+from ..arithmetic.values import Key, Over
 
 V = TypeVar("V")
-
-
-class Key(Values):
-    """How a key of the record is shown; the unit `angle` stands for degrees or radians."""
-
-    group: str
-    symbol: str
-    meaning: str
-    unit: str = ""
-    equation: str = ""
 
 
 class quantity(Over[V]):
@@ -44,9 +34,11 @@ def key(
     meaning: str,
     unit: str = "",
     equation: str = "",
+    *,
+    formula: str = "",
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
     """Make a method a quantity that is a key of the record; see `Key` for what is shown."""
-    shown = Key(group, symbol, meaning, unit, equation)
+    shown = Key(group, symbol, meaning, unit, equation, formula)
 
     def decorate(formula: Callable[[Any], V]) -> quantity[V]:
         return quantity(formula, shown)

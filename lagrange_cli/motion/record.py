@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from ..arithmetic.values import Key
 from ..inputs.input_keys import DECLARED, NINE, TILT
-from .quantity import Key, keys_of, unit_name
+from .quantity import keys_of, unit_name
 from .spin_precession import SpinPrecession
 
 _INPUTS = {
@@ -59,3 +62,16 @@ def record_keys(*, radians: bool = False) -> list[str]:
     """Return all keys of a record in their order."""
     names = [*_INPUTS, "regime", *NUMBER_KEYS, "path", "remark"]
     return [unit_name(name, radians=radians) for name in names]
+
+
+def shown_keys(
+    *, radians: bool = False, named: Callable[[str], str] = str, requested: bool = False
+) -> dict[str, Key]:
+    """Return how each key is shown, by its name in a record; `named` gives the names of units."""
+    angle = "rad" if radians else "deg"
+    return {
+        unit_name(name, radians=radians): key.replace(
+            unit=angle if key.unit == "angle" else named(key.unit)
+        )
+        for name, key in (KEYS | (requested_keys() if requested else {})).items()
+    }

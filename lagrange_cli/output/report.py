@@ -1,15 +1,25 @@
-"""Report of a report: conditions, rows and conclusions."""
+"""What a person reads: records, rows and reports as cells, drawn as a table or as markdown.
+
+`Report` is the one class of reports: budget, Monte Carlo, compare, fit, stability and bench.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from typing import Any, NamedTuple
 
-import orjson
+from ..arithmetic.text import csv_text, double_text, value_text
+from ..arithmetic.values import Key
+from .terminal import View, spelt
+
+Keys = Mapping[str, Key]
+"""Keys of a record by name, in the order of a table."""
+RECORD_HEADINGS = ("Symbol", "Name", "Value", "Unit", "Equation")
 
 
 class Field(NamedTuple):
-    """A column: the key of its values in CSV and JSON, and how a table shows it."""
+    """A column of a report: the key of its values in CSV and JSON, and how a table shows it."""
 
     key: str
     heading: str = ""
@@ -26,7 +36,7 @@ class Field(NamedTuple):
 
 
 class Report(NamedTuple):
-    """What a report has found."""
+    """Conditions, rows and conclusions, in every format."""
 
     conditions: dict[str, str]
     """Conditions of the measurement, by name."""
@@ -35,14 +45,30 @@ class Report(NamedTuple):
     """Objects with an attribute for every field."""
     conclusions: Sequence[str]
     units: Mapping[str, str] = {}
-    """Units of numbers by name, where they are known."""
+    """Units of numbers by name, if they are known."""
 
     def values(self) -> list[dict[str, Any]]:
         """Return every row by key."""
         return [{field.key: getattr(row, field.key) for field in self.fields} for row in self.rows]
 
-    def as_json(self) -> bytes:
-        """Return one JSON object on one line, in which infinite numbers are null."""
+    def text(self, fmt: str, view: View) -> bytes:
+        """Return the report in a format.
+
+        CSV and ndjson hold the rows alone.  JSON is one object, in which infinite numbers are null.
+        """
+        if fmt == "table":
+            from .tables import drawn_report
+
+            return drawn_report(self, view)
+        if fmt == "markdown":
+            return self._markdown()
+        if fmt == "csv":
+            lines = [[field.key for field in self.fields], *(row.values() for row in self.values())]
+            return "".join(",".join(map(csv_text, line)) + "\n" for line in lines).encode()
+        import orjson
+
+        if fmt == "ndjson":
+            return b"".join(orjson.dumps(row) + b"\n" for row in self.values())
         whole: dict[str, Any] = {
             "conditions": self.conditions,
             "rows": self.values(),
@@ -52,12 +78,104 @@ class Report(NamedTuple):
             whole["units"] = self.units
         return orjson.dumps(whole, option=orjson.OPT_APPEND_NEWLINE)
 
+    def _markdown(self) -> bytes:
+        shown = [field for field in self.fields if field.heading]
+        rows = [[field.cell(row) for field in shown] for row in self.rows]
+        conditions = "".join(f"- {name}: {text}\n" for name, text in self.conditions.items())
+        table = markdown([field.heading for field in shown], rows)
+        conclusions = "".join(f"\n{line}\n" for line in self.conclusions)
+        return f"{conditions}\n{table}{conclusions}".encode()
+
+
+def record_cells(record: Mapping[str, Any], keys: Keys, view: View) -> dict[str, list[list[str]]]:
+    """Return five cells for each key that has a value, by group.
+
+    A radius, if there is one, takes the place of the equation.
+    """
+    groups: dict[str, list[list[str]]] = {}
+    for name, key in keys.items():
+        if record.get(name) is not None and key.meaning:
+            last = record.get(f"{name}_radius") or key.equation
+            cells = (key.symbol, key.meaning, value_text(record[name]), key.unit, last)
+            groups.setdefault(key.group, []).append([spelt(cell, view) for cell in cells])
+    return groups
+
+
+def record_text(record: Mapping[str, Any], keys: Keys, fmt: str, view: View) -> bytes:
+    """Return a record as a `table` or as `markdown`: its summary, its groups, and its remark."""
+    groups = record_cells(record, keys, view)
+    if fmt == "table":
+        from .tables import drawn_record
+
+        return drawn_record(record, groups, view)
+    rows = []
+    for group, lines in groups.items():
+        rows += [["", f"**{group}**", "", "", ""], *lines]
+    texts = [record.get("summary"), markdown(RECORD_HEADINGS, rows).rstrip(), record.get("remark")]
+    return ("\n\n".join(filter(None, texts)) + "\n").encode()
+
+
+def rows_text(names: Sequence[str], rows: Sequence[Sequence[str]], fmt: str, view: View) -> bytes:
+    """Return rows as a `table` or as `markdown`."""
+    if fmt == "table":
+        from .tables import drawn_rows
+
+        return drawn_rows(names, rows, view)
+    return markdown(names, rows).encode()
+
+
+def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table in GitHub's markdown."""
+    lines = [headings, ["---"] * len(headings), *rows]
+    escaped = ([cell.replace("|", "\\|") for cell in line] for line in lines)
+    return "".join(f"| {' | '.join(line)} |\n" for line in escaped)
+
 
 def with_unit(text: str, unit: str | None) -> str:
-    """Return a name with its unit between brackets, where it has one and does not end in it."""
+    """Return a name with its unit in brackets, unless it has none or ends in it."""
     return f"{text} [{unit}]" if unit and not text.endswith(f"_{unit}") else text
 
 
 def short(value: float) -> str:
     """Return two significant digits."""
     return f"{value:.1e}"
+
+
+_LEAST_EXPONENT = -4
+"""Below it, and if a rounded place stands before the point, there is an exponent."""
+
+
+def uncertain_text(value: float, std: float) -> str:
+    """Return a number with its standard uncertainty, such as 0.4293(48) or 73.9(1.2).
+
+    The uncertainty is rounded by the rule of the Particle Data Group: to two digits if its first
+    three are at most 354, to one up to 949, and up to 1000 beyond.  A number that is certain is
+    written in full.
+    """
+    if not std:
+        return double_text(value)
+    with localcontext() as context:
+        context.prec = 800
+        context.rounding = ROUND_HALF_EVEN
+        last = last_place(std)
+        number, spread = (Decimal(repr(x)).quantize(Decimal(1).scaleb(last)) for x in (value, std))
+        leading = max(x.adjusted() for x in (number, spread) if x)
+        if leading >= _LEAST_EXPONENT and last <= 0:
+            return _in_brackets(number, spread, last)
+        number, spread = number.scaleb(-leading), spread.scaleb(-leading)
+        return f"{_in_brackets(number, spread, last - leading)}e{leading:+03d}"
+
+
+def last_place(std: float) -> int:
+    """Return the power of ten of the last digit that an uncertainty keeps."""
+    exact = Decimal(repr(std))
+    leading = exact.adjusted()
+    first_three = int(exact.scaleb(2 - leading))
+    return leading - 1 if first_three <= 354 else leading  # beyond 949 rounding makes it 1000
+
+
+def _in_brackets(number: Decimal, spread: Decimal, last: int) -> str:
+    """Return both with digits down to a place, the spread as a count of it below 1."""
+    places = max(-last, 0)
+    inside = f"{spread:.{places}f}" if spread >= 1 else f"{spread.scaleb(places):.0f}"
+    return f"{number:.{places}f}({inside})"

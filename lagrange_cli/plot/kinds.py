@@ -17,9 +17,9 @@ from ..output.progress import Progress, silent
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ..arithmetic.values import Key
     from ..inputs.input_keys import Input
     from ..inputs.units import System
-    from ..motion.quantity import Key
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.sensitivity.uncertainty import FirstOrder
     from ..motion.solve import Motion
@@ -49,8 +49,6 @@ class PlotRequest(NamedTuple):
     """Azimuth and elevation (radians) of the camera; by default where it sees most of a path."""
     limits: tuple[float, float] | None = None
     """Ends of the colours of a map; by default all but the outermost values are within."""
-    numbers: bool = True
-    """Whether the numbers of the scene stand beside several pictures."""
     progress: Progress = silent
     """Shows the progress of a map."""
     stds: AngleStds | None = None
@@ -101,7 +99,7 @@ class PlotRequest(NamedTuple):
             and ",".join(f"{x * self.per_radian:.10g}" for x in self.camera),
             "--colour-limits": self.limits and ":".join(map(repr, self.limits)),
         }
-        flags = ["--rad"] * self.radians + ["--no-numbers"] * (not self.numbers)
+        flags = ["--rad"] * self.radians
         return [f"{name} {text}" for name, text in given.items() if text] + flags
 
 
@@ -161,7 +159,7 @@ ON_THE_SHEET = tuple(kind.name for kind in _ROWS if kind.on_sheet)
 
 def help_lines() -> list[str]:
     """Return one aligned line per kind, and one for the sheet, for the help of the command."""
-    sheet = f"{', '.join(ON_THE_SHEET[:-1])} and {ON_THE_SHEET[-1]}, with the record (the default)"
+    sheet = f"{', '.join(ON_THE_SHEET[:-1])} and {ON_THE_SHEET[-1]}, with the record (default)"
     texts = {name: kind.help for name, kind in KINDS.items()} | {SHEET: sheet}
     width = max(map(len, texts))
     return [f"{name:{width}}  {text}" for name, text in texts.items()]

@@ -62,7 +62,7 @@ class Page(NamedTuple):
         if len(self.kinds) == 1:
             return KINDS[self.kinds[0]].size
         rows, columns = self.grid()
-        return NUMBERS_WIDTH * self.request.numbers + PANEL[0] * columns, PANEL[1] * rows
+        return NUMBERS_WIDTH + PANEL[0] * columns, PANEL[1] * rows
 
     def grid(self) -> tuple[int, int]:
         """Return the rows and columns of panels."""
@@ -122,11 +122,9 @@ def draw_page(figure: Figure, page: Page) -> None:
         _draw(page.kinds[0], figure.subfigures(1, 1, squeeze=False)[0, 0], page)
         return
     rows, columns = page.grid()
-    right: FigureBase = figure
-    if page.request.numbers:
-        widths = NUMBERS_WIDTH, columns * PANEL[0]
-        left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=widths)[0]
-        _write_numbers(left, page)
+    widths = NUMBERS_WIDTH, columns * PANEL[0]
+    left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=widths)[0]
+    _write_numbers(left, page)
     panels = right.subfigures(rows, columns, squeeze=False, wspace=0.04, hspace=0.04)
     for kind, panel in zip(page.kinds, panels.flat, strict=False):
         try:

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from ..errors import CannotWriteError
 from ..output.destination import opened
-from ..output.write import part_file
+from ..output.formats import part_file
 from .plan import Make, NumberedBlock, Part, Sweep, Tally
 
 DESCRIPTION = "sweep.json"

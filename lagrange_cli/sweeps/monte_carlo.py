@@ -27,7 +27,7 @@ MOST_SAMPLES = 1_000_000
 LEAST_SAMPLES = 100
 COVERAGE = 1.959963984540054
 """Standard deviations on either side that cover 95 % of a normal distribution."""
-HOLDS, OPEN, FAILS = "holds", "open: more samples", "does not hold"
+HOLDS, OPEN, FAILS = "yes", "undecided", "no"
 _MISSING = 1e-3
 """Share of samples without a key, from which on its distribution is not that of one motion."""
 _HALF_TURN, _TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}, 2.0

@@ -21,13 +21,13 @@ from ..inputs.files import digested
 from ..inputs.given import Given, checked_double, gather
 from ..inputs.input_keys import overridden
 from ..inputs.ranges import Block, Product
+from ..inputs.scene_file import is_scene_file
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
 from ..inputs.value import Value, as_value
-from ..output.formats import Header
-from ..output.row_texts import Columns
-from ..output.write import block_text
+from ..output.formats import Header, block_text
+from ..output.rows import Columns
 from .records import BLOCK_ROWS, check_keys, column_keys, records
 from .results import ResultColumn, std_columns, std_keys
 from .top_arrays import top_arrays
@@ -134,7 +134,7 @@ def plan(
     The last axis varies fastest.  Where the plan is to be `described`, the file is read twice, for
     its digest, and standard input is kept on disk meanwhile.  Raises LagtopError.
     """
-    scenes = [file for file in files if file.endswith(".toml")]
+    scenes = [file for file in files if is_scene_file(file)]
     tables = [file for file in files if file not in scenes]
     if len(scenes) > 1 or len(tables) > 1:
         raise LagtopError(f"a sweep has one scene and one file of tops, got {' '.join(files)}")

@@ -18,7 +18,7 @@ from ..inputs.tops_file import Lines, TopRow, TopsFile, open_tops
 from ..motion.over_time.columns import DEFAULT_COLUMNS
 from ..motion.over_time.times import TableRequest
 from ..motion.solve import solve
-from ..output.write import block_text
+from ..output.formats import block_text
 from .angles import angles_of_tops
 from .jobs import in_order
 from .plan import Part, shared_inputs

@@ -234,7 +234,7 @@ BAD = {
     "--t-max 0": "--t-max must be other than 0",
     "--timeout 0": "--timeout must be > 0, got 0.0",
     "--plot x.pdf": "--plot must end in .svg or .png, got 'x.pdf'",
-    "--long --t-max 1": "--long and --t-max exclude each other",
+    "--long --t-max 1": "use --long or --t-max, not both",
     "--t-max 1e30": "t must be finite and within 2^50 periods",
     "--theta0 0": "the scene must be one that nutates, got sleeping",
     "--g 0": "the scene must be one that nutates, got torque-free",
@@ -310,7 +310,7 @@ def test_long_view_stops_a_method_that_has_failed(
 def test_samples_are_taken_in_one_thread_and_scipy_stays_out_of_solve() -> None:
     code = (
         "import os, sys\nfrom click.testing import CliRunner\n"
-        "from lagrange_cli.cli.group import main\n"
+        "from lagrange_cli.cli.app import main\n"
         "CliRunner().invoke(main, 'bench --n 3 --methods lagtop'.split())\n"
         "print(os.environ['OMP_NUM_THREADS'], {'scipy', 'heyoka', 'matplotlib'} & set(sys.modules))"
     )

@@ -132,7 +132,7 @@ def test_the_seed_and_the_samples_reach_the_battery(
         return Report({}, stability.STRATUM_FIELDS, [], ["nothing"])
 
     monkeypatch.setattr(stability, "run_battery", no_battery)
-    for line in ("--seed 7 --samples 3", "--thorough", "--certify"):
+    for line in ("--seed 7 --samples 3", "--samples 200", "--certify"):
         assert lagtop("stability", "--strata", "slow", *line.split()).exit_code == 0
     whole, few = (["slow"], 200, 1952, False), (["slow"], 4, 1952, True)
     assert asked == [(["slow"], 3, 7, False), whole, few]
@@ -292,7 +292,6 @@ def test_failures_of_others_are_counted(monkeypatch: pytest.MonkeyPatch) -> None
 BAD = {
     "--strata hard": "--strata must be among generic, from rest, stiff (fast spin),",
     "--samples 0": "--samples must be in [1, 100000], got 0",
-    "--samples 3 --thorough": "--samples and --thorough exclude each other",
     "--seed x": "--seed must be a finite decimal number, got 'x'",
     "--plot x.gif": "--plot must end in .svg or .png, got 'x.gif'",
 }

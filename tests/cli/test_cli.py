@@ -16,10 +16,11 @@ from conftest import ROOT, Lagtop, assert_one_line
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, errors, solve, sweep
-from lagrange_cli.cli.command import top_layout
-from lagrange_cli.cli.group import COMMANDS
-from lagrange_cli.cli.top_options import is_scene
-from lagrange_cli.motion.record import NUMBER_KEYS
+from lagrange_cli.cli.app import NAMES as COMMANDS
+from lagrange_cli.cli.top import is_scene
+from lagrange_cli.motion.over_time.columns import COLUMNS
+from lagrange_cli.motion.record import KEYS as SHOWN
+from lagrange_cli.motion.record import NUMBER_KEYS, all_keys
 
 Solved = Callable[..., dict[str, Any]]
 KEYS = """
@@ -65,15 +66,9 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
     assert {str(value) for value in solved().values() if value is not None} <= words
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
-    order = [shown.index(group) for group in top_layout()]
+    groups = dict.fromkeys(key.group for key in SHOWN.values() if key.meaning)
+    order = [shown.index(f" {group}\n") for group in groups]
     assert order == sorted(order)
-
-
-def test_table_explains_every_key() -> None:
-    angles = {"theta0", "modular_angle", "amplitude", "theta_min", "theta_max"}
-    keys = [row.key for group in top_layout().values() for row in group]
-    shown = [f"{key}_deg" if key in angles else key for key in keys]
-    assert sorted([*shown, "remark"]) == sorted(KEYS)
 
 
 def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:
@@ -229,9 +224,9 @@ BAD = {
     "--theta0 -1": "--theta0 must be in [0, 180], got -1.0",
     "--theta0 181": "--theta0 must be in [0, 180], got 181.0",
     "--theta0 3.15 --rad": "--theta0 must be in [0, pi], got 3.15",
-    "--theta 3": "No such option",
-    "--format xml": "'xml' is not one of",
-    "a.toml b.toml": "unexpected extra argument",
+    "--theta 3": "unknown option --theta (did you mean",
+    "--format xml": "--format must be one of ",
+    "a.toml b.toml": "unexpected argument b.toml: see lagtop",
 }
 BAD_TIMES = {
     "--n 0": "--n must be >= 1, got 0",
@@ -242,8 +237,8 @@ BAD_TIMES = {
     "--t-max -1": "--t-max must be >= --t-min = 0.0, got -1.0",
     "--t-max 1 --dt 1e-10": "the grid of times must have at most 1e9 rows, got 1.000e+10",
     "--n 2e9": "at most 1e9 rows",
-    "--n 3 --dt 1": "--n and --dt exclude each other: leave one out",
-    "--times x --n 3": "--times and --n exclude each other",
+    "--n 3 --dt 1": "use --n or --dt, not both",
+    "--times x --n 3": "use --times or --n, not both",
     "--t-max 1e300": "--t-max must be finite and within 2^50 periods = 4.83e+14, got 1e+300",
     "--t-min -1e30": "--t-min must be finite and within 2^50 periods = 4.83e+14, got -1e+30",
     "--format table --n 20000": "--format table shows at most 10000 rows, got 20000",
@@ -254,7 +249,7 @@ BAD_TIMES = {
     ("line", "message"),
     [(f"solve {line}", message) for line, message in BAD.items()]
     + [(f"table {line}", message) for line, message in (BAD | BAD_TIMES).items()]
-    + [("solv", "No such command 'solv'")],
+    + [("solv", "unknown command 'solv' (did you mean 'solve'?): see lagtop --help")],
 )
 def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:
     result = lagtop(*line.split())
@@ -307,13 +302,24 @@ def test_words_that_do_not(word: str) -> None:
 # help
 
 
-@pytest.mark.parametrize(
-    "command", ["", "-h", "--help", "solve -h", "solve --help", "table --help"]
-)
-def test_help_starts_with_examples(command: str, lagtop: Lagtop) -> None:
-    result = lagtop(*command.split())
+@pytest.mark.parametrize("command", ["", "-h", *COMMANDS])
+def test_help_is_short_and_begins_with_the_usage(command: str, lagtop: Lagtop) -> None:
+    result = lagtop(*command.split(), *(["--help"] if command in COMMANDS else []))
     assert result.exit_code == 0
-    assert result.stdout.startswith("Examples:\n  lagtop ")
+    lines = result.stdout.splitlines()
+    assert lines[0].startswith("Usage: lagtop ")
+    assert len(lines) <= 60
+    assert max(map(len, lines)) <= 80
+    examples = result.stdout.partition("\nExamples:\n")[2].partition("\n\n")[0].splitlines()
+    assert len(examples) == 3
+    assert all(line.startswith("  lagtop ") for line in examples)
+
+
+def test_help_has_groups_and_the_unit_of_rates(lagtop: Lagtop) -> None:
+    shown = lagtop("solve", "--help").stdout
+    heads = re.findall(r"^(\w+):$", shown, re.MULTILINE)
+    assert heads == "Examples Options Body Start Uncertainty Accuracy Output".split()
+    assert " ".join(shown.split()).count("rad per unit of time") == 4
 
 
 def test_help_shows_the_defaults_of_the_inputs(lagtop: Lagtop) -> None:
@@ -323,22 +329,32 @@ def test_help_shows_the_defaults_of_the_inputs(lagtop: Lagtop) -> None:
             assert f"[default: {default}]" in shown, command
 
 
-def test_help_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
-    from lagrange_cli.motion.over_time.columns import COLUMNS
+def test_explain_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
+    listed = lagtop("explain", "--format", "csv").stdout
+    names = [row["name"] for row in csv.DictReader(io.StringIO(listed))]
+    assert sorted(names) == sorted([*(key for key in all_keys() if key != "remark"), *COLUMNS])
 
-    for command in ("solve", "sweep"):
-        record, *_ = lagtop(command, "--help").stdout.partition("\nKeys on request: ")
-        _, *sections = record.split("\nKeys: ")
-        keys = [line.split()[0] for text in sections for line in text.splitlines()[1:] if line]
-        assert sorted(keys) == sorted(set(KEYS) - {"remark"})
-    columns = lagtop("table", "--help").stdout.split("\nColumns:\n")[1]
-    assert [line.split()[0] for line in columns.splitlines()] == list(COLUMNS)
+
+def test_scenes_are_found_by_name(
+    lagtop: Lagtop, solved: Solved, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    by_file = {path.stem: solved(path) for path in SAMPLES}
+    monkeypatch.chdir(tmp_path)
+    listed = csv.DictReader(io.StringIO(lagtop("scenes", "--format", "csv").stdout))
+    assert [row["name"] for row in listed] == sorted(by_file)
+    for name, record in by_file.items():
+        assert solved(name) == record
+        assert lagtop("table", name, "--n", "1").exit_code == 0
+    unknown = lagtop("solve", "simo-wong")
+    assert_one_line(
+        unknown, 65, "simo-wong: No such file or directory (did you mean 'simo-wong-1991'?"
+    )
 
 
 def test_commands_and_options_that_are_nearly_right_are_suggested(lagtop: Lagtop) -> None:
-    assert "Did you mean 'solve'?" in lagtop("solv").stderr
-    assert "Did you mean 'stability'?" in lagtop("stabilty").stderr
-    assert lagtop("xyz").stderr == "Error: No such command 'xyz'.\n"
+    assert "did you mean 'solve'?" in lagtop("solv").stderr
+    assert "did you mean 'stability'?" in lagtop("stabilty").stderr
+    assert lagtop("xyz").stderr == "Error: unknown command 'xyz': see lagtop --help\n"
     assert "--theta0" in lagtop("solve", "--theta", "3").stderr
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from conftest import LAGTOP, ROOT, Lagtop
 
-from lagrange_cli.cli.group import COMMANDS
+from lagrange_cli.cli.app import NAMES as COMMANDS
 
 LINES = {
     "solve": "solve",
@@ -24,6 +24,8 @@ LINES = {
     "jacobi": "jacobi --k 0.8 --u 1",
     "eta": "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4",
     "bench": "bench --n 3 --t-max 1 --methods lagtop --format csv",
+    "explain": "explain",
+    "scenes": "scenes",
     "stability": "stability --samples 1 --strata fast --format csv",
 }
 """A line of each command that writes more than one block, or from more than one place."""
@@ -54,7 +56,7 @@ def test_closed_standard_error(name: str, tmp_path: Path, lagtop: Lagtop) -> Non
         assert len(closed.stdout) > 100
 
 
-HELP = ["--help", "--version", "", "solve --help", "sweep --version"]
+HELP = ["--help", "--version", "", "solve --help"]
 
 
 @pytest.mark.parametrize("line", HELP)

@@ -14,7 +14,7 @@ import pytest
 from click.shell_completion import ShellComplete
 from conftest import LAGTOP, forked, process
 
-from lagrange_cli.cli.group import main
+from lagrange_cli.cli.app import main
 
 HEAVY = {"distributed", "pyarrow", "numpy", "scipy", "mpmath", "rich", "matplotlib", "orjson"}
 
@@ -38,11 +38,11 @@ LOADED = {
     "jacobi --k 0.8 --format json": set(),
     "jacobi --k-prime 1e-9": {"rich"},
     "jacobi --nome 0.1 --format csv": set(),
-    "jacobi --k 0.8 --u K/2 --u K/3 --format csv": set(),
-    "jacobi --k 0.8 --u 0.5 --zeta --pi --param 0.7i --format json": set(),
-    "jacobi --k 0.8 --u 0.5 --theta --omega --param 0.7": {"rich"},
+    "jacobi --k 0.8 --u K/2,K/3 --format csv": set(),
+    "jacobi --k 0.8 --u 0.5 --functions zeta,pi --param 0.7i --format json": set(),
+    "jacobi --k 0.8 --u 0.5 --functions theta,omega --param 0.7": {"rich"},
     "jacobi --k 0.8 --phi 30 --phi 60 --format csv": set(),
-    "jacobi --k 0.8 --u-range 0:1:99 --format csv": {"numpy", "orjson"},
+    "jacobi --k 0.8 --u 0:1:99 --format csv": {"numpy", "orjson"},
     "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json": set(),
 }
 """Command lines, and the heavy packages that each needs."""

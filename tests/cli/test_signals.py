@@ -36,10 +36,10 @@ STARTS = {
     "module",
     [
         "click",
-        "lagrange_cli.cli.group",
+        "lagrange_cli.cli.app",
         "lagrange_cli.cli.options",
         "lagrange_cli.cli.solve",
-        "lagrange_cli.output.layouts",
+        "lagrange_cli.output.report",
         "rich.console",
     ],
 )
@@ -190,7 +190,7 @@ ECHOING = [
     "sweep --shard {}",
     "sweep --dask {}",
     "sweep --parts file/{}",
-    "jacobi --k 0.5 --u 1 --pi --param {}",
+    "jacobi --k 0.5 --u 1 --functions pi --param {}",
     "jacobi {}",
     "plot {}",
     "view {}",

@@ -16,9 +16,8 @@ from types import SimpleNamespace
 import pytest
 
 from lagrange_cli import Top, solve
-from lagrange_cli.cli.command import top_layout
-from lagrange_cli.output.formats import FORMAT_BY_NAME
-from lagrange_cli.output.report import Field, Report
+from lagrange_cli.motion.record import shown_keys
+from lagrange_cli.output.report import Field, Report, record_text
 from lagrange_cli.output.terminal import View, view_of
 
 ESCAPE = re.compile("\x1b\\[[?]?([0-9;]*)([A-Za-z])|([\r\n])|([^\x1b\r\n]+)")
@@ -87,9 +86,9 @@ LONG = [
     "table --n 100000 -o /dev/null",
     "table --n 300 --digits 30 -o /dev/null",
     "sweep --r0 1:9:100000 --keys K -o /dev/null",
-    "jacobi --k 0.5 --u-range 0:1:100000 --format csv -o /dev/null",
-    "jacobi --k 0.5 --u-range 0:1:40 --digits 50 -o /dev/null",
-    f"{ETA} --tau-range 0:3:30 --digits 50 -o /dev/null",
+    "jacobi --k 0.5 --u 0:1:100000 --format csv -o /dev/null",
+    "jacobi --k 0.5 --u 0:1:40 --digits 50 -o /dev/null",
+    f"{ETA} --tau 0:3:30 --digits 50 -o /dev/null",
     "table --tops {tops} --n 100 -o /dev/null",
 ]
 
@@ -118,7 +117,7 @@ WIDE = [
     "table --n 3 --format table",
     "table --n 3 --columns t,axis,quaternion,energy --format table",
     "table --n 3 --digits 90 --format table",
-    "jacobi --k 0.5 --u-range 0:1:3 --am --theta --zeta",
+    "jacobi --k 0.5 --u 0:1:3 --functions am,theta,zeta",
     "jacobi --k 0.5 --digits 70",
     f"{ETA} --digits 60",
     f"{ETA} --tau 1 --digits 60",
@@ -153,9 +152,8 @@ def test_colours_mean_something_and_can_be_left_out(
         view = view_of("-")
     record = solve(Top(theta0_deg=0)).record()
     for width in (view.width, 40):
-        text = (
-            FORMAT_BY_NAME["table"].record(record, top_layout, view.replace(width=width)).decode()
-        )
+        shown = record_text(record, shown_keys(), "table", view.replace(width=width))
+        text = shown.decode()
         if setting:
             assert "\x1b" not in text
             continue
@@ -186,11 +184,11 @@ def test_reports_fold_with_the_names_of_their_rows(monkeypatch: pytest.MonkeyPat
         *(Field(key, key * 8) for key in "abcdef"),
     ]
     rows = [SimpleNamespace(method=name, **dict.fromkeys("abcdef", 1.5)) for name in ("x", "y")]
-    findings = Report({"machine": "word " * 30}, fields, rows, ["word " * 30])
-    text = FORMAT_BY_NAME["table"].findings(findings, View(40, True)).decode()
+    report = Report({"machine": "word " * 30}, fields, rows, ["word " * 30])
+    text = report.text("table", View(40, True)).decode()
     plain = re.sub("\x1b\\[[0-9;]*m", "", text)
     assert max(map(len, plain.splitlines())) <= 40
     assert plain.count("method") == 2
     assert plain.count("1.5") == 12
-    wide = FORMAT_BY_NAME["table"].findings(findings, View()).decode()
+    wide = report.text("table", View()).decode()
     assert wide.count("method") == 1

@@ -16,7 +16,7 @@ from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.inputs.value import parse_value
 from lagrange_cli.motion.sensitivity.uncertainty import by_given
-from lagrange_cli.output.uncertain_text import uncertain_text
+from lagrange_cli.output.report import uncertain_text
 
 uncertainties = pytest.importorskip("uncertainties")
 
@@ -135,26 +135,26 @@ def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Pat
     recording = "sample_inputs/recording.csv"
     for words in (
         ("find", scene, "--r0", "10:200", "T_precession=2", "--keys", "r0"),
-        ("find", "--from", scene, "theta_min=30", "theta_max=60", "T_nutation=0.4"),
-        ("fit", recording, "--scene", scene, "--fix", "m"),
+        ("find", scene, "theta_min=30", "theta_max=60", "T_nutation=0.4"),
+        ("fit", recording, scene, "--fix", "m"),
         ("view", scene, "-o", tmp_path / "top.html"),
-        ("compare", recording, "--scene", scene),
+        ("compare", recording, scene),
     ):
         assert line in lagtop(*words).stderr, words
-    assert line not in lagtop("fit", recording, "--scene", scene, "--fix", "g").stderr
+    assert line not in lagtop("fit", recording, scene, "--fix", "g").stderr
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--m", "1(2"], "--m must be a number, or an uncertain one as 1587(2)"),
-        (["--m", "9(2)", "--digits", "30"], "--digits and uncertain inputs exclude each other"),
-        (["--m", "9(2)", "--derivation"], "--derivation and uncertain inputs exclude"),
+        (["--m", "9(2)", "--digits", "30"], "use --digits or uncertain inputs, not both"),
+        (["--m", "9(2)", "--derivation"], "use --derivation or uncertain inputs, not both"),
         (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
         (["--get", "T_nutation_std"], "no input is uncertain"),
         (["--theta0", "30(1)", "--budget", "T"], "--budget must be among 26 names, got 'T': a, b"),
         (["--theta0", "30(1)", "--samples", "5"], "--samples must be in [100, 1000000], got 5"),
-        (["--theta0", "30(1)", "--seed", "5"], "--seed is that of random tops"),
+        (["--theta0", "30(1)", "--seed", "5"], "--seed needs --samples"),
         (["--theta0", "30(1)", "--samples", "200", "--seed", "-1"], "--seed must be >= 0, got -1"),
     ],
 )
@@ -172,7 +172,7 @@ def test_a_report_on_samples_tells_both_uncertainties_apart(lagtop: Lagtop) -> N
     assert "std" not in row
     assert {"first_order_std", "sampled_std"} <= row.keys()
     shown = lagtop("solve", *arguments).stdout
-    assert "first-order std" in shown
+    assert "linear std" in shown
     assert "sampled std" in shown
 
 

@@ -15,7 +15,7 @@ from function_judge import ComplexJudge, complex_units
 from lagrange_cli import LagtopError
 from lagrange_cli.arithmetic.points import parse_complex
 
-EVERYTHING = "--am --theta --zeta --omega --pi --param 0.2+0.7i --format json"
+EVERYTHING = "--functions am,theta,zeta,omega,pi --param 0.2+0.7i --format json"
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,9 @@ def test_other_texts_are_refused(text: str) -> None:
 def test_odd_spellings_are_told_the_right_one(option: str, text: str, lagtop: Lagtop) -> None:
     """The line names all of the text, as it was typed, and the right spelling."""
     given = {"--k": "0.8", "--u": "1", "--param": "0.3"} | {option: text}
-    result = lagtop("jacobi", "--pi", *(word for pair in given.items() for word in pair))
+    result = lagtop(
+        "jacobi", "--functions", "pi", *(word for pair in given.items() for word in pair)
+    )
     assert (result.exit_code, result.stdout) == (2, "")
     line = f"Error: {option} must be a finite number, complex as 0.3+0.7i, got {text!r}\n"
     assert result.stderr == line
@@ -63,7 +65,7 @@ def complex_cells(row: dict[str, Any]) -> dict[str, complex]:
 @pytest.mark.slow
 @pytest.mark.parametrize("k", ["0.8", "0.8i", "1.5"])
 def test_every_column(k: str, lagtop: Lagtop) -> None:
-    args = f"jacobi --k {k} --rad --u 0.3+0.7i --u=-4-1i {EVERYTHING}"
+    args = f"jacobi --k {k} --rad --u 0.3+0.7i,-4-1i {EVERYTHING}"
     rows = json.loads(lagtop(*args.split()).stdout)
     many = json.loads(lagtop(*args.split(), "--digits", "20").stdout)
     judge = ComplexJudge(complex(parse_complex(k)))
@@ -99,7 +101,9 @@ def test_digits_are_right(lagtop: Lagtop) -> None:
     for _ in range(3):
         u = f"{rng.uniform(-3, 3):.4f}{rng.uniform(-2, 2):+.4f}i"
         args = f"jacobi --k 0.8i --u={u} --digits 30 --format json"
-        row = json.loads(lagtop(*args.split(), "--am", "--theta").stdout, parse_float=str)[0]
+        row = json.loads(lagtop(*args.split(), "--functions", "am,theta").stdout, parse_float=str)[
+            0
+        ]
         with mpmath.workdps(50):
             real, imag = (mpmath.mpf(str(part)) for part in map(_decimal, parse_complex(u)))
             exact = mpmath.ellipfun("sn", mpmath.mpc(real, imag), m=-mpmath.mpf("0.64"))
@@ -118,7 +122,7 @@ DIGITS = ["--digits", "30"]
 @pytest.mark.parametrize("k", ["5.874862083807e18i", "2i", "2", "0.5"])
 def test_the_quotient_of_two_zeros_is_no_number(k: str, lagtop: Lagtop) -> None:
     """Omega11 of u = v = 0 was looked for in thousands of digits, as a number that is not 0."""
-    args = f"jacobi --k {k} --u 0+0i --omega --pi --param 0 --format json"
+    args = f"jacobi --k {k} --u 0+0i --functions omega,pi --param 0 --format json"
     plain, many = (json.loads(lagtop(*args.split(), *more).stdout) for more in ([], DIGITS))
     assert [*plain[0].values()] == [*many[0].values()]
     assert {key for key, x in many[0].items() if x is None} == {
@@ -128,7 +132,7 @@ def test_the_quotient_of_two_zeros_is_no_number(k: str, lagtop: Lagtop) -> None:
 
 @pytest.mark.parametrize("digits", ["", " --digits 12"])
 def test_poles_and_zeros(digits: str, lagtop: Lagtop) -> None:
-    args = f"jacobi --k 0.5 --u 0 --u 1+i --u=-1-i --u 9i --am --zeta --pi --param 1+i{digits}"
+    args = f"jacobi --k 0.5 --u 0,1+i,-1-i,9i --functions am,zeta,pi --param 1+i{digits}"
     rows = json.loads(lagtop(*args.split(), "--format", "json").stdout)
     assert [row["pi11_re"] is None for row in rows] == [False, True, True, False]
     assert [row["zeta11_im"] is None for row in rows] == [True, False, False, False]
@@ -168,7 +172,7 @@ def exact_third(tau: mpmath.mpc, K: mpmath.mpf, u: complex, v: complex) -> dict[
 )
 def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lagtop) -> None:
     """Parts that are 0 by a symmetry are printed as 0, and nothing else is."""
-    args = f"jacobi {modulus} --u={u} --omega --pi --param={v} --digits 9 --format json"
+    args = f"jacobi {modulus} --u={u} --functions omega,pi --param={v} --digits 9 --format json"
     row = json.loads(lagtop(*args.split()).stdout)[0]
     third = {name: row[name] for name in row if name[:2] in {"om", "pi"}}
     assert {name for name in third if not third[name]} == set(zeros.split())
@@ -186,5 +190,5 @@ def test_zeros_by_symmetry(modulus: str, u: str, v: str, zeros: str, lagtop: Lag
 
 
 def test_real_input_prints_what_it_did(lagtop: Lagtop) -> None:
-    shown = lagtop(*"jacobi --k 0.5 --u 0.3 --pi --param 0i --format csv".split()).stdout
+    shown = lagtop(*"jacobi --k 0.5 --u 0.3 --functions pi --param 0i --format csv".split()).stdout
     assert shown.splitlines()[0] == "u,pi01_imag,pi00_imag,pi11_imag"

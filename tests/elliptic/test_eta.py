@@ -51,6 +51,7 @@ ORBITS = {
     "equal outer roots": quadrature("-0.1", "0.8", "2 2"),
 }
 TOP_KEYS = ["a", "u1", "u2", "u3", "T_nutation"]
+WITH_CHAIN = ("eta", "h1", "theta", "xi_prime")
 PARTS = [1e-6, 0.21, 0.4999, 0.62, 3.3, -7.7]
 
 
@@ -100,7 +101,7 @@ def test_eta(name: str) -> None:
         period = 2 * integral.tau(mpmath.pi)
         assert abs(mpmath.mpf(eta_constants(ManyDigits(50), of).period) / period - 1) < 1e-45
         times = [Fraction(float(period) * part) for part in PARTS]
-        rows = array_rows(EtaTable(ListedPoints(times), of, rate=True))
+        rows = array_rows(EtaTable(ListedPoints(times), of, names=("eta", "etadot")))
         for exact_time, row in zip(times, rows, strict=True):
             eta, rate = row["eta"], row["etadot"]
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
@@ -136,7 +137,7 @@ def test_chain(name: str) -> None:
         m, sigma1 = k2 / (1 + k2), mpmath.sqrt(integral.g * less * more * (1 + k2))
         assert abs(4 * mpmath.ellipk(m) / sigma1 / period - 1) < 1e-40
         times = [Fraction(float(period) * part) for part in PARTS]
-        rows = array_rows(EtaTable(ListedPoints(times), of, angle="rad"))
+        rows = array_rows(EtaTable(ListedPoints(times), of, names=WITH_CHAIN, angle="rad"))
         for exact_time, row in zip(times, rows, strict=True):
             time = mpmath.mpf(exact_time.numerator) / exact_time.denominator
             turns = mpmath.nint(time / period)
@@ -190,7 +191,7 @@ def test_energy_and_ends(
     upper = lower + width
     ends = [upper + gaps[0] if above else lower - gaps[0], lower - gaps[-1]]
     of = Quadrature(lower, upper, tuple(ends[: len(gaps)]))
-    (row,) = array_rows(EtaTable(ListedPoints([tau]), of, rate=True))
+    (row,) = array_rows(EtaTable(ListedPoints([tau]), of, names=("eta", "etadot")))
     eta, rate = row["eta"], row["etadot"]
     assert lower <= Fraction(eta) + Fraction("1e-15")
     assert Fraction(eta) <= upper + Fraction("1e-15")
@@ -204,7 +205,16 @@ def test_far_times(lagtop: Lagtop) -> None:
     """More digits for them, or a refusal; c3 of many periods is as good as the rest of it."""
     args = "--delta 0.7 --delta-star 0.2 --gap-above 1 --gap-below 1".split()
     shown = lagtop(
-        "eta", *args, "--tau", "1e60", "--rate", "--digits", "17", "--format", "csv"
+        "eta",
+        *args,
+        "--tau",
+        "1e60",
+        "--columns",
+        "eta,etadot",
+        "--digits",
+        "17",
+        "--format",
+        "csv",
     ).stdout
     assert shown.splitlines()[1] == "1.0e+60,0.46542969581402027,-0.31188048026682578"
     assert "tau must be within 2^50 periods" in lagtop("eta", *args, "--tau", "1e60").stderr
@@ -230,7 +240,7 @@ def test_the_order_of_the_outer_roots_is_free() -> None:
 
 def test_digits_agree_with_doubles() -> None:
     of, times = ORBITS["generic"], ListedPoints([Fraction("0.3"), Fraction(7), Fraction("-2.5")])
-    table = EtaTable(times, of, Fraction("0.4"), rate=True, angle="rad")
+    table = EtaTable(times, of, Fraction("0.4"), names=(*WITH_CHAIN, "etadot"), angle="rad")
     rows = array_rows(table)
     assert list(rows[0]) == ["tau", "eta", "etadot", "h1", "theta_rad", "xi_prime"]
     for row, texts in zip(rows, table.digit_rows(30), strict=True):
@@ -247,7 +257,7 @@ def test_digits_agree_with_doubles() -> None:
         ("--p 3 --q 0i", "quartic with a double outer root, k1 = 0: circular functions"),
         ("--p 0.1 --q 2i", "quartic, k1 is imaginary"),
         ("--gap-above 1", "cubic"),
-        ("--quadratic", "quadratic, k1 = 0: a harmonic oscillation"),
+        ("", "quadratic, k1 = 0: a harmonic oscillation"),
     ],
 )
 def test_degenerate_radicands_are_named(lagtop: Lagtop, outer: str, kind: str) -> None:
@@ -309,7 +319,7 @@ def test_complex_pairs_at_random() -> None:
             exact = (m1 * start * (1 + cn) + m2 * end * (1 - cn)) / (m1 * (1 + cn) + m2 * (1 - cn))
             slope = mpmath.sqrt((end - exact) * (exact - start) * ((exact - p) ** 2 + far**2))
             theta = mpmath.atan2(sn, cn) - mpmath.pi / 2 + 2 * mpmath.pi * turns
-            (row,) = array_rows(EtaTable(ListedPoints([time]), of, angle="rad"))
+            (row,) = array_rows(EtaTable(ListedPoints([time]), of, names=WITH_CHAIN, angle="rad"))
             assert error_in_units(row["eta"], exact, slope, since) <= 2.5
             assert error_in_units(row["theta_rad"], theta, rate * dn, since) <= 2
             assert error_in_units(row["xi_prime"], -cn, rate * sn * dn, since) <= 2
@@ -317,8 +327,8 @@ def test_complex_pairs_at_random() -> None:
 
 def test_chain_of_the_command(lagtop: Lagtop) -> None:
     """At tau = -c3 theta is -90 degrees; a pair of roots on the axis is what it tends to."""
-    args = "eta --delta 0.5 --delta-star -0.25 --chain --c3 2 --tau -2 --tau 0.5".split()
-    for outer in ("--p 0 --q 2", "--p 0.1 --q 2i", "--quadratic"):
+    args = "eta --delta 0.5 --delta-star -0.25 --columns h1,theta,xi_prime --tau 0,2.5".split()
+    for outer in ("--p 0 --q 2", "--p 0.1 --q 2i", ""):
         shown = json.loads(lagtop(*args, *outer.split(), "--format", "json").stdout)
         assert (shown[0]["theta_deg"], shown[0]["xi_prime"]) == (-90, -1)
         digits = lagtop(*args, *outer.split(), "--digits", "25", "--format", "json").stdout

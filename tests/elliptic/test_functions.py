@@ -341,22 +341,22 @@ def test_constants_of_the_command(lagtop: Lagtop) -> None:
 
 
 def test_what_is_asked_for_is_shown_and_nothing_else(lagtop: Lagtop) -> None:
-    """am, sn, cn and dn are the default, and beside other functions only under --am."""
+    """am, sn, cn and dn are the default, and beside other functions only if they are named."""
     plain = "u,am_deg,sn,cn,dn"
     for families, names in (
         ("", plain),
-        ("--am", plain),
-        ("--zeta", "u,zeta01,zeta00,zeta11,zeta10"),
-        ("--am --pi --param 0.3", f"{plain},pi01,pi00,pi11"),
+        ("--functions am", plain),
+        ("--functions zeta", "u,zeta01,zeta00,zeta11,zeta10"),
+        ("--functions am,pi --param 0.3", f"{plain},pi01,pi00,pi11"),
     ):
         for count in (2, 20):  # with and without NumPy
-            args = ["--k", "0.8", "--u-range", f"0.1:1:{count}", *families.split()]
+            args = ["--k", "0.8", "--u", f"0.1:1:{count}", *families.split()]
             shown = lagtop("jacobi", *args, "--format", "csv").stdout.splitlines()
             assert (shown[0], len(shown)) == (names, count + 1)
 
 
 def test_rows_of_the_command(lagtop: Lagtop) -> None:
-    args = "--k 0.8 --u-range -3:3.5:6 --am --theta --zeta --omega --pi --param 0.4i".split()
+    args = "--k 0.8 --u -3:3.5:6 --functions am,theta,zeta,omega,pi --param 0.4i".split()
     plain = json.loads(lagtop("jacobi", *args, "--format", "json").stdout)
     many = json.loads(lagtop("jacobi", *args, "--format", "json", "--digits", "25").stdout)
     assert len(plain) == 6
@@ -370,7 +370,9 @@ def test_rows_of_the_command(lagtop: Lagtop) -> None:
 
 def test_poles_are_empty(lagtop: Lagtop) -> None:
     for digits in ([], ["--digits", "20"]):
-        shown = lagtop("jacobi", "--k", "0.8", "--u", "0", "--zeta", "--format", "json", *digits)
+        shown = lagtop(
+            "jacobi", "--k", "0.8", "--u", "0", "--functions", "zeta", "--format", "json", *digits
+        )
         assert json.loads(shown.stdout)[0]["zeta11"] is None
 
 
@@ -389,7 +391,7 @@ def test_digits_of_far_arguments(u: str, lagtop: Lagtop) -> None:
 
 def test_at_zero_modulus_zeta_has_a_limit(lagtop: Lagtop) -> None:
     for digits in ([], ["--digits", "20"]):
-        args = ["--k", "0", "--u", "1", "--zeta", "--format", "json", *digits]
+        args = ["--k", "0", "--u", "1", "--functions", "zeta", "--format", "json", *digits]
         row = json.loads(lagtop("jacobi", *args).stdout)[0]
         assert row["zeta11"] == pytest.approx(1 / math.tan(1), rel=1e-15)
         assert row["zeta10"] == pytest.approx(-math.tan(1), rel=1e-15)

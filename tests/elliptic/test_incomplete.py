@@ -124,7 +124,7 @@ def test_arrays_of_moduli_and_many_digits() -> None:
 
 def test_amplitudes_of_the_command(lagtop: Lagtop) -> None:
     """At whole quarter turns they are whole multiples of K and E; F has a pole for k = 1."""
-    shown = lagtop(*"jacobi --k 0.6 --phi-range=-180:270:6 --digits 25 --format csv".split()).stdout
+    shown = lagtop(*"jacobi --k 0.6 --phi=-180:270:6 --digits 25 --format csv".split()).stdout
     header, *lines = shown.splitlines()
     assert header == "phi_deg,F,E"
     with mpmath.workdps(60):

@@ -192,7 +192,9 @@ def test_columns_that_were_wrong(case: Case) -> None:
 def test_odd_thetas_keep_their_digits_where_the_nome_leaves_the_doubles(lagtop: Lagtop) -> None:
     """q^(1/4) = sqrt(k)/2 there, while q itself is 0 in doubles."""
     for k in ("1e-160", "1e-200", "1e-300"):
-        row = json.loads(lagtop(*f"jacobi --k {k} --u 1 --theta --format json".split()).stdout)[0]
+        row = json.loads(
+            lagtop(*f"jacobi --k {k} --u 1 --functions theta --format json".split()).stdout
+        )[0]
         size = math.sqrt(float(k))
         assert row["theta11"] == pytest.approx(size * math.sin(1), rel=2 * EPS, abs=0)
         assert row["theta10"] == pytest.approx(size * math.cos(1), rel=2 * EPS, abs=0)
@@ -205,7 +207,7 @@ def test_zeta10_next_to_its_pole(modulus: str, lagtop: Lagtop) -> None:
     judge = Judge(option.replace("-", "_"), Fraction(value))
     nearest = float(judge.K.mid())
     for x in (nudged(nearest, steps) for steps in (-1, 0, 1)):
-        args = [f"--{option}", value, "--u", repr(x), "--zeta", "--format", "json"]
+        args = [f"--{option}", value, "--u", repr(x), "--functions", "zeta", "--format", "json"]
         cell = json.loads(lagtop("jacobi", *args).stdout)[0]["zeta10"]
         exact = dict(judge.columns(x, None, False))["zeta10"]
         assert units(cell, exact, with_v=False) <= 2.5
@@ -215,15 +217,19 @@ def test_zeta10_next_to_its_pole(modulus: str, lagtop: Lagtop) -> None:
 @pytest.mark.parametrize(
     ("args", "column", "text"),
     [
-        ("--k 1e-30 --u 0.5 --omega --pi --param 0.25", "omega01", "-5.0427835013916863e-62"),
-        ("--k 1e-30 --u 0.5 --omega --pi --param 0.25", "pi01", "9.5003573116085122e-63"),
-        ("--k 1e-30 --u 0.5 --omega --pi --param 0.25", "pi00", "-9.5003573116085122e-63"),
-        ("--k 0.9 --u 1e12 --pi --param 0", "pi00", "0.0"),
-        ("--k 0.5 --u 0.3 --pi --param 0i", "pi11_imag", ""),
-        ("--k 0.5 --u 0.3 --pi --param 0i", "pi01_imag", "0.0"),
-        ("--k 0.5 --u 0.3 --omega --pi --param 0.3", "omega11", ""),
-        ("--k 0 --u 1 --zeta", "zeta01", "0.0"),
-        ("--k 0.5 --u 0 --zeta", "zeta00", "0.0"),
+        (
+            "--k 1e-30 --u 0.5 --functions omega,pi --param 0.25",
+            "omega01",
+            "-5.0427835013916863e-62",
+        ),
+        ("--k 1e-30 --u 0.5 --functions omega,pi --param 0.25", "pi01", "9.5003573116085122e-63"),
+        ("--k 1e-30 --u 0.5 --functions omega,pi --param 0.25", "pi00", "-9.5003573116085122e-63"),
+        ("--k 0.9 --u 1e12 --functions pi --param 0", "pi00", "0.0"),
+        ("--k 0.5 --u 0.3 --functions pi --param 0i", "pi11_imag", ""),
+        ("--k 0.5 --u 0.3 --functions pi --param 0i", "pi01_imag", "0.0"),
+        ("--k 0.5 --u 0.3 --functions omega,pi --param 0.3", "omega11", ""),
+        ("--k 0 --u 1 --functions zeta", "zeta01", "0.0"),
+        ("--k 0.5 --u 0 --functions zeta", "zeta00", "0.0"),
     ],
 )
 def test_printed_zeros_and_empty_cells_are_proved(
@@ -257,11 +263,11 @@ def test_digits(seed: int) -> None:
 @pytest.mark.parametrize(
     "args",
     [
-        "--zeta --k 0.956 --u 5.29784315909212489 --digits 2",
-        "--zeta --nome 0.6984809099903848 --u 13.751811435348458 --digits 1",
-        "--k 0.5 --u 1 --pi --param 1e300 --digits 20",
-        "--nome 0.9999999999999 --u 1 --pi --param 0.5 --digits 60",
-        "--k 0 --u 1 --omega --pi --param 1e15i --digits 5",
+        "--functions zeta --k 0.956 --u 5.29784315909212489 --digits 2",
+        "--functions zeta --nome 0.6984809099903848 --u 13.751811435348458 --digits 1",
+        "--k 0.5 --u 1 --functions pi --param 1e300 --digits 20",
+        "--nome 0.9999999999999 --u 1 --functions pi --param 0.5 --digits 60",
+        "--k 0 --u 1 --functions omega,pi --param 1e15i --digits 5",
     ],
 )
 def test_digits_where_there_was_a_traceback_or_no_end(args: str, lagtop: Lagtop) -> None:

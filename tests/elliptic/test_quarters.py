@@ -39,7 +39,7 @@ def columns(text: str) -> dict[str, list[str]]:
 @pytest.mark.parametrize("digits", [[], ["--digits", "30"]])
 @pytest.mark.parametrize("modulus", [["--k", "0.8"], ["--k-prime", "0.6"]])
 def test_table_2_prints_exactly(digits: list[str], modulus: list[str], lagtop: Lagtop) -> None:
-    args = ["jacobi", *modulus, "--u-range", "0:4K:5", *digits, "--format", "csv"]
+    args = ["jacobi", *modulus, "--u", "0:4K:5", *digits, "--format", "csv"]
     shown = columns(lagtop(*args).stdout)
     assert {name: shown[name] for name in TABLE_2} == TABLE_2
     assert shown["am_deg"] == ["0.0", "90.0", "180.0", "270.0", "360.0"]
@@ -53,10 +53,10 @@ def test_zeros_and_poles_of_the_theta_functions(
     digits: list[str], modulus: str, parameter: str, lagtop: Lagtop
 ) -> None:
     """Zeros and poles are at whole quarters; no other cell there is 0 or empty."""
-    args = ["--am", "--theta", "--zeta", "--omega", "--pi", "--param", parameter, "--format", "csv"]
-    shown = lagtop(
-        *["jacobi", *modulus.split(), "--u-range=-3K:3K:7", *args, *digits]
-    ).stdout.replace("_imag", "")
+    args = ["--functions", "am,theta,zeta,omega,pi", "--param", parameter, "--format", "csv"]
+    shown = lagtop(*["jacobi", *modulus.split(), "--u=-3K:3K:7", *args, *digits]).stdout.replace(
+        "_imag", ""
+    )
     even, odd = [1, 3, 5], [0, 2, 4, 6]
     imaginary, zero = parameter.endswith("i"), parameter == "0"
     zeros = {
@@ -187,6 +187,7 @@ def test_what_is_no_multiple(text: str) -> None:
 
 def test_zero_goes_with_both_kinds(lagtop: Lagtop) -> None:
     for arguments in (["0", "K"], ["0K", "K"], ["0", "1"]):
-        args = [x for u in arguments for x in ("--u", u)]
-        shown = lagtop("jacobi", "--k", "0.6", *args, "--format", "json").stdout
+        shown = lagtop(
+            "jacobi", "--k", "0.6", "--u", ",".join(arguments), "--format", "json"
+        ).stdout
         assert json.loads(shown)[0]["sn"] == 0

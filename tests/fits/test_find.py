@@ -238,11 +238,13 @@ def test_where_there_is_none_the_nearest_is_named(lagtop: Lagtop) -> None:
         ("none.toml --r0 1:2 T_nutation=1", 65, "none.toml: No such file"),
         ("none.scene --r0 1:2 T_nutation=0.5", 65, "none.scene: No such file"),
         ("a=b/none.toml --r0 1:2 T_nutation=0.5", 65, "a=b/none.toml: No such file"),
-        ("a.toml b.toml", 2, "find takes one scene"),
-        ("--from theta_min=3", 2, "--from must have theta_min=.. theta_max=.."),
-        ("--from --r0 1:2", 2, "--from goes with numbers for C r0 m s g A, got --r0"),
-        ("--from --theta0 3", 2, "--from goes with numbers for C r0 m s g A, got --theta0"),
-        ("--from --scan 9", 2, "--from and --scan exclude each other"),
+        ("a.toml b.toml", 2, "use one scene, not a.toml and b.toml"),
+        ("theta_min=3", 2, "must be theta_min=.. theta_max=.."),
+        (
+            "--theta0 20 theta_min=3",
+            2,
+            "no input is unknown: give a range, such as --theta0 10:200",
+        ),
     ],
 )
 def test_bad_commands(lagtop: Lagtop, words: str, code: int, message: str) -> None:

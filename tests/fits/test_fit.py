@@ -257,7 +257,7 @@ def test_the_scene_is_read_by_other_commands(lagtop: Lagtop, tmp_path: Path) -> 
 def test_known_inputs_of_a_scene(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text("m = 1.587\ng = 9.81\ns = 0.04\nr0 = 3\n")
-    shown = lagtop("fit", SAMPLE, "--scene", scene, "--fix", "m,g,s", "--format", "json")
+    shown = lagtop("fit", SAMPLE, scene, "--fix", "m,g,s", "--format", "json")
     record = json.loads(shown.stdout)
     assert record["A"] == pytest.approx(3.9032e-3, rel=2e-3)
     assert record["r0"] == pytest.approx(50, abs=0.1)  # that of the scene is not known
@@ -269,13 +269,13 @@ def test_the_moment_about_the_pivot_is_fixed_by_that_about_the_mass_centre(
     """A scene that has A_cm, m and s has A too; nothing else of it is taken for known."""
     scene = tmp_path / "scene.toml"
     scene.write_text("A_cm = 1.364e-3\nm = 1.587\ns = 0.04\nC = 1.7458e-3\n")
-    options = ["--scene", scene, "--fix", "A,C", "--format", "json"]
+    options = [scene, "--fix", "A,C", "--format", "json"]
     record = json.loads(lagtop("fit", SAMPLE, *options).stdout)
     assert record["A"] == pytest.approx(1.364e-3 + 1.587 * 0.04**2, rel=1e-15)
     assert {"m", "s"}.isdisjoint(record)
     scene.write_text("A_cm = 1.364e-3\nm = 1.587\n")
     assert_one_line(
-        lagtop("fit", SAMPLE, *options), 2, "--fix A must be given by an option or by --scene"
+        lagtop("fit", SAMPLE, *options), 2, "--fix A needs A: give it as an option or in a scene"
     )
 
 
@@ -343,7 +343,7 @@ def test_bad_data_get_a_line(
     [
         ("--sigma 0", 2, "--sigma must be > 0"),
         ("--sigma theta=1", 2, "--sigma must be given of all angles or of none"),
-        ("--fix m", 2, "--fix m must be given by an option or by --scene"),
+        ("--fix m", 2, "--fix m needs m: give it as an option or in a scene"),
         ("--g 0", 2, "--g must not be 0 in a fit"),
         ("--phidot0 3", 2, "No such option"),
         ("--euler-sequence foo", 2, "--euler-sequence must be three axes"),

@@ -51,7 +51,7 @@ def test_a_and_b_of_a_top_that_starts_next_to_a_pole(seed: int, upper: bool) -> 
 
 
 def test_the_greatest_tilt_may_be_next_to_the_lower_pole(lagtop: Lagtop) -> None:
-    words = "--from theta_min=30 theta_max=179.9999999 T_nutation=1 mean_precession_rate=3"
+    words = "theta_min=30 theta_max=179.9999999 T_nutation=1 mean_precession_rate=3"
     result = lagtop("find", *words.split(), "--keys", "mean_precession_rate,theta_max_deg")
     assert result.exit_code == 0, result.stderr
     rate, tilt = (float(x) for x in result.stdout.splitlines()[1].split(","))

@@ -117,8 +117,8 @@ BAD_RANGES = {
 }
 WHERE = {
     "sweep --r0 {}": "--r0",
-    "jacobi --k 0.5 --u-range {}": "--u-range",
-    "eta --delta 1 --delta-star 0 --gap-below 1 --tau-range {}": "--tau-range",
+    "jacobi --k 0.5 --u {}": "--u",
+    "eta --delta 1 --delta-star 0 --gap-below 1 --tau {}": "--tau",
     "plot map --x r0={} -o x.png": "--x",
     "plot map --y r0={} -o x.png": "--y",
 }
@@ -134,14 +134,14 @@ def test_one_grammar_everywhere(text: str, command: str, lagtop: Lagtop) -> None
 def test_ranges_are_spaced_alike_everywhere(lagtop: Lagtop) -> None:
     values = parse_range("0:1:11").at(np.arange(11)).tolist()
     swept = lagtop("sweep", "--r0", "0:1:11", "--keys", "r0").stdout.split()[1:]
-    options = ["--k", "0.5", "--u-range", "0:1:11", "--format", "csv"]
+    options = ["--k", "0.5", "--u", "0:1:11", "--format", "csv"]
     arguments = [line.partition(",")[0] for line in lagtop("jacobi", *options).stdout.splitlines()]
     assert [float(x) for x in swept] == [float(x) for x in arguments[1:]] == values
     assert values[3] == 0.3
 
 
 def test_a_logarithmic_range_of_arguments(lagtop: Lagtop) -> None:
-    options = ["jacobi", "--k", "0.5", "--u-range", "log:1:100:3", "--format", "csv"]
+    options = ["jacobi", "--k", "0.5", "--u", "log:1:100:3", "--format", "csv"]
     exact = lagtop(*options, "--digits", "20").stdout.splitlines()
     assert [line.partition(",")[0] for line in exact] == ["u", "1.0", "10.0", "100.0"]
     assert lagtop(*options).stdout.splitlines()[2].startswith("10.0,")

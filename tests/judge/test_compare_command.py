@@ -174,7 +174,7 @@ def test_order_frames_and_units_by_options(lagtop: Lagtop, tmp_path: Path) -> No
 
 def test_the_scene_may_be_a_file(lagtop: Lagtop, right: Path, tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text("psidot0 = 3\nr0 = 7\n")
-    how = ["--scene", tmp_path / "scene.toml", "--r0", 50]
+    how = [tmp_path / "scene.toml", "--r0", 50]
     assert "right.csv: fine" in lagtop("compare", right, *how).stdout
 
 

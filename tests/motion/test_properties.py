@@ -18,11 +18,10 @@ from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import csv_text, double_text, parse_number, value_text
-from lagrange_cli.cli.group import main
+from lagrange_cli.cli.app import main
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.solve import record_in_range
-from lagrange_cli.output.formats import FORMAT_BY_NAME
-from lagrange_cli.output.write import block_text
+from lagrange_cli.output.formats import FORMATS, block_text
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)
 spins = st.floats(-1e6, 1e6)
@@ -58,7 +57,7 @@ def test_csv_and_json_read_back_as_they_were(rows: list[tuple[Any, float, Any]])
         lines = text.rstrip("\n").split("\n") if style == "ndjson" else json.loads(f"[{text}]")
         found = [json.loads(line) if isinstance(line, str) else line for line in lines]
         assert [tuple(row.values()) for row in found] == rows
-    text = (FORMAT_BY_NAME["csv"].opening(names) + block_text(columns, names, "csv")).decode()
+    text = (FORMATS["csv"].opening(names) + block_text(columns, names, "csv")).decode()
     header, *found = csv.reader(io.StringIO(text, newline=""))
     assert header == names
     wanted = [["" if x is None else x if type(x) is str else str(x) for x in row] for row in rows]

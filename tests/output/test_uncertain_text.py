@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from lagrange_cli.output.uncertain_text import last_place, uncertain_text
+from lagrange_cli.output.report import last_place, uncertain_text
 
 
 @pytest.mark.parametrize(

@@ -112,7 +112,7 @@ def test_a_film(lagtop: Lagtop, tmp_path: Path) -> None:
 
     files = [tmp_path / "a.gif", tmp_path / "b.gif"]
     for file in files:
-        line = ["--dpi", "40", "--fps", 10, "--duration", 0.5]
+        line = ["--dpi", "40", "--duration", 0.5]
         assert lagtop("plot", "--animate", file, *line).output == ""
     frames = []
     with Image.open(files[0]) as shown:

@@ -39,7 +39,7 @@ from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.inputs.trajectory import open_trajectory
 from lagrange_cli.motion.over_time.columns import DEFAULT_COLUMNS
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
-from lagrange_cli.output.write import block_text
+from lagrange_cli.output.formats import block_text
 from lagrange_cli.sweeps.angles import sweep_angles
 from lagrange_cli.sweeps.plan import runs_of
 from lagrange_cli.sweeps.records import BLOCK_ROWS, column_keys, sweep
@@ -200,8 +200,8 @@ def start_up() -> None:
             "lagtop jacobi --k 0.8 --u 0.5 --format csv, without NumPy": (
                 "jacobi --k 0.8 --u 0.5 --format csv"
             ),
-            "lagtop jacobi --k 0.8 --u-range 0:1:7 --format csv, with NumPy": (
-                "jacobi --k 0.8 --u-range 0:1:7 --format csv"
+            "lagtop jacobi --k 0.8 --u 0:1:7 --format csv, with NumPy": (
+                "jacobi --k 0.8 --u 0:1:7 --format csv"
             ),
         },
         "import click": {

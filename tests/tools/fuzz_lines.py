@@ -31,7 +31,8 @@ from typing import Any, NoReturn
 import click
 from click.testing import CliRunner, Result
 
-from lagrange_cli.cli.group import COMMANDS, main
+from lagrange_cli.cli.app import NAMES as COMMANDS
+from lagrange_cli.cli.app import main
 
 WEIGHTS = {"solve": 30, "table": 25, "sweep": 18, "find": 8, "jacobi": 20, "eta": 15} | {
     **{"compare": 10, "fit": 0.5, "plot": 1, "view": 3, "bench": 1, "stability": 1}
@@ -88,7 +89,7 @@ OFTEN = {
 LEFT_OUT = {
     "bench": {"--timeout", "--n", "--methods", "--long"},
     "view": {"--open"},
-    "stability": {"--samples", "--strata", "--thorough", "--jobs"},
+    "stability": {"--samples", "--strata", "--jobs"},
     "plot": {"--size", "--dpi", "--show", "--animate", "--x", "--y"},
     "sweep": {"--jobs"},
     "table": {"--jobs"},

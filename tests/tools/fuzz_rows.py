@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 from click.testing import CliRunner, Result
 
-from lagrange_cli.cli.group import main
+from lagrange_cli.cli.app import main
 
 GOOD = "1 2.5 40 50. .5 1e1 -3 +7 0 0.0 1E2 30 90 1e-3".split()
 BAD = "x 1,5 -- 1e 0x1 nan inf -inf 1e400 1_0 ٣ 1e-400 --1 1.2.3 1/2 1e1000 −3 .".split()

@@ -31,7 +31,7 @@ import pyarrow as pa
 import scipy.optimize  # noqa: F401 - before the processes are started, which inherit it
 from pyarrow import parquet
 
-from lagrange_cli.cli.group import main as command
+from lagrange_cli.cli.app import main as command
 
 ROWS = 40
 TIMES = np.linspace(0, 1, ROWS)

@@ -1,4 +1,4 @@
-"""Tables drawn by rich: records in the order of the papers, and rows.  No digit is ever cut.
+"""Records, rows and reports as tables drawn by rich.  No digit is ever cut.
 
 On a terminal a table that is too wide is folded: its columns come in blocks, one below the other.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from textwrap import fill
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rich import box
@@ -17,8 +17,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ..arithmetic.text import value_text
-from .layouts import Layout, Line
+from .report import RECORD_HEADINGS
 from .terminal import spelt
 
 if TYPE_CHECKING:
@@ -58,34 +57,22 @@ class DrawnColumn(NamedTuple):
 
     def cut_into_lines(self, width: int) -> DrawnColumn:
         """Return the column with every cell in lines of at most `width` characters."""
-        return self._replace(cells=["\n".join(_chunks(cell, width)) for cell in self.cells])
+        cut = _chunks if self.numeric else wrap
+        return self._replace(cells=["\n".join(cut(cell, width)) for cell in self.cells])
 
 
-def record_table(record: Mapping[str, Any], layout: Layout, view: View) -> bytes:
-    """Return a record by the groups of its layout, a line per key with a value, its remark last."""
-    angle = "rad" if any(key.endswith("_rad") for key in record) else "deg"
-    groups = {
-        name: [cells for line in lines if (cells := _cells(record, line, angle, view))]
-        for name, lines in layout.items()
-    }
-    groups = {name: lines for name, lines in groups.items() if lines}
+def drawn_record(
+    record: Mapping[str, Any], groups: Mapping[str, list[list[str]]], view: View
+) -> bytes:
+    """Return the summary of a record, its cells by group, a line per key, and its remark."""
     text = _drawn(_record(groups), view)
     if view.width and _width(text) > view.width:
         text = _drawn(_narrow_record(groups, view.width), view)
+    if summary := record.get("summary"):
+        text = f"{_filled(spelt(summary, view), view)}\n\n{text}"
     if remark := record.get("remark"):
         text += f"\n{_coloured(_filled(remark, view), view)}\n"
     return _encoded(text, view)
-
-
-def _cells(record: Mapping[str, Any], line: Line, angle: str, view: View) -> list[str]:
-    is_angle = line.unit == "angle"
-    value = record[f"{line.key}_{angle}" if is_angle else line.key]
-    if value is None:
-        return []
-    unit = angle if is_angle else line.unit
-    last = record.get(f"{line.key}_{angle}_radius" if is_angle else f"{line.key}_radius")
-    cells = (line.symbol, line.name, value_text(value), unit, last or line.equation)
-    return [spelt(cell, view) for cell in cells]
 
 
 def _record(groups: Mapping[str, list[list[str]]]) -> Table:
@@ -94,8 +81,10 @@ def _record(groups: Mapping[str, list[list[str]]]) -> Table:
         group: ["\n".join(cells) for cells in zip(*lines, strict=True)]
         for group, lines in groups.items()
     }
-    heading, *numbers = _flush_right(["Value", *(columns[2] for columns in texts.values())])
-    table = _empty(["Symbol", "Name", heading, "Unit", "Equation"])
+    heading, *numbers = _flush_right(
+        [RECORD_HEADINGS[2], *(columns[2] for columns in texts.values())]
+    )
+    table = _empty([*RECORD_HEADINGS[:2], heading, *RECORD_HEADINGS[3:]])
     for (group, (symbols, names, _, *rest)), values in zip(texts.items(), numbers, strict=True):
         name_cell = Text.assemble((f"{group}\n", _HEADING), names)
         value_cell = Text(f"\n{values}", _style(group))
@@ -122,7 +111,7 @@ def _style(group: str) -> str:
     return _GIVEN if group == INPUT_GROUP else _FOUND
 
 
-def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) -> bytes:
+def drawn_rows(names: Sequence[str], rows: Sequence[Sequence[str]], view: View) -> bytes:
     """Return a column per name and a line per row."""
     cells = list(zip(*rows, strict=True)) or [()] * len(names)
     headings = [spelt(name, view) for name in names]
@@ -130,27 +119,24 @@ def rows_table(names: Sequence[str], rows: Iterable[Iterable[str]], view: View) 
     return _encoded(_folded(columns[:1], columns[1:], view), view)
 
 
-def findings_table(findings: Report, view: View) -> bytes:
+def drawn_report(report: Report, view: View) -> bytes:
     """Return the conditions as lines, the rows as a table of short numbers, and the conclusions."""
-    shown = [field for field in findings.fields if field.heading]
+    shown = [field for field in report.fields if field.heading]
     columns = [
         DrawnColumn(
             spelt(field.heading, view),
-            [spelt(field.cell(row), view) for row in findings.rows],
+            [spelt(field.cell(row), view) for row in report.rows],
             not field.is_text,
         )
         for field in shown
     ]
     keys = [column for column, field in zip(columns, shown, strict=True) if field.names_the_row]
-    rest = [column for column in columns if column not in keys]
-    heads = (_condition(name, text, view) for name, text in findings.conditions.items())
-    above = spelt("\n".join(heads), view) + "\n\n"
-    below = "".join(f"\n{_filled(line, view)}" for line in findings.conclusions)
-    return (
-        above.encode()
-        + _encoded(_folded(keys, rest, view), view)
-        + f"{spelt(below, view)}\n".encode()
-    )
+    others = [column for column in columns if column not in keys]
+    heads = (_condition(name, text, view) for name, text in report.conditions.items())
+    above = "".join(f"{spelt(head, view)}\n" for head in heads) + "\n" * bool(report.conditions)
+    below = "".join(f"\n{_filled(line, view)}" for line in report.conclusions)
+    below = f"{spelt(below, view)}\n" if below else ""
+    return above.encode() + _encoded(_folded(keys, others, view), view) + below.encode()
 
 
 def _folded(keys: Sequence[DrawnColumn], columns: Sequence[DrawnColumn], view: View) -> str:
@@ -186,7 +172,7 @@ def _filled_table(columns: Sequence[DrawnColumn]) -> Table:
 
 def _empty(headings: Iterable[str]) -> Table:
     """Return a table without rows.  Texts stay as they are: for rich to align them takes longer."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     for heading in headings:
         table.add_column(heading, overflow="ignore", no_wrap=True)
     return table

@@ -1,17 +1,18 @@
-"""Rows of numbers and texts as lines of CSV and objects of JSON, written by orjson."""
+"""Rows of numbers and texts as lines of CSV and objects of JSON (by orjson), and as Parquet."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain, pairwise, repeat
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import orjson
 
-from ..arithmetic.text import csv_text
+from ..arithmetic.text import csv_text, json_text
 from ..arithmetic.types import Array
+from ..errors import UnavailableError
 
 Columns = Sequence["Array | Sequence[Any]"]
 """The columns of a block: arrays of numbers, one or several columns each, where NaN stands for
@@ -181,3 +182,58 @@ def _texts_of(column: Sequence[Any], write: Callable[[Any], bytes]) -> Sequence[
 
 def _csv_cell(value: Any) -> bytes:
     return csv_text(value).encode()
+
+
+def check_parquet() -> None:
+    """Raise UnavailableError where pyarrow is not installed."""
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError:
+        raise UnavailableError(
+            "format parquet needs pyarrow: pip install 'lagtop[parquet]'", "format"
+        ) from None
+
+
+def arrow_block(columns: Sequence[Any], names: Sequence[str]) -> bytes:
+    """Return columns as one Arrow stream: numbers with null for NaN, and texts."""
+    import pyarrow as pa
+
+    arrays = chain.from_iterable(
+        [pa.array(x, from_pandas=True) for x in column.T]
+        if isinstance(column, np.ndarray)
+        else [pa.array([None if x is None else _text(x) for x in column], pa.string())]
+        for column in columns
+    )
+    table = pa.table(list(arrays), names=list(names))
+    with pa.BufferOutputStream() as stream:
+        with pa.ipc.new_stream(stream, table.schema) as writer:
+            writer.write_table(table)
+        return stream.getvalue().to_pybytes()  # type: ignore[no-any-return]
+
+
+def write_parquet(
+    stream: BinaryIO,
+    names: Sequence[str],
+    blocks: Iterable[bytes],
+    description: Mapping[str, str],
+) -> None:
+    """Write Arrow streams as one Parquet file, a row group per stream.
+
+    The description goes into the metadata of the schema.
+    """
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    writer = None
+    for block in blocks:
+        table = pa.ipc.open_stream(block).read_all().replace_schema_metadata(description)
+        writer = writer or parquet.ParquetWriter(stream, table.schema)
+        writer.write_table(table)
+    writer = writer or parquet.ParquetWriter(
+        stream, pa.schema([(x, pa.null()) for x in names], description)
+    )
+    writer.close()
+
+
+def _text(value: Any) -> str:
+    return value if type(value) is str else json_text(value)

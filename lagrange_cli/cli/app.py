@@ -1,0 +1,251 @@
+"""The command line: the group of commands, with our errors, exit codes and deaths by signal."""
+
+from __future__ import annotations
+
+import gc
+import os
+import re
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .. import __version__
+from ..errors import CannotWriteError, LagtopError, SomeFailedError
+from ..output.destination import opened
+from ..output.signals import CLOSED_PIPE, INTERRUPT, Terminated, die_by, interrupts
+from ..output.terminal import has_colours, one_line, spelt, view_of
+
+if TYPE_CHECKING:
+    from ..output.destination import Output
+    from ..output.report import Report
+
+COMMANDS = {
+    "One top": ("solve", "table", "plot", "view", "explain", "scenes"),
+    "Many tops": ("sweep", "find", "fit", "compare"),
+    "Functions": ("jacobi", "eta"),
+    "Tests of lagtop": ("bench", "stability"),
+}
+"""The names of the commands, by their groups in the help."""
+NAMES = [name for names in COMMANDS.values() for name in names]
+_MODULES = {"view": "plot", "scenes": "explain", "stability": "bench"}
+"""Commands that share the module of another one."""
+VERSION = f"lagtop, version {__version__}"
+_COLOURS = {"Error": "red", "Warning": "yellow"}
+
+
+def complain(line: str) -> None:
+    """Write one line to standard error, if that takes it, safe for any terminal.
+
+    A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
+    """
+    line = one_line(line)
+    word, colon, rest = line.partition(":")
+    if word in _COLOURS and has_colours(sys.stderr):
+        line = click.style(word + colon, fg=_COLOURS[word]) + rest
+    with suppress(OSError):
+        click.echo(line, err=True)
+
+
+def say(text: str) -> None:
+    """Write a text of our own to standard output.  Raises CannotWriteError."""
+    try:
+        with opened("-") as stream:
+            stream.write(f"{spelt(text, view_of('-'))}\n".encode())
+    except BrokenPipeError:  # which click would turn into exit code 1
+        die_by(CLOSED_PIPE)
+
+
+def write_report(out: Output, find: Callable[[], Report]) -> Report:
+    """Write a report, and return it.  CSV holds only the rows: its conditions go to stderr."""
+    report = out.report(find)
+    if out.fmt in {"csv", "ndjson"}:
+        for name, text in report.conditions.items():
+            complain(f"{name}: {text}")
+    return report
+
+
+def fail_for(failures: Sequence[str], count: int, what: str, *, remedy: str = "") -> None:
+    """Raise SomeFailedError if some of what a report is about has failed, with the first of it."""
+    if failures:
+        said = f"{len(failures)} of {count} {what} failed; the first: {failures[0]}"
+        raise SomeFailedError(f"{said}; {remedy}" if remedy else said)
+
+
+def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Context], str]) -> Any:
+    """Return an option that shows a text and ends the command."""
+
+    def show(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+        if wanted and not ctx.resilient_parsing:
+            say(text(ctx))
+            ctx.exit()
+
+    return click.Option(
+        names, is_flag=True, expose_value=False, is_eager=True, callback=show, help=what
+    )
+
+
+class Command(click.Command):
+    """A command whose help has examples and groups of options; an error names its option.
+
+    The options --version and --help are made here: those of click look for translations, which
+    would take 2 % of the run of `lagtop solve`.
+    """
+
+    def __init__(self, *args: Any, examples: str = "", **kwargs: Any) -> None:
+        super().__init__(*args, **(kwargs | {"add_help_option": False}))
+        self.params.append(
+            _shown_at_once(["-h", "--help"], "Show this help.", lambda ctx: ctx.get_help())
+        )
+        self.examples = [line.strip() for line in examples.strip().splitlines()]
+
+    def format_help(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the usage, the text, the examples, and the options in groups."""
+        from .help import write_help  # start-up
+
+        write_help(self, ctx, formatter)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; an error about an argument names its option."""
+        try:
+            return super().invoke(ctx)
+        except LagtopError as error:
+            error.args = (_naming_options(error, self.params),)
+            raise
+
+
+def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
+    """Return the message with `--t-max` where the library says `t_max`.
+
+    That is its first word, if it is the key of the error, and any word with an underscore before
+    the value that is quoted.
+    """
+    names = [name for param in params for name in param.opts if name.startswith("--")]
+    options = {name[2:].replace("-", "_"): name for name in names}
+    if "theta0" in options:  # the one input whose key has a unit
+        options |= dict.fromkeys(("theta0_deg", "theta0_rad"), options["theta0"])
+    said, got, value = str(error).partition(", got ")
+    if error.key in options and re.match(rf"{error.key}\b", said):
+        said = options[error.key] + said.removeprefix(error.key)
+    said = re.sub(r"(?<![-\w])[a-z]+_\w+", lambda word: options.get(word[0], word[0]), said)
+    return said + got + value
+
+
+class LagtopGroup(Command, click.Group):
+    """The group of commands, with our errors (one line), exit codes and deaths by signal."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names, in the order of the help."""
+        return NAMES
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a command, whose module is loaded only now: start-up pays for one, not for all.
+
+        What `__main__` has loaded so far is never looked through for garbage, here and at the end:
+        that would take 10 % of `lagtop solve`.  Imports within the command leave no garbage either:
+        Python's own threshold of 700 objects would add 15 % to the import of matplotlib.
+        """
+        if cmd_name not in NAMES:
+            return None
+        module = import_module(f".{_MODULES.get(cmd_name, cmd_name)}", __package__)
+        command: click.Command = getattr(module, f"{cmd_name}_command")
+        if not gc.isenabled():
+            gc.freeze()
+            gc.set_threshold(100_000)
+            gc.enable()
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command of the arguments.  Raises UsageError with the name that was meant."""
+        word = args[0]
+        if word not in NAMES and not word.startswith("-"):
+            from ..inputs.names import suggestion
+
+            raise click.UsageError(f"unknown command {word!r}{suggestion(word, NAMES)}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run like click's method, but end with one line on standard error and an exit code."""
+        if sys.stderr is None:  # closed by the caller: the next file would take its number
+            sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
+        run: Any = super().main
+        if not extra.pop("standalone_mode", True):
+            return run(*args, standalone_mode=False, **extra)
+        try:
+            sys.exit(run(*args, standalone_mode=False, **extra) or 0)
+        except click.ClickException as error:
+            from .help import usage_message
+
+            complain(f"Error: {usage_message(error)}")
+            sys.exit(error.exit_code)
+        except LagtopError as error:
+            complain(f"Error: {error}")
+            sys.exit(error.exit_code)
+        except OSError as error:  # of what no reader or writer has named
+            place = f": {error.filename}" if error.filename else ""
+            complain(f"Error: {error.strerror or error}{place}")
+            sys.exit(CannotWriteError.exit_code)
+        except click.Abort:
+            die_by(INTERRUPT)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command.  What ends it from outside is caught here, before click turns it into
+        an exit code: a signal must kill as a signal."""
+        try:
+            with interrupts():
+                return super().invoke(ctx)
+        except BrokenPipeError:
+            number = CLOSED_PIPE
+        except KeyboardInterrupt:
+            number = INTERRUPT
+        except Terminated as error:
+            number = error.number
+        return die_by(number)  # here, where the frames of the command are gone and have cleaned up
+
+
+@click.group(
+    "lagtop",
+    cls=LagtopGroup,
+    invoke_without_command=True,
+    examples="""
+        lagtop solve --theta0 30
+        lagtop table --t-max 1 -o angles.csv
+        lagtop plot looping-top sphere -o loops.svg
+    """,
+    params=[
+        _shown_at_once(
+            ["--version"], "Show the version.", lambda _: f"lagtop, version {__version__}"
+        )
+    ],
+)
+@click.pass_context
+def main(ctx: click.Context) -> None:
+    """Solve the Lagrange top, a heavy symmetric top with a fixed point, in closed form.
+
+    theta is the tilt, phi the spin and psi the precession: most books swap phi and psi.  Inputs you
+    omit default to the worked example of Chrapan (1952) in CGS units.  Rates are in rad per unit of
+    time.  A scene is a TOML file with inputs, - for standard input, or a name of `lagtop scenes`.
+
+    \b
+    Exit codes:
+      0   success
+      1   a top or a check failed, a quantity is undefined, or nothing was found
+      2   wrong usage or a bad value
+      65  a file cannot be read or holds bad data
+      69  a package, an engine or a cluster is not available
+      74  output cannot be written
+      128 + N  ended by signal N
+
+    \b
+    Completion, in ~/.bashrc (in ~/.zshrc with zsh_source):
+      eval "$(_LAGTOP_COMPLETE=bash_source lagtop)"
+    and for fish:
+      _LAGTOP_COMPLETE=fish_source lagtop > ~/.config/fish/completions/lagtop.fish
+    """
+    if ctx.invoked_subcommand is None:
+        say(ctx.get_help())

@@ -1,0 +1,96 @@
+"""`lagtop explain`, the meaning and the formula of every number, and `lagtop scenes`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import click
+
+from ..inputs.scene_file import scene_names, scene_remark
+from ..output.report import Field, Report
+from .app import Command
+from .options import Parsed, output_options
+from .top import UNCERTAIN, TopOptions, motion_of, scene_among, top_options
+
+if TYPE_CHECKING:
+    from ..output.destination import Output
+
+FORMATS = ("table", "json", "csv", "ndjson", "markdown")
+
+
+def _names() -> list[str]:
+    from ..motion.explanation import explained_names
+
+    return [*explained_names(), *scene_names()]
+
+
+@click.command(
+    "explain",
+    cls=Command,
+    examples="""
+        lagtop explain
+        lagtop explain T_nutation mean_precession_rate looping-top
+        lagtop explain b psidot --r0 20 --format json
+    """,
+)
+@click.argument("words", nargs=-1, type=Parsed("KEY", str, _names), metavar="[SCENE] [KEY]...")
+@top_options(UNCERTAIN, scene=False)
+@output_options(*FORMATS)
+def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> None:
+    """Explain keys and columns, with formulas and numbers.
+
+    Each formula is shown in symbols and with the numbers of the top.  Without a key, all keys of
+    the record, keys on request and columns are listed.  solve --get, sweep --keys, find and plot
+    --key use keys; table --columns uses columns.
+    """
+    from ..motion.explanation import explanations, listed
+
+    scene, names = scene_among(words)
+    found = top.replace(scene=scene).given()
+    named = found.system.named if found.system else str
+    if not names:
+        out.report(lambda: Report({}, _LISTED, listed(radians=top.radians, named=named), []))
+        return
+    rows = explanations(motion_of(found), names, radians=top.radians, named=named)
+    out.report(lambda: Report({}, _EXPLAINED, rows, []))
+
+
+def _text(key: str, heading: str) -> Field:
+    return Field(key, heading, is_text=True)
+
+
+_LISTED = [
+    Field("name", "name", is_text=True, names_the_row=True),
+    _text("symbol", "symbol"),
+    _text("meaning", "meaning"),
+    _text("unit", "unit"),
+    _text("equation", "equation"),
+    Field("kind"),
+    Field("formula"),
+]
+_EXPLAINED = [*_LISTED]
+
+
+class _Scene(NamedTuple):
+    name: str
+    remark: str
+
+
+@click.command(
+    "scenes",
+    cls=Command,
+    examples="""
+        lagtop scenes
+        lagtop solve fast-gyroscope
+        lagtop scenes --format json
+    """,
+)
+@output_options(*FORMATS)
+def scenes_command(out: Output) -> None:
+    """List the shipped scenes, whose names every command takes as a scene.
+
+    A scene of your own is a TOML file with inputs by name, such as r0 = 40 or theta0 = "30 deg".
+    """
+    rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
+    fields = [Field("name", "name", is_text=True, names_the_row=True), _text("remark", "remark")]
+    out.report(lambda: Report({}, fields, rows, []))

@@ -1,0 +1,221 @@
+"""The top of a command: its options and its scene, the motion they describe, and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..arithmetic.values import Values
+from ..errors import DataError, LagtopError
+from .app import complain
+from .options import F, Parsed, late
+
+if TYPE_CHECKING:
+    from ..inputs.given import Given
+    from ..inputs.input_keys import Input
+    from ..inputs.value import Value
+    from ..motion.sensitivity.angle_sensitivities import AngleStds
+    from ..motion.solve import Motion
+
+_scenes = late("inputs.scene_file", "scene_names")
+SCENE = Parsed("SCENE", str, _scenes)
+
+
+def value_type(number: str = "parse_number", *, uncertain: bool = False) -> Parsed:
+    """Return the type of an input in units; `number` names the reader of its number."""
+    read = late("inputs.ranges" if number != "parse_number" else "arithmetic.text", number)
+    return Parsed("X", late("inputs.value", "parse_value", parse=read, uncertain=uncertain))
+
+
+INPUT = TIME = value_type()
+UNCERTAIN = value_type(uncertain=True)
+
+
+class TopOptions(Values):
+    """What the command line says about the top."""
+
+    options: Mapping[str, Any]
+    """The inputs that were given, by the names of their options."""
+    radians: bool = False
+    units: str | None = None
+    """The system of units of the output, si or cgs."""
+    scene: str | None = None
+
+    def by_key(self) -> dict[str, Any]:
+        """Return the inputs that were given, by key."""
+        tilt = "theta0_rad" if self.radians else "theta0_deg"
+        return {
+            tilt if name == "theta0" and not x.unit else name: x
+            for name, x in self.options.items()
+            if x is not None
+        }
+
+    def given(self) -> Given:
+        """Return the inputs of the scene, if any, overridden by the options."""
+        from ..inputs.given import gather  # not for commands without a top
+
+        return gather(self.by_key(), self.scene, system=self.units)
+
+    def solved(self) -> Motion:
+        """Return the motion; a warning says that uncertainties are not used."""
+        found = self.given()
+        warn_unused(found.stds)
+        return motion_of(found)
+
+    def in_seconds(self, **times: Value | None) -> tuple[TopOptions, dict[str, Any]]:
+        """Return the options, and times as numbers, in seconds if they have units.
+
+        A time with a unit asks for units of all inputs, as --units does.
+        """
+        given = {name: x for name, x in times.items() if x is not None}
+        top = self
+        if any(x.unit for x in given.values()):
+            from ..inputs.units import converted
+
+            top, given = self.replace(units=self.units or "si"), converted(given, None)
+        return top, {name: given[name].number if name in given else None for name in times}
+
+
+def top_options(
+    kind: Parsed, *, scene: bool = True, units: bool = True, whole: bool = True
+) -> Callable[[F], F]:
+    """Add the inputs of a top, --rad, --units and SCENE; a command receives a `TopOptions`, `top`.
+
+    Not every command takes a `scene` here or `units`; a top that is not `whole` has no defaults.
+    """
+    from ..inputs.input_keys import DECLARED  # not for commands without a top
+
+    names = [name for name in DECLARED if whole or name != "phidot0"]  # which needs a whole start
+
+    def decorate(command: F) -> F:
+        @wraps(command)
+        def run(**options: Any) -> Any:
+            inputs = {name: options.pop(name) for name in names}
+            rest = (options.pop(name, None) for name in ("units", "scene"))
+            top = TopOptions(inputs, options.pop("rad"), *rest)
+            return command(top=top, **options)
+
+        decorated: Any = run
+        if units:
+            text = "si or cgs, the units of the output if inputs have units.  [default: si]"
+            choice = click.Choice(["si", "cgs"])
+            decorated = click.option("--units", type=choice, metavar="SYSTEM", help=text)(decorated)
+        text = "Use radians for all angles, in and out."
+        decorated = click.option("--rad", is_flag=True, help=text)(decorated)
+        for name in reversed(names):
+            text = _help_of(DECLARED[name], shows_default=whole)
+            flag = f"--{name.replace('_', '-')}"
+            decorated = click.option(flag, name, type=kind, help=text)(decorated)
+        if scene:
+            decorated = click.argument("scene", required=False, type=SCENE, metavar="[SCENE]")(
+                decorated
+            )
+        return decorated  # type: ignore[no-any-return]
+
+    return decorate
+
+
+def _help_of(declared: Input, *, shows_default: bool) -> str:
+    """Return the help of an input, with its unit if it is a rate, its bounds and its default."""
+    rate = "rad per unit of time" if declared.unit == "rad/time" else ""
+    text = ", ".join(filter(None, (declared.meaning, declared.bound, rate)))
+    ending = f"  [default: {declared.default:g}]" if declared.default is not None else ""
+    return f"{text[0].upper()}{text[1:]}.{ending if shows_default else ''}"
+
+
+def is_scene(word: str) -> bool:
+    """Return whether a word among others, such as conditions or kinds of picture, names a scene.
+
+    That is `-`, a shipped scene, a word that ends in `.toml`, or one with a dot or a slash that
+    compares nothing.
+    """
+    return (
+        word == "-"
+        or word.endswith(".toml")
+        or (bool(set(word) & set("./")) and not set(word) & set("=<>"))
+        or word in _scenes()
+    )
+
+
+def scene_among(
+    words: Sequence[str], is_one: Callable[[str], bool] = is_scene
+) -> tuple[str | None, list[str]]:
+    """Return the scene among some words, or None, and the other words.
+
+    Raises LagtopError for more than one scene.
+    """
+    scenes = [word for word in words if is_one(word)]
+    if len(scenes) > 1:
+        raise LagtopError(f"use one scene, not {' and '.join(scenes)}")
+    return scenes[0] if scenes else None, [word for word in words if word not in scenes]
+
+
+def motion_of(found: Given, *, exact: bool = False) -> Motion:
+    """Return the motion of some inputs, `exact` for inputs that are kept as decimals.
+
+    Warnings name inputs of the worked example among others, and a body that cannot be built.
+    """
+    from ..motion.solve import solve
+
+    motion = solve(found.top(exact=exact))
+    warn_missing(found)
+    if caveat := motion.top.caveat():
+        complain(f"Warning: {caveat}")
+    return motion
+
+
+def warn_missing(found: Given) -> None:
+    """Name the inputs of the body that are those of the worked example, and a scene without any."""
+    if found.empty is not None:
+        complain(f"Warning: {found.empty} has no inputs: using the worked example")
+    if found.missing:
+        from ..inputs.input_keys import example_options, remark_on
+
+        words = example_options(found.missing, units=found.system is not None)
+        complain(f"Warning: {remark_on(found.missing, words)}")
+
+
+def warn_unused(uncertain: Iterable[str]) -> None:
+    """Name inputs whose uncertainties a command does not use."""
+    if names := ", ".join(uncertain):
+        used = "solve, table, sweep and plot angles use it"
+        complain(f"Warning: the uncertainty of {names} is not used: {used}")
+
+
+def warn_no_tops(path: str) -> None:
+    """Say that a file of tops holds none, only its header."""
+    from ..inputs.files import shown_path
+
+    complain(f"Warning: {shown_path(path)} holds no tops")
+
+
+def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
+    """Return the uncertainties of the angles over time, if inputs are uncertain.
+
+    A warning says why there are none.
+    """
+    if not found.stds:
+        return None
+    from ..motion.sensitivity.angle_sensitivities import AngleStds  # for few tops only
+
+    stds = AngleStds(motion.exact, found.stds, found.inputs.keys())
+    if stds.reason:
+        complain(f"Warning: no uncertainty of the angles: {stds.reason}")
+    return stds
+
+
+@contextmanager
+def blaming(times: str | None) -> Iterator[None]:
+    """Raise DataError for a time out of reach that stands in a file of times."""
+    try:
+        yield
+    except LagtopError as error:
+        if times is None or error.key != "t":
+            raise
+        from ..inputs.files import shown_path
+
+        raise DataError(f"{shown_path(times)}: {error}") from None
