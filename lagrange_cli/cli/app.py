@@ -225,11 +225,11 @@ class LagtopGroup(Command, click.Group):
 )
 @click.pass_context
 def main(ctx: click.Context) -> None:
-    """Solve the Lagrange top, a heavy symmetric top with a fixed point, in closed form.
+    """Solve the Lagrange top, a heavy symmetric top, in closed form.
 
     theta is the tilt, phi the spin and psi the precession: most books swap phi and psi.  Inputs you
     omit default to the worked example of Chrapan (1952) in CGS units.  Rates are in rad per unit of
-    time.  A scene is a TOML file with inputs, - for standard input, or a name of `lagtop scenes`.
+    time.  A scene is a name of `lagtop scenes`, a TOML file with inputs, or - for standard input.
 
     \b
     Exit codes:
@@ -246,6 +246,8 @@ def main(ctx: click.Context) -> None:
       eval "$(_LAGTOP_COMPLETE=bash_source lagtop)"
     and for fish:
       _LAGTOP_COMPLETE=fish_source lagtop > ~/.config/fish/completions/lagtop.fish
+
+    Use lagtop COMMAND --help for the options of a command.
     """
     if ctx.invoked_subcommand is None:
         say(ctx.get_help())

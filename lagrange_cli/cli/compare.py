@@ -118,8 +118,6 @@ def compare_command(
     )
     is_named = scene is not None or bool(top.by_key())
     motion = top.solved()
-    if scene is None and not top.by_key():
-        complain("Warning: no scene and no inputs: comparing with the worked example")
 
     def find() -> Report:
         comparison = compare_files(motion, trajectories, request, with_progress, is_named=is_named)
@@ -130,6 +128,8 @@ def compare_command(
         return comparison_report(comparison.motion, comparison, request)
 
     report = write_report(out, find)
+    if scene is None and not top.by_key():
+        complain("Warning: no scene and no inputs: compared with the worked example")
     if not exit_zero:
         remedy = "use --exit-zero to look only"
         fail_for(failures(report), len(report.rows), "trajectories", remedy=remedy)

@@ -39,7 +39,7 @@ class TopOptions(Values):
     """What the command line says about the top."""
 
     options: Mapping[str, Any]
-    """The inputs that were given, by the names of their options."""
+    """The inputs by the names of their options, in the order of the command line."""
     radians: bool = False
     units: str | None = None
     """The system of units of the output, si or cgs."""
@@ -94,7 +94,7 @@ def top_options(
     def decorate(command: F) -> F:
         @wraps(command)
         def run(**options: Any) -> Any:
-            inputs = {name: options.pop(name) for name in names}
+            inputs = {name: options.pop(name) for name in [*options] if name in names}
             rest = (options.pop(name, None) for name in ("units", "scene"))
             top = TopOptions(inputs, options.pop("rad"), *rest)
             return command(top=top, **options)

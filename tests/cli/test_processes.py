@@ -41,7 +41,7 @@ LOADED = {
     "jacobi --k 0.8 --u K/2,K/3 --format csv": set(),
     "jacobi --k 0.8 --u 0.5 --functions zeta,pi --param 0.7i --format json": set(),
     "jacobi --k 0.8 --u 0.5 --functions theta,omega --param 0.7": {"rich"},
-    "jacobi --k 0.8 --phi 30 --phi 60 --format csv": set(),
+    "jacobi --k 0.8 --phi 30,60 --format csv": set(),
     "jacobi --k 0.8 --u 0:1:99 --format csv": {"numpy", "orjson"},
     "eta --delta 0.6 --delta-star -0.5 --p 0.1 --q 1.4 --format json": set(),
 }

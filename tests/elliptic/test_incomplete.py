@@ -134,9 +134,9 @@ def test_amplitudes_of_the_command(lagtop: Lagtop) -> None:
             assert abs(first - quarters * mpmath.ellipk(m)) <= abs(first) * 5.01e-25
             assert abs(second - quarters * mpmath.ellipe(m)) <= abs(second) * 5.01e-25
     assert lines[2] == "0.0,0.0,0.0"
-    shown = lagtop(*"jacobi --k 1 --phi 90 --phi=-210 --digits 20 --format csv".split()).stdout
+    shown = lagtop(*"jacobi --k 1 --phi 90,-210 --digits 20 --format csv".split()).stdout
     assert shown.splitlines()[1:] == ["90.0,,1.0", "-210.0,,-2.5"]
-    shown = lagtop(*"jacobi --k 1 --phi 90 --phi 0 --format csv".split()).stdout
+    shown = lagtop(*"jacobi --k 1 --phi 90,0 --format csv".split()).stdout
     assert shown.splitlines()[1:] == ["90.0,,1.0", "0.0,0.0,0.0"]
     shown = lagtop(*"jacobi --k 0 --rad --phi 1.5 --digits 20 --format csv".split()).stdout
     assert shown.splitlines() == ["phi_rad,F,E", "1.5,1.5,1.5"]

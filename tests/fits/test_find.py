@@ -239,7 +239,7 @@ def test_where_there_is_none_the_nearest_is_named(lagtop: Lagtop) -> None:
         ("none.scene --r0 1:2 T_nutation=0.5", 65, "none.scene: No such file"),
         ("a=b/none.toml --r0 1:2 T_nutation=0.5", 65, "a=b/none.toml: No such file"),
         ("a.toml b.toml", 2, "use one scene, not a.toml and b.toml"),
-        ("theta_min=3", 2, "must be theta_min=.. theta_max=.."),
+        ("theta_min=3", 2, "without an unknown input, such as r0 = 10:200, the conditions must be"),
         (
             "--theta0 20 theta_min=3",
             2,

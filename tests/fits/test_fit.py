@@ -345,7 +345,7 @@ def test_bad_data_get_a_line(
         ("--sigma theta=1", 2, "--sigma must be given of all angles or of none"),
         ("--fix m", 2, "--fix m needs m: give it as an option or in a scene"),
         ("--g 0", 2, "--g must not be 0 in a fit"),
-        ("--phidot0 3", 2, "No such option"),
+        ("--phidot0 3", 2, "unknown option --phidot0"),
         ("--euler-sequence foo", 2, "--euler-sequence must be three axes"),
         ("--A-cm 3", 2, "--A-cm must be given with m and s"),
         ("--by nothing", 2, "--by must name a column"),

@@ -104,7 +104,7 @@ def test_dots_in_comments_are_free(tmp_path: Path) -> None:
 
 def test_a_scene_on_standard_input(lagtop: Lagtop) -> None:
     assert "or - for standard input" in " ".join(lagtop("--help").stdout.split())
-    assert "[SCENE.toml|-]" in lagtop("solve", "--help").stdout
+    assert "[SCENE]" in lagtop("solve", "--help").stdout
     text = "r0 = 40\n"
     assert lagtop("solve", "-", "--get", "r0", input=text).stdout == "40.0\n"
     assert lagtop("table", "-", "--n", "1", "--columns", "r", input=text).stdout == "r\n40.0\n"
@@ -132,9 +132,7 @@ def test_a_scene_without_inputs_is_told(tmp_path: Path, lagtop: Lagtop) -> None:
     for words in (["solve", path, "--get", "r0"], ["sweep", path, "--keys", "r0"]):
         result = lagtop(*words)
         assert result.exit_code == 0
-        assert result.stderr == (
-            f"Warning: {path} has no inputs: what is not given is as in the worked example\n"
-        )
+        assert result.stderr == (f"Warning: {path} has no inputs: using the worked example\n")
 
 
 MISSING = [

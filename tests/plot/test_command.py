@@ -91,7 +91,7 @@ def test_the_help_needs_no_matplotlib_and_a_picture_says_how_to_get_it(tmp_path:
     code += "import lagrange_cli.cli.app as cli; cli.main()"
     line = [sys.executable, "-c", code, "plot"]
     helped = subprocess.run([*line, "--help"], capture_output=True, check=True)
-    assert helped.stdout.startswith(b"Examples:")
+    assert helped.stdout.startswith(b"Usage:")
     target = tmp_path / "x.png"
     target.write_text("old")
     failed = subprocess.run([*line, "-o", str(target)], capture_output=True, check=False)

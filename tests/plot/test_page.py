@@ -279,7 +279,6 @@ def test_the_command_in_a_file_draws_the_same_file(lagtop: Lagtop) -> None:
         y=parse_input_range("y", "theta0=0.25:1.5:3"),
         camera=(0.5, -0.25),
         limits=(0.5, 2.5),
-        numbers=False,
     )
     motion = solve(Top(theta0_rad=0.625, psidot0=-0.5))
     page = Page(motion, ["sphere", "map"], request, DARK, (7.0, 5.0))
