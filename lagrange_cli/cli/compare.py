@@ -59,13 +59,12 @@ def _parse_step_sizes(text: str) -> list[float]:
 @click.option(
     "--align",
     type=Parsed("WORD,...", split_names, late("judge.alignment", "WORDS")),
-    help="First set the figure axis (axis=y), the vertical (up=y), the angles (start), a frame "
-    "(body, space) or the clock (time) by the first row.",
+    help="First set axis=y, up=y, or take start, body, space or time from the first row.",
 )
 @click.option(
     "--step-sizes",
     type=Parsed("X,...", _parse_step_sizes),
-    help="Step size of each trajectory, for the order of convergence.",
+    help="Step sizes of the trajectories.",
 )
 @click.option(
     "--max-error", type=NUMBER, help="Greatest error (rad) of a fine trajectory.  [default: 0.001]"

@@ -89,13 +89,10 @@ def fit_command(
 ) -> None:
     """Fit a top to a recording, with uncertainties.
 
-    The results are a, b, the initial state, and what they imply for the body.
-
     A recording is a file as in lagtop compare, or - for standard input: times with tilt, spin and
     precession, the axis or the attitude.  Cells may be missing, and angles may be wrapped.
 
     Only the inputs given as options, and those of the scene named by --fix, count as known.
-    Parameters that the data cannot separate are listed.
 
     -o FILE.toml writes the fitted top as a scene, beside the report.  If a fit has failed, the exit
     code is 1 and no scene is written.
