@@ -123,9 +123,9 @@ def bench_command(
     "stability",
     cls=Command,
     examples="""
-        lagtop stability --strata separatrix,thresholds --samples 1
-        lagtop stability --strata fast --samples 2 --seed 7 -o battery.csv
-        lagtop stability --strata fast --samples 1 --plot stability.svg
+        lagtop stability --strata slow,thresholds --samples 1
+        lagtop stability --strata slow --samples 2 --seed 7 -o battery.csv
+        lagtop stability --strata slow --samples 1 --plot stability.svg
     """,
 )
 @click.option(

@@ -66,9 +66,7 @@ def _parse_step_sizes(text: str) -> list[float]:
     type=Parsed("X,...", _parse_step_sizes),
     help="Step sizes of the trajectories.",
 )
-@click.option(
-    "--max-error", type=NUMBER, help="Greatest error (rad) of a fine trajectory.  [default: 0.001]"
-)
+@click.option("--max-error", type=NUMBER, help="Greatest error in rad.  [default: 0.001]")
 @click.option("--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine.")
 @text_options
 @plot_option

@@ -15,12 +15,13 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from ..arithmetic.points import LogPoints
 from ..arithmetic.types import Array
+from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.input_keys import DECLARED, NINE
 from ..inputs.names import check_names
 from ..inputs.ranges import parse_range
 from ..inputs.top import Top
-from ..motion.quantity import Key, unit_name
+from ..motion.quantity import unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent

@@ -26,7 +26,7 @@ LINES = {
     "bench": "bench --n 3 --t-max 1 --methods lagtop --format csv",
     "explain": "explain",
     "scenes": "scenes",
-    "stability": "stability --samples 1 --strata fast --format csv",
+    "stability": "stability --samples 1 --strata slow --format csv",
 }
 """A line of each command that writes more than one block, or from more than one place."""
 
