@@ -222,7 +222,7 @@ def text_options(command: F) -> F:
         decorated = click.option(
             f"--{name}",
             type=Parsed("MARK", _mark(marks), lambda marks=marks: marks),  # type: ignore[misc]
-            help=f"{', '.join(marks)}.  [default: found in each file]",
+            help=f"{', '.join(marks)}.  [default: found]",
         )(decorated)
     return decorated  # type: ignore[no-any-return]
 
@@ -246,7 +246,7 @@ def is_described(out: Output, header_comments: bool) -> bool:
 
 def reading_options(quaternion: str | None) -> Callable[[F], F]:
     """Add the options for the columns of a trajectory; `quaternion` is the default order."""
-    order = quaternion or "see first row"
+    order = quaternion or "by the first row"
 
     def decorate(command: F) -> F:
         command = click.option(
@@ -261,14 +261,14 @@ def reading_options(quaternion: str | None) -> Callable[[F], F]:
             type=click.Choice(["wxyz", "xyzw"]),
             metavar="ORDER",
             default=quaternion,
-            help=f"wxyz or xyzw, if the names do not say.  [default: {order}]",
+            help=f"wxyz or xyzw.  [default: {order}]",
         )(command)
         return click.option(
             "--columns",
             "names",
             type=NAMES,
-            help="Names of all columns from the left; axis, quaternion and matrix stand for all "
-            "of their parts, _ skips a column.",
+            help="Names of all columns; axis, quaternion and matrix stand for all of their "
+            "parts, _ skips a column.",
         )(command)
 
     return decorate

@@ -101,7 +101,7 @@ def top_options(
 
         decorated: Any = run
         if units:
-            text = "si or cgs, the units of the output if inputs have units.  [default: si]"
+            text = "si or cgs, if inputs have units.  [default: si]"
             choice = click.Choice(["si", "cgs"])
             decorated = click.option("--units", type=choice, metavar="SYSTEM", help=text)(decorated)
         text = "Use radians for all angles, in and out."
