@@ -13,10 +13,11 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TypeVar
 
+from arb_balls import exact_arb
 from balls.angles import State
 from balls.record import Motion, Remainders
 from balls.requested import Requested
-from balls.scene import Number, Scene, Undecided, arb_bits, ball, facts_of, scene_from
+from balls.scene import Number, Scene, Undecided, arb_bits, facts_of, scene_from
 from flint import arb
 
 EPS = 2.0**-52
@@ -159,9 +160,9 @@ class Judge:
         if exact is None or not math.isfinite(computed):
             return math.inf
         with arb_bits(8 * FIRST_BITS):
-            away = exact - ball(Fraction(computed))
+            away = exact - exact_arb(Fraction(computed))
             outward = math.nextafter(computed, math.inf if away > 0 else -math.inf)
-            gap = abs(ball(Fraction(outward)) - ball(Fraction(computed)))
+            gap = abs(exact_arb(Fraction(outward)) - exact_arb(Fraction(computed)))
             return float((abs(away) / gap).abs_upper())
 
     def away(self, key: str, computed: Fraction, digits: int) -> arb:
@@ -180,7 +181,7 @@ class Judge:
         exact = self._raised(number, good, bits)
         with arb_bits(bits):
             assert exact is not None
-            return abs(exact - ball(computed))
+            return abs(exact - exact_arb(computed))
 
     def relative(self, key: str, computed: float, absolute: float | None = None) -> float:
         """Return the error of a key in eps of its exact value, or of the size given instead."""
@@ -188,8 +189,8 @@ class Judge:
         if exact is None or not math.isfinite(computed):
             return math.inf
         with arb_bits(8 * FIRST_BITS):
-            away = abs(exact - ball(Fraction(computed)))
-            size = abs(exact) if absolute is None else ball(Fraction(absolute))
+            away = abs(exact - exact_arb(Fraction(computed)))
+            size = abs(exact) if absolute is None else exact_arb(Fraction(absolute))
             if not size > 0:
                 return 0.0 if away.contains(0) else math.inf
             return float((away / (EPS * size)).abs_upper())

@@ -6,10 +6,11 @@ from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
+from arb_balls import exact_arb
 from flint import acb, arb
 
 from balls.constants import Constants
-from balls.scene import Undecided, ball, middle
+from balls.scene import Undecided, middle
 
 
 class State(NamedTuple):
@@ -122,12 +123,12 @@ class Moving(Constants):
     def at(self, t: Fraction) -> State:
         """Return the motion at a time."""
         if self.facts.steady:
-            return self._steady(ball(t))
+            return self._steady(exact_arb(t))
         if self.facts.separatrix:
             return self._separatrix(t)
         if t == 0:
             return self._at_start()
-        time = ball(t)
+        time = exact_arb(t)
         _, rest = self._phase(time)
         sn, cn, dn = self._jacobi(rest)
         halves = self.halves_at(time)
@@ -203,7 +204,7 @@ class Moving(Constants):
 
     def _separatrix(self, t: Fraction) -> State:
         """Return the swing 1 - u = (1 - u2)/cosh^2 h, whose third integral is an arctangent."""
-        time, q = ball(t), 1 - self.u2
+        time, q = exact_arb(t), 1 - self.u2
         speed = (self.a * q).sqrt() / 2
         h0 = arb(0)
         if self.scene.theta_rate:

@@ -6,9 +6,10 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
+from arb_balls import exact_arb
 from flint import arb, arb_poly, ctx
 
-from balls.scene import Scene, Undecided, ball, facts_of, middle, rational
+from balls.scene import Scene, Undecided, facts_of, middle, rational
 
 
 class Constants:
@@ -17,14 +18,14 @@ class Constants:
     def __init__(self, scene: Scene) -> None:
         """Compute the constants at the precision of the context."""
         self.scene, self.facts = scene, facts_of(scene)
-        self.a, self.b, self.r0 = ball(scene.a), ball(scene.b), ball(scene.r0)
-        self.rise, self.turn = ball(scene.theta_rate), ball(scene.psi_rate)
+        self.a, self.b, self.r0 = exact_arb(scene.a), exact_arb(scene.b), exact_arb(scene.r0)
+        self.rise, self.turn = exact_arb(scene.theta_rate), exact_arb(scene.psi_rate)
         if scene.degrees is not None:
-            self.tilt = ball(scene.degrees / 180) * arb.pi()
+            self.tilt = exact_arb(scene.degrees / 180) * arb.pi()
             self.u0 = arb.cos_pi_fmpq(rational(scene.degrees / 180))
             self.sine2 = arb.sin_pi_fmpq(rational(scene.degrees / 180)) ** 2
         else:
-            self.tilt = ball(scene.radians or Fraction(0))
+            self.tilt = exact_arb(scene.radians or Fraction(0))
             self.u0, self.sine2 = self.tilt.cos(), self.tilt.sin() ** 2
         if self.facts.pole:
             self.u0, self.sine2 = arb(self.facts.pole), arb(0)

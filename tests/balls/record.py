@@ -5,10 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
+from arb_balls import exact_arb
 from flint import acb, arb
 
 from balls.angles import Moving
-from balls.scene import Undecided, ball
+from balls.scene import Undecided
 
 
 class Remainders(NamedTuple):
@@ -108,8 +109,8 @@ class Motion(Moving):
         """Return spin and precession at a time less their mean growth."""
         state, (spin, turn) = self.at(t), self.mean_rates()
         return Remainders(
-            dphi=state.phi - spin * ball(t),
-            dpsi=state.psi - turn * ball(t),
+            dphi=state.phi - spin * exact_arb(t),
+            dpsi=state.psi - turn * exact_arb(t),
             dphi_rate=state.phi_rate - spin,
             dpsi_rate=state.psi_rate - turn,
             tau=state.tau,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from arb_balls import exact_arb
 from flint import acb, arb
 
 from balls.record import Motion, in_degrees
-from balls.scene import Scene, Undecided, ball
+from balls.scene import Scene, Undecided
 
 
 class Requested(Motion):
@@ -36,8 +37,8 @@ class Requested(Motion):
         still = self.facts.steady or self.facts.separatrix
         wide = self.size - a * (self.u1 + 2 * self.u2)
         return {
-            "energy_without_spin": ball(self.A) * self.alpha / 2,
-            "Lz": ball(self.A) * self.beta,
+            "energy_without_spin": exact_arb(self.A) * self.alpha / 2,
+            "Lz": exact_arb(self.A) * self.beta,
             "energy_constant": self.alpha,
             "momentum_constant": self.beta,
             "discriminant": wide**2,
@@ -45,13 +46,13 @@ class Requested(Motion):
             "f_hanging": -(self.from_minus_b**2),
             "f_slope_u1": arb(0) if still else slope,
             "u2_criterion": None if self.facts.vertical else self._criterion(),
-            "spin_share": ball(1 - self.C / (2 * self.A)),
+            "spin_share": exact_arb(1 - self.C / (2 * self.A)),
         }
 
     def _textbook(self) -> dict[str, arb | None]:
         """Return the keys of elementary theory; steady rates by the quadratic formula as it is."""
-        scene, ratio = self.scene, ball(self.A / self.C)
-        a, b = ball(scene.a), ball(scene.b)
+        scene, ratio = self.scene, exact_arb(self.A / self.C)
+        a, b = exact_arb(scene.a), exact_arb(scene.b)
         level, cosine = scene.vanishes(Fraction(0), Fraction(1)), self.u0
         hangs = not level and _is_negative(cosine)
         least = arb(0) if level or hangs else ratio * (2 * a * cosine).sqrt()

@@ -116,10 +116,6 @@ def rational(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
-def ball(value: Fraction) -> arb:
-    return arb(rational(value))
-
-
 @contextmanager
 def arb_bits(bits: int) -> Iterator[None]:
     """Let Arb work with so many bits for a while."""

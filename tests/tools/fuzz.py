@@ -34,9 +34,10 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the tests
 
+from arb_balls import exact_arb
 from ball_judge import Judge
 from balls.requested import Requested
-from balls.scene import Undecided, ball
+from balls.scene import Undecided
 from balls.scene import arb_bits as precision
 from exact_scenes import KINDS, as_decimals
 from flint import arb
@@ -185,8 +186,13 @@ def judge_path(tally: Tally, judge: Judge, motion: Motion) -> None:
     for bits in (160, 640, 4000):
         with precision(bits):
             inner = Requested(scene, Fraction(1), Fraction(1))
-            beta = ball(scene.psi_rate) * (1 - inner.u0 * inner.u0) + ball(scene.b) * inner.u0
-            first, last = ((beta - ball(scene.b) * u) * ball(scene.b) for u in (inner.u1, inner.u2))
+            beta = (
+                exact_arb(scene.psi_rate) * (1 - inner.u0 * inner.u0)
+                + exact_arb(scene.b) * inner.u0
+            )
+            first, last = (
+                (beta - exact_arb(scene.b) * u) * exact_arb(scene.b) for u in (inner.u1, inner.u2)
+            )
         if (first < 0 or first > 0) and (last < 0 or last > 0):
             break
     tally.counts["paths"] += 1
