@@ -13,7 +13,7 @@ from ..errors import LagtopError, NothingToDrawError
 from ..motion.record import KEYS
 from ..motion.sensitivity.uncertainty import stds_of
 from ..motion.solve import Motion
-from ..output.uncertain_text import uncertain_text
+from ..output.report import uncertain_text
 from .curves import motion_in_words
 from .files import About, figure_bytes
 from .kinds import KINDS, PlotRequest
