@@ -27,16 +27,23 @@ SPANS = [10.0**power + 0.3 for power in range(7)]
 """Spans in nutation periods; none ends at a turning point, where approximations do best."""
 _JUDGED_IN_A_SPAN = 21
 
-SHOWN = ("method", "setting", "error_max", "error_end", "units_max", "ns_min", "runs", "remark")
+ROUNDING, LOST = 1e-11, 0.1
+"""Errors (rad) between which the order of a method is read."""
+VARIABLE_ORDER = ("LSODA", "Taylor")
+"""Methods that choose their order themselves."""
 METHOD_FIELDS = [
     Field("method", "method", is_text=True, names_the_row=True),
     Field("setting", "setting", names_the_row=True),
     Field("periods"),
     *(Field(f"{angle}_max") for angle in ANGLES),
     *(Field(f"{angle}_end") for angle in ANGLES),
-    Field("error_max", "max error", short),
+    Field("error_rad", "max error", short),
     Field("error_end", "at the end", short),
     Field("units_max", "units", short),
+    Field("evaluations", "evaluations"),
+    Field("steps", "steps"),
+    Field("jacobians"),
+    Field("order", "order", lambda order: f"{order:.1f}"),
     Field("setup_s", "set-up ms", lambda seconds: f"{1000 * seconds:.1f}"),
     Field("ns_min", "ns/sample", lambda ns: f"{ns:.0f}"),
     Field("ns_median", "median", lambda ns: f"{ns:.0f}"),
@@ -44,6 +51,16 @@ METHOD_FIELDS = [
     Field("front", "front", lambda front: "*" if front else ""),
     Field("remark", "remark", is_text=True),
 ]
+
+
+SPAN_KEYS = "method setting error_rad error_end units_max evaluations ns_min runs remark".split()
+SPAN_FIELDS = [
+    Field("periods", "periods", lambda periods: f"{periods:.0e}")
+    if field.key == "periods"
+    else field._replace(heading=field.heading if field.key in SPAN_KEYS else "")
+    for field in METHOD_FIELDS
+]
+"""Fields of the report over spans, which shows the span and less of the rest."""
 
 
 def compare_methods(
@@ -62,7 +79,7 @@ def compare_methods(
     for name, method, setting in progress(runs, "methods"):
         if not (found and found[-1].method == name and is_out(found[-1])):  # said once is enough
             found.append(measure(work, name, method, setting))
-    rows = with_front(found)
+    rows = with_front(with_order(found))
     return Report(conditions(work, limit), METHOD_FIELDS, rows, list(conclusions(rows, methods)))
 
 
@@ -76,6 +93,10 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
         f"({work.periods:.6g} nutation periods)",
         "reference": f"Legendre's third integral by mpmath, {DIGITS} digits; with {FEWER_DIGITS} "
         f"digits it differs by {work.agreement:.0e} rad at most",
+        "setting": "rtol = atol, in radians and in the units of the scene; of RK4 and of engines "
+        "without error control, steps per nutation period",
+        "order": "fall of the error with the evaluations, between the last two settings with an "
+        f"error of {ROUNDING:g} to {LOST:g} rad; none of a method that varies its order",
         "error": f"radians, greatest of the three angles at {len(work.exact)} of the times, the "
         "last among them",
         "units": "the same over eps (max(1, |angle|) + |tau rate|), tau the time since the nearest "
@@ -107,14 +128,7 @@ def compare_spans(
     last = conditions(spans[-1], limit)
     last["times"] = f"{count} over each span"
     last["reference"] += " over the longest span"
-    return Report(last, [_field(field) for field in METHOD_FIELDS], rows, _conclusions(rows))
-
-
-def _field(field: Field) -> Field:
-    """Return a field of the report of one span, with the span shown and less of the rest."""
-    if field.key == "periods":
-        return Field("periods", "periods", lambda periods: f"{periods:.0e}")
-    return field if field.key in SHOWN else field._replace(heading="")
+    return Report(last, SPAN_FIELDS, rows, _conclusions(rows))
 
 
 def _measure(work: Task, name: str, method: Method, before: list[MethodRow]) -> MethodRow:
@@ -135,28 +149,69 @@ def _conclusions(rows: list[MethodRow]) -> list[str]:
         done = [row for row in rows if row.method == name and is_done(row)]
         if done:
             first, last = done[0], done[-1]
+            growth = growth_of([(row.periods, row.error_rad or 0) for row in done])
             lines.append(
                 f"{name}: error in units {first.units_max:.1e} over {first.periods:.0e} periods, "
-                f"{last.units_max:.1e} over {last.periods:.0e}; time a sample "
-                f"{(last.ns_min or 0) / (first.ns_min or 1):.1f} times as long"
+                f"{last.units_max:.1e} over {last.periods:.0e}"
+                + ("" if growth is None else f"; in radians it grows as t^{growth:.1f}")
+                + f"; time a sample {(last.ns_min or 0) / (first.ns_min or 1):.1f} times as long"
             )
     return [*lines, *not_compared(rows)]
 
 
+def growth_of(errors: Sequence[tuple[float, float]]) -> float | None:
+    """Return the exponent p of errors that grow as t^p, by least squares; None for one or none.
+
+    Each is a time and an error; errors of 0, and those beyond 0.1 rad, do not count.
+    """
+    known = [(math.log(t), math.log(error)) for t, error in errors if 0 < error < LOST]
+    if len(known) < 2:
+        return None
+    middle = sum(x for x, _ in known) / len(known)
+    square = sum((x - middle) ** 2 for x, _ in known)
+    return sum((x - middle) * y for x, y in known) / square
+
+
+def with_order(rows: Sequence[MethodRow]) -> list[MethodRow]:
+    """Return the rows with the observed order of each method whose evaluations are known."""
+    orders: dict[str, float] = {}
+    for name in dict.fromkeys(row.method for row in rows):
+        work = [
+            (math.log(row.evaluations), math.log(error))
+            for row in rows
+            if row.method == name and row.evaluations
+            if ROUNDING < (error := row.error_rad or 0) < LOST
+        ]
+        if len(work) > 1 and not name.startswith(VARIABLE_ORDER):
+            (few, large), (many, small) = work[-2:]
+            orders[name] = (large - small) / (many - few)
+    return [row._replace(order=orders.get(row.method)) for row in rows]
+
+
 def with_front(rows: Sequence[MethodRow]) -> list[MethodRow]:
-    """Return the rows by error, those marked that no other row beats in both error and time."""
-    rows = sorted(rows, key=lambda row: math.inf if row.error_max is None else row.error_max)
+    """Return the rows by method and error; no other row beats a marked one in error and time.
+
+    The method with the least error is the first.
+    """
+
+    def error(row: MethodRow) -> float:
+        return math.inf if row.error_rad is None else row.error_rad
+
+    best = {
+        name: min(error(x) for x in rows if x.method == name) for name in {x.method for x in rows}
+    }
+    rows = sorted(rows, key=lambda row: (best[row.method], row.method, error(row)))
     return [row._replace(front=is_done(row) and not rivals(row, rows)) for row in rows]
 
 
 def rivals(row: MethodRow, rows: Iterable[MethodRow]) -> list[MethodRow]:
     """Return the rows that are at least as fast and as accurate, and better in one."""
-    mine = (row.error_max, row.ns_min)
+    mine = (row.error_rad, row.ns_min)
     return [
         other
         for other in rows
         if is_done(other)
-        and (theirs := (other.error_max, other.ns_min)) != mine
+        and (theirs := (other.error_rad, other.ns_min)) != mine
         and all(x <= y for x, y in zip(theirs, mine, strict=True))  # type: ignore[operator]
     ]
 
@@ -171,8 +226,8 @@ def conclusions(rows: Sequence[MethodRow], methods: Mapping[str, Method]) -> Ite
             better = rivals(row, rows)
             for other in better:
                 yield (
-                    f"{other.method} at {other.setting} beats {OURS}: {other.error_max:.1e} rad in "
-                    f"{other.ns_min:.0f} ns against {row.error_max:.1e} rad in {row.ns_min:.0f} ns"
+                    f"{other.method} at {other.setting} beats {OURS}: {other.error_rad:.1e} rad in "
+                    f"{other.ns_min:.0f} ns against {row.error_rad:.1e} rad in {row.ns_min:.0f} ns"
                 )
             if others and not better:
                 yield f"None of {', '.join(others)} is both faster and more accurate than {OURS}."

@@ -21,7 +21,7 @@ from ..inputs.top import Top
 from ..motion.solve import solve
 from ..sweeps.jobs import interrupts_blocked, safe_path
 from .engine_simulation import Body, serve
-from .integrators import quaternion_angles, scaled_top
+from .integrators import problem_of, quaternion_angles
 from .method import AngleFunction, FailedError, Method, NotApplicableError
 
 SECONDS_TO_START = 60.0
@@ -95,7 +95,8 @@ def scaled_body(top: Top, period: float) -> tuple[Body, float]:
     of 1, so that no engine sees numbers that are very large or small, whatever units the scene has.
     Raises NotApplicableError where no masses have such moments: engines refuse them.
     """
-    p, mass, A = scaled_top(top), float(top.m), float(top.A)
+    p, mass, A = problem_of(top), float(top.m), float(top.A)
+    clock = math.sqrt(p.a) + abs(p.b) + abs(p.theta_rate) + abs(p.psi_rate)
     s, C = float(top.s) * math.sqrt(mass / A), float(top.C) / A
     central = 1 - s * s
     if central <= 0 or C > 2 * central * (1 + 1e-12):
@@ -105,12 +106,16 @@ def scaled_body(top: Top, period: float) -> tuple[Body, float]:
         central=max(central, C / 2),
         C=C,
         s=s,
-        g=p.a / (2 * s),
+        g=p.a / clock / clock / (2 * s),
         attitude=(math.cos(half), math.sin(half), 0.0, 0.0),
-        rates=(p.theta_rate, p.psi_rate * math.sin(p.theta0), p.r0),
-        period=period * p.clock,
+        rates=(
+            p.theta_rate / clock,
+            p.psi_rate / clock * math.sin(p.theta0),
+            p.r0 / clock,
+        ),
+        period=period * clock,
     )
-    return body, p.clock
+    return body, clock
 
 
 def engine_attitudes(

@@ -1,7 +1,7 @@
 """Numerical integration of Euler's equations: two forms of them, and the methods of others.
 
-Another method of scipy is one entry in SCIPY; another form of the equations one in FORMS.  Time is
-scaled by the rates of the top, so that a tolerance means the same in any units.
+Another method of scipy is one entry in SCIPY; another form of the equations one in FORMS.  Angles
+are in radians and rates in the units of the scene, in which tolerances act as well.
 """
 
 from __future__ import annotations
@@ -19,7 +19,16 @@ from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.types import Array
 from ..inputs.rotations import angles_of
 from ..inputs.top import Top
-from .method import AngleFunction, FailedError, Method, NotApplicableError, SampledAngles
+from ..motion.solve import solve
+from .method import (
+    AngleFunction,
+    FailedError,
+    Integration,
+    Method,
+    NotApplicableError,
+    SampledAngles,
+    Work,
+)
 
 TIGHTEST = 3e-14
 """Least relative tolerance that scipy takes."""
@@ -30,8 +39,8 @@ STEPS_PER_SECOND = 100_000
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 
 
-class ScaledTop(NamedTuple):
-    """A top in units of time in which its rates are of the size of 1."""
+class Problem(NamedTuple):
+    """Constants and start of a top."""
 
     a: float
     b: float
@@ -39,45 +48,39 @@ class ScaledTop(NamedTuple):
     theta0: float
     theta_rate: float
     psi_rate: float
-    clock: float
-    """Rate that has become 1."""
 
 
-def scaled_top(top: Top) -> ScaledTop:
-    """Return the problem of a top."""
-    a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
-    b, theta0 = float(top.C) * float(top.r0) / float(top.A), top.tilt(DOUBLES)
-    theta_rate, psi_rate = float(top.thetadot0), float(top.psidot0)
-    clock = math.sqrt(a) + abs(b) + abs(theta_rate) + abs(psi_rate)
-    return ScaledTop(
-        a=a / clock / clock,
-        b=b / clock,
-        r0=float(top.r0) / clock,
-        theta0=2 * math.atan2(theta0.sin_half, theta0.cos_half),
-        theta_rate=theta_rate / clock,
-        psi_rate=psi_rate / clock,
-        clock=clock,
+def problem_of(top: Top) -> Problem:
+    """Return the problem of a top, in its own units."""
+    tilt = top.tilt(DOUBLES)
+    return Problem(
+        a=2 * float(top.m) * float(top.g) * float(top.s) / float(top.A),
+        b=float(top.C) * float(top.r0) / float(top.A),
+        r0=float(top.r0),
+        theta0=2 * math.atan2(tilt.sin_half, tilt.cos_half),
+        theta_rate=float(top.thetadot0),
+        psi_rate=float(top.psidot0),
     )
 
 
 class Form(NamedTuple):
     """Variables to integrate in: their start, their slope, and the angles from them."""
 
-    start: Callable[[ScaledTop], Sequence[float]]
-    slope: Callable[[ScaledTop, Any], Slope]
+    start: Callable[[Problem], Sequence[float]]
+    slope: Callable[[Problem, Any], Slope]
     """Right-hand side in an arithmetic with sin and cos: `math`, or heyoka's expressions."""
     angles: Callable[[Array], SampledAngles]
     """Angles from an array with a row for each variable."""
     whole_turns: bool
 
 
-def _euler_start(p: ScaledTop) -> Sequence[float]:
+def _euler_start(p: Problem) -> Sequence[float]:
     if not math.sin(p.theta0):
         raise NotApplicableError("Euler angles are singular on the vertical")
     return p.theta0, p.theta_rate, 0.0, 0.0
 
 
-def _euler_slope(p: ScaledTop, ar: Any) -> Slope:
+def _euler_slope(p: Problem, ar: Any) -> Slope:
     """Return the slope of theta, its rate, phi and psi, by the constant momenta of (4,7), (4,8)."""
     beta = p.psi_rate * math.sin(p.theta0) ** 2 + p.b * math.cos(p.theta0)
 
@@ -90,12 +93,12 @@ def _euler_slope(p: ScaledTop, ar: Any) -> Slope:
     return slope
 
 
-def _quaternion_start(p: ScaledTop) -> Sequence[float]:
+def _quaternion_start(p: Problem) -> Sequence[float]:
     q = p.psi_rate * math.sin(p.theta0)
     return p.theta_rate, q, math.cos(p.theta0 / 2), math.sin(p.theta0 / 2), 0.0, 0.0
 
 
-def _quaternion_slope(p: ScaledTop, _: Any) -> Slope:
+def _quaternion_slope(p: Problem, _: Any) -> Slope:
     """Return the slope of p, q (body) and the quaternion (body to space): nothing is singular."""
     twist = p.r0 - p.b
 
@@ -127,48 +130,83 @@ FORMS = {
 
 
 class Limit:
-    """A clock that ends a run after some seconds."""
+    """What a run may take: seconds, and evaluations of the right-hand side, which it counts."""
 
-    def __init__(self, seconds: float) -> None:
-        self.seconds, self.end = seconds, time.perf_counter() + seconds
+    def __init__(self, seconds: float, evaluations: float) -> None:
+        self.seconds, self.most = seconds, evaluations
+        self.end, self.count = time.perf_counter() + seconds, 0
 
-    def check(self) -> None:
-        """Raise FailedError when the seconds are over."""
-        if time.perf_counter() > self.end:
-            raise self.error()
+    def watched(self, slope: Slope) -> Slope:
+        """Return the slope, which raises FailedError if a run takes more."""
 
-    def error(self) -> FailedError:
-        """Return what is said of a run that took longer."""
-        return FailedError(f"took more than {self.seconds:g} s")
+        def counted(now: float, state: Any) -> Sequence[Any]:
+            self.count += 1
+            if self.count > self.most:
+                raise FailedError(f"took more than {self.most:.0e} evaluations")
+            if time.perf_counter() > self.end:
+                raise FailedError(f"took more than {self.seconds:g} s")
+            return slope(now, state)
+
+        return counted
 
 
-def scipy_method(name: str, form: Form, top: Top, rtol: float, limit: float = 5.0) -> AngleFunction:
+def scipy_method(
+    name: str, form: Form, top: Top, rtol: float, *, limits: tuple[float, float]
+) -> AngleFunction:
     """Return a method of scipy's solve_ivp, with its own interpolation between the steps."""
     from scipy.integrate import solve_ivp
 
-    scene = scaled_top(top)
-    start, formula = form.start(scene), form.slope(scene, math)
+    problem = problem_of(top)
+    start, slope = form.start(problem), form.slope(problem, math)
 
-    def sample(t: Array) -> SampledAngles:
-        watch, times = Limit(limit), t * scene.clock
-
-        def slope(now: float, state: Array) -> Sequence[float]:
-            watch.check()
-            return formula(now, state.tolist())
-
+    def run(t: Array) -> tuple[SampledAngles, Work]:
+        watched = Limit(*limits).watched(lambda now, state: slope(now, [*state]))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what goes wrong is seen in the outcome
             try:
                 flow = solve_ivp(
-                    slope, (0.0, times[-1]), start, name, t_eval=times, rtol=rtol, atol=rtol
+                    watched, (0.0, t[-1]), start, name, dense_output=True, rtol=rtol, atol=rtol
                 )
             except ArithmeticError as error:
                 raise FailedError(f"stopped: {error}") from None
         if not flow.success:
             raise FailedError(f"stopped: {flow.message}")
-        return form.angles(flow.y)
+        return form.angles(flow.sol(t)), Work(int(flow.nfev), flow.t.size - 1, int(flow.njev))
 
-    return sample
+    return Integration(run)
+
+
+def rk4_method(
+    form: Form, top: Top, per_period: int, *, limits: tuple[float, float]
+) -> AngleFunction:
+    """Return the classical Runge-Kutta method with so many equal steps per nutation period.
+
+    The gap between two times takes a whole number of steps, so that each time is hit.
+    """
+    problem, period = problem_of(top), float(solve(top).T_nutation or 1)
+    start, slope = np.array(form.start(problem)), form.slope(problem, math)
+
+    def run(t: Array) -> tuple[SampledAngles, Work]:
+        limit = Limit(*limits)
+        watched = limit.watched(slope)
+
+        def f(state: Array) -> Array:
+            return np.array(watched(0.0, state.tolist()))
+
+        state, now, rows = start, 0.0, []
+        for end in t.tolist():
+            count = math.ceil(abs(end - now) / period * per_period * (1 - 1e-9))
+            h = (end - now) / max(count, 1)
+            for _ in range(count):
+                k1 = f(state)
+                k2 = f(state + h / 2 * k1)
+                k3 = f(state + h / 2 * k2)
+                state = state + h / 6 * (k1 + 2 * (k2 + k3) + f(state + h * k3))
+            now = end
+            rows.append(state)
+        return form.angles(np.array(rows).T), Work(limit.count, limit.count // 4, 0)
+
+    return Integration(run)
 
 
 def _forget_compiled_code(state: Any) -> None:
@@ -178,29 +216,33 @@ def _forget_compiled_code(state: Any) -> None:
         state.set_diskcache_enabled(False)
 
 
-def heyoka_method(form: Form, top: Top, tol: float, limit: float = 5.0) -> AngleFunction:
+def heyoka_method(
+    form: Form, top: Top, tol: float, *, limits: tuple[float, float]
+) -> AngleFunction:
     """Return Taylor's method, compiled for this top; the set-up includes the compilation."""
     import heyoka
 
     _forget_compiled_code(heyoka.llvm_state)
-    scene = scaled_top(top)
-    start = np.array(form.start(scene))
+    problem = problem_of(top)
+    start = np.array(form.start(problem))
     variables = heyoka.make_vars(*(f"x{i}" for i in range(start.size)))
-    system = list(zip(variables, form.slope(scene, heyoka)(0.0, variables), strict=True))
+    system = list(zip(variables, form.slope(problem, heyoka)(0.0, variables), strict=True))
     integrator = heyoka.taylor_adaptive(system, start, tol=tol)
+    seconds, evaluations = limits
+    most = int(min(seconds * STEPS_PER_SECOND, evaluations / integrator.order))
 
-    def sample(t: Array) -> SampledAngles:
+    def run(t: Array) -> tuple[SampledAngles, Work]:
         integrator.time, integrator.state[:] = 0.0, start
-        grid = np.concatenate(([0.0], t[t != 0] * scene.clock))
-        steps = int(limit * STEPS_PER_SECOND)
-        outcome, *_, rows = integrator.propagate_grid(grid, max_steps=steps)
+        grid = np.concatenate(([0.0], t[t != 0]))
+        outcome, _, _, steps, _, rows = integrator.propagate_grid(grid, max_steps=most)
         if outcome == heyoka.taylor_outcome.step_limit:
-            raise FailedError(f"took more than {steps} steps")
+            raise FailedError(f"took more than {most} steps")
         if outcome != heyoka.taylor_outcome.time_limit:
             raise FailedError(f"stopped: {outcome}")
-        return form.angles(rows.T[:, -t.size :])
+        work = Work(int(steps) * integrator.order, int(steps), 0)
+        return form.angles(rows.T[:, -t.size :]), work
 
-    return sample
+    return Integration(run)
 
 
 SCIPY: dict[str, list[float]] = {
@@ -210,17 +252,22 @@ SCIPY: dict[str, list[float]] = {
     "Radau": [1e-3, 1e-5, 1e-7],
 }
 TAYLOR = [1e-5, 1e-8, 1e-12, 1e-16]
+STEPS = [50, 200, 800]
 
 
-def integrators(limit: float) -> dict[str, Method]:
-    """Return each method in each form by name; a run may take `limit` seconds."""
+def integrators(seconds: float, evaluations: float = math.inf) -> dict[str, Method]:
+    """Return each method in each form by name; a run may take so many seconds and evaluations."""
     table = {}
+    limits = seconds, evaluations
     for shape, form in FORMS.items():
-        for name, tolerances in SCIPY.items():
-            prepare = partial(scipy_method, name, form, limit=limit)
+        ways: dict[str, tuple[Sequence[float], Any, str]] = {
+            name: (tolerances, partial(scipy_method, name), "scipy.integrate")
+            for name, tolerances in SCIPY.items()
+        }
+        ways |= {"RK4": (STEPS, rk4_method, ""), "Taylor": (TAYLOR, heyoka_method, "heyoka")}
+        for name, (settings, way, package) in ways.items():
+            prepare = partial(way, form, limits=limits)
             table[f"{name}-{shape}"] = Method(
-                tolerances, prepare, "scipy.integrate", whole_turns=form.whole_turns
+                settings, prepare, package, whole_turns=form.whole_turns
             )
-        prepare = partial(heyoka_method, form, limit=limit)
-        table[f"Taylor-{shape}"] = Method(TAYLOR, prepare, "heyoka", whole_turns=form.whole_turns)
     return table

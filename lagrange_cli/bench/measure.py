@@ -31,6 +31,7 @@ from .method import (
     MethodRow,
     NotApplicableError,
     SampledAngles,
+    Work,
 )
 from .reference import ExactAngles, Reference, angle_differences, angle_units
 
@@ -154,6 +155,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
         ns_median=statistics.median(seconds) / times.size * 1e9,
         runs=len(seconds),
         remark=method.mark(),
+        **getattr(sample, "work", Work())._asdict(),
     )
     kept = range(times.size) if method.costly else work.judged.tolist()
     return _judged(timed, work, [[angle[i] for angle in angles] for i in kept], method)
@@ -198,7 +200,7 @@ def _judged(
     units = max(max(angle_units(angles, exact, whole_turns=turns)) for angles, exact in pairs)
     each: dict[str, Any] = {f"{name}_max": x for name, x in zip(ANGLES, worst, strict=True)}
     each |= {f"{name}_end": x for name, x in zip(ANGLES, end, strict=True)}
-    return row._replace(error_max=max(worst), error_end=max(end), units_max=units, **each)
+    return row._replace(error_rad=max(worst), error_end=max(end), units_max=units, **each)
 
 
 def _machine() -> str:

@@ -20,6 +20,29 @@ AngleFunction = Callable[[Array], SampledAngles]
 """Computes the angles at times that run away from 0."""
 
 
+class Work(NamedTuple):
+    """The work of a run, which is the same on every machine; None for a number that is unknown."""
+
+    evaluations: int | None = None
+    """Evaluations of the right-hand side; of a Taylor method, its steps times its order."""
+    steps: int | None = None
+    jacobians: int | None = None
+
+
+class Integration:
+    """A function that computes angles step by step, and counts its work."""
+
+    def __init__(self, run: Callable[[Array], tuple[SampledAngles, Work]]) -> None:
+        self._run = run
+        self.work = Work()
+        """The work of the last run."""
+
+    def __call__(self, t: Array) -> SampledAngles:
+        """Return the angles at times that run away from 0."""
+        angles, self.work = self._run(t)
+        return angles
+
+
 class NotApplicableError(Exception):
     """A method cannot do this scene, or not here; the message says why."""
 
@@ -74,10 +97,16 @@ class MethodRow(NamedTuple):
     theta_end: float | None = None
     phi_end: float | None = None
     psi_end: float | None = None
-    error_max: float | None = None
+    error_rad: float | None = None
     """Greatest error of the three angles (rad)."""
     error_end: float | None = None
     units_max: float | None = None
+    evaluations: int | None = None
+    """The work of a run, as in `Work`."""
+    steps: int | None = None
+    jacobians: int | None = None
+    order: float | None = None
+    """Observed order of the method: by how much the error falls with the work, over settings."""
     setup_s: float | None = None
     ns_min: float | None = None
     """Nanoseconds per sample: the least and the median of the runs."""
@@ -90,7 +119,7 @@ class MethodRow(NamedTuple):
 
 def is_done(row: MethodRow) -> bool:
     """Return whether a row has an error and a time."""
-    return row.error_max is not None and row.ns_min is not None
+    return row.error_rad is not None and row.ns_min is not None
 
 
 def is_out(row: MethodRow) -> bool:

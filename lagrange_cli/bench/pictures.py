@@ -51,13 +51,13 @@ def draw_work_precision(findings: Report, path: str) -> None:
     with styled(LIGHT, LETTERS):
         figure, (axes,) = _figure(1)
         rows = [row for row in findings.rows if is_done(row)]
-        front = sorted((row.error_max, row.ns_min) for row in rows if row.front)
+        front = sorted((row.error_rad, row.ns_min) for row in rows if row.front)
         if front:
             x, y = _drawable(front)
             label = "front: none is faster\nand more accurate"
             axes.step(x, y, where="post", color="0.85", lw=6, zorder=1, label=label)
         for name, look in method_looks(row.method for row in sorted(rows, key=_by_error)).items():
-            points = sorted((row.error_max, row.ns_min) for row in rows if row.method == name)
+            points = sorted((row.error_rad, row.ns_min) for row in rows if row.method == name)
             _line(axes, name, look, points)
         axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
         _save(figure, path, "Error against run time", findings)
@@ -70,7 +70,7 @@ def draw_long_spans(findings: Report, path: str) -> None:
         rows = [row for row in findings.rows if is_done(row)]
         for name, look in method_looks(row.method for row in rows).items():
             mine = [row for row in rows if row.method == name]
-            _line(above, name, look, [(row.periods, row.error_max) for row in mine])
+            _line(above, name, look, [(row.periods, row.error_rad) for row in mine])
             _line(below, name, look, [(row.periods, row.ns_min) for row in mine])
         above.set(xlabel="nutation periods", ylabel="greatest error (rad)")
         below.set(xlabel="nutation periods", ylabel="time per sample (ns)")
@@ -128,7 +128,7 @@ def _write_failures(axes: Axes, rows: Sequence[Any]) -> None:
 
 def _by_error(row: Any) -> float:
     """Return the error by which methods are sorted within their family."""
-    return float(row.error_max)
+    return float(row.error_rad)
 
 
 def _figure(panels: int) -> tuple[Figure, Any]:
@@ -230,7 +230,9 @@ def _family(name: str) -> str:
         return OURS
     if name in CLOSED_FORMS:
         return "closed forms"
-    return (method.engine or method.package.partition(".")[0]) if method else ""
+    if not method:
+        return ""
+    return method.engine or method.package.partition(".")[0] or "scipy"  # RK4, in Python too
 
 
 def _stem(name: str) -> str:

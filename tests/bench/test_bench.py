@@ -20,6 +20,7 @@ import numpy as np
 import oracle
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
+from scipy.integrate import solve_ivp
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import value_text
@@ -28,7 +29,7 @@ from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.compare_methods import METHOD_FIELDS, conclusions, with_front
 from lagrange_cli.bench.hard_scenes import STRATA
-from lagrange_cli.bench.integrators import integrators
+from lagrange_cli.bench.integrators import FORMS, integrators, problem_of
 from lagrange_cli.bench.measure import Task, all_methods, measure, reference_period, task
 from lagrange_cli.bench.method import MethodRow
 from lagrange_cli.bench.pictures import draw_long_spans, draw_work_precision
@@ -51,8 +52,8 @@ def run(top: Top, name: str, setting: Any) -> MethodRow:
 def error(row: MethodRow) -> float:
     if row.remark == "not applicable: needs heyoka: pip install heyoka":  # not on every system
         pytest.skip(row.remark)
-    assert row.error_max is not None, row.remark
-    return row.error_max
+    assert row.error_rad is not None, row.remark
+    return row.error_rad
 
 
 @pytest.mark.slow
@@ -110,8 +111,8 @@ def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
     assert error(measure(work, "Taylor-euler", METHODS["Taylor-euler"], 1e-16)) < 1e-12
 
 
-def row(method: str, error_max: float | None, ns_min: float | None, **more: Any) -> MethodRow:
-    return MethodRow(method, "", 1.0, error_max=error_max, ns_min=ns_min, units_max=9.0, **more)
+def row(method: str, error_rad: float | None, ns_min: float | None, **more: Any) -> MethodRow:
+    return MethodRow(method, "", 1.0, error_rad=error_rad, ns_min=ns_min, units_max=9.0, **more)
 
 
 def test_front_and_what_it_says() -> None:
@@ -119,6 +120,8 @@ def test_front_and_what_it_says() -> None:
     rows += [row("none", None, None, remark="failed: stopped"), row("half", 1e-16, None)]
     marked = with_front(rows)
     assert [x.method for x in marked] == ["half", "lagtop", "slow", "rough", "none"]
+    spread = with_front([row("a", 1e-3, 1.0), row("b", 1e-6, 9.0), row("a", 1e-9, 5.0)])
+    assert [(x.method, x.error_rad) for x in spread] == [("a", 1e-9), ("a", 1e-3), ("b", 1e-6)]
     assert [x.method for x in marked if x.front] == ["lagtop", "rough"]
     table = {name: methods.Method([], ours) for name in ("lagtop", "slow", "rough", "none", "half")}
     assert list(conclusions(marked, table)) == [
@@ -131,6 +134,44 @@ def test_front_and_what_it_says() -> None:
     marked = with_front([*rows, row("better", 1e-16, 1.5)])
     better = list(conclusions(marked, table | {"better": methods.Method([], ours)}))
     assert better[0].startswith("better at  beats lagtop: 1.0e-16 rad in 2 ns against 1.0e-15 rad")
+
+
+def test_the_order_is_that_of_the_two_finest_settings_above_rounding() -> None:
+    def runs(name: str, errors: list[float]) -> list[MethodRow]:
+        return [row(name, e, 1.0, evaluations=100 * 2**i) for i, e in enumerate(errors)]
+
+    fourth = [0.5, 1e-2, 1e-3, 1e-3 / 2**4, 1e-12]
+    found = compare_methods.with_order([*runs("x", fourth), *runs("Taylor", fourth)])
+    assert {x.method: x.order for x in found} == {"x": pytest.approx(4), "Taylor": None}
+    assert compare_methods.with_order(runs("x", [1e-2, 1e-12]))[0].order is None
+
+
+def test_the_exponent_of_growth() -> None:
+    errors = [(10.0**i, 3e-9 * 10.0 ** (2 * i)) for i in range(4)]
+    assert compare_methods.growth_of([*errors, (1e5, 2.0), (1e6, 0.0)]) == pytest.approx(2)
+    assert compare_methods.growth_of(errors[:1]) is None
+
+
+@pytest.mark.parametrize("name", ["DOP853-quaternion", "RK4-euler", "Radau-euler"])
+def test_work_is_counted(name: str) -> None:
+    """Tolerances act in the units of the scene: the run of scipy is that of a plain call."""
+    method = METHODS[name]
+    prepared: Any = method.prepare(LOOPING, method.settings[0])
+    t = np.linspace(0, 1, 7)
+    angles = prepared(t)
+    if name == "RK4-euler":
+        period = solve(LOOPING).T_nutation
+        steps = 6 * math.ceil(1 / 6 / period * 50)
+        assert prepared.work == (4 * steps, steps, 0)
+        return
+    p, form = problem_of(LOOPING), FORMS[name.partition("-")[2]]
+    rtol, way = method.settings[0], name.partition("-")[0]
+    slope: Any = form.slope(p, math)
+    flow = solve_ivp(slope, (0, 1), form.start(p), way, t_eval=t, rtol=rtol, atol=rtol)
+    assert np.asarray(angles[0]) == pytest.approx(np.asarray(form.angles(flow.y)[0]), abs=1e-12)
+    if way == "Radau":
+        assert prepared.work.evaluations == flow.nfev
+        assert prepared.work.jacobians == flow.njev > 0
 
 
 def test_ties_on_the_front() -> None:
@@ -200,14 +241,15 @@ def test_formats_hold_the_same(lagtop: Lagtop) -> None:
     rows = list(csv.DictReader(io.StringIO(listed.stdout)))
     assert list(whole["rows"][0]) == list(rows[0])
     assert len(whole["rows"]) == len(rows) == 1 + 5 + 4
-    exact = {(x["method"], value_text(x["setting"])): x["error_max"] for x in whole["rows"]}
-    assert {(x["method"], x["setting"]): float(x["error_max"]) for x in rows} == exact
+    exact = {(x["method"], value_text(x["setting"])): x["error_rad"] for x in whole["rows"]}
+    assert {(x["method"], x["setting"]): float(x["error_rad"]) for x in rows} == exact
     assert set(whole["conditions"]) <= set(re.findall(r"^(\w+):", listed.stderr, re.MULTILINE))
     table = lagtop("bench", *SMALL).stdout
     assert "with 50 digits it differs by" in " ".join(table.split())
     assert all(name in table for name in ("lagtop", "theta-series", "DOP853-euler"))
-    errors = [x["error_max"] for x in whole["rows"]]
-    assert errors == sorted(errors)
+    for name in ("lagtop", "theta-series", "DOP853-euler"):
+        errors = [x["error_rad"] for x in whole["rows"] if x["method"] == name]
+        assert errors == sorted(errors)
 
 
 def test_missing_packages_are_rows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -227,8 +269,8 @@ def test_missing_packages_are_rows(lagtop: Lagtop, monkeypatch: pytest.MonkeyPat
 
 
 BAD = {
-    "--methods euler": "--methods must be among 28 names, got 'euler' (did you mean",
-    "--methods ,": "--methods must be among 28 names, got '': lagtop, ",
+    "--methods euler": "--methods must be among 30 names, got 'euler' (did you mean",
+    "--methods ,": "--methods must be among 30 names, got '': lagtop, ",
     "--n 0": "--n must be in [1, 10000000], got 0",
     "--n 2e7": "--n must be in [1, 10000000], got 20000000",
     "--t-max 0": "--t-max must be other than 0",

@@ -102,9 +102,9 @@ def test_row_of_an_engine(name: str) -> None:
     assert one.remark == many.remark == method.mark()
     assert one.remark is not None
     assert one.remark.startswith(f"{package} ")
-    assert one.error_max is not None
-    assert one.error_max < 0.02
-    assert many.error_end == pytest.approx(one.error_max, rel=0.5, abs=1e-9)
+    assert one.error_rad is not None
+    assert one.error_rad < 0.02
+    assert many.error_end == pytest.approx(one.error_rad, rel=0.5, abs=1e-9)
     assert many.runs is not None
     back = measure(task(motion, -0.1, 1), name, method, method.settings[0])
     assert back.remark == "not applicable: engines run forwards only"

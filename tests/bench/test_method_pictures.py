@@ -22,7 +22,7 @@ from lagrange_cli.plot.style import LIGHT
 def test_points_beyond_the_edge_have_their_errors_beside_it(tmp_path: Path) -> None:
     errors = {"lagtop-digits": [5e-48, 5e-18], "lagtop": [5e-14], "DOP853-euler": [1e-10]}
     rows = [
-        MethodRow(name, i, 20.3, error_max=error, ns_min=10.0 * (i + 1))
+        MethodRow(name, i, 20.3, error_rad=error, ns_min=10.0 * (i + 1))
         for name, found in errors.items()
         for i, error in enumerate(found)
     ]
