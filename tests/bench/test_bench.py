@@ -28,9 +28,8 @@ from lagrange_cli.bench import compare_methods
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.closed_forms import CLOSED_FORMS
 from lagrange_cli.bench.compare_methods import METHOD_FIELDS, conclusions, with_front
-from lagrange_cli.bench.hard_scenes import STRATA
 from lagrange_cli.bench.integrators import FORMS, integrators, problem_of
-from lagrange_cli.bench.measure import Task, all_methods, measure, reference_period, task
+from lagrange_cli.bench.measure import Task, measure, reference_period, task
 from lagrange_cli.bench.method import MethodRow
 from lagrange_cli.bench.pictures import draw_long_spans, draw_work_precision
 from lagrange_cli.output.report import Report
@@ -373,11 +372,3 @@ def test_sample_scenes(scene: str, lagtop: Lagtop) -> None:
     result = lagtop("bench", path, "--methods", "lagtop", "--n", 20, "--format", "json")
     (found,) = json.loads(result.stdout)["rows"]
     assert found["units_max"] < 4
-
-
-def test_help_lists_what_is_registered(lagtop: Lagtop) -> None:
-    shown = " ".join(lagtop("bench", "--help").stdout.split())
-    assert f"Methods: {', '.join(all_methods(1))}" in shown
-    assert "Groups of methods: engines, mujoco, exudyn, pybullet, drake" in shown
-    shown = " ".join(lagtop("stability", "--help").stdout.split())
-    assert f"Strata: {', '.join(STRATA)}" in shown
