@@ -24,6 +24,8 @@ SWAP = bytes.maketrans(b",.", b".,")
 DIGITS = r"(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(rf"[+-]?(?:{DIGITS}|nan|inf)", re.IGNORECASE | re.ASCII)
 
+_QUOTED_OR_PLAIN = re.compile(r'(?:"((?:[^"]|"")*)"|([^\s"]\S*))(?=\s|$)')
+
 Numbered = tuple[int, bytes]
 
 
@@ -121,22 +123,19 @@ class Dialect(NamedTuple):
         A quoted cell ends on its line, or one open quote would swallow the rows that follow.
         Raises LagtopError for a wrong quote.
         """
-        is_blank, delimiter = self.delimiter == " ", self.delimiter
+        delimiter = self.delimiter
         if '"' not in text:
-            return text.split() if is_blank else text.split(delimiter)
-        if is_blank:
-            text = text.replace("\t", " ").strip()
-        skips = is_blank or f'{delimiter} "' in text
+            return text.split() if delimiter == " " else text.split(delimiter)
+        if delimiter == " ":
+            return _cells_between_blanks(text)
         try:
+            skips = f'{delimiter} "' in text
             lines = csv.reader([text], strict=True, delimiter=delimiter, skipinitialspace=skips)
             return next(lines)
         except csv.Error:
             cells = enumerate(text.split(delimiter), 1)
             number, cell = next((x for x in cells if x[1].count('"') % 2), (1, text))
-            raise LagtopError(
-                f"a quoted cell must end with its quote, got {quoted(cell.strip())} "
-                f"in column {number}"
-            ) from None
+            raise _wrong_quote(cell, number) from None
 
     def with_point(self, cell: str) -> str:
         """Return a number with a decimal point; one with the other mark is no number then."""
@@ -155,3 +154,21 @@ UNDECIDED = Dialect()
 def is_number(cell: str) -> bool:
     """Return whether a cell is a number, with either decimal mark, or nan or inf."""
     return _NUMBER.fullmatch(cell) is not None
+
+
+def _cells_between_blanks(text: str) -> list[str]:
+    cells, rest = list[str](), text.strip()
+    while rest:
+        found = _QUOTED_OR_PLAIN.match(rest)
+        if found is None:
+            raise _wrong_quote(rest, len(cells) + 1)
+        quoted_cell, plain = found.groups()
+        cells.append(plain if quoted_cell is None else quoted_cell.replace('""', '"'))
+        rest = rest[found.end() :].lstrip()
+    return cells
+
+
+def _wrong_quote(cell: str, number: int) -> LagtopError:
+    return LagtopError(
+        f"a quoted cell must end with its quote, got {quoted(cell.strip())} in column {number}"
+    )

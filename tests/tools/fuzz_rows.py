@@ -3,9 +3,10 @@
     python tests/tools/fuzz_rows.py --rows 100000 --seed 1
 
 A row of tops is good if each of its cells is a number that a top can have, by a plain rule of this
-script.  A sweep must keep every row in its place: a good one with its numbers, another one with an
-error that names its line, in every format, with --jobs, and in parts.  A file of times or a
-trajectory must be refused at its first bad line, and at no other.
+script, which reads it character by character, for each delimiter and decimal mark.  A sweep must
+keep every row in its place: a good one with its numbers, another one with an error that names its
+line, in every format, and with --jobs.  A file of times or a trajectory must be refused at its
+first bad line, and at no other.  A file whose decimal mark is unclear must be refused.
 """
 
 from __future__ import annotations
@@ -44,9 +45,48 @@ class Row(NamedTuple):
     is_good: bool
 
 
-def is_number(text: str) -> bool:
+class Dialect(NamedTuple):
+    """The delimiter and the decimal mark of a file, and the options that name the mark."""
+
+    delimiter: str
+    decimal: str
+
+    @property
+    def options(self) -> list[str]:
+        """The option that names the decimal mark, if there is a choice."""
+        names = {".": "point", ",": "comma"}
+        return [] if self.delimiter == "," else ["--decimal", names[self.decimal]]
+
+
+DIALECTS = [Dialect(*x) for x in (",.", ";.", ";,", "\t.", "\t,", " .", " ,")]
+
+
+def cells_of(line: str, delimiter: str) -> list[str] | None:
+    """Return the cells of a line, character by character; None if a quote is wrong."""
+    cells, cell, state = list[str](), "", "start"
+    for x in [*line, delimiter]:
+        if state == "inside":
+            cell, state = (cell, "quote") if x == '"' else (cell + x, state)
+        elif x == '"' and state == "quote":
+            cell, state = cell + x, "inside"
+        elif x == delimiter or (delimiter == " " and x.isspace()):
+            if delimiter != " " or state != "start":
+                cells.append(cell)
+            cell, state = "", "start"
+        elif state == "quote":
+            return None
+        elif x == '"' and state == "start":
+            state = "inside"
+        else:
+            cell, state = cell + x, "plain"
+    return None if state == "inside" else cells
+
+
+def is_number(text: str, decimal: str = ".") -> bool:
     """Return whether a text is a decimal number that a double can hold."""
     text = text.strip()
+    if decimal == ",":
+        text = text.replace(".", "x").replace(",", ".")
     if len(text) > 2000 or not NUMBER.fullmatch(text):
         return False
     value = float(text)
@@ -55,40 +95,45 @@ def is_number(text: str) -> bool:
     )
 
 
-def can_be(name: str, text: str) -> bool:
+def can_be(name: str, text: str, decimal: str) -> bool:
     """Return whether a cell is a number that its input can have."""
-    if not is_number(text):
+    if not is_number(text, decimal):
         return False
-    value = float(text)
+    value = float(text.replace(",", "."))
     if name == "theta0_deg":
         return 0 <= value <= 180
     return 1e-100 <= value <= 1e100 if name == "m" else abs(value) <= 1e100
 
 
-def quoted(cell: str) -> str:
-    """Return a cell of CSV."""
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="").writerow([cell, "x"])
-    return stream.getvalue()[:-2]
+def quoted(cell: str, delimiter: str) -> str:
+    """Return a cell, between quotes if it has to be."""
+    special = not cell or any(x.isspace() for x in cell) if delimiter == " " else False
+    if special or delimiter in cell or '"' in cell:
+        return '"' + cell.replace('"', '""') + '"'
+    return cell
 
 
-def csv_row(rng: random.Random, number: int) -> Row:
-    """Return a row of CSV, dirty in one case of three."""
+def csv_row(rng: random.Random, number: int, dialect: Dialect) -> Row:
+    """Return a row of cells, dirty in one case of three, as a reader of characters judges it."""
     pool = {name: rng.choice(GOOD) for name in COLUMNS[1:5]} | {"note": rng.choice(NOTES)}
     pool["theta0_deg"], pool["m"] = str(rng.randint(1, 179)), rng.choice(["1", "1587", "2e3"])
     cells = [str(number), *(pool[name] for name in COLUMNS[1:])]
+    cells[1:5] = [x.replace(".", dialect.decimal) for x in cells[1:5]]
     if rng.random() < 1 / 3:
         cells[rng.randrange(1, 5)] = rng.choice(BAD)
-    line = ",".join(map(quoted, cells))
-    good = all(can_be(*x) for x in zip(COLUMNS[1:5], cells[1:5], strict=True))
+    delimiter = dialect.delimiter
+    line = delimiter.join(quoted(x, delimiter) for x in cells)
     damage = rng.random()
     if damage < 0.02:
-        return Row(line + ",more", False)
-    if damage < 0.04:
-        return Row(line.rpartition(",")[0], False)
-    if damage < 0.05:
-        return Row(line[: len(str(number)) + 1] + '"' + line[len(str(number)) + 1 :], False)
-    return Row(line, good)
+        line += f"{delimiter}more"
+    elif damage < 0.04:
+        line = line.rpartition(delimiter)[0]
+    elif damage < 0.05:
+        line = line[: len(str(number)) + 1] + '"' + line[len(str(number)) + 1 :]
+    found = cells_of(line, delimiter)
+    good = found is not None and len(found) == len(COLUMNS) and "\0" not in line
+    pairs = zip(COLUMNS[1:5], (found or [])[1:5], strict=False)
+    return Row(line, good and all(can_be(*x, dialect.decimal) for x in pairs))
 
 
 def json_row(rng: random.Random, number: int) -> Row:
@@ -150,47 +195,101 @@ def records(text: str, fmt: str) -> list[dict[str, Any]]:
 
 
 def of_tops(rng: random.Random, count: int, folder: Path, counts: Counter[str]) -> Iterator[str]:
-    """Yield the faults of sweeps of so many rows, as CSV and as JSON lines."""
-    for suffix, make in ((".csv", csv_row), (".ndjson", json_row)):
-        rows = [make(rng, i) for i in range(count)]
-        path = folder / f"tops{suffix}"
-        header = [",".join(COLUMNS)] if suffix == ".csv" else []
+    """Yield the faults of sweeps of so many rows in each dialect, and as JSON lines."""
+    for dialect in (*DIALECTS, None):
+        rows = [csv_row(rng, i, dialect) if dialect else json_row(rng, i) for i in range(count)]
+        path = folder / f"tops{'.csv' if dialect else '.ndjson'}"
+        header = [dialect.delimiter.join(COLUMNS)] if dialect else []
         path.write_bytes("\n".join([*header, *(row.text for row in rows), ""]).encode())
+        more, kind = (dialect.options, repr(dialect)) if dialect else ([], "JSON lines")
         for fmt in ("csv", "ndjson", "json"):
-            counts[f"rows of {suffix} to {fmt}"] += len(rows)
-            for wrong in judged(rows, path, fmt):
-                yield f"{suffix} {wrong}"
-        one = run("sweep", str(path), "--keys", "a")
-        two = run("sweep", str(path), "--keys", "a", "--jobs", "2")
-        counts[f"rows of {suffix} by two processes"] += len(rows)
+            counts[f"rows of {kind} to {fmt}"] += len(rows)
+            for wrong in judged(rows, path, fmt, more):
+                yield f"{kind} {wrong}"
+        one = run("sweep", str(path), "--keys", "a", *more)
+        two = run("sweep", str(path), "--keys", "a", "--jobs", "2", *more)
+        counts[f"rows of {kind} by two processes"] += len(rows)
         if (one.stdout_bytes, one.stderr) != (two.stdout_bytes, two.stderr):
-            yield f"{suffix}: two processes give something else"
+            yield f"{kind}: two processes give something else"
+
+
+def of_decisions(
+    rng: random.Random, count: int, folder: Path, counts: Counter[str]
+) -> Iterator[str]:
+    """Yield the faults of files of 20 rows whose decimal mark nobody names."""
+    names = ["a", "b"]
+    for _ in range(count // 20):
+        dialect = rng.choice(DIALECTS[1:])
+        marks = rng.choice([dialect.decimal] * 8 + [".,"])
+        cells = [_measured(rng, marks) for _ in range(20)]
+        head = dialect.delimiter.join(["r0", "psidot0", *names])
+        lines = [dialect.delimiter.join([*pair, "1", "2"]) for pair in cells]
+        path = folder / "tops.csv"
+        path.write_text("\n".join([head, *lines, ""]))
+        counts["rows whose decimal mark nobody names"] += 20
+        mark = decision([x for pair in cells for x in pair])
+        result = run("sweep", str(path), "--keys", "r0,psidot0", "--format", "json")
+        if mark is None:
+            if result.exit_code != 65 or "pass --decimal" not in result.stderr:
+                yield f"{cells}: is not refused: {result.stderr!r}"
+            continue
+        wanted = [tuple(float(x.replace(mark, ".")) for x in pair) for pair in cells]
+        found = [(x["r0"], x["psidot0"]) for x in json.loads(result.stdout or "[]")]
+        if found != wanted:
+            yield f"{cells}: {result.stderr!r}"
+
+
+def _measured(rng: random.Random, marks: str) -> tuple[str, str]:
+    """Return two numbers, some of three decimals, which may be thousands as well."""
+    left, right = (
+        f"{rng.choice([0, 0, 1, 12, 345])}{rng.choice(marks)}{rng.choice(['5', '25', '125', '0'])}"
+        if rng.random() < 0.5
+        else str(rng.randint(0, 99))
+        for _ in range(2)
+    )
+    return left, right
+
+
+def decision(cells: Sequence[str]) -> str | None:
+    """Return the decimal mark of numbers, None if it is not clear."""
+    commas = [x for x in cells if "," in x]
+    if commas and any("." in x for x in cells):
+        return None
+    if commas and all(re.fullmatch(r"[1-9]\d{0,2},\d{3}", x) for x in commas):
+        return None
+    return "," if commas else "."
 
 
 def of_lines(rng: random.Random, count: int, folder: Path, counts: Counter[str]) -> Iterator[str]:
     """Yield the faults of files of times and of trajectories, 50 rows each, some with a bad one."""
     for _ in range(count // 50):
-        cells = [f"{i / 50}" for i in range(50)]
+        dialect = rng.choice(DIALECTS)
+        decimal, delimiter = dialect.decimal, dialect.delimiter
+        cells = [f"{i / 50}".replace(".", decimal) for i in range(50)]
         at = rng.randrange(50) if rng.random() < 0.7 else None
         if at is not None:
-            cells[at] = rng.choice([x for x in BAD if x.strip() and not is_number(x)])
+            bad = [x for x in BAD if x.strip() and not is_number(x, decimal)]
+            cells[at] = rng.choice([x for x in bad if delimiter not in x])
         times, run_file = folder / "times.txt", folder / "run.csv"
-        times.write_bytes("\n".join(cells).encode())
+        times.write_bytes("\n".join(["t", *cells]).encode())
         counts["rows of times"] += 50
-        shown = run("table", "--times", str(times), "--columns", "t")
-        place = f"Error: {times}, line {(at or 0) + 1}: the time "
+        names = {".": "point", ",": "comma"}
+        options = ["--decimal", names[decimal]]
+        shown = run("table", "--times", str(times), "--columns", "t", *options)
+        place = f"Error: {times}, line {(at or 0) + 2}: "
         if at is None and shown.stdout.count("\n") != 51:
             yield f"times: {shown.stderr!r}"
         if at is not None and (shown.exit_code != 65 or not shown.stderr.startswith(place)):
-            yield f"times, line {at + 1}, {cells[at][:20]!r}: {shown.exit_code} {shown.stderr!r}"
+            yield f"times, line {at + 2}, {cells[at][:20]!r}: {shown.exit_code} {shown.stderr!r}"
         tilts = [f"{30 + i % 5}" for i in range(50)]
-        wrong = rng.choice(["x", "1_0", "0x1", "--", "1.2.3", "1e", "'1'", "1/2"])
+        wrong = rng.choice(["x", "1_0", "0x1", "--", "1.2.3", "1e", "'1'", "1/2", "1,2,3", "1.5,2"])
+        wrong = "x" if delimiter in wrong else wrong
         if at is not None:
             tilts[at] = wrong
-        text = "t,theta\n" + "".join(f"{i / 50},{x}\n" for i, x in enumerate(tilts))
-        run_file.write_text(text)
+        rows = (f"{i / 50}".replace(".", decimal) + delimiter + x for i, x in enumerate(tilts))
+        run_file.write_text("\n".join([f"t{delimiter}theta", *rows, ""]))
         counts["rows of trajectories"] += 50
-        shown = run("compare", str(run_file))
+        shown = run("compare", str(run_file), *dialect.options)
         place = f"Error: {run_file}, line {(at or 0) + 2}, column 2: theta must be a number, got "
         if at is None and shown.exit_code not in {0, 1}:
             yield f"trajectory: {shown.stderr!r}"
@@ -201,16 +300,15 @@ def of_lines(rng: random.Random, count: int, folder: Path, counts: Counter[str])
 def script() -> None:
     """Print counts and faults; the exit code is 1 if there is a fault."""
     parser = argparse.ArgumentParser(description="Give files of dirty rows to the commands.")
-    parser.add_argument("--rows", type=int, default=10_000)
+    parser.add_argument("--rows", type=int, default=1000, help="rows in each dialect")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     rng, counts, faults = random.Random(given.seed), Counter[str](), 0
     begun = time.perf_counter()
     with tempfile.TemporaryDirectory() as name:
-        for part in (of_tops, of_lines):
-            for wrong in part(
-                rng, given.rows // (10 if part is of_tops else 5), Path(name), counts
-            ):
+        for part in (of_tops, of_decisions, of_lines):
+            count = given.rows if part is of_tops else given.rows // 5
+            for wrong in part(rng, count, Path(name), counts):
                 faults += 1
                 print(ascii(wrong)[:400])
     print(f"{sum(counts.values())} rows, {faults} faults, {time.perf_counter() - begun:.0f} s")
