@@ -74,8 +74,16 @@ class Period(NamedTuple):
     """Time up to which the number of periods is below 2^26."""
 
 
-def period_of(length: Pair, rate: float | Array) -> Period:
+def period_of(length: Pair, rate: float) -> Period:
     """Return a period by its length and by rate = 1/length; it never ends if the rate is 0."""
+    long, low = (float(part) if math.isfinite(length.high) else 0.0 for part in length)
+    mantissa, exponent = math.frexp(long)
+    high = math.ldexp(math.trunc(mantissa * MANY), exponent - 26)
+    return Period(rate, high, long - high, low, MANY / abs(rate) if rate else math.inf)
+
+
+def periods_of(length: Pair, rate: Array) -> Period:
+    """Return the periods of many tops; see `period_of`, which is quicker for one."""
     long, low = (np.where(np.isfinite(length.high), part, 0.0)[()] for part in length)
     mantissa, exponent = np.frexp(long)
     high = np.ldexp(np.trunc(mantissa * MANY), exponent - 26)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.arrays import PAIRS
-from ..arithmetic.double_double import DoubleDouble, Period, period_of, whole_periods
+from ..arithmetic.double_double import DoubleDouble, Period, periods_of, whole_periods
 from ..arithmetic.points import MAX_TIME
 from ..arithmetic.rounding import Pair, Triple
 from ..arithmetic.types import Array, Mask
@@ -197,7 +197,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
         phi = _growth(motion.mean_spin_rate, x - y)
         psi = _growth(motion.mean_precession_rate, x + y)
         return ArraySampler(
-            step=period_of(Pair(*_columns(c.period / 2, count)), _columns(steps, count)[0]),
+            step=periods_of(Pair(*_columns(c.period / 2, count)), _columns(steps, count)[0]),
             offset=phase[:, None],
             lower=lower[:, None],
             speed=_columns(series.scale * steps, count)[0],
@@ -205,7 +205,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
             hyperbolic=hyperbolic,
             frames=[_rounded(frame) for frame in series.frames],
             slopes=[_columns(slope / series.scale, count)[0] for slope in slopes],
-            growths=Growths(phi, psi, phi, psi),
+            growths=Growths(phi, psi),
         )
 
 
@@ -262,7 +262,7 @@ def _start_argument(
 def _growth(rate: DoubleDouble, start: DoubleDouble) -> Growth:
     """Return the growth of an angle of each top."""
     count, turns = start.high.size, rate / (2 * PAIRS.pi)
-    turn = period_of(Pair(*_columns(1 / turns, count)), _columns(turns, count)[0])
+    turn = periods_of(Pair(*_columns(1 / turns, count)), _columns(turns, count)[0])
     first, mean = (Pair(*_columns(x, count)) for x in (start, rate))
     return Growth(first, mean, turn, Triple(*_columns(turns, count), 0.0))
 

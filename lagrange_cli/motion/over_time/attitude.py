@@ -6,6 +6,8 @@ the axis passes next to a pole.  So little is lost where they are added up.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -107,18 +109,18 @@ class Growth(NamedTuple):
 
 
 class Growths(NamedTuple):
-    """Mean growth of spin and precession and of arg X and arg Y, their half sum and difference."""
+    """Mean growth of spin and precession."""
 
     phi: Growth
     psi: Growth
-    arg_x: Growth
-    arg_y: Growth
+    halves: Callable[[], tuple[Growth, Growth]] | None = None
+    """Returns those of arg X and arg Y, their half sum and difference: few columns need them."""
 
 
 def growths(
     ar: Arithmetic[R], rates: tuple[R, R], starts: tuple[R, R] | tuple[int, int] = (0, 0)
 ) -> Growths:
-    """Return the growth of the four angles from the mean rates of spin and precession.
+    """Return the growths of the angles from the mean rates of spin and precession.
 
     `starts` are the periodic parts of arg X and arg Y at t = 0.  Spin and precession come in by
     themselves: if one is much the larger, sums and differences lose the other.
@@ -129,15 +131,15 @@ def growths(
         turns = triple(rate / (2 * ar.pi))
         turn = pair(2 * ar.pi / rate) if rate else Pair(0.0, 0.0)
         return Growth(
-            pair(start) if start else None, pair(rate), period_of(turn, turns.high), turns
+            pair(start) if start else None, pair(rate), period_of(turn, float(turns.high)), turns
         )
 
-    return Growths(
-        phi=growth(phi, x - y),
-        psi=growth(psi, x + y),
-        arg_x=growth((psi + phi) / 2, x),
-        arg_y=growth((psi - phi) / 2, y),
-    )
+    @cache
+    def halves() -> tuple[Growth, Growth]:
+        with ar.working():
+            return growth((psi + phi) / 2, x), growth((psi - phi) / 2, y)
+
+    return Growths(growth(phi, x - y), growth(psi, x + y), halves)
 
 
 class Spinor(NamedTuple):
@@ -185,10 +187,9 @@ class Attitude(NamedTuple):
     def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Return arg X and arg Y, each less half turns, and the sign that these give X or Y."""
         x, y = (arg.copy() for arg in self._args())
-        growths = self.growths.arg_x, self.growths.arg_y
-        return growths[0].within_a_quarter(x, self.times), growths[1].within_a_quarter(
-            y, self.times
-        )
+        assert self.growths.halves is not None
+        of_x, of_y = self.growths.halves()
+        return of_x.within_a_quarter(x, self.times), of_y.within_a_quarter(y, self.times)
 
     def _grown(self, growth: Growth, periodic: Array, wrap: bool) -> Array:
         return (growth.wrapped if wrap else growth.unwrapped)(periodic, self.times)
