@@ -28,11 +28,16 @@ class Browser:
         self.driver = driver
 
     def open(
-        self, path: Path, fragment: str = "", *, width: int = 1280, dark: bool = False
+        self,
+        path: Path,
+        fragment: str = "",
+        *,
+        width: int = 1280,
+        height: int = 800,
+        dark: bool = False,
     ) -> None:
-        """Open a page anew, paused, on a screen of this width."""
-        phone = width < 500
-        screen = {"width": width, "height": 844 if phone else 800, "mobile": phone}
+        """Open a page anew, paused, on a screen of this size."""
+        screen = {"width": width, "height": height, "mobile": width < 500}
         self.command("Emulation.setDeviceMetricsOverride", screen | {"deviceScaleFactor": 1})
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         still = {"name": "prefers-reduced-motion", "value": "reduce"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -89,7 +89,13 @@ def sphere_drawing(motion: Motion, request: PlotRequest) -> Drawing:
         for below in axes[1:]:
             _draw_magnified(below, motion, path, request, look)
         if path.moves:
-            bar = axes[0].figure.colorbar(lines, ax=list(axes), shrink=0.7, pad=0.02, aspect=28)
+            shape: dict[str, Any] = {
+                "shrink": 0.7,
+                "pad": 0.02,
+                "aspect": 28,
+                "panchor": (0.5, 0.5),
+            }
+            bar = axes[0].figure.colorbar(lines, ax=list(axes), **shape)
             bar.outline.set_visible(False)
             bar.set_label(request.time_label)
 

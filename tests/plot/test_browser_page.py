@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import math
 import random
+import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -236,14 +238,14 @@ def test_every_slider_and_field_changes_the_motion(browser: Browser) -> None:
 
 BAD_INPUTS = [
     ("r0", "fast", "r0 must be a number, got fast"),
-    ("m", "", "m must be a number, got"),
+    ("m", "", "m must be a number, got nothing"),
     ("m", "-1", "m must be from 1e-30 to 1e30, got -1"),
     ("s", "-1", "s must be 0, or from 1e-30 to 1e30, got -1"),
     ("C", "1e6", "C must be at most 2A = 78064, got 1000000"),
     ("g", "1e40", "g must be 0, or from 1e-30 to 1e30, got 1e+40"),
     ("g", "1e-300", "g must be 0, or from 1e-30 to 1e30, got 1e-300"),
     ("r0", "-1e-31", "r0 must be 0, or from 1e-30 to 1e30 in size, got -1e-31"),
-    ("theta0_deg", "181", "theta0_deg must be 0, 180, or 1e-12 to 180 - 1e-12, got 181"),
+    ("theta0_deg", "181", "ϑ0 must be 0, 180, or 1e-12 to 180 - 1e-12, got 181"),
 ]
 
 
@@ -256,9 +258,100 @@ def test_a_bad_input_is_said_and_changes_nothing(browser: Browser) -> None:
             return [at.error.textContent, field.ariaInvalid]""",
             *(name, text),
         )
-        assert (said.strip(), invalid) == (message, "true")
+        assert (said, invalid) == (f"{message}. The page shows the last valid scene.", "true")
+        assert browser.ask("return getComputedStyle(at.record.parentElement).opacity") == "0.55"
         assert browser.ask("return page.scene") == before
     assert browser.complaints() == []
+
+
+def test_rates_in_turns_per_minute(browser: Browser) -> None:
+    for text, rate in (("477 rpm", 477 * math.pi / 30), ("-60RPM", -2 * math.pi)):
+        field = "const f = at['field-r0']; f.value = arguments[0];"
+        browser.ask(field + "f.dispatchEvent(new Event('change'))", text)
+        assert browser.ask("return page.scene.r0") == pytest.approx(rate, rel=1e-14)
+    browser.ask("at['field-m'].value = '5 rpm'; at['field-m'].dispatchEvent(new Event('change'))")
+    assert browser.ask("return at.error.textContent").startswith("m must be a number, got 5 rpm")
+    browser.ask("at.reset.click()")
+    assert browser.ask("return page.scene") == page_scene(solve(Top()))
+    assert browser.ask("return at.error.textContent") == ""
+
+
+def test_the_curves_and_the_scene_can_be_saved(browser: Browser) -> None:
+    """The table has the angles of lagtop, and the scene file gives the same motion."""
+    browser.ask("page.change('psidot0', -4, '')")
+    browser.settle()
+    saved = browser.ask(
+        """const [make, parts] = [URL.createObjectURL, []];
+        HTMLAnchorElement.prototype.click = function () { parts.push(this.download); };
+        URL.createObjectURL = (blob) => { parts.push(blob); return make.call(URL, blob); };
+        for (const kind of [2, 3]) {
+            at.save.selectedIndex = kind; at.save.dispatchEvent(new Event("change"));
+        }
+        return Promise.all(parts.map((part) => part.text?.() ?? part));"""
+    )
+    assert saved[1::2] == ["top.csv", "top.toml"]
+    columns = np.loadtxt(io.StringIO(saved[0]), delimiter=",", skiprows=1).T
+    motion = solve(Top(psidot0=-4.0))
+    assert saved[0].startswith("t,theta_deg,phi_deg,psi_deg\n")
+    for column, angle in zip(columns[1:], motion.angles(columns[0]), strict=True):
+        assert column == pytest.approx(np.degrees(angle), rel=1e-12, abs=1e-9)
+    assert solve(Top(**tomllib.loads(saved[2]))).T_nutation == motion.T_nutation
+
+
+def test_units_stand_beside_inputs_and_in_the_record(browser: Browser, tmp_path: Path) -> None:
+    names = browser.ask("return Object.values(page.inputs.fields).map((x) => x.name.textContent)")
+    assert names[0] == "mass"
+    assert names[5:7] == ["total spin rate (rad/time)", "tilt at the start (°)"]
+    page = tmp_path / "units.html"
+    units = {"mass": "kg", "len": "m", "time": "s"}
+    text = view(solve(Top()), lambda unit: re.sub("[a-z]+", lambda x: units.get(x[0], x[0]), unit))
+    text.save(page)
+    browser.open(page)
+    names = browser.ask("return Object.values(page.inputs.fields).map((x) => x.name.textContent)")
+    assert names[0] == "mass (kg)"
+    assert names[4:6] == ["gravity (m/s²)", "total spin rate (rad/s)"]
+    assert "rad/s" in browser.ask("return at.record.textContent")
+    browser.ask("at.record.querySelector('tbody tr[title]:nth-child(2)').click()")
+    assert browser.ask("return at.explained.textContent") == "a (4,4)"
+
+
+def luminance(colour: str) -> float:
+    """Return the relative luminance of #rrggbb (WCAG 2.2)."""
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
+    return float(np.dot([0.2126, 0.7152, 0.0722], linear))
+
+
+def test_letters_have_contrast(browser: Browser, page_file: Path) -> None:
+    for dark in (False, True):
+        browser.open(page_file, dark=dark)
+        look = browser.ask("return page.look")
+        paper = luminance(look.pop("paper"))
+        for name in ("ink", "quiet", "blue", "red", "green"):
+            low, high = sorted((paper, luminance(look[name])))
+            assert (high + 0.05) / (low + 0.05) >= 4.5, (name, dark)
+
+
+def test_controls_of_a_phone_can_be_touched(browser: Browser, page_file: Path) -> None:
+    browser.open(page_file, width=390, height=844)
+    sizes = browser.ask(
+        """return [...document.querySelectorAll("input, button, select")].map((part) => {
+            const { width, height } = part.getBoundingClientRect();
+            return [part.id || part.dataset.shows, Math.min(width, height)];
+        })"""
+    )
+    assert [(name, size) for name, size in sizes if size < 24] == []
+
+
+def test_no_label_is_cut(browser: Browser, page_file: Path) -> None:
+    for width, height in ((1280, 800), (820, 1180), (390, 844)):
+        browser.open(page_file, width=width, height=height)
+        cut = browser.ask(
+            """return [...document.querySelectorAll("label, th, td, button, h2")]
+                .filter((part) => part.scrollWidth > part.clientWidth + 1 && part.clientWidth)
+                .map((part) => part.textContent)"""
+        )
+        assert cut == [], width
 
 
 def test_the_link_carries_the_scene(browser: Browser, page_file: Path) -> None:
@@ -412,7 +505,7 @@ def test_everything_has_a_name(browser: Browser) -> None:
 
 
 def test_a_phone_shows_all_without_scrolling_sideways(browser: Browser, page_file: Path) -> None:
-    browser.open(page_file, width=390)
+    browser.open(page_file, width=390, height=844)
     assert browser.ask("return document.documentElement.scrollWidth") <= 390
     assert browser.ask("return at.space.clientWidth") > 340
 

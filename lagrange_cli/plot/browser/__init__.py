@@ -18,8 +18,8 @@ from .data import page_data
 _IMPORT = re.compile(r'^import (\{[^}]*\}) from "([^"]+)";$', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:function|class|const) (\w+))", re.MULTILINE)
 
-_TRACES = {LIGHT: "#31688e", DARK: "#35b779"}
-"""The colour of the path of the axis on each paper, of viridis as in the other pictures."""
+_TRACES = {LIGHT: "#472d7b", DARK: "#dde318"}
+"""The colour of the path of the axis on each paper: an end of viridis, unlike those of angles."""
 
 
 def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:

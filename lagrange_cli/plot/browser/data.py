@@ -130,8 +130,12 @@ def _key(name: str) -> str:
 
 
 def _input(declared: Input) -> dict[str, str]:
-    """Return symbol and name of an input, and whether it may be 0 or negative."""
+    """Return symbol, name and unit of an input, and whether it may be 0 or negative."""
     signs = {"positive": "positive", "0 or more": "not negative"}
     sign = next((sign for bound, sign in signs.items() if declared.bound.startswith(bound)), "any")
-    name = declared.name + " (°)" * (declared.unit == "angle")
-    return {"symbol": declared.symbol, "name": name, "sign": sign}
+    return {
+        "symbol": declared.symbol,
+        "name": declared.name,
+        "unit": declared.unit,
+        "sign": sign,
+    }

@@ -58,14 +58,10 @@ export function dot(context, [x, y], radius, colour, { rim = null, width = 1.5, 
   if (rim) context.stroke();
 }
 
-/** Write a word, with a `halo` in the colour of the paper if curves pass there. */
-export function write(context, text, [x, y], colour, { size = 13, align = "center", halo } = {}) {
+/** Write a word. */
+export function write(context, text, [x, y], colour, { size = 13, align = "center" } = {}) {
   context.font = `${size}px system-ui, "DejaVu Sans", sans-serif`;
   Object.assign(context, { fillStyle: colour, textAlign: align, textBaseline: "middle" });
-  if (halo) {
-    Object.assign(context, { strokeStyle: halo, lineWidth: 4 });
-    context.strokeText(text, x, y);
-  }
   context.fillText(text, x, y);
 }
 

@@ -10,7 +10,7 @@ import { even, prepared, stroke, ticksBetween, write } from "./canvas.js";
 const PHASES = 40;  // samples per half period
 const MOST = 6000;  // samples of a window
 const STEP = 0.15;  // the longest way of the axis between two samples, in radians
-const MARGIN = { left: 54, right: 10, top: 8, bottom: 30, gap: 12 };
+const MARGIN = { left: 54, right: 10, top: 20, bottom: 30, gap: 24 };
 const DEGREES = 180 / Math.PI;
 
 /** The length of a window: some nutation periods, the swing of a separatrix, or a turn. */
@@ -104,13 +104,13 @@ function rowsOf({ motion }, look, waves) {
 }
 
 /** Draw the window of the curves; returns where a time is on the canvas. */
-export function drawPlots(canvas, look, curves, waves) {
+export function drawPlots(canvas, look, curves, waves, unit) {
   const { context, width, height } = prepared(canvas);
   const { left, right, top, bottom, gap } = MARGIN;
   const rows = rowsOf(curves, look, waves);
   const rowHeight = (height - top - bottom - (rows.length - 1) * gap) / rows.length;
   const x = (t) => left + (t - curves.from) / curves.span * (width - left - right);
-  drawTimes(context, look, curves, x, { width, height });
+  drawTimes(context, look, curves, x, { width, height, unit });
   rows.forEach((row, i) => {
     const box = { left, width: width - left - right, top: top + i * (rowHeight + gap), rowHeight };
     drawRow(context, look, curves, row, x, box);
@@ -120,14 +120,14 @@ export function drawPlots(canvas, look, curves, waves) {
 }
 
 /** Draw lines of time and their numbers, and the nutation periods as thin marks above. */
-function drawTimes(context, look, { from, until }, x, { width, height }) {
+function drawTimes(context, look, { from, until }, x, { width, height, unit }) {
   for (const { x: t, text } of ticksBetween(from, until, width / 90)) {
     stroke(context, [[x(t), MARGIN.top], [x(t), height - MARGIN.bottom]], {
       colour: look.quiet, width: 0.6, alpha: 0.35,
     });
     write(context, text, [x(t), height - MARGIN.bottom + 10], look.ink, { size: 11 });
   }
-  write(context, "time t", [width - MARGIN.right, height - 8], look.quiet, {
+  write(context, `time t${unit && ` (${unit})`}`, [width - MARGIN.right, height - 8], look.quiet, {
     size: 11, align: "right",
   });
 }
@@ -136,7 +136,7 @@ function drawRow(context, look, curves, row, x, { left, width, top, rowHeight })
   const bottom = top + rowHeight;
   stroke(context, [[left, top], [left, bottom], [left + width, bottom]], { colour: look.quiet });
   if (row.why) {
-    write(context, row.name, [left + 6, top + 7], row.colour, { align: "left" });
+    write(context, row.name, [left, top - 9], row.colour, { align: "left" });
     write(context, row.why, [left + width / 2, (top + bottom) / 2], look.quiet, { size: 12 });
     return;
   }
@@ -155,9 +155,7 @@ function drawRow(context, look, curves, row, x, { left, width, top, rowHeight })
   }
   const points = times.map((t, i) => [x(t), y(values[i])]);
   stroke(context, points, { colour: row.colour, width: 1.8 });
-  write(context, `${row.name}  (°)`, [left + 6, top + 7], row.colour, {
-    align: "left", halo: look.paper,
-  });
+  write(context, `${row.name} (°)`, [left, top - 9], row.colour, { align: "left" });
 }
 
 /** A range that holds all values, and is wide enough to be shown. */

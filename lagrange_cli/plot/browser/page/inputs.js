@@ -2,6 +2,7 @@
 // of the page after the #: m=1587&A=39032 ... &t=0.5.
 
 import { INPUTS } from "../data.js";
+import { unitText } from "./record.js";
 
 /** The range of a slider about a value. */
 function rangeOf(name, scene) {
@@ -27,7 +28,7 @@ function spread(x, usual) {
   return [-half, half];
 }
 
-/** Build the controls in a list; `changed(name, value)` is called for each change. */
+/** Build the controls in a list; `changed(name, value, text)` is called for each change. */
 export class Inputs {
   constructor(list, changed) {
     this.fields = {};
@@ -36,18 +37,28 @@ export class Inputs {
       row.className = "input";
       const label = document.createElement("label");
       label.htmlFor = `field-${name}`;
-      label.innerHTML = `<b>${input.symbol}</b> <span>${input.name}</span>`;
+      label.innerHTML = `<b>${input.symbol}</b> <span></span>`;
       const field = document.createElement("input");
       Object.assign(field, { id: `field-${name}`, type: "text", inputMode: "decimal" });
+      field.setAttribute("aria-describedby", "error");
       const slider = document.createElement("input");
       Object.assign(slider, { id: `slider-${name}`, type: "range", step: "any" });
       slider.setAttribute("aria-label", `${name}: ${input.name}`);
       row.append(label, field, slider);
       list.append(row);
-      field.addEventListener("change", () => changed(name, numberOf(field.value), field.value));
+      const take = () => changed(name, valueOf(name, field.value), field.value);
+      field.addEventListener("change", take);
       slider.addEventListener("input", () => changed(name, rounded(slider), slider.value));
       slider.addEventListener("change", () => this.rescale(this.scene));
-      this.fields[name] = { field, slider };
+      this.fields[name] = { field, slider, name: label.lastChild };
+    }
+  }
+
+  /** Write the units of a scene beside the names. */
+  nameUnits(units) {
+    for (const [key, { name }] of Object.entries(this.fields)) {
+      const unit = unitText(INPUTS[key].unit, units);
+      name.textContent = `${INPUTS[key].name}${unit && ` (${unit})`}`;
     }
   }
 
@@ -76,6 +87,12 @@ export class Inputs {
       field.setAttribute("aria-invalid", String(message.startsWith(`${name} `)));
     }
   }
+}
+
+/** The value of an input that a text stands for, or NaN; rates may be in turns per minute. */
+function valueOf(name, text) {
+  const rate = INPUTS[name].unit === "rad/time" && text.match(/^(.*[^ ]) *rpm$/i);
+  return rate ? Number((numberOf(rate[1]) * Math.PI / 30).toPrecision(15)) : numberOf(text);
 }
 
 /** The number that a text stands for, or NaN. */

@@ -1,6 +1,6 @@
 // The page: one scene, its motion, and all that shows it.
 
-import { EXAMPLES, SCENE, UNITS } from "../data.js";
+import { EXAMPLES, INPUTS, SCENE, UNITS } from "../data.js";
 import { Camera, followHands, frameOf } from "../drawing/camera.js";
 import { readLook, textOf } from "../drawing/canvas.js";
 import { drawCubic } from "../drawing/cubic.js";
@@ -9,7 +9,7 @@ import { drawSpace, onLid } from "../drawing/space.js";
 import { motionOf } from "../numerics/motion.js";
 import { Clock } from "./clock.js";
 import { Inputs, linkOf, readLink, showLink } from "./inputs.js";
-import { showRecord, wordsOf } from "./record.js";
+import { showRecord, unitText, wordsOf } from "./record.js";
 
 const FRAME = 1 / 60;  // seconds
 const FAST = 0.8;      // radians of spin per frame that the eye cannot follow
@@ -54,21 +54,24 @@ class Page {
   }
 
   offerExamples() {
+    const { examples, reset, units } = this.at;
     const all = { "This scene": SCENE, ...EXAMPLES };
-    this.at.examples.append(...Object.keys(all).map((name) => new Option(name)));
-    const words = this.at.units.textContent;  // the units of the scene of the file
-    this.at.examples.addEventListener("change", () => {
-      const scene = all[this.at.examples.value];
+    examples.append(...Object.keys(all).map((name) => new Option(name)));
+    const words = units.textContent;  // the units of the scene of the file
+    const choose = () => {
+      const scene = all[examples.value];
       this.units = scene === SCENE ? UNITS : {};
-      this.at.units.textContent = scene === SCENE ? words : "in any consistent units";
+      units.textContent = scene === SCENE ? words : "in any consistent units";
       this.camera.reset();
       this.show(scene, true);
       this.clock.set(0);
-    });
+    };
+    examples.addEventListener("change", choose);
+    reset.addEventListener("click", () => { examples.selectedIndex = 0; choose(); });
   }
 
   listen() {
-    const { space, plots, periods, waves, copy, theme } = this.at;
+    const { space, plots, periods, waves, copy, theme, save, record, explained } = this.at;
     followHands(space, this.camera, () => this.stale());
     for (const box of document.querySelectorAll("[data-shows]")) {
       const note = () => { this.shown[box.dataset.shows] = box.checked; };
@@ -79,6 +82,13 @@ class Page {
     waves.addEventListener("change", () => this.recurve());
     copy.addEventListener("click", () => this.copyLink());
     theme.addEventListener("click", () => this.changeTheme());
+    save.addEventListener("change", () => {
+      this.save(save.selectedIndex);
+      save.selectedIndex = 0;
+    });
+    record.addEventListener("click", (event) => {
+      explained.textContent = event.target.closest("tr").title || explained.textContent;
+    });
     const scrub = (event) => {
       if (event.buttons) this.clock.set(this.field.timeAt(event.offsetX));
     };
@@ -113,7 +123,7 @@ class Page {
       this.show(scene, rescaled, false);
       this.complain("");
     } catch (error) {
-      this.complain(Number.isNaN(x) ? `${name} must be a number, got ${text}` : error.message);
+      this.complain(Number.isNaN(x) ? `${name} must be a number, got ${text || "nothing"}` : error.message);
     }
   }
 
@@ -123,6 +133,7 @@ class Page {
     this.scene = scene;
     if (anew) this.inputs.rescale(scene);
     else this.inputs.show(scene);
+    this.inputs.nameUnits(this.units);
     const [title, text] = wordsOf(this.motion);
     if (this.at.title.textContent !== title) this.at.title.textContent = title;
     this.at.words.textContent = text;
@@ -134,7 +145,10 @@ class Page {
   }
 
   complain(message) {
-    this.at.error.textContent = message;
+    const name = Object.keys(INPUTS).find((key) => message.startsWith(`${key} `));
+    this.at.error.textContent = name ? `${INPUTS[name].symbol}${message.slice(name.length)}. `
+      + "The page shows the last valid scene." : message;
+    document.body.classList.toggle("refused", name !== undefined);
     this.inputs.mark(message);
   }
 
@@ -161,6 +175,27 @@ class Page {
     this.relook();
   }
 
+  /** Save the picture in space, the curves of the window, or the scene as a file. */
+  save(kind) {
+    const { motion, curves, scene } = this;
+    const download = (blob, name) => {
+      const link = document.createElement("a");
+      Object.assign(link, { href: URL.createObjectURL(blob), download: name });
+      link.click();
+      URL.revokeObjectURL(link.href);
+    };
+    const degrees = (x) => x * 180 / Math.PI;
+    const rows = curves.times.map((t) => {
+      const { theta, phi, psi } = motion.angles(t);
+      return [t, ...[theta, phi, psi].map(degrees)].join(",");
+    });
+    const table = ["t,theta_deg,phi_deg,psi_deg", ...rows, ""].join("\n");
+    const toml = Object.entries(scene).map(([name, x]) => `${name} = ${x}\n`).join("");
+    if (kind === 1) this.at.space.toBlob((blob) => download(blob, "top.png"));
+    if (kind === 2) download(new Blob([table], { type: "text/csv" }), "top.csv");
+    if (kind === 3) download(new Blob([toml], { type: "application/toml" }), "top.toml");
+  }
+
   async copyLink() {
     showLink(this.scene, this.clock.t);
     const link = location.href.split("#")[0] + linkOf(this.scene, this.clock.t);
@@ -185,7 +220,9 @@ class Page {
     const { curves } = this;
     if (!curves || clock.t < curves.from || clock.t >= curves.from + curves.span) {
       this.curves = curvesAt(motion, span, clock.t);
-      this.field = drawPlots(this.at.plots, this.look, this.curves, this.at.waves.checked);
+      const unit = unitText("time", this.units);
+      const waves = this.at.waves.checked;
+      this.field = drawPlots(this.at.plots, this.look, this.curves, waves, unit);
       this.placeOnCubic = drawCubic(this.at.cubic, this.look, motion);
       this.report();
     }

@@ -12,11 +12,22 @@ export function showRecord(table, record, units) {
     if (typeof value !== "number") continue;
     if (group !== last) rows.push(rowOf([["th", group]]));
     last = group;
-    const named = unit === "angle" ? "°" : unit.replace(/[a-z]+/g, (word) => units[word] ?? word);
-    const cells = [["th", symbol], ["td", meaning], ["td", `${textOf(value)} ${named}`]];
+    const shown = `${textOf(value)} ${named(unit, units)}`;
+    const cells = [["th", symbol], ["td", meaning], ["td", shown]];
     rows.push(rowOf(cells, `${name} ${equation}`));
   }
-  table.replaceChildren(...rows);
+  table.tBodies[0].replaceChildren(...rows);
+}
+
+/** A unit such as `rad/time` with the names of mass, len and time in `units`. */
+function named(unit, units) {
+  return unit === "angle" ? "°" : unit.replace(/[a-z]+/g, (word) => units[word] ?? word);
+}
+
+/** The unit of an input, and nothing if it is any consistent one. */
+export function unitText(unit, units) {
+  const text = named(unit, units);
+  return text === unit && !unit.startsWith("rad") ? "" : text;
 }
 
 function rowOf(cells, title = "") {
