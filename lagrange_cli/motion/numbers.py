@@ -91,9 +91,16 @@ class Numbers:
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number if it is known as a fraction; a root, if it may be midway in `digits`."""
         if name not in NUMBER_KEYS:
-            from .paper.requested import requested_fractions  # start-up: not for a record
+            from .paper.requested import (  # start-up: not for a record
+                by_rational_u1,
+                requested_fractions,
+            )
 
-            return requested_fractions(self.exact).get(name)
+            found = requested_fractions(self.exact).get(name)
+            if found is not None or name not in {"f_slope_u1", "u2_criterion"}:
+                return found
+            u1 = self.fraction("u1", digits)
+            return None if u1 is None else by_rational_u1(self.exact, u1)[name]
         from .exact.rational_keys import known_fraction, rational_root  # start-up: for few tops
 
         known = known_fraction(self.exact, name, radians=radians)

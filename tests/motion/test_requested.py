@@ -9,9 +9,12 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from decimal import Decimal
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from ball_judge import Judge
@@ -217,3 +220,36 @@ def test_each_input_is_in_the_group_of_inputs_under_its_symbol() -> None:
     tilted = {"theta0_deg": "ϑ0", "thetadot0": "ϑ'0", "psidot0": "ψ'0"}
     for name in Top().inputs():
         assert (KEYS[name].group, KEYS[name].symbol) == ("Inputs", tilted.get(name, name))
+
+
+@pytest.mark.parametrize(
+    ("digits", "start"),
+    [
+        (25, {"m": "6.1257618979", "r0": "-6.12503416216992490065616490725", "theta0_deg": "90"}),
+        (29, {"m": "4.25236727481388732678245406", "r0": "3.06253935984645", "theta0_deg": "60"}),
+        (33, {"m": "1", "r0": "-1.187574955665079", "psidot0": "2.375635389420887"}),
+        (34, {"m": "0.5138390658540719239501518846797", "A": "2", "C": "2", "r0": "10"}),
+    ],
+)
+def test_products_of_rational_roots_may_be_midway(digits: int, start: dict[str, str]) -> None:
+    """No number of digits tells a tie: the fraction does; the roots are those of mpmath."""
+    psi_rates = {25: "-1.0", 29: "4.0", 34: "-3"}
+    given: dict[str, Any] = (
+        UNIT | {"theta0_deg": "60", "psidot0": psi_rates.get(digits, "0")} | start
+    )
+    top = Top(**{name: Fraction(x) for name, x in given.items()})
+    found = solve(top).record(digits=digits, keys=["f_slope_u1", "u2_criterion"])
+    with mpmath.workdps(120):
+        m, A, C, s, g, r0, psi_rate = (mpmath.mpf(given[x]) for x in "m A C s g r0 psidot0".split())
+        u0 = mpmath.mpf({"60": "0.5", "90": "0"}[given["theta0_deg"]])
+        a, b = 2 * m * g * s / A, C * r0 / A
+        alpha, beta = psi_rate**2 * (1 - u0**2) + a * u0, psi_rate * (1 - u0**2) + b * u0
+        cubic = [alpha - beta**2, 2 * beta * b - a, -(alpha + b**2), a]
+        roots = mpmath.polyroots(cubic, maxsteps=500, extraprec=500, asc=True)
+        u2, u1, u3 = sorted(roots, key=mpmath.re)
+        right = {"f_slope_u1": -a * (u1 - u2) * (u3 - u1), "u2_criterion": a * u2 * u3}
+        for key, text in found.items():
+            half = mpmath.mpf(10) ** (Decimal(text).adjusted() + 1 - digits) / 2
+            assert abs(mpmath.mpf(text) - mpmath.re(right[key])) <= half * (
+                1 + mpmath.mpf(10) ** -40
+            ), key

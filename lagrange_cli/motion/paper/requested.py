@@ -46,6 +46,20 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
     return keys
 
 
+def by_rational_u1(exact: Exact, u1: Fraction) -> dict[str, Fraction | None]:
+    """Return the keys that are polynomials of the root u1 (4,9), for a u1 that is a fraction.
+
+    The cubic is a u^3 - (alpha + b^2) u^2 + (2 beta b - a) u + alpha - beta^2.
+    """
+    square = exact.alpha + exact.b * exact.b
+    pairs = 2 * exact.b * exact.beta - exact.a
+    polynomials = {
+        "f_slope_u1": 3 * exact.a * u1 * u1 - 2 * u1 * square + pairs,
+        "u2_criterion": pairs - u1 * square + exact.a * u1 * u1,
+    }
+    return {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
+
+
 def _constants(exact: Exact) -> dict[str, Fraction]:
     """Return what is rational of the constants of section 4."""
     steady = exact.facts.steady
