@@ -127,11 +127,11 @@ class Balls(Ring, Scalars):
 
     def _turned(self, x: Ball, quarters: int) -> Ball:
         """Return the sine of x and so many quarter turns; its slope is 1 at most."""
-        turns, is_known = 0, x.radius < 2 and x.middle.adjusted() < self.digits
-        if is_known:
+        turns = 0
+        if x.radius < 1:
             turns = self.plain.nint(self.divide(self.multiply(x.middle, 2), self.pi.middle))
             x = x - self.pi * turns / 2 if turns else x
-        if not (is_known and x.radius < 1):
+        if not x.radius < 1:  # or the turns are not known
             return self.within(Decimal(1))
         which = (quarters + turns) % 4
         function = self.plain.cos if which % 2 else self.plain.sin

@@ -185,7 +185,6 @@ class Duals(Scalars):
     exp = _function("exp", lambda ar, x: ar.exp(x))
     sinh = _function("sinh", lambda ar, x: ar.cosh(x))
     cosh = _function("cosh", lambda ar, x: ar.sinh(x))
-    asinh = _function("asinh", lambda ar, x: 1 / ar.sqrt(1 + x * x))
 
     def atan2(self, y: Dual, x: Dual) -> Dual:
         """Return the angle of the point (x, y), in (-pi, pi]."""

@@ -16,7 +16,7 @@ from function_judge import EPS, INDEX, Judge
 from function_tables import array_rows
 
 from lagrange_cli import LagtopError
-from lagrange_cli.arithmetic.points import ListedPoints
+from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints
 from lagrange_cli.elliptic.function_table import FunctionTable
 from lagrange_cli.elliptic.modulus import ModulusInput
 from lagrange_cli.elliptic.request import FunctionRequest
@@ -71,6 +71,19 @@ def test_zeros_and_poles_of_the_theta_functions(
     for name, cells in columns(shown).items():
         assert [i for i, x in enumerate(cells) if x == "0.0"] == list(zeros.get(name, [])), name
         assert [i for i, x in enumerate(cells) if not x] == list(poles.get(name, [])), name
+
+
+def test_arrays_have_poles_where_the_argument_is_the_parameter() -> None:
+    """The parameter is reduced once, the arguments as an array: rounding may part the two."""
+    rng = random.Random("poles")
+    for _ in range(40):
+        v = Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-9, 9))
+        modulus = ModulusInput("k", Fraction(rng.random()))
+        request = FunctionRequest(modulus, ("omega", "pi"), ExactComplex(v))
+        for row in array_rows(FunctionTable(ListedPoints([v, -v]), request)):
+            assert math.isnan(row["omega11"])
+            assert math.isnan(row["pi11"])
+            assert math.isfinite(row["pi01"])
 
 
 def random_request(rng: random.Random) -> tuple[Judge, FunctionRequest, Fraction]:
