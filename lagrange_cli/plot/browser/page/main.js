@@ -123,7 +123,8 @@ class Page {
       this.show(scene, rescaled, false);
       this.complain("");
     } catch (error) {
-      this.complain(Number.isNaN(x) ? `${name} must be a number, got ${text || "nothing"}` : error.message);
+      const given = text || "nothing";
+      this.complain(Number.isNaN(x) ? `${name} must be a number, got ${given}` : error.message);
     }
   }
 
