@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from ..arithmetic.text import value_text
 from ..inputs.scene_file import scene_names, scene_remark
 from ..output.report import Field, Report
+from ..output.terminal import spelt, view_of
 from .app import Command
 from .options import Parsed, output_options
 from .top import UNCERTAIN, TopOptions, motion_of, scene_among, top_options
 
 if TYPE_CHECKING:
+    from ..motion.explanation import Explained
     from ..output.destination import Output
 
 FORMATS = ("table", "json", "csv", "ndjson", "markdown")
@@ -52,15 +56,36 @@ def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> Non
         out.report(lambda: Report({}, _LISTED, listed(radians=top.radians, named=named), []))
         return
     rows = explanations(motion_of(found), names, radians=top.radians, named=named)
-    out.report(lambda: Report({}, _EXPLAINED, rows, []))
+    if out.fmt == "table":
+        view = view_of(out.path)
+        out.text(spelt("\n".join(_block(row, view.width or 80) for row in rows), view))
+    else:
+        out.report(lambda: Report({}, _EXPLAINED, rows, []))
+
+
+def _block(row: Explained, width: int) -> str:
+    """Return the lines of one key or column."""
+    title = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
+    lines = {
+        "formula": row.formula,
+        "numbers": row.numbers if row.numbers != row.formula else "",
+        "value": f"{value_text(row.value)} {row.unit}".strip(),
+    }
+    shown = [
+        fill(f"  {name:9}{text}", width, subsequent_indent=" " * 11, break_on_hyphens=False)
+        for name, text in lines.items()
+        if text and not (name == "value" and row.value is None)
+    ]
+    return "\n".join([f"{row.name}: {title}", *shown, ""])
 
 
 def _text(key: str, heading: str) -> Field:
     return Field(key, heading, is_text=True)
 
 
+_NAME = Field("name", "name", is_text=True, names_the_row=True)
 _LISTED = [
-    Field("name", "name", is_text=True, names_the_row=True),
+    _NAME,
     _text("symbol", "symbol"),
     _text("meaning", "meaning"),
     _text("unit", "unit"),
@@ -68,7 +93,14 @@ _LISTED = [
     Field("kind"),
     Field("formula"),
 ]
-_EXPLAINED = [*_LISTED]
+_EXPLAINED = [
+    *_LISTED[:4],
+    Field("value", "value", value_text),
+    _text("equation", "equation"),
+    _text("formula", "formula"),
+    _text("numbers", "with numbers"),
+    Field("kind"),
+]
 
 
 class _Scene(NamedTuple):
@@ -92,5 +124,5 @@ def scenes_command(out: Output) -> None:
     A scene of your own is a TOML file with inputs by name, such as r0 = 40 or theta0 = "30 deg".
     """
     rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
-    fields = [Field("name", "name", is_text=True, names_the_row=True), _text("remark", "remark")]
+    fields = [_NAME, _text("remark", "remark")]
     out.report(lambda: Report({}, fields, rows, []))

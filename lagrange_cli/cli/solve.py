@@ -92,6 +92,7 @@ def solve_command(
     record = _record(motion, digits, top.radians, wanted, certify)
     if found.system is not None and record.get("remark"):
         record["remark"] = found.system.in_words(record["remark"])
+    summed = _summary(record, found.system) if wanted is None and out.fmt != "csv" else {}
     bare = keys is not None and not on_command_line("fmt")
     if found.stds:
         record = uncertainty.with_stds(found, motion, record, out.fmt == "table" and not bare)
@@ -106,7 +107,7 @@ def solve_command(
         steps = {name: record[name] for name in chosen or ()}
         out.record(steps | more, lambda: _chain(found.system, top.radians))
     else:
-        _write(record, found.system, top.radians, out)
+        _write(record | summed, found.system, top.radians, out)
 
 
 def _check_keys(keys: list[str], radians: bool) -> None:
@@ -133,6 +134,16 @@ def _chain(system: System | None, radians: bool) -> dict[str, Key]:
     keys = _keys(system, radians, requested=True)
     chain = {unit_name(x, radians=radians): step for step, names in CHAIN.items() for x in names}
     return {name: keys[name].replace(group=step) for name, step in chain.items()}
+
+
+def _summary(record: dict[str, Any], system: System | None) -> dict[str, str]:
+    """Return the sentence on a motion under its key, if none of its numbers is out of range."""
+    from ..motion.summary import summary
+
+    try:
+        return {"summary": summary(record, str if system is None else system.named)}
+    except TypeError:  # a number beyond the range of doubles is None
+        return {}
 
 
 def _write(record: dict[str, Any], system: System | None, radians: bool, out: Output) -> None:

@@ -1,19 +1,42 @@
-"""The meaning of every key and column of a motion, for `lagtop explain` and the READMEs."""
+"""The meaning and the formula of every key and column, for `lagtop explain`.
+
+A formula is written once, where its key or column is declared, in names of keys: `2*m*g*s/A`.  Here
+it is shown in the symbols of the paper, and with the numbers of a motion.  Angles are named without
+a unit, `P where P = ...` defines an abbreviation, and `left = right` is an equation that the key
+fulfils.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ..inputs.names import check_names
-from .over_time.columns import COLUMNS
+from .over_time.columns import COLUMNS, Column
 from .quantity import unit_name
 from .record import KEYS, all_keys, shown_keys
-from .solve import Motion
+from .solve import Motion, record_in_range
+
+_WORDS = {
+    "pi": "π",
+    "acos": "arccos",
+    "asin": "arcsin",
+    "atan": "arctan",
+    "sqrt": "√",
+    "ellint_F": "F",
+    "ellint_E": "E",
+    "ellint_Pi": "Π",
+    "integral": "∫",
+    "energy_constant": "α₄",
+    "momentum_constant": "β",
+    "t1": "t₁",
+}
+"""How functions and constants of formulas are shown."""
 
 
 class Explained(NamedTuple):
-    """A key or a column: how it is called and where it comes from."""
+    """A key or a column: what it is called, and where it comes from."""
 
     name: str
     kind: str
@@ -23,6 +46,12 @@ class Explained(NamedTuple):
     unit: str
     equation: str
     formula: str
+    """The formula in symbols."""
+    text: str
+    """The formula as it is declared."""
+    numbers: str = ""
+    """The formula with the numbers of a motion."""
+    value: Any = None
 
 
 def explained_names() -> list[str]:
@@ -34,19 +63,31 @@ def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[
     """Return all keys and columns, with the names of units of a system."""
     keys = shown_keys(radians=radians, named=named, requested=True)
     of_record = {unit_name(name, radians=radians) for name in KEYS}
+    symbols = {_bare(name): key.symbol for name, key in keys.items() if key.symbol}
+    symbols |= {name: column.parts[0].symbol for name, column in COLUMNS.items()} | _WORDS
     rows = [
         Explained(
             *(name, "record" if name in of_record else "on request", key.symbol, key.meaning),
-            *(key.unit, key.equation, key.formula),
+            *(key.unit, key.equation, _shown(key.formula, symbols), key.formula),
         )
         for name, key in keys.items()
         if key.meaning
     ]
-    columns = [
-        Explained(name, "column", "", column.meaning, "", "", "")
-        for name, column in COLUMNS.items()
-    ]
-    return [*rows, *columns]
+    angle = "rad" if radians else "deg"
+    for name, column in COLUMNS.items():
+        part, text = column.parts[0], column_formula(column)
+        unit = angle if part.heading.endswith("*") else named(part.unit)
+        shown = _shown(text, symbols)
+        row = (name, "column", part.symbol, column.meaning, unit, part.equation, shown, text)
+        rows.append(Explained(*row))
+    return rows
+
+
+def column_formula(column: Column) -> str:
+    """Return the formula of a column; of a group, an equation for each part."""
+    if len(column.parts) == 1:
+        return column.parts[0].formula
+    return ", ".join(f"{part.heading} = {part.formula}" for part in column.parts)
 
 
 def explanations(
@@ -56,7 +97,40 @@ def explanations(
     radians: bool = False,
     named: Callable[[str], str] = str,
 ) -> list[Explained]:
-    """Return the explanations of some keys and columns.  Raises LagtopError for an unknown name."""
+    """Return some keys and columns, with the numbers of a motion.
+
+    Raises LagtopError for an unknown name.
+    """
     rows = listed(radians=radians, named=named)
     check_names("KEY", names, list(dict.fromkeys(row.name for row in rows)))
-    return [row for name in names for row in rows if row.name == name]
+    chosen = [row for name in names for row in rows if row.name == name]
+    record, _ = record_in_range(motion, radians=radians, keys=all_keys(radians=radians))
+    unit = "" if radians else "°"
+    texts = {
+        _bare(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
+        for name, value in record.items()
+        if isinstance(value, float)
+    }
+    return [
+        row._replace(
+            numbers=_shown(row.text, {**_WORDS, **texts}, "·"),
+            value=record.get(row.name) if row.kind != "column" else None,
+        )
+        for row in chosen
+    ]
+
+
+def _bare(name: str) -> str:
+    """Return the name of a key without its unit."""
+    return name.removesuffix("_deg").removesuffix("_rad")
+
+
+def _shown(formula: str, words: Mapping[str, str], times: str = " ") -> str:
+    """Return a formula with words for its names and a sign for `*`; (-1) for a negative number."""
+
+    def word(match: re.Match[str]) -> str:
+        text = words.get(match[0], match[0])
+        return f"({text})" if text.startswith("-") else text
+
+    text = re.sub(r"[A-Za-z_]\w*", word, formula)
+    return text.replace("**2", "²").replace("*", times)

@@ -25,12 +25,12 @@ class Nutation(Over[R]):
         self.ar, self.facts, self.state, self.gaps = ar, facts, state, gaps
         self.r0 = state.r0
 
-    @key("Constants", "a", "2mgs/A", "1/time²", "(4,4)")
+    @key("Constants", "a", "2mgs/A", "1/time²", "(4,4)", formula="2*m*g*s/A")
     def a(self) -> R:
         """The torque 2mgs/A (4,4)."""
         return self.state.a
 
-    @key("Constants", "b", "C r0/A", "1/time", "(4,5)")
+    @key("Constants", "b", "C r0/A", "1/time", "(4,5)", formula="C*r0/A")
     def b(self) -> R:
         """The spin momentum C r0/A (4,5)."""
         return self.state.b
@@ -40,18 +40,39 @@ class Nutation(Over[R]):
         """One degree in radians."""
         return self.ar.pi / 180
 
-    @key("Roots", "u1", "cos ϑ, highest", "", "(4,9)")
+    @key(
+        "Roots",
+        "u1",
+        "cos ϑ, highest",
+        "",
+        "(4,9)",
+        formula="(energy_constant - a*u1)*(1 - u1**2) = (momentum_constant - b*u1)**2",
+    )
     def u1(self) -> R:
         """The upper turning point (4,9)."""
         return self.state.cos + self.gaps.u1_u
 
-    @key("Roots", "u2", "cos ϑ, lowest", "", "(4,11)")
+    @key(
+        "Roots",
+        "u2",
+        "cos ϑ, lowest",
+        "",
+        "(4,11)",
+        formula="(energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2",
+    )
     def u2(self) -> R:
         """The lower turning point (4,11), counted from the nearer pole."""
         below, above = self.gaps.below_u2, self.gaps.above_u2
         return self.ar.where(self.ar.either(above < below), 1 - above, below - 1)
 
-    @key("Roots", "u3", "third root", "", "(4,11)")
+    @key(
+        "Roots",
+        "u3",
+        "third root",
+        "",
+        "(4,11)",
+        formula="(energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2",
+    )
     def u3(self) -> R | None:
         """The third root (4,11); None without torque, where it is infinite."""
         return None if self.facts.free else (self.a + self.gaps.a_u3_above) / self.a
@@ -61,41 +82,55 @@ class Nutation(Over[R]):
         """The parameter k^2 (4,19); 0 where the tilt does not change."""
         return 0 * self.a if self.facts.steady else self.a * self.gaps.u1_u2 / self.gaps.a_u3_u2
 
-    @key("Moduli and integrals", "k", "modulus", "", "(4,19)")
+    @key("Moduli and integrals", "k", "modulus", "", "(4,19)", formula="sqrt((u1 - u2)/(u3 - u2))")
     def k(self) -> R:
         """The modulus (4,19)."""
         return self.ar.sqrt(self.m)
 
-    @key("Moduli and integrals", "k'", "complementary modulus", "", "(4,21)")
+    @key(
+        "Moduli and integrals",
+        "k'",
+        "complementary modulus",
+        "",
+        "(4,21)",
+        formula="sqrt((u3 - u1)/(u3 - u2))",
+    )
     def k_prime(self) -> R:
         """The complement (4,21), from its own numerator."""
         if self.facts.steady:
             return 0 * self.a + 1
         return self.ar.sqrt(self.gaps.a_u3_u1 / self.gaps.a_u3_u2)
 
-    @key("Moduli and integrals", "arcsin k", "modular angle", "angle", "(4,19)")
+    @key("Moduli and integrals", "arcsin k", "modular angle", "angle", "(4,19)", formula="asin(k)")
     def modular_angle_deg(self) -> R:
         """The angle arcsin k, in degrees."""
         return self.ar.atan2(self.k, self.k_prime) / self.degree
 
-    @key("Moduli and integrals", "q", "nome", "", "(2,4)")
+    @key("Moduli and integrals", "q", "nome", "", "(2,4)", formula="exp(-pi*K_prime/K)")
     def nome(self) -> R:
         """The nome q (2,4)."""
         return nome(self.ar, m=self.m, k_prime=self.k_prime)
 
-    @key("Moduli and integrals", "K", "first kind, k", "", "(5,1)")
+    @key("Moduli and integrals", "K", "first kind, k", "", "(5,1)", formula="ellint_F(pi/2, k)")
     def K(self) -> R:
         """The quarter period: the complete integral of the first kind."""
         return complete_k(self.ar, self.k_prime)
 
-    @key("Moduli and integrals", "K'", "first kind, k'", "", "(2,4)")
+    @key(
+        "Moduli and integrals",
+        "K'",
+        "first kind, k'",
+        "",
+        "(2,4)",
+        formula="ellint_F(pi/2, k_prime)",
+    )
     def K_prime(self) -> R | None:
         """The quarter period of the complement; None where k = 0."""
         if self.facts.free or self.facts.steady:
             return None
         return complete_k(self.ar, self.k)
 
-    @key("Moduli and integrals", "E", "second kind, k", "", "(7,3)")
+    @key("Moduli and integrals", "E", "second kind, k", "", "(7,3)", formula="ellint_E(pi/2, k)")
     def E(self) -> R:
         """The complete integral of the second kind, by Legendre's relation where k > 0.
 
@@ -111,12 +146,19 @@ class Nutation(Over[R]):
         """The rate dw/dt of the argument w = sqrt(a (u3 - u2)) t/2 (4,30)."""
         return self.ar.sqrt(self.gaps.a_u3_u2) / 2
 
-    @key("Periods", "T", "of the nutation", "time", "(5,1)")
+    @key("Periods", "T", "of the nutation", "time", "(5,1)", formula="4*K/sqrt(a*(u3 - u2))")
     def T_nutation(self) -> R:
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate
 
-    @key("Turning points", "u(T/4)", "cos ϑ at T/4", "", "(5,2)")
+    @key(
+        "Turning points",
+        "u(T/4)",
+        "cos ϑ at T/4",
+        "",
+        "(5,2)",
+        formula="u1 - (u1 - u2)*k_prime/(1 + k_prime)",
+    )
     def u_quarter(self) -> R | None:
         """u(T/4) after a start at u1 (5,2), written from u1 downwards: a large u3 does no harm."""
         value = self.u1 - self.gaps.u1_u2 * (self.k_prime / (1 + self.k_prime))
@@ -125,12 +167,12 @@ class Nutation(Over[R]):
             return None
         return self.ar.where(starts_at_u1, value, self.ar.nan)
 
-    @key("Turning points", "ϑ min", "least tilt", "angle", "(4,9)")
+    @key("Turning points", "ϑ min", "least tilt", "angle", "(4,9)", formula="acos(u1)")
     def theta_min_deg(self) -> R:
         """The tilt at u1, in degrees."""
         return self._tilt_deg(self.gaps.above_u1, self.gaps.below_u1)
 
-    @key("Turning points", "ϑ max", "greatest tilt", "angle", "(4,9)")
+    @key("Turning points", "ϑ max", "greatest tilt", "angle", "(4,9)", formula="acos(u2)")
     def theta_max_deg(self) -> R:
         """The tilt at u2, in degrees."""
         return self._tilt_deg(self.gaps.above_u2, self.gaps.below_u2)
@@ -138,7 +180,14 @@ class Nutation(Over[R]):
     def _tilt_deg(self, above: R, below: R) -> R:
         return 2 * self.ar.atan2(self.ar.sqrt(above), self.ar.sqrt(below)) / self.degree
 
-    @key("Moduli and integrals", "am α", "amplitude of α", "angle", "(7,2)")
+    @key(
+        "Moduli and integrals",
+        "am α",
+        "amplitude of α",
+        "angle",
+        "(7,2)",
+        formula="atan(sqrt((u3 - u2)/(1 + u2)))",
+    )
     def amplitude_deg(self) -> R | None:
         """The amplitude of alpha (7,2) in degrees, by its tangent; after release from rest."""
         if not self.facts.at_rest:
@@ -146,7 +195,14 @@ class Nutation(Over[R]):
         sine, cosine = self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(self.a * self.gaps.below_u2)
         return self.ar.atan2(sine, cosine) / self.degree
 
-    @key("Moduli and integrals", "α", "parameter", "", "(1,6)")
+    @key(
+        "Moduli and integrals",
+        "α",
+        "parameter",
+        "",
+        "(1,6)",
+        formula="ellint_F(amplitude, k_prime)",
+    )
     def alpha(self) -> R | None:
         """The parameter alpha = F(amplitude, k') (1,6) after release from rest."""
         return self.eta_minus if self.facts.at_rest else None

@@ -22,6 +22,15 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 
+_POLES = (
+    "P = (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2), "
+    "Q = (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2)"
+)
+"""The means of (beta - b)/(1 - u) and (beta + b)/(1 + u), times K."""
+_HALF = "U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
+"""The cosine of the tilt half a period after the start."""
+
+
 class SpinPrecession(Nutation[R]):
     """The numbers of sections 6 and 7 of a motion, under their keys; None where it has none."""
 
@@ -74,7 +83,14 @@ class SpinPrecession(Nutation[R]):
         gaps = self.gaps
         return self._mean(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
 
-    @key("Mean rates", "φ' mean", "spin", "rad/time", "(6,3)")
+    @key(
+        "Mean rates",
+        "φ' mean",
+        "spin",
+        "rad/time",
+        "(6,3)",
+        formula=f"r0 - b - (P - Q)/(2*K) where {_POLES}",
+    )
     def mean_spin_rate(self) -> R:
         """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation.
 
@@ -89,29 +105,57 @@ class SpinPrecession(Nutation[R]):
             return self.state.pole_drift + self._south - self._north
         return self.r0 + self._whole_south - self._whole_north
 
-    @key("Mean rates", "ψ' mean", "precession", "rad/time", "(7,3)")
+    @key(
+        "Mean rates",
+        "ψ' mean",
+        "precession",
+        "rad/time",
+        "(7,3)",
+        formula=f"(P + Q)/(2*K) where {_POLES}",
+    )
     def mean_precession_rate(self) -> R:
         """The mean precession rate (7,3)."""
         if self.facts.free or self._meets_a_pole:
             return self._south + self._north
         return self._whole_south + self._whole_north
 
-    @key("Periods", "Tφ", "of the mean spin", "time", "§8")
+    @key("Periods", "Tφ", "of the mean spin", "time", "§8", formula="2*pi/abs(mean_spin_rate)")
     def T_spin(self) -> R | None:
         """One turn at the mean spin rate (section 8)."""
         return turn_time(self.ar, self.mean_spin_rate)
 
-    @key("Periods", "Tψ", "of the mean precession", "time", "§8")
+    @key(
+        "Periods",
+        "Tψ",
+        "of the mean precession",
+        "time",
+        "§8",
+        formula="2*pi/abs(mean_precession_rate)",
+    )
     def T_precession(self) -> R | None:
         """One turn at the mean precession rate (section 8)."""
         return turn_time(self.ar, self.mean_precession_rate)
 
-    @key("Rates", "φ'(0)", "spin at the start", "rad/time", "(6,2)")
+    @key(
+        "Rates",
+        "φ'(0)",
+        "spin at the start",
+        "rad/time",
+        "(6,2)",
+        formula="r0 - psidot0*cos(theta0)",
+    )
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
         return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
-    @key("Rates", "φ'(T/2)", "spin at T/2", "rad/time", "(6,2)")
+    @key(
+        "Rates",
+        "φ'(T/2)",
+        "spin at T/2",
+        "rad/time",
+        "(6,2)",
+        formula=f"r0 - U*precession_rate_half where {_HALF}",
+    )
     def spin_rate_half(self) -> R | None:
         """The spin rate (4,8) half a period after the start; None over a pole."""
         if self.precession_rate_half is None:
@@ -119,12 +163,19 @@ class SpinPrecession(Nutation[R]):
         below, above = self._half
         return self.r0 - (below - above) / 2 * self.precession_rate_half
 
-    @key("Rates", "ψ'(0)", "precession at start", "rad/time", "(4,7)")
+    @key("Rates", "ψ'(0)", "precession at start", "rad/time", "(4,7)", formula="psidot0")
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
 
-    @key("Rates", "ψ'(T/2)", "precession at T/2", "rad/time", "(4,7)")
+    @key(
+        "Rates",
+        "ψ'(T/2)",
+        "precession at T/2",
+        "rad/time",
+        "(4,7)",
+        formula=f"(momentum_constant - b*U)/(1 - U**2) where {_HALF}",
+    )
     def precession_rate_half(self) -> R | None:
         """The precession rate (4,7) half a period after the start; None over a pole."""
         if self._half_over_pole:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 _GAP = 3
 """Columns of the screen between two columns of a table."""
+_RECORD_WIDTH = 80
+"""The width of the summary of a record if no terminal says another."""
 _TEXT_WIDTH = 100
 """The width of running text where no terminal says another."""
 
@@ -69,7 +71,7 @@ def drawn_record(
     if view.width and _width(text) > view.width:
         text = _drawn(_narrow_record(groups, view.width), view)
     if summary := record.get("summary"):
-        text = f"{_filled(spelt(summary, view), view)}\n\n{text}"
+        text = f"{fill(spelt(summary, view), view.width or _RECORD_WIDTH)}\n\n{text}"
     if remark := record.get("remark"):
         text += f"\n{_coloured(_filled(remark, view), view)}\n"
     return _encoded(text, view)

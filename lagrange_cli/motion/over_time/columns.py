@@ -37,6 +37,10 @@ class ScalarColumn(NamedTuple):
     needs: Needs
     unit: str = ""
     """A unit such as `rad/time`, where it is none of angles."""
+    symbol: str = ""
+    equation: str = ""
+    formula: str = ""
+    """The formula in names of columns and keys, as at the keys; t counts from a passage of u1."""
 
 
 class Column(NamedTuple):
@@ -46,45 +50,154 @@ class Column(NamedTuple):
     parts: Sequence[ScalarColumn]
 
 
-def _one(meaning: str, needs: Needs, method: str, heading: str, unit: str = "") -> Column:
-    return Column(meaning, [ScalarColumn(heading, method, needs, unit)])
+def _one(
+    meaning: str, needs: Needs, method: str, heading: str, unit: str = "", **shown: str
+) -> Column:
+    return Column(meaning, [ScalarColumn(heading, method, needs, unit, **shown)])
 
 
 COLUMNS: dict[str, Column] = {
-    "t": _one("time", NOTHING, "times", "t", "time"),
-    "theta": _one("tilt", TILT, "theta", "theta_*"),
-    "phi": _one("spin", TURN, "phi", "phi_*"),
-    "psi": _one("precession", TURN, "psi", "psi_*"),
-    "dphi": _one("spin less its mean growth (6,4), a wave", TURN, "phi_remainder", "dphi_*"),
-    "dpsi": _one("precession less its mean growth (7,4), a wave", TURN, "psi_remainder", "dpsi_*"),
-    "u": _one("cos(theta)", MODULI, "cosine", "u"),
-    "thetadot": _one("nutation rate", SWING, "nutation_rate", "thetadot", "rad/time"),
-    "phidot": _one("spin rate", MODULI, "phi_rate", "phidot", "rad/time"),
-    "psidot": _one("precession rate", MODULI, "psi_rate", "psidot", "rad/time"),
-    "p": _one("angular velocity about the body's x axis", SWING | TURN, "p", "p", "rad/time"),
-    "q": _one("angular velocity about the body's y axis", SWING | TURN, "q", "q", "rad/time"),
-    "r": _one("angular velocity about the figure axis", NOTHING, "r", "r", "rad/time"),
+    "t": _one("time", NOTHING, "times", "t", "time", symbol="t"),
+    "theta": _one(
+        "tilt", TILT, "theta", "theta_*", symbol="ϑ", equation="(4,9)", formula="acos(u)"
+    ),
+    "phi": _one(
+        "spin", TURN, "phi", "phi_*", symbol="φ", equation="(6,1)", formula="integral(phidot, 0, t)"
+    ),
+    "psi": _one(
+        "precession",
+        TURN,
+        "psi",
+        "psi_*",
+        symbol="ψ",
+        equation="(7,1)",
+        formula="integral(psidot, 0, t)",
+    ),
+    "dphi": _one(
+        "spin less its mean rate times t, a wave",
+        TURN,
+        "phi_remainder",
+        "dphi_*",
+        symbol="Δφ",
+        equation="(6,4)",
+        formula="phi - mean_spin_rate*t",
+    ),
+    "dpsi": _one(
+        "precession less its mean rate times t, a wave",
+        TURN,
+        "psi_remainder",
+        "dpsi_*",
+        symbol="Δψ",
+        equation="(7,4)",
+        formula="psi - mean_precession_rate*t",
+    ),
+    "u": _one(
+        "cos(theta)",
+        MODULI,
+        "cosine",
+        "u",
+        symbol="u",
+        equation="(4,30)",
+        formula="u2 + (u1 - u2)*sn(K + 2*K*t/T_nutation, k)**2",
+    ),
+    "thetadot": _one(
+        "nutation rate",
+        SWING,
+        "nutation_rate",
+        "thetadot",
+        "rad/time",
+        symbol="ϑ'",
+        equation="(4,2)",
+        formula="thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)",
+    ),
+    "phidot": _one(
+        "spin rate",
+        MODULI,
+        "phi_rate",
+        "phidot",
+        "rad/time",
+        symbol="φ'",
+        equation="(4,8)",
+        formula="r0 - psidot*u",
+    ),
+    "psidot": _one(
+        "precession rate",
+        MODULI,
+        "psi_rate",
+        "psidot",
+        "rad/time",
+        symbol="ψ'",
+        equation="(4,7)",
+        formula="(momentum_constant - b*u)/(1 - u**2)",
+    ),
+    "p": _one(
+        "angular velocity about the body's x axis",
+        SWING | TURN,
+        "p",
+        "p",
+        "rad/time",
+        symbol="p",
+        equation="(4,1)",
+        formula="thetadot*cos(phi) + psidot*sin(theta)*sin(phi)",
+    ),
+    "q": _one(
+        "angular velocity about the body's y axis",
+        SWING | TURN,
+        "q",
+        "q",
+        "rad/time",
+        symbol="q",
+        equation="(4,1)",
+        formula="psidot*sin(theta)*cos(phi) - thetadot*sin(phi)",
+    ),
+    "r": _one(
+        "angular velocity about the figure axis",
+        NOTHING,
+        "r",
+        "r",
+        "rad/time",
+        symbol="r",
+        equation="(4,1)",
+        formula="r0",
+    ),
     "moment": _one(
         "moment of the weight about the line of nodes",
         MODULI,
         "moment",
         "moment",
         "mass len²/time²",
+        symbol="M",
+        formula="m*g*s*sin(theta)",
     ),
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
         [
-            ScalarColumn("axis_x", "axis_x", ATTITUDE),
-            ScalarColumn("axis_y", "axis_y", ATTITUDE),
-            ScalarColumn("axis_z", "cosine", MODULI),
+            ScalarColumn("axis_x", "axis_x", ATTITUDE, formula="sin(theta)*sin(psi)"),
+            ScalarColumn("axis_y", "axis_y", ATTITUDE, formula="-sin(theta)*cos(psi)"),
+            ScalarColumn("axis_z", "cosine", MODULI, formula="u"),
         ],
     ),
     "quaternion": Column(
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
-        [ScalarColumn(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE) for part in "wxyz"],
+        [
+            ScalarColumn(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE, formula=formula)
+            for part, formula in {
+                "w": "cos(theta/2)*cos((psi + phi)/2)",
+                "x": "sin(theta/2)*cos((psi - phi)/2)",
+                "y": "sin(theta/2)*sin((psi - phi)/2)",
+                "z": "cos(theta/2)*sin((psi + phi)/2)",
+            }.items()
+        ],
     ),
     "energy": _one(
-        "energy; constant but for rounding", SWING, "energy", "energy", "mass len²/time²"
+        "energy; constant but for rounding",
+        SWING,
+        "energy",
+        "energy",
+        "mass len²/time²",
+        symbol="E",
+        equation="(4,2)",
+        formula="(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
     ),
     "Lz": _one(
         "vertical angular momentum; constant but for rounding",
@@ -92,6 +205,9 @@ COLUMNS: dict[str, Column] = {
         "vertical_momentum",
         "Lz",
         "mass len²/time",
+        symbol="c2",
+        equation="(4,3)",
+        formula="A*psidot*sin(theta)**2 + C*r0*u",
     ),
 }
 

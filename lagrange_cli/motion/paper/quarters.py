@@ -34,47 +34,69 @@ class EnergyMomentum(Generic[R]):
         self.kind, self.exact, self.ar = kind, exact, kind.ar
         self.facts, self.state, self.gaps = kind.facts, kind.state, kind.gaps
 
-    @constant_key("c1", "energy but for that of the spin", "energy", "(4,2)")
+    @constant_key(
+        "c1",
+        "energy but for that of the spin",
+        "energy",
+        "(4,2)",
+        formula="A*(thetadot0**2 + psidot0**2*sin(theta0)**2)/2 + m*g*s*cos(theta0)",
+    )
     def energy_without_spin(self) -> R:
         """The energy c1 = A (theta'^2 + psi'^2 sin^2 theta)/2 + mgs cos theta (4,2)."""
         return self.ar.convert(Fraction(self.exact.top.A)) * self.energy_constant / 2
 
-    @constant_key("c2", "vertical angular momentum", "momentum", "(4,3)")
+    @constant_key(
+        "c2",
+        "vertical angular momentum",
+        "momentum",
+        "(4,3)",
+        formula="A*psidot0*sin(theta0)**2 + C*r0*cos(theta0)",
+    )
     def Lz(self) -> R:
         """The momentum c2 = A psi' sin^2 theta + C r0 cos theta (4,3)."""
         return self.ar.convert(Fraction(self.exact.top.A)) * self.momentum_constant
 
-    @constant_key("α (4,4)", "energy constant over A/2", "1/time²", "(4,4)")
+    @constant_key(
+        "α (4,4)", "energy constant over A/2", "1/time²", "(4,4)", formula="2*energy_without_spin/A"
+    )
     def energy_constant(self) -> R:
         """The constant alpha = 2 c1/A (4,4), which is not the parameter alpha of (1,6)."""
         return self.state.energy + self.state.a * self.state.cos
 
-    @constant_key("β (4,5)", "momentum over A", "1/time", "(4,5)")
+    @constant_key("β (4,5)", "momentum over A", "1/time", "(4,5)", formula="Lz/A")
     def momentum_constant(self) -> R:
         """The constant beta = c2/A (4,5)."""
         return self.state.momentum + self.state.b * self.state.cos
 
-    @constant_key("D", "discriminant, (a (u3 - u2))²", "1/time⁴", "(4,10)")
+    @constant_key(
+        "D", "discriminant, (a (u3 - u2))²", "1/time⁴", "(4,10)", formula="(a*(u3 - u2))**2"
+    )
     def discriminant(self) -> R:
         """The discriminant of f(u)/(u1 - u) (4,10), at least (b^2 - 2a)^2 after rest."""
         return self.gaps.a_u3_u2 * self.gaps.a_u3_u2
 
-    @constant_key("f(1)", "u'² of (4,9) upright", "1/time²", "(4,9)")
+    @constant_key(
+        "f(1)", "u'² of (4,9) upright", "1/time²", "(4,9)", formula="-(momentum_constant - b)**2"
+    )
     def f_upright(self) -> R:
         """The cubic (4,9) at u = 1, -(beta - b)^2: negative, or 0 where 1 is a root."""
         return 0 - self.gaps.beta_minus_b * self.gaps.beta_minus_b
 
-    @constant_key("f(-1)", "u'² of (4,9) hanging", "1/time²", "(4,9)")
+    @constant_key(
+        "f(-1)", "u'² of (4,9) hanging", "1/time²", "(4,9)", formula="-(momentum_constant + b)**2"
+    )
     def f_hanging(self) -> R:
         """The cubic (4,9) at u = -1, -(beta + b)^2: negative, or 0 where -1 is a root."""
         return 0 - self.gaps.beta_plus_b * self.gaps.beta_plus_b
 
-    @constant_key("f'(u1)", "slope of (4,9) at u1", "1/time²", "(4,9)")
+    @constant_key(
+        "f'(u1)", "slope of (4,9) at u1", "1/time²", "(4,9)", formula="-a*(u1 - u2)*(u3 - u1)"
+    )
     def f_slope_u1(self) -> R:
         """The slope of (4,9) at u1, -a (u1 - u2)(u3 - u1): after rest -a sin^2 theta0."""
         return 0 - self.gaps.a_u3_u1 * self.gaps.u1_u2
 
-    @constant_key("a u2 u3", "has the sign of u2", "1/time²", "(4,12)")
+    @constant_key("a u2 u3", "has the sign of u2", "1/time²", "(4,12)", formula="a*u2*u3")
     def u2_criterion(self) -> R | None:
         """The number a u2 u3, after rest b^2 u1 - a (4,12); None where there is no u3."""
         if "u3" in self.kind.lacks:
@@ -129,23 +151,38 @@ class Quarters(EnergyMomentum[R]):
         )
         return Turned(last.phi - first.phi, last.psi - first.psi)
 
-    @angle_key("φ(T/2)", "spin after half a period", equation="§6")
+    @angle_key(
+        "φ(T/2)",
+        "spin after half a period",
+        equation="§6",
+        formula="integral(phidot, 0, T_nutation/2)",
+    )
     def phi_half_deg(self) -> R | None:
         """The spin after half a period, in degrees."""
         return None if self.over_half is None else self.over_half.phi / self.kind.degree
 
-    @angle_key("φ(T)", "spin after a period", equation="§6")
+    @angle_key("φ(T)", "spin after a period", equation="§6", formula="mean_spin_rate*T_nutation")
     def phi_period_deg(self) -> R | None:
         """The spin after a period, in degrees."""
         kind = self.nutating
         return None if kind is None else kind.mean_spin_rate * kind.T_nutation / kind.degree
 
-    @angle_key("ψ(T/2)", "precession after half a period", equation="§7")
+    @angle_key(
+        "ψ(T/2)",
+        "precession after half a period",
+        equation="§7",
+        formula="integral(psidot, 0, T_nutation/2)",
+    )
     def psi_half_deg(self) -> R | None:
         """The precession after half a period, in degrees."""
         return None if self.over_half is None else self.over_half.psi / self.kind.degree
 
-    @angle_key("ψ(T)", "precession after a period", equation="§7")
+    @angle_key(
+        "ψ(T)",
+        "precession after a period",
+        equation="§7",
+        formula="mean_precession_rate*T_nutation",
+    )
     def psi_period_deg(self) -> R | None:
         """The precession after a period, in degrees."""
         kind = self.nutating
@@ -166,38 +203,68 @@ class Quarters(EnergyMomentum[R]):
         first, middle, last = (2 * ar.atan2(ar.sqrt(x), ar.sqrt(y)) for x, y in places)
         return first, middle, last
 
-    @rate_key("ϑ' 1st", "nutation, quarter after u1", equation="§5")
+    @rate_key(
+        "ϑ' 1st",
+        "nutation, quarter after u1",
+        equation="§5",
+        formula="4*(acos(U) - theta_min)/T_nutation where U = u1 - (u1 - u2)*k_prime/(1 + k_prime)",
+    )
     def nutation_rate_upper(self) -> R | None:
         """The mean nutation rate from u1 to T/4; in the last quarter it is the opposite."""
         if self.tilts is None:
             return None
         return self._rate(self.tilts[1] - self.tilts[0])
 
-    @rate_key("ϑ' 2nd", "nutation, quarter before u2", equation="§5")
+    @rate_key(
+        "ϑ' 2nd",
+        "nutation, quarter before u2",
+        equation="§5",
+        formula="4*(theta_max - acos(U))/T_nutation where U = u1 - (u1 - u2)*k_prime/(1 + k_prime)",
+    )
     def nutation_rate_lower(self) -> R | None:
         """The mean nutation rate from T/4 to u2; in the third quarter it is the opposite."""
         if self.tilts is None:
             return None
         return self._rate(self.tilts[2] - self.tilts[1])
 
-    @rate_key("φ' 1st", "spin, quarters next to u1", equation="§6")
+    @rate_key(
+        "φ' 1st",
+        "spin, quarters next to u1",
+        equation="§6",
+        formula="4*integral(phidot, t1, t1 + T_nutation/4)/T_nutation",
+    )
     def spin_rate_upper(self) -> R | None:
         """The mean spin rate of the first and of the last quarter."""
         return None if self.over_quarter is None else self._rate(self.over_quarter.phi)
 
-    @rate_key("φ' 2nd", "spin, quarters next to u2", equation="§6")
+    @rate_key(
+        "φ' 2nd",
+        "spin, quarters next to u2",
+        equation="§6",
+        formula="2*mean_spin_rate - spin_rate_upper",
+    )
     def spin_rate_lower(self) -> R | None:
         """The mean spin rate of the second and of the third quarter."""
         if self.spin_rate_upper is None:
             return None
         return 2 * cast("Nutating[R]", self.kind).mean_spin_rate - self.spin_rate_upper
 
-    @rate_key("ψ' 1st", "precession, next to u1", equation="§7")
+    @rate_key(
+        "ψ' 1st",
+        "precession, next to u1",
+        equation="§7",
+        formula="4*integral(psidot, t1, t1 + T_nutation/4)/T_nutation",
+    )
     def precession_rate_upper(self) -> R | None:
         """The mean precession rate of the first and of the last quarter."""
         return None if self.over_quarter is None else self._rate(self.over_quarter.psi)
 
-    @rate_key("ψ' 2nd", "precession, next to u2", equation="§7")
+    @rate_key(
+        "ψ' 2nd",
+        "precession, next to u2",
+        equation="§7",
+        formula="2*mean_precession_rate - precession_rate_upper",
+    )
     def precession_rate_lower(self) -> R | None:
         """The mean precession rate of the second and of the third quarter."""
         if self.precession_rate_upper is None:

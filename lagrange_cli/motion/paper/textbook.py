@@ -34,22 +34,37 @@ class Textbook(Over[R]):
         with ar.working():
             self.ratio = ar.convert(ratio_of(exact))
 
-    @elementary_key("λ", "stability factor C²r0²/(4Amgs)", equation="b²/2a")
+    @elementary_key("λ", "stability factor C²r0²/(4Amgs)", equation="b²/2a", formula="b**2/(2*a)")
     def stability_factor(self) -> R | None:
         """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
         return self.b * self.b / (2 * self.a) if self.exact.a else None
 
-    @rate_key("r0 sleeping", "least r0 of a stable upright top", equation="2√(Amgs)/C")
+    @rate_key(
+        "r0 sleeping",
+        "least r0 of a stable upright top",
+        equation="2√(Amgs)/C",
+        formula="2*sqrt(A*m*g*s)/C",
+    )
     def r0_sleeping(self) -> R:
         """The least total spin rate 2 sqrt(A mgs)/C of a stable upright top."""
         return self.ratio * self.ar.sqrt(2 * self.a)
 
-    @rate_key("Ω slow", "slow steady precession", equation="ϑ'' = 0")
+    @rate_key(
+        "Ω slow",
+        "slow steady precession",
+        equation="ϑ'' = 0",
+        formula="m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
+    )
     def steady_rate_slow(self) -> R | None:
         """The root of smaller size of A cos(theta) Omega^2 - C r0 Omega + mgs = 0."""
         return self._steady(SLOW)
 
-    @rate_key("Ω fast", "fast steady precession", equation="ϑ'' = 0")
+    @rate_key(
+        "Ω fast",
+        "fast steady precession",
+        equation="ϑ'' = 0",
+        formula="m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
+    )
     def steady_rate_fast(self) -> R | None:
         """The root of larger size; None at 90 degrees, where it is infinite."""
         return self._steady(FAST)
@@ -59,7 +74,12 @@ class Textbook(Over[R]):
             return None
         return self.steady.rate(self.ar, self.a, self.b, self.cos, word)
 
-    @rate_key("r0 steady", "least r0 of steady precession", equation="2√(Amgs u0)/C")
+    @rate_key(
+        "r0 steady",
+        "least r0 of steady precession",
+        equation="2√(Amgs u0)/C",
+        formula="2*sqrt(A*m*g*s*max(cos(theta0), 0))/C",
+    )
     def r0_steady_min(self) -> R:
         """The least total spin rate 2 sqrt(A mgs cos(theta))/C of a steady precession at the tilt.
 
@@ -69,12 +89,16 @@ class Textbook(Over[R]):
             return 0 * self.a
         return self.ratio * self.ar.sqrt(2 * self.a * self.cos)
 
-    @rate_key("ψ' elementary", "precession of a fast top", equation="mgs/(C r0)")
+    @rate_key(
+        "ψ' elementary", "precession of a fast top", equation="mgs/(C r0)", formula="m*g*s/(C*r0)"
+    )
     def precession_rate_elementary(self) -> R | None:
         """The precession rate mgs/(C r0) of a fast top; None if r0 = 0."""
         return self.a / (2 * self.b) if self.exact.b else None
 
-    @elementary_key("T elementary", "nutation of a fast top", "time", "2πA/(C r0)")
+    @elementary_key(
+        "T elementary", "nutation of a fast top", "time", "2πA/(C r0)", formula="2*pi*A/(C*abs(r0))"
+    )
     def T_nutation_elementary(self) -> R | None:
         """The nutation period 2 pi A/(C |r0|) of a fast top; None if r0 = 0."""
         return 2 * self.ar.pi / absolute(self.b) if self.exact.b else None
