@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ..elliptic.modulus import ModulusInput
     from ..elliptic.request import Arguments, FunctionRequest
     from ..elliptic.tables import TableOfFunctions
-    from ..inputs.multiples import Multiple, Multiples
+    from ..inputs.ranges import Multiple, Multiples
     from ..output.destination import Output
 
 MOST_TERMS = 10_000
@@ -68,7 +68,7 @@ def constant_keys(group: str, table: str) -> dict[str, Key]:
 
 
 def _parse_argument(text: str) -> Multiple | ExactComplex:
-    from ..inputs.multiples import parse_multiple
+    from ..inputs.ranges import parse_multiple
 
     return parse_complex(text) if looks_complex(text) else parse_multiple(text)
 
@@ -76,7 +76,7 @@ def _parse_argument(text: str) -> Multiple | ExactComplex:
 def _parse_arguments(text: str) -> Multiples | list[Multiple | ExactComplex]:
     """Return a range, or the arguments of a comma-separated list."""
     if ":" in text:
-        from ..inputs.multiples import parse_multiples
+        from ..inputs.ranges import parse_multiples
 
         return parse_multiples(text)
     return [_parse_argument(part) for part in text.split(",")]
@@ -244,7 +244,7 @@ def _arguments(
     """
     from ..arithmetic.points import ListedPoints
     from ..elliptic.request import Arguments
-    from ..inputs.multiples import Multiple, listed_multiples
+    from ..inputs.ranges import Multiple, listed_multiples
 
     imag: list[Fraction] = []
     if isinstance(u, list):

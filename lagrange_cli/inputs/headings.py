@@ -12,10 +12,13 @@ from fractions import Fraction
 from ..arithmetic.text import quoted
 from ..errors import DataError, LagtopError, UnavailableError
 from .input_keys import TILT
-from .names import repeated
+from .names import ANGLES, repeated
 from .top import INPUTS
 from .value import Value
 
+_ANGULAR = (*ANGLES, "euler")
+_OWN_UNITS = {"position": "m", "rotvec": "rad"}
+"""Units of quantities of a trajectory that are in no other."""
 _GREEK = {
     "\u03b8": "theta",
     "\u03d1": "theta",
@@ -110,3 +113,19 @@ def _check_unit(column: str, one: Value, name: str) -> None:
     except LagtopError as error:
         place = f"{name}, heading {column} [{one.unit}]"
         raise DataError(f"{place}: {error}") from None
+
+
+def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
+    """Return the unit that a quantity is brought to, and the factor, None if it is in it.
+
+    Raises LagtopError for a unit that the quantity cannot have.
+    """
+    if unit in {None, "-", "1"} or unit == _OWN_UNITS.get(key):
+        return None, None
+    if key in _ANGULAR and unit in {"deg", "rad"}:
+        return unit, None
+    from .units import DIMENSIONS, factor_of  # for few files only
+
+    if key not in DIMENSIONS:
+        raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
+    return "rad" if key in _ANGULAR else None, factor_of(key, Value(Fraction(1), str(unit)))

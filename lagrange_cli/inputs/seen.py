@@ -13,7 +13,6 @@ from ..arithmetic.text import quoted
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from . import rotations
-from .kinematics import body_rates
 from .names import ANGLES
 from .trajectory_columns import ELEVATION
 
@@ -184,7 +183,7 @@ class _Reader:
             return {}
         at = rotations.angles_of(seen.quaternion)
         nutation, spin, precession = self.given["angle_rates"].T
-        found = body_rates(
+        found = rotations.body_rates(
             at["theta"], at["phi"], thetadot=nutation, phidot=spin, psidot=precession
         )
         return {"body_rates": np.stack(found, axis=1)}

@@ -12,10 +12,10 @@ from ..arithmetic.points import POINTS_AT_ONCE, ListedPoints, Points
 from ..arithmetic.text import NumberText, parse_number, quoted, shortened
 from ..errors import DataError, LagtopError
 from .files import decoded, reading, shown_path
+from .headings import in_known_unit
 from .text_lines import UNDECIDED, Dialect, at_line, decoded_row, has_row, json_object
 from .text_tables import TableHead, read_head
 from .trajectory_columns import (
-    in_known_unit,
     known_quantities,
     numeric_columns,
     quantities_in,

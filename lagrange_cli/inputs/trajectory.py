@@ -6,29 +6,30 @@ with a row per line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from fractions import Fraction
 from io import BufferedReader
 from typing import TYPE_CHECKING, BinaryIO
 
 from ..arithmetic.text import shortened
 from ..errors import DataError, LagtopError
 from .files import decoded, reading, shown_path, temporary_copy
+from .headings import in_known_unit
 from .names import ANGLES
 from .text_lines import UNDECIDED, Dialect
 from .trajectory_columns import (
     QUANTITIES,
     Found,
     expanded,
-    in_known_unit,
-    in_known_units,
     named_twice,
+    plain_name,
     quantities_in,
 )
-from .trajectory_rows import Table, Words
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array
+    from .trajectory_text import Table, Words
 
 _MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\x06": "npz"}
 
@@ -54,7 +55,7 @@ class Trajectory:
                 "name the columns by --columns, with _ for one of them"
             )
         try:
-            self.quantities, self._factors = in_known_units(self.quantities, self.names)
+            self.quantities, self._factors = _in_known_units(self.quantities, self.names)
         except LagtopError as error:
             raise DataError(f"{self.name}: {error}") from None
 
@@ -124,6 +125,27 @@ class Trajectory:
     def where(self, place: int) -> str:
         """Return the name of the file and the place of a row."""
         return f"{self.name}, {self._table.place} {place}"
+
+
+def _in_known_units(
+    found: Mapping[str, Found], names: Sequence[str]
+) -> tuple[dict[str, Found], dict[str, Fraction]]:
+    """Return quantities in radians, degrees or no unit, and the factors that bring them there.
+
+    Times are in seconds then, and rates in radians per second.  Raises LagtopError for a unit that
+    a quantity cannot have, and for parts in different units.
+    """
+    plain, factors = dict(found), {}
+    for key, quantity in found.items():
+        units = {plain_name(names[i])[1] for i in quantity.columns}
+        if len(units) > 1:
+            shown = " and ".join(repr(names[i]) for i in quantity.columns[:2])
+            raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
+        unit, factor = in_known_unit(key, quantity.unit)
+        plain[key] = quantity._replace(unit=unit)
+        if factor is not None:
+            factors[key] = factor
+    return plain, factors
 
 
 class Clock:

@@ -22,8 +22,7 @@ from ..errors import DataError, LagtopError, UnavailableError
 from .descriptions import Description, description_in
 from .names import repeated
 from .trajectory_columns import quantities_in
-from .trajectory_rows import Block, PlainNumbers, Words
-from .trajectory_text import parts
+from .trajectory_text import Block, PlainNumbers, Words, parts
 
 if TYPE_CHECKING:
     from ..arithmetic.types import Array

@@ -8,20 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from typing import NamedTuple
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .headings import name_and_unit
-from .names import ANGLES, suggestion
-from .value import Value
+from .names import suggestion
 
 ELEVATION = "elevation"
 """The convention of an angle that counts from the horizontal."""
-ANGULAR = (*ANGLES, "euler")
-_OWN_UNITS = {"position": "m", "rotvec": "rad"}
-"""Units of quantities that are in no other."""
 SKIPPED = "_"
 """The name of a column that is left out."""
 
@@ -196,43 +191,6 @@ def known_quantities(names: Sequence[str]) -> int:
 def numeric_columns(names: Sequence[str]) -> list[int]:
     """Return the columns of all quantities."""
     return [i for found in quantities_in(names).values() for i in found.columns]
-
-
-def in_known_units(
-    found: Mapping[str, Found], names: Sequence[str]
-) -> tuple[dict[str, Found], dict[str, Fraction]]:
-    """Return quantities in radians, degrees or no unit, and the factors that bring them there.
-
-    Times are in seconds then, and rates in radians per second.  Raises LagtopError for a unit that
-    a quantity cannot have, and for parts in different units.
-    """
-    plain, factors = dict(found), {}
-    for key, quantity in found.items():
-        units = {plain_name(names[i])[1] for i in quantity.columns}
-        if len(units) > 1:
-            shown = " and ".join(repr(names[i]) for i in quantity.columns[:2])
-            raise LagtopError(f"the parts of {key} must have one unit, got {shown}")
-        unit, factor = in_known_unit(key, quantity.unit)
-        plain[key] = quantity._replace(unit=unit)
-        if factor is not None:
-            factors[key] = factor
-    return plain, factors
-
-
-def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
-    """Return the unit that a quantity is brought to, and the factor, None if it is in it.
-
-    Raises LagtopError for a unit that the quantity cannot have.
-    """
-    if unit in {None, "-", "1"} or unit == _OWN_UNITS.get(key):
-        return None, None
-    if key in ANGULAR and unit in {"deg", "rad"}:
-        return unit, None
-    from .units import DIMENSIONS, factor_of  # for few files only
-
-    if key not in DIMENSIONS:
-        raise LagtopError(f"{key} must have no unit, got {quoted(unit)}")
-    return "rad" if key in ANGULAR else None, factor_of(key, Value(Fraction(1), str(unit)))
 
 
 def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, str] | None:

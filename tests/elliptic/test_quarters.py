@@ -20,7 +20,7 @@ from lagrange_cli.arithmetic.points import ExactComplex, ListedPoints
 from lagrange_cli.elliptic.function_table import FunctionTable
 from lagrange_cli.elliptic.modulus import ModulusInput
 from lagrange_cli.elliptic.request import FunctionRequest
-from lagrange_cli.inputs.multiples import Multiple, parse_multiple
+from lagrange_cli.inputs.ranges import Multiple, parse_multiple
 
 TABLE_2 = {
     "sn": ["0.0", "1.0", "0.0", "-1.0", "0.0"],

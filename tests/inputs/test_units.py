@@ -15,8 +15,7 @@ from conftest import Lagtop, assert_one_line
 
 from lagrange_cli import LagtopError, Top, read_scene
 from lagrange_cli.inputs.given import gather
-from lagrange_cli.inputs.unit_sizes import UNITS, unit_by_pint, unit_of_text
-from lagrange_cli.inputs.units import CGS, SYSTEMS, factor_of
+from lagrange_cli.inputs.units import CGS, SYSTEMS, UNITS, factor_of, unit_by_pint, unit_of_text
 from lagrange_cli.inputs.value import Value, parse_value
 
 PAPER = "--m 1587g --A 39032g*cm^2 --C 17458g*cm^2 --s 4cm --g 981cm/s^2".split()
@@ -80,7 +79,7 @@ N m s ** 2, ft s^-2, 1 / s, m / s s, rad / min, s/s/s, s*s^-2, rpm*s/min
 def test_common_units_are_those_of_pint(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = unit_by_pint(text)
     monkeypatch.setitem(sys.modules, "pint", None)
-    monkeypatch.setattr("lagrange_cli.inputs.unit_sizes.unit_by_pint", None)
+    monkeypatch.setattr("lagrange_cli.inputs.units.unit_by_pint", None)
     assert unit_of_text(text) == exact
 
 
@@ -338,11 +337,11 @@ def test_times_with_units_ask_for_units_of_all(lagtop: Lagtop) -> None:
 
 
 def test_without_pint_the_remedy_is_named(monkeypatch: Any, lagtop: Lagtop) -> None:
-    from lagrange_cli.inputs import unit_sizes
+    from lagrange_cli.inputs import units
 
     monkeypatch.setitem(sys.modules, "pint", None)
     unit_by_pint.cache_clear()
-    monkeypatch.setattr(unit_sizes, "_registry", unit_sizes._registry.__wrapped__)
+    monkeypatch.setattr(units, "_registry", units._registry.__wrapped__)
     assert lagtop("solve", *WORDS, "--r0", "480rpm", "--get", "m").stdout == "0.35\n"
     result = lagtop("solve", "--m", "1slug")
     assert_one_line(

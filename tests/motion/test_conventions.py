@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Motion, Top, solve
-from lagrange_cli.inputs.kinematics import body_rates, euler_rates
+from lagrange_cli.inputs.rotations import body_rates, euler_rates
 
 TIMES = np.linspace(-3.0, 3.0, 25)
 SPACE = np.eye(3)
