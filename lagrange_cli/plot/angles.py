@@ -17,6 +17,9 @@ from .curves import sampled_columns, span, tilt_period
 from .kinds import Drawing, PlotRequest
 from .style import Look, points, short_text
 
+NOISE = 1e-13
+"""Size of a periodic part (radians) that is mostly rounding: it is drawn as a flat line."""
+
 
 def angles_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     """Compute the angles; where the axis stays vertical there is no precession to draw."""
@@ -74,6 +77,8 @@ def remainders_drawing(motion: Motion, request: PlotRequest) -> Drawing:
         for ax, symbol, part, colour in zip(axes, "φψ", parts, look.lines[1:], strict=True):
             ax.axhline(0.0, color=look.quiet, lw=points(0.9))
             ax.plot(t, part * request.per_radian, color=colour)
+            if np.abs(part).max() < NOISE:
+                ax.set_ylim(-10 * NOISE * request.per_radian, 10 * NOISE * request.per_radian)
             ax.set_ylabel(f"Δ{symbol} ({request.angle_unit})")
         _finish_time_axes(axes, motion, t, request)
 

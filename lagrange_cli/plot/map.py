@@ -14,7 +14,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ..arithmetic.points import LogPoints
-from ..arithmetic.types import Array
+from ..arithmetic.types import Array, Mask
 from ..arithmetic.values import Key
 from ..errors import LagtopError
 from ..inputs.input_keys import DECLARED, NINE
@@ -228,11 +228,25 @@ def _draw_contours(axes: Axes, chart: KeyMap, bar: Colorbar, look: Look) -> None
     colours = np.asarray(scale(look)(np.asarray(bar.norm(levels))))
     brightness = colours[:, :3] @ np.array([0.299, 0.587, 0.114])
     inks = ["#ffffff" if light < 0.5 else "#1a1a1a" for light in brightness]
-    values = np.ma.masked_invalid(chart.values)
+    values = np.ma.masked_invalid(np.where(jumps(chart.values, high - low), np.nan, chart.values))
     lines = axes.contour(
         chart.x.values, chart.y.values, values, levels, colors=inks, linewidths=points(0.8)
     )
     axes.clabel(lines, fontsize="small", fmt="%g")
+
+
+def jumps(values: Array, spread: float) -> Mask:
+    """Return where a value is beside a jump, which contours would follow as a saw.
+
+    A jump is a quarter of the values' spread, and far greater than the usual step.
+    """
+    beside = np.zeros(values.shape, np.bool_)
+    for grid, marks in ((values, beside), (values.T, beside.T)):
+        steps = np.abs(np.diff(grid, axis=0))
+        jump = (steps > spread / 4) & (steps > 10 * np.nanmedian(steps))
+        marks[:-1] |= jump
+        marks[1:] |= jump
+    return beside
 
 
 def _draw_threshold(axes: Axes, chart: KeyMap, look: Look) -> None:

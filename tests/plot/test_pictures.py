@@ -23,7 +23,7 @@ from lagrange_cli.plot.camera import best_camera
 from lagrange_cli.plot.cubic import cubic_curve
 from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, tilt_period, turn_span
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest, help_lines
-from lagrange_cli.plot.map import colour_limits, key_map, parse_input_range
+from lagrange_cli.plot.map import colour_limits, jumps, key_map, parse_input_range
 from lagrange_cli.plot.phase import phase_portrait, separatrix_orbit
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
@@ -101,6 +101,15 @@ def test_remainders_are_those_of_the_paper(scene: tuple[float, float]) -> None:
     for axes, curve in zip(figure.axes, (course["dphi"], course["dpsi"]), strict=False):
         shown = next(line for line in axes.lines if line.get_linewidth() == 1.8)
         assert shown.get_ydata() == pytest.approx(np.degrees(curve), rel=1e-15)
+
+
+def test_rounding_is_drawn_as_a_flat_line() -> None:
+    (path,) = (path for path in SAMPLES if path.stem == "kinon-betsch-cone")
+    noise = drawn(sample_motion(path), ["remainders"])
+    for axes in noise.axes[:2]:
+        assert axes.get_ylim()[1] == pytest.approx(1e-12 * 180 / math.pi)
+    real = drawn(solve(Top(r0=1e5)), ["remainders"])
+    assert real.axes[0].get_ylim()[1] > 1e-9
 
 
 @pytest.mark.parametrize("name", REGIMES)
@@ -271,7 +280,7 @@ def test_maps_that_cannot_be() -> None:
     """The messages of ranges are tested with the command."""
     for key, x, y, message in (
         ("K", "r0=1:2:1001", "theta0=1:2:1000", "x must have at most 1e6 cells together with y"),
-        ("regime", "r0=1:2:3", "g=1:2:3", "key must be among 26 names, got 'regime'"),
+        ("regime", "r0=1:2:3", "g=1:2:3", "key must be among [0-9]+ names, got 'regime'"),
         ("K", "r0=1:2:3", "theta0=100:200:3", r"theta0_deg must be in \[0, 180\]"),
     ):
         with pytest.raises(LagtopError, match=message):
@@ -398,6 +407,16 @@ def test_a_peak_does_not_take_all_the_colours() -> None:
     low, high = colour_limits(values)
     assert (low, high) == pytest.approx((1.01, 1.99), abs=0.01)
     assert colour_limits(np.full(9, 3.0)) == (1.5, 4.5)
+
+
+def test_contours_stop_at_a_jump_and_not_on_a_slope() -> None:
+    x, y = np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 30))
+    assert not jumps(x + y**2, 2.0).any()
+    beside = jumps(x + 3 * (x > y), 4.0)
+    assert beside.any()
+    assert (abs(x - y)[beside] < 0.07).all()
+    assert beside[np.abs(x - y) < 0.01].all()
+    assert not jumps(np.where(x < 0.5, np.nan, y), 1.0).any()
 
 
 def test_a_map_in_radians_with_its_own_colours() -> None:
