@@ -22,7 +22,7 @@ Truth = Any
 ZERO, INFINITE = Decimal(0), Decimal("Infinity")
 SHORT = 6
 """Digits of a radius."""
-LEAST = Decimal("1e-300000000000000000")
+SMALLEST = Decimal("1e-300000000000000000")
 """A size far above all that exponents of decimals cannot hold, of which products can be formed."""
 
 

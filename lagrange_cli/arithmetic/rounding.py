@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..errors import LagtopError, OutOfRangeError
-from .ball import LEAST, Ball, TooFewDigitsError, TooSmallError
+from .ball import SMALLEST, Ball, TooFewDigitsError, TooSmallError
 from .decimals import own_context
 from .text import NumberText
 
@@ -62,7 +62,7 @@ def precisions(digits: int = 0, more: int = 0) -> Iterator[int]:
 def too_small(what: str) -> LagtopError:
     """Return the error of a number that decimals cannot hold, whatever their digits."""
     return OutOfRangeError(
-        f"{what} is below {LEAST:e} in size, too small for --digits: take a smaller argument"
+        f"{what} is below {SMALLEST:e} in size, too small for --digits: take a smaller argument"
     )
 
 
@@ -120,7 +120,7 @@ def alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
     """
     low, high = ball.ends()
     if not ball.is_sharp:
-        raise TooSmallError if 0 < ball.greatest <= LEAST else TooFewDigitsError
+        raise TooSmallError if 0 < ball.greatest <= SMALLEST else TooFewDigitsError
     value = rounding(low)
     if value != rounding(high):
         raise TooFewDigitsError

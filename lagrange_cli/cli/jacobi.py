@@ -28,7 +28,7 @@ from .progress import with_progress
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.modulus import ModulusInput
-    from ..elliptic.request import Arguments, FunctionRequest
+    from ..elliptic.request import ComplexPoints, FunctionRequest
     from ..elliptic.tables import TableOfFunctions
     from ..inputs.ranges import Multiple, Multiples
     from ..output.destination import Output
@@ -207,7 +207,7 @@ def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
     return chosen[0]
 
 
-def _table(arguments: Arguments, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
+def _table(arguments: ComplexPoints, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
     """Return the table of real functions, or that of complex ones."""
     if real:
         from ..elliptic.function_table import FunctionTable
@@ -237,13 +237,13 @@ def write_constants(record: dict[str, Any], group: str, table: str, out: Output)
 
 def _arguments(
     u: Multiples | list[Multiple | ExactComplex], *, real: bool
-) -> tuple[Arguments, bool]:
+) -> tuple[ComplexPoints, bool]:
     """Return the arguments, and whether they are factors of K.
 
     Raises LagtopError for factors of K unless all is real.
     """
     from ..arithmetic.points import ListedPoints
-    from ..elliptic.request import Arguments
+    from ..elliptic.request import ComplexPoints
     from ..inputs.ranges import Multiple, listed_multiples
 
     imag: list[Fraction] = []
@@ -258,7 +258,7 @@ def _arguments(
             "--u must be without K beside complex numbers, and if --k is not in [0, 1]"
         )
     points, in_quarters = listed_multiples(tuple(reals)) if isinstance(u, list) else u
-    return Arguments(points, ListedPoints(imag) if any(imag) else None), in_quarters
+    return ComplexPoints(points, ListedPoints(imag) if any(imag) else None), in_quarters
 
 
 def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactComplex, bool]:
@@ -277,7 +277,11 @@ def _parameter(param: str | None, families: tuple[str, ...]) -> tuple[ExactCompl
 
 
 def _write_series(
-    modulus: ModulusInput, arguments: Arguments | None, in_quarters: bool, terms: int, out: Output
+    modulus: ModulusInput,
+    arguments: ComplexPoints | None,
+    in_quarters: bool,
+    terms: int,
+    out: Output,
 ) -> None:
     """Write the sums, and on standard error how many terms are enough."""
     from ..elliptic.nome_series import TOLERANCE, SeriesTable

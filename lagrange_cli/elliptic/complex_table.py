@@ -16,8 +16,8 @@ from .complex_third_kind import Parameter, omega_at, parameter, pi_at
 from .jacobi import complex_jacobi
 from .many_digits import AgreeingNumbers, ManyDigits
 from .modulus import ModulusInput
-from .periods import Lattice, Place, lattice, place_of
-from .request import THETA, THIRD, Arguments, FunctionRequest, known_parts
+from .periods import INDICES, Lattice, Place, lattice, place_of
+from .request import THIRD, ComplexPoints, FunctionRequest, known_parts
 from .tables import TableOfFunctions
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class ComplexTable(TableOfFunctions):
     arguments or a parameter beyond 2^50 periods.
     """
 
-    def __init__(self, arguments: Arguments, request: FunctionRequest) -> None:
+    def __init__(self, arguments: ComplexPoints, request: FunctionRequest) -> None:
         self.arguments, self.request, self.count = arguments, request, arguments.real.count
 
     def modulus_in(self, ar: ManyDigits) -> AnyModulus:
@@ -158,7 +158,7 @@ class ComplexTable(TableOfFunctions):
         for family in self.request.families:
             if function := functions_of_u.get(family):
                 yield from (
-                    (f"{family}{ij}", partial(function, ar, ij, at, periods)) for ij in THETA
+                    (f"{family}{ij}", partial(function, ar, ij, at, periods)) for ij in INDICES
                 )
             elif third := functions_of_both.get(family):
                 for ij, kind in functions.third.items():

@@ -20,7 +20,7 @@ from .any_modulus import AnyModulus, ModulusKind
 from .many_digits import ManyDigits
 from .modulus import Modulus, in_many_digits
 from .periods import (
-    NAMES,
+    INDICES,
     Complex,
     Fine,
     Lattice,
@@ -46,7 +46,7 @@ def inner_name(ij: str, kind: ModulusKind) -> str:
 
     Raises LagtopError for other indices than 01, 00, 11 and 10.
     """
-    if ij not in NAMES:
+    if ij not in INDICES:
         raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
     return _OTHER_NAMES[kind].get(ij, ij)
 

@@ -16,8 +16,8 @@ from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
 from .modulus import Modulus
-from .periods import Periods, of_quarters
-from .request import THETA, THIRD, FunctionRequest, known_values, put_exact_values
+from .periods import INDICES, Periods, of_quarters
+from .request import THIRD, FunctionRequest, known_values, put_exact_values
 from .tables import RealTable
 from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
 from .third_kind import third_kind
@@ -135,7 +135,7 @@ class FunctionTable(RealTable):
                     yield name, partial(ar.convert, value)
             elif family in {"theta", "zeta"}:
                 function = theta_at if family == "theta" else zeta_at
-                for ij in THETA:
+                for ij in INDICES:
                     yield f"{family}{ij}", partial(function, ar, ij, at, series)
             else:
                 for ij, kind in functions.third.items():

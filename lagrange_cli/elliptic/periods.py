@@ -24,7 +24,7 @@ if TYPE_CHECKING:  # NumPy is loaded for arrays only
     from ..arithmetic.types import Array
     from .many_digits import ManyDigits
 
-NAMES = ("01", "00", "11", "10")
+INDICES = ("01", "00", "11", "10")
 """The indices of the four theta functions, in the order of the sources."""
 
 Complex = Value

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .many_digits import ManyDigits
 
-THETA, THIRD = ("01", "00", "11", "10"), ("01", "00", "11")
-"""The functions of one argument, and those of an argument and a parameter."""
+THIRD = ("01", "00", "11")
+"""The indices of the functions of an argument and a parameter."""
 
 
 class FunctionRequest(NamedTuple):
@@ -62,8 +62,8 @@ class FunctionRequest(NamedTuple):
         return self._replace(parameter=self.parameter.nearest())
 
 
-class Arguments(NamedTuple):
-    """Arguments by their real parts and, if some are not real, their imaginary parts."""
+class ComplexPoints(NamedTuple):
+    """Complex arguments by their real parts and, if some are not real, their imaginary parts."""
 
     real: Points
     imag: Points | None = None

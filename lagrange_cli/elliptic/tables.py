@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _MOST_FOR_DOUBLES = 120
 """Digits beyond which arrays of doubles are sooner ready."""
-FEW = 24
+_FEW = 24
 """Numbers that are computed as enclosures in the time that NumPy takes to load."""
 
 
@@ -117,7 +117,7 @@ class TableOfFunctions:
         """
         if digits is not None:
             return _listed(self.digit_rows(digits))
-        if self.functions * self.count <= FEW:
+        if self.functions * self.count <= _FEW:
             with suppress(TooFewDigitsError):  # something cancels, so that arrays are sooner ready
                 header, blocks = _listed(self.digit_rows(short=True))
                 return header, iter([list(chain.from_iterable(blocks))])

@@ -24,7 +24,7 @@ from ..errors import LagtopError
 from .complete import complete_k, nome
 from .modulus import Modulus, in_many_digits
 from .periods import (
-    NAMES,
+    INDICES,
     Complex,
     Periods,
     each_alone,
@@ -135,7 +135,7 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
 
 
 def _check(ij: str) -> None:
-    if ij not in NAMES:
+    if ij not in INDICES:
         raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
 
 
