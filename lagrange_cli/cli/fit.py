@@ -16,6 +16,7 @@ from .options import (
     FILE,
     NAMES,
     Parsed,
+    exclude,
     extension,
     output_options,
     plot_option,
@@ -28,6 +29,7 @@ from .top import UNCERTAIN, TopOptions, scene_among, top_options
 if TYPE_CHECKING:
     from ..fits.record import Outcome
     from ..fits.recording import Recording
+    from ..fits.windows import WindowedFit
     from ..inputs.text_lines import Dialect
     from ..inputs.top import Top
     from ..inputs.units import System
@@ -49,6 +51,16 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
     return {name.strip(): positive(value) for name, _, value in parts}
 
 
+def _parse_window(text: str) -> tuple[float, bool]:
+    """Return the number of windows, or their duration, and whether it is the latter."""
+    from ..arithmetic.text import parse_number
+
+    number = float(parse_number(text))
+    if not number > 0:
+        raise LagtopError(f"must be > 0, got {number:g}")
+    return number, not text.strip().isdigit()
+
+
 @click.command(
     "fit",
     cls=Command,
@@ -67,6 +79,12 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
     help="Standard deviation of all angles, or theta=0.3,psi=0.5; columns NAME_std override it.  "
     "[default: estimated from the residuals]",
 )
+@click.option(
+    "--window",
+    type=Parsed("N|TIME", _parse_window),
+    help="Fit N windows, or windows of a duration with a decimal point, such as 1.5: one body, and "
+    "a spin rate that decays.",
+)
 @click.option("--by", metavar="COLUMN", help="Column that distinguishes several recordings.")
 @click.option("--together", is_flag=True, help="All recordings of --by are of one body.")
 @reading_options(quaternion="wxyz")
@@ -78,6 +96,7 @@ def fit_command(
     top: TopOptions,
     fix: list[str] | None,
     sigma: float | dict[str, float] | None,
+    window: tuple[float, bool] | None,
     by: str | None,
     together: bool,
     names: list[str] | None,
@@ -99,6 +118,8 @@ def fit_command(
     """
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings
+    from ..fits.windows import fit_windows, split
+    from ..inputs.files import shown_path
     from ..inputs.scene_file import is_scene_file
     from ..inputs.seen import Conventions
     from ..plot.files import check_plot
@@ -110,14 +131,22 @@ def fit_command(
     recording, radians = recordings_given[0], top.radians
     if together and by is None:
         raise LagtopError("--together needs --by COLUMN")
+    scene_path = out.path if extension(out.path) == "toml" else None
+    for other in ({"--by": by}, {"--plot": plot}, {f"--output {out.path}": scene_path}):
+        exclude({"--window": window, **other})
     conventions = Conventions(quaternion_order, euler_sequence, "body", radians).checked()
     reading = Reading(names, conventions, by, _in_radians(sigma, radians), dialect)
     recordings = read_recordings(recording, reading)
     top = top.replace(scene=scene)
     known, stds, system = _known(top, recordings[0].scene, fix or [])
-    scene_path = out.path if extension(out.path) == "toml" else None
     if scene_path and len(recordings) > 1:
         raise LagtopError(f"--output {out.path} holds one top, got {len(recordings)} recordings")
+    if window:
+        source = shown_path(recording)
+        parts = split(recordings[0], window[0], is_time=window[1], where=source)
+        windows = fit_windows(parts, known, stds, source, radians=radians)
+        _write_windows(windows, source, system, out)
+        return
     groups = [recordings] if together else [[one] for one in recordings]
     found = _fitted(groups, known, stds, recording, radians)
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
@@ -213,6 +242,30 @@ def _write(found: list[Outcome], source: str, system: System | None, out: Output
         for word, texts in (("Note", notes), ("Warning", outcome.warnings())):
             if texts:
                 complain(f"{word}: {name}{'; '.join(texts)}")
+
+
+def _write_windows(found: WindowedFit, source: str, system: System | None, out: Output) -> None:
+    """Write the report on a fit in windows, or its record, or a row for each window."""
+    from ..fits.record import FAILED
+    from ..fits.report import windows_report
+
+    rows = [window.row() for window in found.windows]
+    if out.fmt in {"table", "markdown"}:
+        write_report(out, lambda: windows_report(found, source, system))
+    elif out.fmt == "json":
+        import orjson
+
+        from ..output.destination import write_bytes
+
+        option = orjson.OPT_APPEND_NEWLINE
+        write_bytes(out.path, lambda: orjson.dumps(found.record(), option=option))
+    else:
+        from ..output.formats import block_text
+
+        columns = [[row[key] for row in rows] for key in rows[0]]
+        out.blocks(list(rows[0]), [block_text(columns, list(rows[0]), out.fmt)])
+    failed = [window.outcome for window in found.windows if window.verdict == FAILED]
+    fail_for([outcome.failure() for outcome in failed], len(rows), "windows")
 
 
 def _write_scene(outcome: Outcome, source: str, path: str) -> None:

@@ -14,7 +14,7 @@ from ..errors import LagtopError, check_type
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions
 from ..inputs.value import Value, as_value, parse_value
-from .attempts import Attempt, best_attempt, sigma_of
+from .attempts import best_attempt, sigma_of
 from .least_squares import LEAST_SIGMA, FittedParameters, Problem
 from .nutation import NoNutationError
 from .parameters import FIT_QUANTITIES, Parameters, known_inputs, parameters_of
@@ -69,16 +69,25 @@ def _fitted(
             parameters_of(known, stds, recordings),
         )
         problem, rival = Problem(recordings, sigma, together), None
-        solution = problem.solve(_joined(together, alone))
+        starts = [one.solution.quantities(0)[0].tolist() for one in alone]
+        found = [dict(zip(FIT_QUANTITIES, start, strict=True)) for start in starts]
+        solution = problem.solve(joined(together, found))
     sigma_known = bool(recordings[0].sigma)
-    for _ in range(0 if sigma_known else _REWEIGHTINGS):
-        problem = Problem(recordings, sigma_left(solution), problem.parameters)
-        solution = problem.solve(solution.values)
-        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
-            break
+    if not sigma_known:
+        problem, solution = reweighted(problem, solution)
     if len(alone) == 1:
         solution = problem.with_reach(solution)
     return Fit(recordings, solution, sigma_known, [one.mirrored for one in alone], noise, rival)
+
+
+def reweighted(problem: Problem, solution: FittedParameters) -> tuple[Problem, FittedParameters]:
+    """Return a problem with the standard deviations of its residuals, and its solution."""
+    for _ in range(_REWEIGHTINGS):
+        problem = Problem(problem.recordings, sigma_left(solution), problem.parameters)
+        solution = problem.solve(solution.values)
+        if abs(solution.chi2 / max(solution.dof, 1) - 1) < _STEADY:
+            break
+    return problem, solution
 
 
 def sigma_left(solution: FittedParameters) -> list[dict[str, Array]]:
@@ -93,15 +102,16 @@ def sigma_left(solution: FittedParameters) -> list[dict[str, Array]]:
     return [{name: np.full(x.size, sigma[name]) for name, x in one.items()} for one in rest]
 
 
-def _joined(together: Parameters, alone: Sequence[Attempt]) -> Array:
-    """Return where a fit of several recordings starts: from the fits of each."""
+def joined(together: Parameters, alone: Sequence[Mapping[str, float]]) -> Array:
+    """Return where a fit of several recordings starts, from the quantities of each."""
     found = [
-        dict(zip(FIT_QUANTITIES, one.solution.quantities(0)[0].tolist(), strict=True))
+        {
+            **one,
+            "ratio": one["b"] / one["r0"] if one["r0"] else 1.0,
+            **{name: together.known[name] for name in together.stds},
+        }
         for one in alone
     ]
-    for one in found:
-        one["ratio"] = one["b"] / one["r0"] if one["r0"] else 1.0
-        one |= {name: together.known[name] for name in together.stds}
     values = [
         np.median([one[name] for j, one in enumerate(found) if i in {-1, j}])
         for name, i in together.names
@@ -130,11 +140,25 @@ def fit(
     fitted.
     """
     check_type("known", known, Mapping, NoneType)
+    angles = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
+    recording = recording_from(t, **angles, sigma=sigma)
+    values = {name: _value(name, x) for name, x in (known or {}).items()}
+    stds = {name: float(x.std) for name, x in values.items() if x.std is not None}
+    inputs, stds = known_inputs({name: x.number for name, x in values.items()}, stds)
+    return fit_recordings([recording], inputs, stds=stds)[0]
+
+
+def recording_from(
+    t: ArrayLike,
+    *,
+    sigma: Mapping[str, float] | float | None = None,
+    **angles: ArrayLike | None,
+) -> Recording:
+    """Return the recording in arrays, as those of `fit`.  Raises LagtopError, DataError."""
     times = _numbers("t", t, ())
-    given = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
     arrays = {
         name: _numbers(name, x, {"axis": (3,), "quaternion": (4,)}.get(name, ()))
-        for name, x in given.items()
+        for name, x in angles.items()
         if x is not None
     }
     for name, x in arrays.items():
@@ -149,11 +173,7 @@ def fit(
     rows = {"t": times, **arrays}
     columns = {name: x if x.ndim > 1 else x[:, np.newaxis] for name, x in rows.items()}
     source = Source("the recording", Reading(conventions=_IN_RADIANS, sigma=sigma), {}, {})
-    recording = recording_of("", source, columns)
-    values = {name: _value(name, x) for name, x in (known or {}).items()}
-    stds = {name: float(x.std) for name, x in values.items() if x.std is not None}
-    inputs, stds = known_inputs({name: x.number for name, x in values.items()}, stds)
-    return fit_recordings([recording], inputs, stds=stds)[0]
+    return recording_of("", source, columns)
 
 
 def _value(name: str, given: float | str) -> Value:

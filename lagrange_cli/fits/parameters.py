@@ -237,12 +237,13 @@ def _guard(known: Mapping[str, float]) -> None:
 class Coordinates:
     """Coordinates of the parameters of one recording, which are known by their names.
 
-    If a parameter that they need is missing, the parameters are their own coordinates.
+    If a parameter that they need is missing, or there are several recordings, the parameters are
+    their own coordinates.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = names
-        self.apply = set(names) >= _NEEDED
+        self.apply = set(names) >= _NEEDED and len(set(names)) == len(names)
 
     def of(self, parameters: Array) -> Array:
         """Return the coordinates of parameters."""

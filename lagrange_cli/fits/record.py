@@ -76,8 +76,8 @@ class Outcome:
         self.determined = (
             determined_products(self.shown, self.known) if all(self.shown.values()) else []
         )
-        rows = found.solution.residuals[index]
-        self.residuals = {channel: residual_of(values) for channel, values in rows.items()}
+        self.residuals_by_row = found.solution.residuals[index]
+        self.residuals = {x: residual_of(values) for x, values in self.residuals_by_row.items()}
 
     @property
     def chi2_dof(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,11 +11,13 @@ import numpy as np
 from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
+from ..motion.quantity import unit_name
 from ..motion.record import KEYS
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..output.terminal import one_line
 from .least_squares import chi2_bounds
 from .record import Outcome
+from .windows import WindowedFit
 
 if TYPE_CHECKING:
     from ..inputs.units import System
@@ -112,6 +115,53 @@ def _conclusions(outcome: Outcome) -> Iterator[str]:
         yield f"{name}{text}."
     for text in outcome.warnings():
         yield f"{name}Warning: {text}."
+
+
+def windows_report(found: WindowedFit, source: str, system: System | None) -> Report:
+    """Return the report on a fit in windows: a row for each, the body, and the decay."""
+    first = found.windows[0].outcome
+    name = "r0" if first.fit.solution.parameters.spins else "b"
+    columns = [name, "theta0_deg", "T_nutation", "T_precession"]
+    columns = [unit_name(x, radians=first.radians) for x in columns]
+    units = outcome_units(first, system) if system else {}
+    fields = [
+        Field("t", with_unit("t", units.get("t_start")), lambda t: f"{t:.6g}"),
+        *(Field(x, with_unit(x, units.get(x)), str, is_text=True) for x in columns),
+        Field("chi2_dof", "chi2/dof", lambda x: f"{x:.3f}"),
+        Field("verdict", "verdict", is_text=True),
+    ]
+    rows = []
+    for window in found.windows:
+        row = window.row()
+        texts = {x: uncertain_text(row[x], row[f"{x}_std"]) for x in columns if x in row}
+        rows.append(SimpleNamespace(**{**dict.fromkeys(columns), **row, **texts}))
+    record = found.record()
+    keys = [x for x in record if f"{x}_std" in record and "decay" not in x]
+    body = [f"{x} = {uncertain_text(record[x], record[f'{x}_std'])}" for x in keys]
+    return Report(
+        _conditions([x.outcome for x in found.windows], source, system),
+        fields,
+        rows,
+        [f"Body: {', '.join(body)}.", *_windows_conclusions(found)],
+    )
+
+
+def _windows_conclusions(found: WindowedFit) -> Iterator[str]:
+    decay, outcome = found.decay, found.windows[0].outcome
+    if decay.time is None:
+        shown = uncertain_text(decay.rate, decay.rate_std)
+        yield f"{decay.quantity} does not decay: its relative rate of decay is {shown}."
+    else:
+        time = uncertain_text(*decay.time)
+        yield (
+            f"{decay.quantity} decays with a time of {time}; "
+            f"chi2/dof of the exponential: {decay.chi2_dof:.2f}."
+        )
+    count = len(found.windows)
+    good = sum(window.verdict == "good" for window in found.windows)
+    yield f"The closed form describes {good} of {count} windows; chi2/dof {outcome.chi2_dof:.3f}."
+    for text in [*outcome.notes(), *outcome.failures()]:
+        yield f"{text[0].upper()}{text[1:]}."
 
 
 def scene_text(outcome: Outcome, source: str) -> str:

@@ -1,0 +1,235 @@
+"""A recording in windows: one body, and a spin rate that decays from window to window.
+
+Friction slows a real top, which the closed form leaves out.  Within a window that is short enough
+the loss is below the noise.  All windows share a and C/A; each has its own start and its own r0, or
+b if the spin is not recorded.  A line through the logarithms of these gives the decay time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arithmetic.arrays import ARRAYS
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..motion.solve import solve
+from .attempts import Attempt, best_attempt, sigma_of
+from .fit import joined, reweighted
+from .least_squares import Problem, chi2_bounds
+from .model import STATE, inputs_of
+from .parameters import FIT_QUANTITIES, parameters_of
+from .record import FAILED, Fit, Outcome
+from .recording import LEAST_ROWS, Recording
+
+_STEPS = 30
+"""Steps of each window from the end of the one before it."""
+_SURE = 3.0
+"""Standard deviations from which on a decay is told from none."""
+
+
+class Decay(NamedTuple):
+    """The exponential decay of the spin rate, or of b."""
+
+    quantity: str
+    rate: float
+    rate_std: float
+    chi2_dof: float
+    """Chi^2 per degree of freedom of the straight line through the logarithms."""
+
+    @property
+    def time(self) -> tuple[float, float] | None:
+        """The decay time 1/rate and its standard deviation; None if no decay is seen."""
+        if self.rate <= _SURE * self.rate_std:
+            return None
+        return 1 / self.rate, self.rate_std / self.rate**2
+
+
+class Window(NamedTuple):
+    """One window: its outcome, and how well the closed form describes it."""
+
+    outcome: Outcome
+    middle: float
+    """Time of its middle, on the clock of the recording."""
+    chi2_dof: float
+    verdict: str
+    """`good` or `doubtful`, or `failed` if the fit of all windows has failed."""
+
+    def row(self) -> dict[str, Any]:
+        """Return the numbers of the window by key."""
+        record = self.outcome.record()
+        names = ["r0", "b", "theta0", "thetadot0", "psidot0"]
+        names = [self.outcome.unit(x) for x in names if self.outcome.unit(x) in record]
+        names += ["T_nutation", "T_precession"]
+        pairs = [key for name in names for key in (name, f"{name}_std") if key in record]
+        return {
+            **{"t": self.middle, "t_start": record["t_start"], "rows": record["rows"]},
+            **{key: record[key] for key in pairs},
+            **{"chi2_dof": self.chi2_dof, "verdict": self.verdict},
+        }
+
+
+class WindowedFit(NamedTuple):
+    """The results of a fit in windows."""
+
+    windows: Sequence[Window]
+    decay: Decay
+
+    @property
+    def verdict(self) -> str:
+        """The worst verdict of any window."""
+        words = {window.verdict for window in self.windows}
+        return next((word for word in (FAILED, "doubtful") if word in words), "good")
+
+    def record(self) -> dict[str, Any]:
+        """Return the body, the decay, and the windows, by key."""
+        first = self.windows[0].outcome
+        body = {x: first.values[x] for x in first.shown if x not in {"r0", "b"}}
+        record: dict[str, Any] = {}
+        for key, value in body.items():
+            record[key], record[f"{key}_std"] = value, first.deviations[key]
+        for product, std in first.products():
+            if not {"r0"} & product.powers.keys():
+                record[product.name], record[f"{product.name}_std"] = product.value, std
+        time, time_std = self.decay.time or (None, None)
+        record |= {
+            **{"decay_of": self.decay.quantity, "decay_time": time, "decay_time_std": time_std},
+            **{"decay_rate": self.decay.rate, "decay_rate_std": self.decay.rate_std},
+            "decay_chi2_dof": self.decay.chi2_dof,
+        }
+        solution = first.fit.solution
+        return record | {
+            **{"dof": solution.dof, "chi2_dof": first.chi2_dof, "verdict": self.verdict},
+            "windows": [window.row() for window in self.windows],
+        }
+
+
+def split(recording: Recording, window: float, *, is_time: bool, where: str) -> list[Recording]:
+    """Return a recording in windows: so many of the same duration, or of so long a time each.
+
+    A last window that is shorter joins the one before it.  Raises LagtopError for a bad window.
+    """
+    span = float(recording.t[-1])
+    count = int(span / window * (1 + 1e-9)) if is_time and window > 0 else window
+    if not 2 <= count <= recording.t.size or count != int(count):
+        raise LagtopError(f"window must give 2 windows or more of {where}, got {count:g}", "window")
+    length = window if is_time else span / count
+    index = np.minimum((recording.t / length).astype(int), int(count) - 1)
+    parts = []
+    for i in range(int(count)):
+        rows = np.flatnonzero(index == i)
+        if rows.size < LEAST_ROWS:
+            raise LagtopError(
+                f"window {i + 1} must have {LEAST_ROWS} rows or more, got {rows.size}", "window"
+            )
+        t = recording.t[rows]
+        parts.append(
+            replace(
+                recording,
+                name=f"window {i + 1}",
+                t=t - t[0],
+                t_start=recording.t_start + float(t[0]),
+                angles={name: x[rows] for name, x in recording.angles.items()},
+                sigma={name: x[rows] for name, x in recording.sigma.items()},
+            )
+        )
+    return parts
+
+
+def fit_windows(
+    parts: Sequence[Recording],
+    known: Mapping[str, float],
+    stds: Mapping[str, float],
+    where: str,
+    *,
+    radians: bool = False,
+) -> WindowedFit:
+    """Fit one body to the windows of a recording.
+
+    The start of each window is looked for where the motion of the window before it leads.  Raises
+    LagtopError, DataError for a recording that cannot be fitted.
+    """
+    if "r0" in known:
+        raise LagtopError("a fit in windows finds r0: leave it out", "r0")
+    with ARRAYS.working():
+        first = best_attempt(parts[0], known, stds, f"{where}, {parts[0].name}")
+        if first.mirrored:
+            parts = [part.mirrored for part in parts]
+        found = [_quantities(first)]
+        for before, part in pairwise(parts):
+            start = _led_to(found[-1], part.t_start - before.t_start)
+            alone = parameters_of(known, stds, [part])
+            problem = Problem([part], [sigma_of(part, first.noise)], alone)
+            solution = problem.solve(joined(alone, [start]), _STEPS)
+            found.append(dict(zip(FIT_QUANTITIES, solution.quantities(0)[0], strict=True)))
+        together = parameters_of(known, stds, parts)
+        problem = Problem(parts, [sigma_of(part, first.noise) for part in parts], together)
+        solution = problem.solve(joined(together, found))
+        sigma_known = bool(parts[0].sigma)
+        if not sigma_known:
+            problem, solution = reweighted(problem, solution)
+    count = len(parts)
+    no_noise: list[dict[str, float]] = [{}] * count  # harmonics of few rows underestimate it
+    fit = Fit(parts, solution, sigma_known, [first.mirrored] * count, no_noise)
+    outcomes = [Outcome(fit, i, radians=radians) for i in range(count)]
+    windows = [_window(x, sigma) for x, sigma in zip(outcomes, problem.sigma, strict=True)]
+    return WindowedFit(windows, _decay(windows, fit))
+
+
+def _quantities(attempt: Attempt) -> dict[str, float]:
+    return dict(zip(FIT_QUANTITIES, attempt.solution.quantities(0)[0].tolist(), strict=True))
+
+
+def _led_to(values: Mapping[str, float], t: float) -> dict[str, float]:
+    """Return the quantities of a motion, counted from a later time."""
+    columns = ["theta", "thetadot", "psidot", "phi", "psi"]
+    top = Top(**inputs_of(*(values[name] for name in STATE)))
+    at = {name: float(x) for name, x in solve(top).table(t, columns).items()}
+    return {
+        **values,
+        **{"theta0": at["theta"], "thetadot0": at["thetadot"], "psidot0": at["psidot"]},
+        "psi_zero": values["psi_zero"] + at["psi"],
+        "phi_zero": values["phi_zero"] + at["phi"] + (values["r0"] - values["b"]) * t,
+    }
+
+
+def _window(outcome: Outcome, sigma: Array) -> Window:
+    """Return a window with its own chi^2, of which it has its part of all degrees of freedom."""
+    solution, recording = outcome.fit.solution, outcome.recording
+    rows = np.stack(list(outcome.residuals_by_row.values()))
+    known = np.isfinite(rows)
+    total = solution.dof + solution.values.size
+    freedom = max(round(int(known.sum()) * solution.dof / total), 1)
+    chi2_dof = float(np.sum((rows / sigma)[known] ** 2)) / freedom
+    low, high = chi2_bounds(freedom)
+    is_noise = all(one.is_noise for one in outcome.residuals.values())
+    within = low <= chi2_dof <= high or not outcome.fit.sigma_known
+    verdict = FAILED if outcome.failures() else "good" if is_noise and within else "doubtful"
+    return Window(outcome, recording.t_start + float(recording.t[-1]) / 2, chi2_dof, verdict)
+
+
+def _decay(windows: Sequence[Window], fit: Fit) -> Decay:
+    """Return the decay, by generalised least squares through the logarithms of r0, or of b."""
+    parameters, covariance = fit.solution.parameters, fit.solution.covariance
+    name = "r0" if parameters.spins else "b"
+    t = np.array([window.middle for window in windows])
+    rates = np.array([window.outcome.values[name] for window in windows])
+    slopes = np.stack(
+        [
+            parameters.quantities(fit.solution.values, i)[1][FIT_QUANTITIES.index(name)] / rate
+            for i, rate in enumerate(rates.tolist())
+        ]
+    )
+    spread = np.linalg.cholesky(slopes @ covariance @ slopes.T)
+    basis = np.linalg.solve(spread, np.vander(t - t.mean(), 2))
+    y = np.linalg.solve(spread, np.log(np.abs(rates)))
+    (slope, level), *_ = np.linalg.lstsq(basis, y, rcond=None)
+    std = math.sqrt(float(np.linalg.inv(basis.T @ basis)[0, 0]))
+    chi2 = float(np.sum((y - basis @ [slope, level]) ** 2))
+    return Decay(name, -float(slope), std, chi2 / max(t.size - 2, 1))
