@@ -103,7 +103,7 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path, short: fuzz_windows.Slowed)
     for words, message in (
         (["--by", "t"], "--window and --by exclude each other"),
         (["--r0", 10], "a fit in windows finds r0: leave it out"),
-        (["-o", tmp_path / "x.toml"], "exclude each other"),
+        (["-o", tmp_path / "x.toml"], "--window and --output"),
     ):
         assert_one_line(lagtop(*options, *words), 2, message)
     assert_one_line(lagtop(*options[:-1], 0), 2, "--window must be > 0, got 0")
