@@ -101,9 +101,9 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path, short: fuzz_windows.Slowed)
     assert lines[0].startswith("t,t_start,rows,r0,r0_std,b,b_std,theta0_deg")
     assert len(lines) == 6
     for words, message in (
-        (["--by", "t"], "--window and --by exclude each other"),
+        (["--by", "t"], "use --window or --by, not both"),
         (["--r0", 10], "a fit in windows finds r0: leave it out"),
-        (["-o", tmp_path / "x.toml"], "--window and --output"),
+        (["-o", tmp_path / "x.toml"], "use --window or --output"),
     ):
         assert_one_line(lagtop(*options, *words), 2, message)
     assert_one_line(lagtop(*options[:-1], 0), 2, "--window must be > 0, got 0")

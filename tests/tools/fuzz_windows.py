@@ -65,16 +65,25 @@ def motion(a: float, b: float, ratio: float, start: tuple[float, ...], t: Array)
     return np.asarray(run.y[[0, 2, 4]])
 
 
+def _period(t: Array, theta: Array) -> float:
+    """Return the mean time between greatest tilts."""
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(theta))) < 0)
+    return float(np.mean(np.diff(t[turns]))) if turns.size > 2 else math.inf
+
+
 def drawn(seed: int) -> Slowed:
     """Return the recording of a seed."""
     rng = np.random.default_rng(seed)
-    a, b = rng.uniform(40, 80), rng.choice([-1, 1]) * rng.uniform(8, 12)
-    ratio, start = rng.uniform(0.4, 0.9), (rng.uniform(0.7, 1.4), rng.normal(), rng.normal())
     t = np.arange(round(SECONDS * FRAMES)) / FRAMES
+    while True:
+        a, b = rng.uniform(40, 80), rng.choice([-1, 1]) * rng.uniform(8, 12)
+        ratio, start = rng.uniform(0.4, 0.9), (rng.uniform(0.7, 1.4), rng.normal(), rng.normal())
+        exact = dict(zip(NOISE, motion(a, b, ratio, start, t), strict=True))
+        if _period(t, exact["theta"]) < 0.9 * WINDOW:  # the first window shows a whole period
+            break
     gap = rng.uniform(3, SECONDS - 4)
     kept = (rng.random(t.size) > 0.05) & ~((t > gap) & (t < gap + 0.4))
     kept[0] = True
-    exact = dict(zip(("theta", "psi", "phi"), motion(a, b, ratio, start, t), strict=True))
     angles = {name: x + rng.normal(scale=NOISE[name], size=t.size) for name, x in exact.items()}
     for name in ("psi", "phi"):
         angles[name] = np.angle(np.exp(1j * (angles[name] + rng.uniform(-3, 3))))
