@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Collection, Iterable, Sequence
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
@@ -60,3 +61,16 @@ def suggestion(name: object, known: Iterable[str]) -> str:
     longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
     nearest = longer or get_close_matches(wrong, known, 1)
     return f" (did you mean {nearest[0]!r}?)" if nearest else ""
+
+
+def usual_spelling(text: str, units: Collection[str]) -> str:
+    """Return a question with the unit in its usual spelling, such as rpm for RPM, if there is one.
+
+    A figure after a name counts as its power, as in `kg m2`.
+    """
+    known = {name.lower(): name for name in units}
+    usual = re.sub(r"[^\W\d_]+", lambda name: known.get(name[0].lower(), name[0]), text)
+    usual = re.sub(r"(?<=[^\W\d_])(?=\d)", "^", usual)
+    if usual == text or any(x not in units for x in re.findall(r"[^\W\d_]+|°", usual)):
+        return ""
+    return f"; did you mean {usual}?"

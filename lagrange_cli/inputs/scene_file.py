@@ -73,7 +73,10 @@ class SceneFile:
         except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
             why = f"{error}{_remedy(str(error), self.text)}"
             raise SceneError(f"{self.name}: not a TOML file: {why}") from None
-        self.inputs = {key: self._value(key, value) for key, value in table.items()}
+        found = {key: self._value(key, value) for key, value in table.items()}
+        # a tilt without a unit is in degrees, as on the command line
+        degrees = {TILT: f"{TILT}_deg"}
+        self.inputs = {x if y.unit else degrees.get(x, x): y for x, y in found.items()}
 
     def _value(self, key: str, value: object) -> Value:
         if key not in SCENE_KEYS:
@@ -99,9 +102,9 @@ class SceneFile:
         except LagtopError as error:
             raise self.error(LagtopError(f"{key} {error}", key)) from None
         is_word = key == "psidot0" and value.number in STEADY_WORDS
-        if not value.unit and not is_word and (value.std is None or key == TILT):
+        if not value.unit and not is_word and value.std is None:
             wrong = (
-                f"{key} must have a unit between quotes, or be a number without, got {quoted(text)}"
+                f"{key} must have a unit between quotes, got {quoted(text)}: leave out the quotes"
             )
             raise self.error(LagtopError(wrong, key))
         if value.unit and key.startswith(f"{TILT}_"):
@@ -128,7 +131,9 @@ def _check_dots(text: str) -> None:
 
 
 def _remedy(wrong: str, text: str) -> str:
-    """Return a hint in brackets where a decimal comma is what is wrong with a line of TOML."""
+    """Return a hint in brackets on a decimal comma, or on a key that is there twice."""
+    if "overwrite" in wrong:
+        return " (a key is there twice: delete one line)"
     place = re.search(r"at line (\d+)", wrong)
     line = text.splitlines()[int(place[1]) - 1] if place else ""
     return " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""

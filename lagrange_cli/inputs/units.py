@@ -17,7 +17,7 @@ from ..arithmetic.values import Values
 from ..errors import LagtopError, UnavailableError
 from .input_keys import BODY, DECLARED, TILT
 from .measured import EXACT_DIGITS
-from .names import ANGLES
+from .names import ANGLES, usual_spelling
 from .value import Value
 
 Dimensions = tuple[int, int, int]
@@ -48,6 +48,7 @@ _GRAMMAR = re.compile(rf"(?:1?\s*/\s*)?{_NAME}(?:\s*[*·/ ]\s*{_NAME})*")
 """Names of units with powers of one figure, times or over one another: others never reach pint."""
 _MOST_CHARACTERS = 60
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_HERTZ = "turns or radians per second? write rpm, turn/s or rad/s"
 _FIGURES = {figure: raised for raised, figure in _RAISED.items()}
 
 
@@ -112,8 +113,10 @@ def system_of(inputs: Mapping[str, Value], name: str | None) -> System | None:
     united = [x for x in inputs if inputs[x].unit and x != TILT]
     if bare and (united or name is not None):
         why = f"as {united[0]} has" if united else "where a time or the output has one"
-        wrong = f"{bare[0]} must have a unit such as {_example(bare[0])}, {why}, got none"
-        raise LagtopError(wrong, bare[0])
+        number, example = inputs[bare[0]].number, _KINDS[_UNIT_OF[bare[0]]][1]
+        if isinstance(number, Fraction) and number != 1:  # a heading of a file stands for 1
+            example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
+        raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
     return SYSTEMS[name or "si"] if united or name else None
 
 
@@ -148,7 +151,7 @@ def factor_of(key: str, value: Value) -> Fraction:
     unit = _unit_in(key, value)
     is_angular = _UNIT_OF[key] in {"angle", "rad/time"}
     if unit.dimensions != DIMENSIONS[key] or unit.angular != is_angular:
-        raise _refused(key, value)
+        raise _refused(key, value, _HERTZ if is_angular and unit.dimensions == RATE else "")
     return unit.size
 
 
@@ -162,19 +165,16 @@ def _tilt(value: Value) -> tuple[str, Fraction]:
     return f"{TILT}_rad", unit.rational
 
 
-def _example(key: str) -> str:
-    return _KINDS[_UNIT_OF[key]][1]
-
-
 def _refused(key: str, value: Value, why: str = "") -> LagtopError:
-    hint = f" ({why})" if why else ""
-    unit = repr(value.unit)[:_MOST_CHARACTERS]
-    wanted = f"{key} must have a unit as in {_example(key)}"
+    unit, hint = repr(value.unit)[:_MOST_CHARACTERS], f" ({why})" if why else ""
+    wanted = f"{key} must have a unit as in {_KINDS[_UNIT_OF[key]][1]}"
     return LagtopError(f"{wanted}, got the unit {unit}{hint}", key)
 
 
 def _unit_in(key: str, value: Value) -> Unit:
     text = re.sub("[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda x: f"^{x[0].translate(_RAISED)}", value.unit.strip())
+    if text in {"gr", "gr."}:  # a grain for pint, a gram for many people
+        raise _refused(key, value, "grain or gram? write grain or g")
     if len(text) > _MOST_CHARACTERS or not _GRAMMAR.fullmatch(text):
         raise _refused(key, value)
     try:
@@ -186,7 +186,7 @@ def _unit_in(key: str, value: Value) -> Unit:
             key,
         ) from None
     except UnknownUnitError as error:
-        raise _refused(key, value, str(error)) from None
+        raise _refused(key, value, f"{error}{usual_spelling(text, UNITS)}") from None
 
 
 class Unit(NamedTuple):

@@ -122,6 +122,8 @@ def test_the_worked_example_in_si(solved: Any, lagtop: Lagtop) -> None:
             assert si[key] * sizes.get(key, 1) == pytest.approx(value, rel=1e-13), key
     cgs = solved(*PAPER, "--r0", "50rad/s", "--units", "cgs")
     units = cgs.pop("units")
+    words = cgs.pop("summary"), plain.pop("summary")
+    assert words[0] == words[1].replace("rad per time unit", "rad/s").replace("time units", "s")
     assert cgs == plain
     assert (units["A"], units["mean_spin_rate"], units["theta_max_deg"]) == (
         "g cm²",
@@ -367,8 +369,46 @@ def test_uncertainties_convert_with_the_unit(tmp_path: Path, lagtop: Lagtop, sol
     path.write_text('r0 = "50(1)"\n')
     assert solved(path)["r0_std"] == 1
     path.write_text('theta0 = "30(1)"\n')
+    assert solved(path)["theta0_deg_std"] == 1
+    path.write_text('theta0 = "30"\n')
     assert_one_line(lagtop("solve", path), 65, f"{path}, line 1: theta0 must have a unit between")
 
 
 def test_json_has_units_only_where_inputs_have(lagtop: Lagtop) -> None:
     assert "units" not in json.loads(lagtop("solve", "--format", "json").stdout)
+
+
+@pytest.mark.parametrize(
+    ("option", "hint"),
+    [
+        ("--r0 480RPM", "got the unit 'RPM' (no such unit; did you mean rpm?)"),
+        ("--m 1.8Kg", "got the unit 'Kg' (no such unit; did you mean kg?)"),
+        ("--A 0.1kg*M2", "did you mean kg*m^2?"),
+        ("--A 0.1kg*m2", "did you mean kg*m^2?"),
+        ("--m 1800gr", "got the unit 'gr' (grain or gram? write grain or g)"),
+        ("--r0 3Hz", "'Hz' (turns or radians per second? write rpm, turn/s or rad/s)"),
+        ("--m 1kg --g 9.81", "--g must have a unit such as '9.81 m/s^2', as m has, got none"),
+        ("--m 1kg --C 2", "--C must have a unit such as '2 kg*m^2', as m has, got none"),
+    ],
+)
+def test_units_that_people_type_are_answered(option: str, hint: str, lagtop: Lagtop) -> None:
+    result = lagtop("solve", *option.split())
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert hint in result.stderr
+
+
+def test_a_tilt_between_quotes_means_degrees_as_an_option_does(
+    lagtop: Lagtop, tmp_path: Path
+) -> None:
+    scene = tmp_path / "tilt.toml"
+    scene.write_text('theta0 = "90(1)"\n')
+    keys = ("--get", "theta0_deg,theta0_deg_std,T_nutation_std")
+    by_option = lagtop("solve", "--theta0", "90(1)", *keys)
+    assert lagtop("solve", scene, *keys).stdout == by_option.stdout
+    assert by_option.stdout.startswith("90.0\n1.0\n")
+
+
+def test_a_key_that_is_there_twice_is_named_as_such(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "twice.toml"
+    scene.write_text("m = 1\nm = 2\n")
+    assert "(a key is there twice: delete one line)" in lagtop("solve", scene).stderr
