@@ -16,6 +16,9 @@ from ball_judge import Judge
 from conftest import ROOT
 
 from lagrange_cli import Motion, read_scene, solve
+from lagrange_cli.elliptic.jacobi import jacobi
+from lagrange_cli.elliptic.many_digits import ManyDigits
+from lagrange_cli.elliptic.modulus import modulus
 from lagrange_cli.inputs.names import ANGLES
 from lagrange_cli.motion.over_time.proved_table import ProvedTable
 
@@ -25,6 +28,7 @@ Many = Any
 DIGITS, SHOWN = 60, 18
 STEP = Fraction(1, 10**18)
 """Step of the central differences that give the rates; their error is of the size of its square."""
+ELLIPJ, _K = "k = 0.99999999997", "0.99999999997"
 TOP_OF_BRUELS, SIMO_WONG = "bruels-cardona-arnold", "simo-wong-1991"
 
 
@@ -120,6 +124,14 @@ def _omegas(t: str, values: dict[str, str]) -> list[Printed]:
     return [Printed(f"{test}, {x}", TOP_OF_BRUELS, "omega_y", y, t) for x, y in values.items()]
 
 
+def _elementary(t: str) -> Printed:
+    """Return the tilt of Whittaker's top by his formula, to 20 digits."""
+    with mpmath.workdps(30):
+        tilt = mpmath.asec(1 + mpmath.sech(mpmath.sqrt(3) * int(t)))
+        text = mpmath.nstr(tilt, 20, strip_zeros=False)
+    return Printed("Whittaker §71, sec ϑ = 1 + sech √3t", "whittaker-71", "theta", text, t)
+
+
 PRINTED = [
     *_omegas(
         "2",
@@ -189,6 +201,10 @@ PRINTED = [
     Printed("Kinon and Betsch, its precession", "kinon-betsch-cone", "mean_precession_rate", "10"),
     Printed("LS-DYNA manual, by g l/(r²ω/2)", "ls-dyna-disc", "mean_precession_rate", "1.60884"),
     Printed("usual formula m g s/(C ω)", "usubamatov-2018", "mean_precession_rate", "2.9977"),
+    Printed("Hibbeler's Dynamics, slow", "hibbeler-slow", "steady_rate_slow", "5.72"),
+    Printed("Hibbeler's Dynamics, fast", "hibbeler-fast", "steady_rate_fast", "114"),
+    *(_elementary(t) for t in ("1", "5", "-2")),
+    Printed("SciPy 1.17.1, issue 8480: ellipj(50, m)", ELLIPJ, "cn", "-38885294681.78648"),
 ]
 """All numbers that are judged, as their sources have them."""
 
@@ -209,6 +225,9 @@ def _angles(scene: str, t: Fraction) -> list[Many]:
 def exact(x: Printed) -> Many:
     """Return the exact value of a printed number, by lagtop."""
     with mpmath.workdps(DIGITS):
+        if x.scene == ELLIPJ:
+            ar = ManyDigits(DIGITS)
+            return mpmath.mpf(ar.nstr(jacobi(ar, 50, modulus(ar, k=ar.mpf(_K))).cn, DIGITS))
         if not x.t:
             return mpmath.mpf(
                 str(motion(x.scene).record(digits=DIGITS, keys=[x.quantity])[x.quantity])
@@ -226,8 +245,10 @@ def _judge(scene: str) -> Judge:
 
 
 def exact_by_the_judge(x: Printed) -> Many:
-    """Return the exact value of a printed number, by ball arithmetic."""
+    """Return the exact value of a printed number, by ball arithmetic; of cn by mpmath."""
     with mpmath.workdps(DIGITS):
+        if x.scene == ELLIPJ:
+            return mpmath.ellipfun("cn", 50, k=mpmath.mpf(_K))
         if not x.t:
             return _middle(_judge(x.scene).exact(x.quantity))
         return _value(x, State(*(_middle(ball) for ball in _judge(x.scene).at(Fraction(x.t))[:6])))

@@ -25,10 +25,13 @@ _scenes = late("inputs.scene_file", "scene_names")
 SCENE = Parsed("SCENE", str, _scenes)
 
 
-def value_type(number: str = "parse_number", *, uncertain: bool = False) -> Parsed:
-    """Return the type of an input in units; `number` names the reader of its number."""
+def value_type(number: str = "parse_number", **allowed: bool) -> Parsed:
+    """Return the type of an input in units; `number` names the reader of its number.
+
+    What is `allowed` besides is said at `parse_value`.
+    """
     read = late("inputs.ranges" if number != "parse_number" else "arithmetic.text", number)
-    return Parsed("X", late("inputs.value", "parse_value", parse=read, uncertain=uncertain))
+    return Parsed("X", late("inputs.value", "parse_value", parse=read, **allowed))
 
 
 INPUT = TIME = value_type()
@@ -91,6 +94,9 @@ def top_options(
 
     names = [name for name in DECLARED if whole or name != "phidot0"]  # which needs a whole start
 
+    one_top = whole and kind in {INPUT, UNCERTAIN}
+    steady = value_type(uncertain=kind is UNCERTAIN, steady=True) if one_top else kind
+
     def decorate(command: F) -> F:
         @wraps(command)
         def run(**options: Any) -> Any:
@@ -109,7 +115,8 @@ def top_options(
         for name in reversed(names):
             text = _help_of(DECLARED[name], shows_default=whole)
             flag = f"--{name.replace('_', '-')}"
-            decorated = click.option(flag, name, type=kind, help=text)(decorated)
+            read = steady if name == "psidot0" else kind
+            decorated = click.option(flag, name, type=read, help=text)(decorated)
         if scene:
             decorated = click.argument("scene", required=False, type=SCENE, metavar="[SCENE]")(
                 decorated

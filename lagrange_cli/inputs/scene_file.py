@@ -98,10 +98,10 @@ class SceneFile:
     def _value_of_text(self, key: str, text: str) -> Value:
         """Return a number in a unit, or an uncertain one."""
         try:
-            value = parse_value(text, uncertain=True)
+            value = parse_value(text, uncertain=True, steady=key == "psidot0")
         except LagtopError as error:
             raise self.error(LagtopError(f"{key} {error}", key)) from None
-        is_word = key == "psidot0" and value.number in STEADY_WORDS
+        is_word = value.number in STEADY_WORDS
         if not value.unit and not is_word and value.std is None:
             wrong = (
                 f"{key} must have a unit between quotes, got {quoted(text)}: leave out the quotes"

@@ -54,15 +54,20 @@ def as_value(given: Any) -> Value:
 
 
 def parse_value(
-    text: str, parse: Callable[[str], Any] = parse_number, *, uncertain: bool = False
+    text: str,
+    parse: Callable[[str], Any] = parse_number,
+    *,
+    uncertain: bool = False,
+    steady: bool = False,
 ) -> Value:
     """Return the value that a text stands for; `parse` reads its number.
 
-    Only where it may be `uncertain` an uncertainty is read.  Raises LagtopError as `parse` does,
+    Only where it may be `uncertain` an uncertainty is read, and one of `STEADY_WORDS` only if it
+    may be the rate of a `steady` precession.  Raises LagtopError as `parse` does,
     with the whole text in place of the number, and for an uncertainty that is none.
     """
     number, unit = split_unit(text)
-    if number in STEADY_WORDS and parse is parse_number:
+    if steady and number in STEADY_WORDS:
         return Value(number)
     try:
         if uncertain and not is_decimal(number) and re.search(r"[(±%]|\+/?-", number):

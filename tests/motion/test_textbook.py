@@ -14,6 +14,7 @@ from typing import Any, cast
 
 import mpmath
 import pytest
+from conftest import Lagtop
 from scenes import EPS, UNIT
 
 from lagrange_cli import (
@@ -233,6 +234,17 @@ def test_the_word_is_kept(tmp_path: Path) -> None:
 def test_words_that_fit_no_motion_are_refused(inputs: Any, message: str) -> None:
     with pytest.raises(LagtopError, match=message):
         Top(**{"psidot0": "steady", **inputs})
+
+
+def test_commands_for_one_top_take_the_words(lagtop: Lagtop) -> None:
+    found = lagtop("solve", "--r0", "60(1)", "--psidot0", "steady", "--get", "psidot0,regime")
+    assert found.stdout == "steady\nsteady precession\n"
+    rows = lagtop(*"table --r0 60 --psidot0 steady-fast --t-max 1 --n 2 --digits 20".split()).stdout
+    assert {row.split(",")[1] for row in rows.splitlines()[1:]} == {"30.0"}
+    for words in ("sweep --r0 50,60", "find --r0 1:2 T_nutation=1", "fit recording.csv"):
+        refused = lagtop(*words.split(), "--psidot0", "steady")
+        assert refused.exit_code == 2
+        assert "--psidot0 must be a finite decimal number, got 'steady'" in refused.stderr
 
 
 def test_many_tops_need_a_number() -> None:

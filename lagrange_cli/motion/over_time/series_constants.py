@@ -111,7 +111,9 @@ def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
     ar: Any = motion.ar
     gaps, falls = motion.gaps, direction(motion)
     sign = -1 if motion.b < 0 else 1
-    offset = -falls * ar.asinh(ar.sqrt(gaps.u_u2 / gaps.u1_u))
+    offset = 0 * gaps.u_u2  # exactly 0 at the lowest point
+    if gaps.u_u2:
+        offset = -falls * ar.asinh(ar.sqrt(gaps.u_u2 / gaps.u1_u))
     x, y = ar.sqrt(gaps.below_u2 / 2), ar.sqrt(gaps.above_u2 / 2)
     side = ar.sinh(offset) / ar.cosh(offset) if offset or x else -falls  # on the lower pole
     return SeparatrixConstants(offset, x, y, sign, ar.atan2(sign * y * side, x))
