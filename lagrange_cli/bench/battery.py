@@ -24,11 +24,8 @@ from ..inputs.top import Top
 from ..motion.over_time.table import rows
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
-from .closed_forms import CLOSED_FORMS
 from .hard_scenes import STRATA, Scene, in_doubles, power, signed
-from .integrators import integrators
 from .measure import check_scene
-from .method import FailedError, Method, NotApplicableError
 from .reference import EPS, ExactAngles, Reference, angle_units, key_ulps, quaternion_units
 
 CONTRACT = 4.0
@@ -40,8 +37,6 @@ DIGITS, MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
 """Least digits of the reference, how many more check it, and units by which these may differ."""
 CONSERVED = ("energy", "Lz")
 """The columns whose changes are reported."""
-INTEGRATED_PERIODS, INTEGRATOR_SECONDS = (0.7, 2.3, 4.9), 2.0
-"""Times of the integrator, which would never reach the far ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,10 +81,6 @@ class Case(Errors):
     """Time of the worst angle."""
     worst_attitude_time: float
     """Time of the worst quaternion."""
-    scipy: float | None
-    """Worst error of scipy.special in units; None where scipy is missing."""
-    integrated: float | None
-    """Worst error of DOP853 in units; None where scipy is missing."""
     agreement: float
     """Greatest difference of the reference at two precisions, in units."""
 
@@ -111,8 +102,6 @@ def case_of(
     key: tuple[float, str],
     conserved: tuple[float, float],
     *,
-    scipy: float | None = None,
-    integrated: float | None = None,
     agreement: float = 0.0,
 ) -> Case:
     """Return a case from its errors: a row of `units` per time, the three angles and quaternion.
@@ -132,8 +121,6 @@ def case_of(
         top=top,
         worst_time=times[int(np.argmax([max(errors[:3]) for errors in units]))],
         worst_attitude_time=times[int(np.argmax([errors[3] for errors in units]))],
-        scipy=scipy,
-        integrated=integrated,
         agreement=agreement,
     )
 
@@ -182,11 +169,11 @@ def judged_inputs(stratum: str, rng: random.Random) -> Scene:
             return scene
 
 
-def judged_case(scene: HardScene, *, peers: bool = True) -> Case:
-    """Return what one scene shows, with the errors of other methods or without."""
+def judged_case(scene: HardScene, settled: tuple[Reference, float] | None = None) -> Case:
+    """Return what one scene shows; its `settled_reference` may be given."""
     top = Top(**scene.inputs)
     motion = solve(top)
-    reference, agreement = settled_reference(top)
+    reference, agreement = settled or settled_reference(top)
     times = np.array(scene.times(reference.T))
     exact = [reference.at(t) for t in times.tolist()]
     angles = _angle_errors(list(zip(*motion.angles(times), strict=True)), exact)
@@ -201,8 +188,6 @@ def judged_case(scene: HardScene, *, peers: bool = True) -> Case:
         [(*errors, attitude) for errors, attitude in zip(angles, attitudes, strict=True)],
         worst_key(motion, reference),
         conserved_changes(top, values[:, -2:]),
-        scipy=peer_units(CLOSED_FORMS["scipy.special"], top, times, exact) if peers else None,
-        integrated=_integrated(top, reference) if peers else None,
         agreement=agreement,
     )
 
@@ -268,33 +253,7 @@ def conserved_changes(top: Top, values: Array) -> tuple[float, float]:
     return energy, Lz
 
 
-def peer_units(
-    method: Method, top: Top, times: Array, exact: Sequence[ExactAngles]
-) -> float | None:
-    """Return the worst error of another method at its tightest setting.
-
-    Infinite where it fails, None where its package is missing.
-    """
-    try:
-        method.check_package()
-    except NotApplicableError:
-        return None
-    try:
-        with np.errstate(all="ignore"):
-            rows_found = list(zip(*method.prepare(top, method.settings[-1])(times), strict=True))
-    except (FailedError, ArithmeticError, ValueError):  # formulas of others in doubles
-        return math.inf
-    return max(max(error) for error in _angle_errors(rows_found, exact, method.whole_turns))
-
-
-def _integrated(top: Top, reference: Reference) -> float | None:
-    times = np.array(INTEGRATED_PERIODS) * float(reference.T)
-    exact = list(map(reference.at, times.tolist()))
-    return peer_units(integrators(INTEGRATOR_SECONDS)["DOP853-quaternion"], top, times, exact)
-
-
 def _angle_errors(
-    computed: Sequence[Sequence[Any]], exact: Sequence[ExactAngles], whole_turns: bool = True
+    computed: Sequence[Sequence[Any]], exact: Sequence[ExactAngles]
 ) -> list[tuple[float, float, float]]:
-    pairs = zip(computed, exact, strict=True)
-    return [angle_units(angles, true, whole_turns=whole_turns) for angles, true in pairs]
+    return [angle_units(angles, true) for angles, true in zip(computed, exact, strict=True)]

@@ -72,6 +72,12 @@ class Form(NamedTuple):
     angles: Callable[[Array], SampledAngles]
     """Angles from an array with a row for each variable."""
     whole_turns: bool
+    drift: Callable[[Problem, Array], tuple[float, float]] | None = None
+    """Greatest changes of energy and vertical momentum, over the sum of their terms."""
+
+    def integration(self, p: Problem, run: Callable[[Array], tuple[Array, Work]]) -> Integration:
+        """Return what computes the angles from a run."""
+        return Integration(run, self.angles, partial(self.drift, p) if self.drift else None)
 
 
 def _euler_start(p: Problem) -> Sequence[float]:
@@ -116,6 +122,19 @@ def _quaternion_slope(p: Problem, _: Any) -> Slope:
     return slope
 
 
+def _quaternion_drift(p: Problem, rows: Array) -> tuple[float, float]:
+    """Return changes of energy and Lz, both over A, from p, q and the quaternion."""
+    whole = np.column_stack([_quaternion_start(p), rows])
+    x, y, e0, e1, e2, e3 = whole
+    cosine = e0 * e0 + e3 * e3 - e1 * e1 - e2 * e2
+    swing = (x * x + y * y) / 2
+    sideways = 2 * (x * (e1 * e3 - e0 * e2) + y * (e2 * e3 + e0 * e1))
+    energy, Lz = swing + p.a / 2 * cosine, p.b * cosine + sideways
+    size = swing[0] + p.a / 2 * (1 + abs(cosine[0])) + abs(p.b * p.r0) / 2
+    around = abs(sideways[0]) + 2 * abs(p.b) or 1.0
+    return float(abs(energy - energy[0]).max() / size), float(abs(Lz - Lz[0]).max() / around)
+
+
 def quaternion_angles(rows: Array) -> SampledAngles:
     """Return the angles, turns aside, of quaternions w, x, y, z, a row for each."""
     return [*angles_of(rows).values()]
@@ -124,7 +143,11 @@ def quaternion_angles(rows: Array) -> SampledAngles:
 FORMS = {
     "euler": Form(_euler_start, _euler_slope, lambda rows: (rows[0], rows[2], rows[3]), True),
     "quaternion": Form(
-        _quaternion_start, _quaternion_slope, lambda rows: quaternion_angles(rows[2:].T), False
+        _quaternion_start,
+        _quaternion_slope,
+        lambda rows: quaternion_angles(rows[2:].T),
+        False,
+        _quaternion_drift,
     ),
 }
 
@@ -159,7 +182,7 @@ def scipy_method(
     problem = problem_of(top)
     start, slope = form.start(problem), form.slope(problem, math)
 
-    def run(t: Array) -> tuple[SampledAngles, Work]:
+    def run(t: Array) -> tuple[Array, Work]:
         watched = Limit(*limits).watched(lambda now, state: slope(now, [*state]))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what goes wrong is seen in the outcome
@@ -171,9 +194,9 @@ def scipy_method(
                 raise FailedError(f"stopped: {error}") from None
         if not flow.success:
             raise FailedError(f"stopped: {flow.message}")
-        return form.angles(flow.sol(t)), Work(int(flow.nfev), flow.t.size - 1, int(flow.njev))
+        return flow.sol(t), Work(int(flow.nfev), flow.t.size - 1, int(flow.njev))
 
-    return Integration(run)
+    return form.integration(problem, run)
 
 
 def rk4_method(
@@ -186,7 +209,7 @@ def rk4_method(
     problem, period = problem_of(top), float(solve(top).T_nutation or 1)
     start, slope = np.array(form.start(problem)), form.slope(problem, math)
 
-    def run(t: Array) -> tuple[SampledAngles, Work]:
+    def run(t: Array) -> tuple[Array, Work]:
         limit = Limit(*limits)
         watched = limit.watched(slope)
 
@@ -204,9 +227,9 @@ def rk4_method(
                 state = state + h / 6 * (k1 + 2 * (k2 + k3) + f(state + h * k3))
             now = end
             rows.append(state)
-        return form.angles(np.array(rows).T), Work(limit.count, limit.count // 4, 0)
+        return np.array(rows).T, Work(limit.count, limit.count // 4, 0)
 
-    return Integration(run)
+    return form.integration(problem, run)
 
 
 def _forget_compiled_code(state: Any) -> None:
@@ -231,7 +254,7 @@ def heyoka_method(
     seconds, evaluations = limits
     most = int(min(seconds * STEPS_PER_SECOND, evaluations / integrator.order))
 
-    def run(t: Array) -> tuple[SampledAngles, Work]:
+    def run(t: Array) -> tuple[Array, Work]:
         integrator.time, integrator.state[:] = 0.0, start
         grid = np.concatenate(([0.0], t[t != 0]))
         outcome, _, _, steps, _, rows = integrator.propagate_grid(grid, max_steps=most)
@@ -240,9 +263,9 @@ def heyoka_method(
         if outcome != heyoka.taylor_outcome.time_limit:
             raise FailedError(f"stopped: {outcome}")
         work = Work(int(steps) * integrator.order, int(steps), 0)
-        return form.angles(rows.T[:, -t.size :]), work
+        return rows.T[:, -t.size :], work
 
-    return Integration(run)
+    return form.integration(problem, run)
 
 
 SCIPY: dict[str, list[float]] = {

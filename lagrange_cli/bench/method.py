@@ -32,15 +32,24 @@ class Work(NamedTuple):
 class Integration:
     """A function that computes angles step by step, and counts its work."""
 
-    def __init__(self, run: Callable[[Array], tuple[SampledAngles, Work]]) -> None:
-        self._run = run
+    def __init__(
+        self,
+        run: Callable[[Array], tuple[Array, Work]],
+        angles: Callable[[Array], SampledAngles],
+        drift: Callable[[Array], tuple[float, float]] | None,
+    ) -> None:
+        """Take what integrates (a row for each variable), and what its rows say."""
+        self._run, self._angles, self._drift = run, angles, drift
         self.work = Work()
         """The work of the last run."""
+        self.drift: tuple[float, float] | None = None
+        """Changes of energy and vertical momentum in it, over the sum of their terms."""
 
     def __call__(self, t: Array) -> SampledAngles:
         """Return the angles at times that run away from 0."""
-        angles, self.work = self._run(t)
-        return angles
+        rows, self.work = self._run(t)
+        self.drift = self._drift(rows) if self._drift else None
+        return self._angles(rows)
 
 
 class NotApplicableError(Exception):

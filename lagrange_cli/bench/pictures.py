@@ -16,7 +16,6 @@ from ..output.destination import write_bytes
 from ..output.report import Report
 from ..plot.files import About, figure_bytes
 from ..plot.style import LIGHT, head, styled
-from .battery import CONTRACT
 from .closed_forms import CLOSED_FORMS
 from .measure import all_methods
 from .method import OURS, is_done
@@ -27,8 +26,8 @@ if TYPE_CHECKING:
 
 LEAST_ERROR = 1e-17
 """Least error (rad) that is drawn; a smaller one stands there with its number."""
-LEAST_UNITS = 1e-2
-"""Least error in units that is drawn; a smaller one stands there as an arrow."""
+MOST_ERROR = 3.2
+"""Half a turn: no attitude is further off."""
 LETTERS = 0.85
 """Size of the letters over that of `lagtop plot`."""
 HUES = {
@@ -78,52 +77,40 @@ def draw_long_spans(findings: Report, path: str) -> None:
 
 
 def draw_stability(findings: Report, path: str) -> None:
-    """Draw the worst error of each stratum in units, ours and the others', and their failures."""
+    """Draw error against time, a panel for each stratum, with the condition as a grey band."""
+    import numpy as np
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
     with styled(LIGHT, LETTERS):
-        figure, (axes,) = _figure(1)
-        rows = findings.rows
-        axes.set(yscale="linear", yticks=range(len(rows)))
-        axes.set_yticklabels([row.stratum for row in rows])
-        axes.axvline(CONTRACT, color=LIGHT.quiet, lw=0.8, ls="--", label=f"promised: {CONTRACT:g}")
-        for name, (marker, color, units) in _errors_of(rows).items():
-            known = [(max(x, LEAST_UNITS), i) for i, x in enumerate(units) if x is not None]
-            if known:
-                axes.plot(*zip(*known, strict=True), marker, color=color, label=name)
-            small = [i for i, x in enumerate(units) if x is not None and x < LEAST_UNITS]
-            _arrows(axes, [(LEAST_UNITS, i) for i in small], color)
-        axes.set_xlim(LEAST_UNITS / 3, axes.get_xlim()[1])
-        _write_failures(axes, rows)
-        axes.set_xlabel(
-            "worst error (units: rounding errors, eps, of the angle and of the time it is asked at)"
-        )
-        axes.invert_yaxis()
-        _save(figure, path, "Error by stratum, a kind of hard scenes", findings)
-
-
-def _errors_of(rows: Sequence[Any]) -> dict[str, tuple[str, str, list[float | None]]]:
-    """Return mark, colour and errors of what is compared, by name."""
-    blue, red, _ = LIGHT.lines
-    return {
-        "lagtop": ("o", LIGHT.ink, [row.angle_units for row in rows]),
-        "scipy.special": ("s", blue, [row.scipy_units for row in rows]),
-        "DOP853, times\nwithin 5 periods": ("^", red, [row.dop853_units for row in rows]),
-    }
-
-
-def _write_failures(axes: Axes, rows: Sequence[Any]) -> None:
-    """Write at the right how many scenes scipy.special and DOP853 could not do, where some."""
-    blue, red, _ = LIGHT.lines
-    how: dict[str, Any] = {"xycoords": axes.get_yaxis_transform(), "va": "center", "size": "small"}
-    how["textcoords"] = "offset points"
-    failures = [(row.scipy_failed or 0, row.dop853_failed or 0) for row in rows]
-    if not any(map(any, failures)):
-        return
-    for i, (row, failed) in enumerate(zip(rows, failures, strict=True)):
-        for count, shift, color in zip(failed, (8, 40), (blue, red), strict=True):
-            if count:
-                text = f"× {count}/{row.scenes}"
-                axes.annotate(text, (1.0, i), (shift, 0), color=color, **how)
-    axes.plot([], [], "x", color=LIGHT.quiet, label="failed: no number,\nor over 2 s")
+        strata = list(dict.fromkeys(row.stratum for row in findings.rows))
+        columns = min(len(strata), 3)
+        lines = -(-len(strata) // columns)
+        figure = Figure(figsize=(3.2 * columns + 1, 2.4 * lines + 1.4), layout="constrained")
+        grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).flat
+        looks = method_looks(dict.fromkeys(row.method for row in findings.rows))
+        for axes, name in zip(grid, strata, strict=False):
+            runs = [x.run for x in findings.rows if x.stratum == name and x.run]
+            for run in runs:
+                points = [(t, min(max(x, LEAST_ERROR), MOST_ERROR)) for t, x in run.points]
+                if points:
+                    axes.plot(*zip(*points, strict=True), **looks[run.method].look())
+            if runs:
+                t, bound = zip(*runs[0].bounds, strict=True)
+                axes.fill_between(t, LEAST_ERROR, np.minimum(bound, MOST_ERROR), color="0.85")
+            axes.set(xscale="log", yscale="log", ylim=(LEAST_ERROR, 2 * MOST_ERROR))
+            axes.set_title(name, fontsize="medium")
+        for i, axes in enumerate(figure.axes):
+            axes.set_visible(i < len(strata))
+            if i >= len(strata) - columns:
+                axes.set_xlabel("nutation periods")
+                axes.tick_params(labelbottom=True)
+        lines_of = [Line2D([], [], label=name, **look.look()) for name, look in looks.items()]
+        band = Patch(color="0.85", label="condition")
+        figure.legend(handles=[*lines_of, band], loc="outside lower center", ncols=4)
+        figure.supylabel("error of the attitude (rad)")
+        _save(figure, path, "Error against time by stratum", findings)
 
 
 def _by_error(row: Any) -> float:
@@ -159,28 +146,13 @@ def _line(axes: Axes, name: str, look: MethodLook, points: Sequence[tuple[float,
         axes.annotate(f"← {errors}: beyond this edge", place, (-6, 7), **how)
 
 
-def _arrows(axes: Axes, points: Sequence[tuple[float, float]], color: str) -> None:
-    """Draw arrows to the left over points that stand at the edge of the picture."""
-    if points:
-        arrow: Any = {"marker": r"$\leftarrow$", "ms": 13, "ls": "none", "zorder": 4}
-        axes.plot(*zip(*points, strict=True), color=color, **arrow)
-
-
 def _save(figure: Figure, path: str, title: str, findings: Report) -> None:
     """Write the figure with its legend; the same findings give the same file."""
     head(figure, title)
-    for axes in figure.axes[:1]:
-        if any(hasattr(row, "stratum") for row in findings.rows):
-            figure.legend(fontsize="small", loc="outside lower center", ncols=5)
-        else:
-            axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1, 1))
-        conditions = findings.conditions
-        below = (
-            f"times: {conditions['times']}"
-            if "times" in conditions
-            else f"scenes: {conditions.get('scenes', '')}"
-        )
-        axes.set_title(below, fontsize="small", color=LIGHT.quiet)
+    if times := findings.conditions.get("times"):
+        axes = figure.axes[0]
+        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1, 1))
+        axes.set_title(f"times: {times}", fontsize="small", color=LIGHT.quiet)
     text = "; ".join(f"{name}: {line}" for name, line in findings.conditions.items())
     about = About(f"lagtop: {title}", text)
     write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about))

@@ -1,85 +1,122 @@
-"""The stability report: strata of random scenes, each judged by the many-digit reference."""
+"""The stability report: methods of all kinds in random scenes of every hard kind.
+
+Each stratum has a row per method.  The row of lagtop also says how its record, its angles and its
+quaternion keep what is promised.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 from ..inputs.names import ANGLES, check_names
+from ..inputs.top import Top
 from ..output.progress import Progress
 from ..output.report import Field, Report, short
 from ..sweeps.jobs import in_order
 from .battery import (
     CONTRACT,
     DIGITS,
-    INTEGRATED_PERIODS,
-    INTEGRATOR_SECONDS,
     KEY_CONTRACT,
     MORE_DIGITS,
     Case,
     Errors,
     hard_scene,
     judged_case,
+    settled_reference,
 )
-from .closed_forms import CLOSED_FORMS
-from .hard_scenes import STRATA
-from .integrators import TIGHTEST
+from .hard_scenes import STRATA, words_of
 from .measure import common_conditions
-from .method import NotApplicableError
+from .method import OURS
+from .peers import EVALUATIONS, LONG_EVALUATIONS, LONG_SPAN, SPANS, VERDICTS, PeerRun, peer_runs
+from .reference import EPS
 
 TIMES = 2
-"""Times anywhere per scene; six more stand next to half, quarter and whole periods."""
+"""Times anywhere per scene for lagtop; six more stand next to half, quarter and whole periods."""
+FINE, EXCEEDED = "fine", "EXCEEDED"
+PROVED = (
+    "enclosures in balls (Arb): every error is an upper bound that is proved; `proved` is the "
+    "worst of the angles and the quaternion"
+)
+Judged = tuple[Case, list[PeerRun]]
+"""What became of a scene: lagtop's errors, and the runs of all methods."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class StratumRow(Errors):
-    """The worst of the scenes of a stratum."""
+class StratumRow:
+    """One method in one stratum: the worst of its scenes."""
 
     stratum: str
+    method: str
     scenes: int
+    error_5_rad: float | None = None
+    """Greatest error over 5 periods (rad); infinite if the method gave up before."""
+    error_100_rad: float | None = None
+    error_10000_rad: float | None = None
+    condition_rad: float | None = None
+    """Turn of the attitude by half a unit in the last place of the inputs, over 100 periods."""
+    growth: float | None = None
+    """Exponent of the growth of the error in time."""
+    energy: float | None = None
+    """Change of the energy since the start, over the sum of its terms."""
+    Lz: float | None = None
+    evaluations: int | None = None
+    theta_units: float | None = None
+    """Worst error of lagtop in units (see `reference`); so for the next ones."""
+    phi_units: float | None = None
+    psi_units: float | None = None
+    quaternion_units: float | None = None
+    key_ulps: float | None = None
+    worst_key: str | None = None
     verdict: str
-    scipy_units: float | None
-    """Worst of the scenes that scipy.special has done."""
-    scipy_failed: int | None
-    dop853_units: float | None
-    """Worst of the scenes that DOP853 has done."""
-    dop853_failed: int | None
-    worst_case: str
-    """A command line that shows the worst number."""
-    proved_units: float | None
+    proved_units: float | None = None
     """The worst of the angles and the quaternion, where errors are proved bounds."""
+    worst_case: str | None = None
+    """A command line that shows lagtop's worst number."""
+    remark: str | None = None
+    run: PeerRun | None = None
+    """The run of the worst scene, for the picture."""
+
+
+def _error(error: float) -> str:
+    return "gave up" if math.isinf(error) else short(error)
 
 
 def _hundredths(error: float) -> str:
     return f"{error:.2f}" if error < 1000 else short(error)
 
 
-FINE = "fine"
-PROVED = (
-    "enclosures in balls (Arb): every error is an upper bound that is proved; `proved` is the "
-    "worst of the angles and the quaternion"
-)
 STRATUM_FIELDS = [
     Field("stratum", "stratum", is_text=True, names_the_row=True),
-    Field("scenes", "scenes"),
-    *(Field(f"{angle}_units", angle, _hundredths) for angle in ANGLES),
-    Field("quaternion_units", "quat.", _hundredths),
-    Field("key_ulps", "keys", _hundredths),
+    Field("method", "method", is_text=True, names_the_row=True),
+    Field("scenes"),
+    Field("error_5_rad", "5 periods", _error),
+    Field("error_100_rad", "100", _error),
+    Field("error_10000_rad"),
+    Field("condition_rad", "condition", short),
+    Field("growth", "growth", lambda growth: f"t^{growth:.1f}"),
+    Field("energy", "energy", short),
+    Field("Lz", "Lz", short),
+    Field("evaluations"),
+    *(Field(f"{angle}_units") for angle in ANGLES),
+    Field("quaternion_units"),
+    Field("key_ulps"),
     Field("worst_key"),
-    Field("energy_eps", "energy", short),
-    Field("Lz_eps", "Lz", short),
     Field("verdict", "verdict", is_text=True),
     Field("proved_units"),
-    Field("scipy_units", "scipy.special", short),
-    Field("scipy_failed", "failed"),
-    Field("dop853_units", "DOP853", short),
-    Field("dop853_failed", "failed"),
     Field("worst_case"),
+    Field("remark"),
 ]
-PROVED_FIELD = Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}")
+_OF_SPANS = {"error_5_rad", "error_100_rad", "condition_rad", "growth", "energy", "Lz"}
+_OF_PROOFS = {
+    **{f"{angle}_units": angle for angle in ANGLES},
+    "quaternion_units": "quat.",
+    "key_ulps": "keys",
+}
 
 
 def chosen_strata(names: Sequence[str] | None) -> list[str]:
@@ -95,112 +132,141 @@ def run_battery(
     jobs: int = 1,
     *,
     certify: bool = False,
+    is_long: bool = False,
 ) -> Report:
     """Return the report on so many scenes of each stratum, judged by so many processes.
 
-    With `certify` enclosures are the judge, and errors are proved bounds.  Raises UnavailableError
-    where these need a package that is missing.
+    With `certify` enclosures are the judge of lagtop alone, and errors are proved bounds.
     """
-    if certify:
-        from . import proofs  # noqa: F401 - before any work
-    cases: dict[str, list[Case]] = {name: [] for name in strata}
+    spans = (*SPANS, LONG_SPAN) if is_long else SPANS
+    found: dict[str, list[Judged]] = {name: [] for name in strata}
     scenes = [(name, seed, i) for name in strata for i in range(samples)]
-    with closing(in_order(proved if certify else judged, scenes, jobs)) as found:
+    work: Any = proved if certify else partial(judged, spans=spans)
+    with closing(in_order(work, scenes, jobs)) as results:
         for name, _, _ in progress(scenes, "scenes"):
-            cases[name].append(next(found))
-    stratum_rows = [
-        stratum_row(name, of_stratum, certify=certify) for name, of_stratum in cases.items()
-    ]
-    agreement = max(case.agreement for of_stratum in cases.values() for case in of_stratum)
-    conditions = _conditions(samples, seed, None if certify else agreement)
-    fields_shown = STRATUM_FIELDS
+            found[name].append(next(results))
+    rows = [row for name, x in found.items() for row in stratum_rows(name, x, certify=certify)]
+    agreement = max(case.agreement for of_stratum in found.values() for case, _ in of_stratum)
+    conditions = _conditions(strata, samples, seed, None if certify else agreement, is_long)
+    return Report(conditions, _fields(certify, is_long), rows, _conclusions(rows))
+
+
+def _fields(certify: bool, is_long: bool) -> list[Field]:
+    """Return the fields, with headings for those that the table shows."""
+    changed: dict[str, Field] = {}
     if certify:
-        fields_shown = [PROVED_FIELD if x.key == PROVED_FIELD.key else x for x in STRATUM_FIELDS]
-    return Report(conditions, fields_shown, stratum_rows, _conclusions(stratum_rows))
+        changed = {key: Field(key, heading, _hundredths) for key, heading in _OF_PROOFS.items()}
+        changed |= {key: Field(key) for key in _OF_SPANS}
+        bound = Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}")
+        changed["proved_units"] = bound
+    elif is_long:
+        changed["error_10000_rad"] = Field("error_10000_rad", f"{LONG_SPAN:.0e}", _error)
+    return [changed.get(field.key, field) for field in STRATUM_FIELDS]
 
 
-def judged(scene: tuple[str, int, int]) -> Case:
+def judged(scene: tuple[str, int, int], spans: Sequence[float] = SPANS) -> Judged:
     """Return what became of a scene: stratum, seed and number."""
-    return judged_case(hard_scene(*scene, TIMES))
+    hard = hard_scene(*scene, TIMES)
+    top = Top(**hard.inputs)
+    settled = settled_reference(top)
+    return judged_case(hard, settled), list(peer_runs(top, settled[0], spans))
 
 
-def proved(scene: tuple[str, int, int]) -> Case:
+def proved(scene: tuple[str, int, int]) -> Judged:
     """Return what is proved of a scene: stratum, seed and number."""
     from .proofs import prove
 
-    return prove(hard_scene(*scene, TIMES))
+    return prove(hard_scene(*scene, TIMES)), []
 
 
-def stratum_row(name: str, cases: Sequence[Case], *, certify: bool = False) -> StratumRow:
-    """Return the worst of each error over the cases of a stratum."""
+def stratum_rows(name: str, found: Sequence[Judged], *, certify: bool = False) -> list[StratumRow]:
+    """Return the rows of a stratum, one per method, from its scenes."""
+    cases = [case for case, _ in found]
     worst = {field.name: max(getattr(x, field.name) for x in cases) for field in fields(Errors)}
     worst["worst_key"] = max(cases, key=lambda case: case.key_ulps).worst_key
+    energy, Lz = (EPS * worst.pop(f"{x}_eps") for x in ("energy", "Lz"))
     worst_case = max(cases, key=lambda case: case.excess)
-    scipy_units, scipy_failed = worst_and_failed([case.scipy for case in cases])
-    dop853_units, dop853_failed = worst_and_failed([case.integrated for case in cases])
-    return StratumRow(
-        **worst,
-        stratum=name,
-        scenes=len(cases),
-        verdict=FINE if worst_case.excess <= 1 else "EXCEEDED",
-        scipy_units=scipy_units,
-        scipy_failed=scipy_failed,
-        dop853_units=dop853_units,
-        dop853_failed=dop853_failed,
-        worst_case=worst_case.command(),
-        proved_units=_worst_units(worst) if certify else None,
-    )
+    ours: dict[str, Any] = {**worst, "worst_case": worst_case.command()}
+    kept = worst_case.excess <= 1
+    if certify:
+        units = max(value for key, value in worst.items() if key.endswith("_units"))
+        verdict = FINE if kept else EXCEEDED
+        ours |= {"proved_units": units, "verdict": verdict, "energy": energy, "Lz": Lz}
+        return [StratumRow(stratum=name, method=OURS, scenes=len(cases), **ours)]
+    rows = []
+    for runs in zip(*(runs for _, runs in found), strict=True):
+        run = max(runs, key=_badness)
+        shown: dict[str, Any] = {"verdict": run.verdict, "energy": None, "Lz": None}
+        if run.method == OURS:
+            shown = ours | {"energy": energy, "Lz": Lz}
+            shown["verdict"] = run.verdict if kept else EXCEEDED
+        elif run.drift and all(map(math.isfinite, run.drift)):
+            shown |= {"energy": run.drift[0], "Lz": run.drift[1]}
+        errors = {f"error_{span:.0f}_rad": run.error(span) for span in (*SPANS, LONG_SPAN)}
+        if run.bounds[-1][0] < LONG_SPAN / 2:
+            del errors[f"error_{LONG_SPAN:.0f}_rad"]
+        rows.append(
+            StratumRow(
+                stratum=name,
+                method=run.method,
+                scenes=len(cases),
+                condition_rad=run.condition(SPANS[1]),
+                growth=run.growth,
+                evaluations=run.evaluations,
+                remark=run.remark,
+                run=run,
+                **errors,
+                **shown,
+            )
+        )
+    return rows
 
 
-def _worst_units(worst: Mapping[str, Any]) -> float:
-    units: float = max(value for name, value in worst.items() if name.endswith("_units"))
-    return units
+def _badness(run: PeerRun) -> tuple[int, float]:
+    """Return how bad a run is: by the order of the verdicts, then by its error."""
+    place = list(VERDICTS).index(run.verdict) if run.verdict else -1
+    return place, run.error(SPANS[1]) or 0.0
 
 
-def worst_and_failed(errors: Sequence[float | None]) -> tuple[float | None, int | None]:
-    """Return the worst of the finite errors and how many are not finite; None for no errors."""
-    known = [error for error in errors if error is not None]
-    if not known:
-        return None, None
-    done = [error for error in known if math.isfinite(error)]
-    return max(done, default=None), len(known) - len(done)
+def exceeded(report: Report) -> list[str]:
+    """Return the strata in which lagtop breaks a promise, each with its worst case."""
+    bad = (row for row in report.rows if row.verdict == EXCEEDED)
+    return [f"{row.stratum}: {row.worst_case}" for row in bad]
 
 
-def exceeded(findings: Report) -> list[str]:
-    """Return the strata that exceed the contract, each with its worst case."""
-    return [f"{row.stratum}: {row.worst_case}" for row in findings.rows if row.verdict != FINE]
-
-
-def _conditions(samples: int, seed: int, agreement: float | None) -> dict[str, str]:
+def _conditions(
+    strata: Sequence[str], samples: int, seed: int, agreement: float | None, is_long: bool
+) -> dict[str, str]:
     """Return the conditions; no `agreement` of references stands for proved bounds."""
     conditions = common_conditions() | {
-        "scenes": f"{samples} per stratum, seed {seed}; each at {TIMES} times 1e-9 to 1e14 periods "
-        "before or after the start, and at the doubles next to a half period on one side "
+        "scenes": f"{samples} per stratum, seed {seed}; lagtop also at {TIMES} times 1e-9 to 1e14 "
+        "periods before or after the start, and at the doubles next to a half period on one side "
         "and to a quarter, half or whole number of periods on the other, from 1 to 1e14",
+        "strata": "; ".join(f"{name}: {words_of(name)}" for name in strata),
         "reference": PROVED
         if agreement is None
         else f"Legendre's third integral by mpmath, {DIGITS} digits or more; with "
         f"{MORE_DIGITS} digits fewer it differs by {agreement:.0e} units at most",
-        "errors": f"worst, in units (angles, quaternion; at most {CONTRACT:g} are promised) and in "
-        f"gaps between doubles (every key of the record; at most {KEY_CONTRACT:g}, the nearest)",
-        "conserved": "changes of energy and Lz since the start, in eps of the sum of their terms",
+        "promise": f"lagtop: angles and quaternion within {CONTRACT:g} units, every key of the "
+        f"record within {KEY_CONTRACT:g} gaps between doubles",
     }
     if agreement is None:
         return conditions
-    conditions |= {
-        "peers": "scipy.special at the same times, from the roots as doubles; DOP853 on a "
-        f"quaternion, angles modulo 2 pi, rtol {TIGHTEST:g}, only at {INTEGRATED_PERIODS} periods",
-        "failed": f"scenes without a number, or of more than {INTEGRATOR_SECONDS:g} s to integrate",
+    most = LONG_EVALUATIONS if is_long else EVALUATIONS
+    return conditions | {
+        "errors": "radians, the turn from the exact to the computed attitude",
+        "condition": "radians by which half a unit in the last place of each input turns it",
+        "methods": "each at its tightest setting; a run gives up after "
+        f"{most:.0e} evaluations of the right-hand side",
+        "conserved": "changes of energy and Lz since the start, over the sum of their terms",
+        "verdicts": "; ".join(f"{word}: {meaning}" for word, meaning in VERDICTS.items()),
     }
-    try:
-        CLOSED_FORMS["scipy.special"].check_package()
-    except NotApplicableError as reason:
-        conditions["missing"] = f"scipy.special and DOP853: {reason}"
-    return conditions
 
 
-def _conclusions(stratum_rows: Sequence[StratumRow]) -> list[str]:
-    bad = [row.stratum for row in stratum_rows if row.verdict != FINE]
+def _conclusions(rows: Sequence[StratumRow]) -> list[str]:
+    ours = [row for row in rows if row.method == OURS]
+    bad = [row.stratum for row in ours if row.verdict == EXCEEDED]
     verdict = f"Exceeded in: {', '.join(bad)}." if bad else "All strata are within the contract."
-    cases = (f"{row.stratum}: {row.worst_case}" for row in stratum_rows)
-    return [verdict, "", "Worst cases:", *cases]
+    missing = dict.fromkeys(f"{row.method} {row.remark}" for row in rows if row.verdict == "")
+    cases = (f"{row.stratum}: {row.worst_case}" for row in ours)
+    return [verdict, *(f"Not compared: {x}." for x in missing), "", "Worst cases:", *cases]

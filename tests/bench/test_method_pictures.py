@@ -13,6 +13,7 @@ from colour_vision import VISIONS, seen
 from lagrange_cli.bench.compare_methods import METHOD_FIELDS, with_front
 from lagrange_cli.bench.measure import all_methods
 from lagrange_cli.bench.method import MethodRow
+from lagrange_cli.bench.peers import PeerRun
 from lagrange_cli.bench.pictures import HUES, draw_stability, draw_work_precision, method_looks
 from lagrange_cli.output.report import Report
 from lagrange_cli.plot.style import LIGHT
@@ -36,26 +37,18 @@ def test_points_beyond_the_edge_have_their_errors_beside_it(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_failures_are_written_beside_their_stratum(tmp_path: Path) -> None:
-    rows = [
-        SimpleNamespace(
-            stratum=name,
-            scenes=4,
-            angle_units=0.5,
-            scipy_units=scipy,
-            scipy_failed=failed,
-            dop853_units=1e3,
-            dop853_failed=0,
-        )
-        for name, scipy, failed in (("generic", 1e9, 0), ("top pass", None, 3))
-    ]
+def test_a_stratum_is_a_panel_with_its_condition(tmp_path: Path) -> None:
+    rows = []
+    for name in ("generic", "slow"):
+        bounds = [(1.0, 1e-15), (10.0, 1e-14)]
+        run = PeerRun("lagtop", [(1.0, 1e-16), (10.0, 0.0)], bounds, None, None, None)
+        gone = PeerRun("RK4-quaternion", [], bounds, None, None, "gave up")
+        rows += [SimpleNamespace(stratum=name, method=run.method, run=run) for run in (run, gone)]
     path = tmp_path / "x.svg"
     draw_stability(Report({"scenes": "4 per stratum; odd"}, [], rows, []), str(path))
     text = path.read_text()
-    assert text.count("× 3/4") == 1
-    assert "× 0/4" not in text
-    assert "promised: 4" in text
-    assert "rounding errors, eps" in text
+    for word in ("generic", "slow", "RK4-quaternion", "condition"):
+        assert text.count(f">{word}<") == 1
 
 
 @pytest.mark.parametrize("vision", VISIONS)

@@ -9,19 +9,25 @@ import math
 import shlex
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from ball_judge import Judge
 from conftest import Lagtop, assert_one_line
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
 from lagrange_cli.bench import battery, stability
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.battery import HardScene, hard_scene
 from lagrange_cli.bench.hard_scenes import STRATA, words_of
+from lagrange_cli.bench.integrators import FORMS, problem_of
+from lagrange_cli.bench.peers import SPANS, VERDICTS, PeerRun, peer_runs
 from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS
@@ -35,7 +41,7 @@ from lagrange_cli.output.report import Report
 def test_stratum(stratum: str) -> None:
     """A part of the battery; its worst cases, over 200 scenes a stratum, are the bounds here."""
     for i in range(3):
-        case = battery.judged_case(hard_scene(stratum, 0, i, 2), peers=False)
+        case = battery.judged_case(hard_scene(stratum, 0, i, 2))
         assert case.angle_units <= 2.7, case
         assert case.quaternion_units <= 2.7, case
         assert case.key_ulps <= 0.5, case
@@ -106,17 +112,19 @@ def test_report_is_repeatable_in_every_format(
     first = stability.run_battery(["near a pole", "slow"], 2, 1952, silent)
     second = stability.run_battery(["near a pole", "slow"], 2, 1952, silent)
     assert first.rows == second.rows
+    assert {row.verdict for row in first.rows} <= set(VERDICTS)
     monkeypatch.setattr(stability, "run_battery", lambda *_, **__: second)
     picture = tmp_path / "error.svg"
     shown = lagtop("stability", *FEW, "--format", "json", "--plot", picture)
     assert shown.exit_code == bool(stability.exceeded(second))
     whole = json.loads(shown.stdout)
-    assert [row["stratum"] for row in whole["rows"]] == ["near a pole", "slow"]
+    assert [row["stratum"] for row in whole["rows"]] == ["near a pole"] * 6 + ["slow"] * 6
     assert "seed 1952" in whole["conditions"]["scenes"]
     listed = lagtop("stability", *FEW, "--format", "csv")
     lines = list(csv.DictReader(io.StringIO(listed.stdout)))
     for one, other in zip(lines, whole["rows"], strict=True):
-        assert {key: ("" if value is None else str(value)) for key, value in other.items()} == one
+        shown_there = {key: "" if value is None else str(value) for key, value in other.items()}
+        assert shown_there == {key: text.replace("inf", "") for key, text in one.items()}
     assert "scenes: 2 per stratum" in listed.stderr
     assert ">near a pole<" in picture.read_text()
     assert "Worst cases:\nnear a pole: lagtop " in lagtop("stability", *FEW).stdout
@@ -127,14 +135,14 @@ def test_the_seed_and_the_samples_reach_the_battery(
 ) -> None:
     asked: list[Any] = []
 
-    def no_battery(*how: Any, certify: bool) -> Report:
-        asked.append((*how[:3], certify))
+    def no_battery(*how: Any, certify: bool, is_long: bool) -> Report:
+        asked.append((*how[:3], certify or is_long))
         return Report({}, stability.STRATUM_FIELDS, [], ["nothing"])
 
     monkeypatch.setattr(stability, "run_battery", no_battery)
     for line in ("--seed 7 --samples 3", "--samples 200", "--certify"):
         assert lagtop("stability", "--strata", "slow", *line.split()).exit_code == 0
-    whole, few = (["slow"], 200, 1952, False), (["slow"], 4, 1952, True)
+    whole, few = (["slow"], 200, 1952, False), (["slow"], 1, 1952, True)
     assert asked == [(["slow"], 3, 7, False), whole, few]
 
 
@@ -149,7 +157,7 @@ def near(inputs: dict[str, float]) -> HardScene:
 @pytest.mark.slow
 @pytest.mark.parametrize("stratum", ["near a pole", "units", "slow"])
 def test_command_line_of_an_angle_shows_it(stratum: str, lagtop: Lagtop) -> None:
-    case = battery.judged_case(near(hard_scene(stratum, 5, 0, 2).inputs), peers=False)
+    case = battery.judged_case(near(hard_scene(stratum, 5, 0, 2).inputs))
     case = replace(case, key_ulps=0.0, quaternion_units=0.0)
     words = shlex.split(case.command(), comments=True)
     assert words[:2] == ["lagtop", "bench"]
@@ -158,14 +166,14 @@ def test_command_line_of_an_angle_shows_it(stratum: str, lagtop: Lagtop) -> None
 
 
 def test_command_line_of_a_key_shows_it(lagtop: Lagtop) -> None:
-    case = battery.judged_case(near(hard_scene("generic", 5, 0, 1).inputs), peers=False)
+    case = battery.judged_case(near(hard_scene("generic", 5, 0, 1).inputs))
     words = shlex.split(replace(case, key_ulps=9.0).command(), comments=True)
     record = json.loads(lagtop(*words[1:]).stdout)
     assert record[case.worst_key] == getattr(solve(case.top), case.worst_key)
 
 
 def test_command_line_of_a_quaternion_shows_it(lagtop: Lagtop) -> None:
-    case = battery.judged_case(near(hard_scene("generic", 5, 0, 1).inputs), peers=False)
+    case = battery.judged_case(near(hard_scene("generic", 5, 0, 1).inputs))
     words = shlex.split(replace(case, quaternion_units=9.0).command())
     header, values = lagtop(*words[1:], "--format", "csv").stdout.splitlines()
     assert header == "t,quaternion_w,quaternion_x,quaternion_y,quaternion_z"
@@ -204,9 +212,9 @@ def test_every_key_is_there_to_be_bent() -> None:
 @pytest.mark.parametrize("key", NUMBER_KEYS)
 def test_a_key_wrong_by_1e_15_is_seen(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = MOVING if key == "precession_rate_start" else RELEASED
-    assert battery.judged_case(scene, peers=False).excess <= 1
+    assert battery.judged_case(scene).excess <= 1
     bend(monkeypatch, key, lambda value: value * (1 + 1e-15))
-    case = battery.judged_case(scene, peers=False)
+    case = battery.judged_case(scene)
     assert case.excess > 1
     assert case.worst_key == key
 
@@ -215,9 +223,9 @@ def test_a_key_wrong_by_1e_15_is_seen(key: str, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize("key", ["a", "u_quarter", "amplitude_deg"])
 def test_a_missing_or_a_needless_key_is_seen(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     bend(monkeypatch, key, lambda _: None)
-    assert battery.judged_case(RELEASED, peers=False).worst_key == key
+    assert battery.judged_case(RELEASED).worst_key == key
     bend(monkeypatch, "alpha", lambda _: 1.0)
-    assert battery.judged_case(MOVING, peers=False).worst_key == "alpha"
+    assert battery.judged_case(MOVING).worst_key == "alpha"
 
 
 @pytest.mark.parametrize("angle", ["phi", "psi"])
@@ -230,7 +238,7 @@ def test_an_angle_wrong_by_a_turn_is_seen(angle: str, monkeypatch: pytest.Monkey
         return with_a_turn
 
     bend(monkeypatch, "angles", turned)
-    case = battery.judged_case(RELEASED, peers=False)
+    case = battery.judged_case(RELEASED)
     assert getattr(case, f"{angle}_units") > 1e13
 
 
@@ -240,7 +248,7 @@ def test_a_quaternion_with_the_other_sign_is_seen(monkeypatch: pytest.MonkeyPatc
         return header, (-block if "quaternion" in columns else block for block in blocks)
 
     monkeypatch.setattr(battery, "rows", other_sign)
-    case = battery.judged_case(RELEASED, peers=False)
+    case = battery.judged_case(RELEASED)
     assert case.quaternion_units > 1e13
     assert case.command().startswith("lagtop table ")
 
@@ -255,10 +263,10 @@ def test_what_is_wrong_exits_with_1(lagtop: Lagtop, monkeypatch: pytest.MonkeyPa
         "Error: 2 of 2 strata failed; the first: generic: lagtop solve "
     )
     whole = json.loads(result.stdout)
-    assert [row["verdict"] for row in whole["rows"]] == ["EXCEEDED"] * 2
+    ours = [row for row in whole["rows"] if row["method"] == "lagtop"]
+    assert [row["verdict"] for row in ours] == ["EXCEEDED"] * 2
     assert whole["conclusions"][0] == "Exceeded in: generic, slow."
-    for row in whole["rows"]:
-        assert row["worst_key"] == "a"
+    assert [row["worst_key"] for row in ours] == ["a", "a"]
 
 
 def test_the_keys_of_the_reference_are_those_of_the_judge_in_balls() -> None:
@@ -277,16 +285,113 @@ def test_without_scipy(lagtop: Lagtop, monkeypatch: pytest.MonkeyPatch) -> None:
     result = lagtop("stability", "--samples", 1, "--strata", "generic", "--format", "json")
     assert result.exit_code == 0
     whole = json.loads(result.stdout)
-    assert whole["rows"][0]["scipy_units"] is None
-    assert whole["rows"][0]["dop853_failed"] is None
-    assert whole["conditions"]["missing"].endswith("needs scipy: pip install scipy")
+    verdicts = {row["method"]: row["verdict"] for row in whole["rows"]}
+    assert verdicts["scipy.special"] == verdicts["DOP853-quaternion"] == ""
+    assert verdicts["lagtop"] == "exact"
+    assert "Not compared: scipy.special needs scipy: pip install scipy." in whole["conclusions"]
 
 
-def test_failures_of_others_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(battery, "INTEGRATOR_SECONDS", 1e-6)
-    assert battery.judged_case(RELEASED).integrated == math.inf
-    assert stability.worst_and_failed([1.0, 3.0, math.inf, math.inf]) == (3.0, 2)
-    assert stability.worst_and_failed([math.inf]) == (None, 1)
+MOVING_TOP = Top(**UNIT, r0=2.3, theta0_deg=55, thetadot0=0.7, psidot0=-0.4)
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, PeerRun]:
+    """Return the runs of all methods in one scene."""
+    return {x.method: x for x in peer_runs(MOVING_TOP, Reference(MOVING_TOP, 60), SPANS)}
+
+
+def attitude(theta: Any, phi: Any, psi: Any) -> Rotation:
+    return Rotation.from_euler("ZXZ", [float(psi), float(theta), float(phi)])
+
+
+def test_errors_are_turns_of_the_attitude(runs: dict[str, PeerRun]) -> None:
+    """Radau and RK4 again, by SciPy's rotations and integrators, in the units printed."""
+    reference = Reference(MOVING_TOP, 60)
+    times = [t * float(reference.T) for t, _ in runs["Radau-quaternion"].points[:8]]
+    p, form = problem_of(MOVING_TOP), FORMS["quaternion"]
+    slope: Any = form.slope(p, math)
+    flow = solve_ivp(
+        slope, (0, times[-1]), form.start(p), "Radau", dense_output=True, rtol=1e-7, atol=1e-7
+    )
+    errors = []
+    for t in times:
+        w, x, y, z = flow.sol(t)[2:]
+        exact = attitude(*reference.at(t)[:3])
+        errors.append((Rotation.from_quat([x, y, z, w]) * exact.inv()).magnitude())
+    assert [x for _, x in runs["Radau-quaternion"].points[:8]] == pytest.approx(errors, rel=0.02)
+    assert runs["Radau-quaternion"].error(5) == pytest.approx(max(errors), rel=0.02)
+
+
+def test_the_condition_is_what_half_a_unit_of_each_input_does(runs: dict[str, PeerRun]) -> None:
+    """The reference of inputs that differ by so much, in all its digits."""
+    inputs = {name: x for name, x in MOVING_TOP.as_dict().items() if x}
+    for t, bound in runs["lagtop"].bounds[::5]:
+        time = t * float(Reference(MOVING_TOP, 60).T)
+        exact, total = Reference(MOVING_TOP, 60).at(time), 0.0
+        for name, x in inputs.items():
+            moved = Fraction(x) + Fraction(math.ulp(float(x))) / 2
+            other = Reference(Top(**MOVING_TOP.as_dict() | {name: moved}), 60).at(time)
+            with mpmath.workdps(60):
+                away = [a - b for a, b in zip(other.quaternion, exact.quaternion, strict=True)]
+                total += float(2 * mpmath.sqrt(sum(x * x for x in away)))
+        assert bound == pytest.approx(total, rel=0.01)
+
+
+def test_energy_and_momentum_drift(runs: dict[str, PeerRun]) -> None:
+    """The drift of Radau, from the plain definitions of both."""
+    p, form = problem_of(MOVING_TOP), FORMS["quaternion"]
+    slope: Any = form.slope(p, math)
+    period = float(Reference(MOVING_TOP, 60).T)
+    grid = np.geomspace(5, 100, 9)[1:] * period
+    flow = solve_ivp(
+        slope, (0, grid[-1]), form.start(p), "Radau", dense_output=True, rtol=1e-7, atol=1e-7
+    )
+    m, A, C, s, g, r0 = (float(x) for x in list(MOVING_TOP.as_dict().values())[:6])
+    energy, Lz = [], []
+    for t in [0.0, *grid]:
+        x, y, *quaternion = flow.sol(t)
+        up = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()[2]
+        up *= np.sum(np.square(quaternion))  # which drifts as well
+        energy.append((A * (x * x + y * y) + C * r0**2) / 2 + m * g * s * up[2])
+        Lz.append(A * (x * up[0] + y * up[1]) + C * r0 * up[2])
+    drift = runs["Radau-quaternion"].drift
+    assert drift is not None
+    sizes = np.max(np.abs(np.array([energy, Lz]) - [[energy[0]], [Lz[0]]]), axis=1) / drift
+    x0, y0 = form.start(p)[:2]
+    assert sizes[0] == pytest.approx(
+        A * (x0 * x0 + y0 * y0) / 2 + m * g * s * (1 + math.cos(math.radians(55))) + C * r0**2 / 2,
+        rel=0.02,
+    )
+    assert sizes[1] == pytest.approx(
+        A * abs(-0.4) * math.sin(math.radians(55)) ** 2 + 2 * C * r0, rel=0.02
+    )
+
+
+def test_verdicts(runs: dict[str, PeerRun]) -> None:
+    assert {name: run.verdict for name, run in runs.items()} == {
+        "lagtop": "exact",
+        "scipy.special": "exact",
+        "DOP853-quaternion": "drifting",
+        "Radau-quaternion": "drifting",
+        "Taylor-quaternion": "exact",
+        "RK4-quaternion": "accurate",
+    }
+    run, times = runs["lagtop"], (1.0, 5.0, 100.0)
+
+    def judged(errors: list[float], bound: float = 1e-12) -> str:
+        points = list(zip(times, errors, strict=False))
+        return run._replace(points=points, bounds=[(t, bound) for t in times]).verdict
+
+    assert judged([1e-12, 1e-11, 1e-10]) == "exact"
+    assert judged([1e-7, 5e-7, 1e-5]) == "accurate"
+    assert judged([1e-7, 5e-6, 5e-4]) == "drifting"
+    assert judged([1e-6, 1e-5, 2e-3]) == "drifting"
+    assert judged([1e-6, 1e-5, 0.2]) == "lost"
+    assert judged([1e-6]) == "lost"
+    assert judged([1e-7, 5e-7]) == "accurate"
+    assert judged([1e-7, 5e-7, 1e-5], 0.2) == "ill-conditioned"
+    assert run._replace(points=[], remark="needs x").verdict == ""
+    assert run._replace(points=run.points[:8]).error(100) == math.inf
 
 
 BAD = {

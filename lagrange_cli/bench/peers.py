@@ -1,0 +1,167 @@
+"""Methods of all kinds in one scene over longer and longer spans: errors, condition, growth.
+
+An error is the angle (rad) of the rotation between the computed and the exact attitude, so that
+Euler angles do not blur it next to the vertical.  The condition is by how much half a unit in the
+last place of each input turns the attitude: no method can do better with inputs in doubles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import mpmath
+import numpy as np
+
+from ..arithmetic.types import Array
+from ..errors import LagtopError
+from ..inputs.top import Top
+from ..motion.sensitivity.angle_sensitivities import angle_sensitivities
+from .closed_forms import CLOSED_FORMS
+from .compare_methods import LOST, growth_of
+from .integrators import integrators
+from .method import FailedError, NotApplicableError
+from .reference import ExactAngles, Reference
+
+SPANS, LONG_SPAN = (5.0, 100.0), 1e4
+"""Nutation periods that every method is asked for; the last one with `long`."""
+EVALUATIONS, LONG_EVALUATIONS = 50_000, 5_000_000
+"""Evaluations of the right-hand side that a run may take."""
+SECONDS = 60.0
+_HAIR = 1e-9
+TIMES = 8
+"""Times in each span; errors are the greatest up to its end."""
+NAMES = (
+    *("lagtop", "scipy.special", "DOP853-quaternion"),
+    *("Radau-quaternion", "Taylor-quaternion", "RK4-quaternion"),
+)
+_EXACT, _ACCURATE, _ACCURATE_GROWTH = 100, 1e-3, 1.2
+VERDICTS = {
+    "exact": f"error at most {_EXACT} times the condition",
+    "accurate": f"error below {_ACCURATE:g} rad, growing at most like t^{_ACCURATE_GROWTH:g}",
+    "drifting": "error that is larger or grows faster",
+    "lost": f"error above {LOST:g} rad, or stopped within {SPANS[0]:g} periods",
+    "ill-conditioned": f"a scene whose condition exceeds {LOST:g} rad",
+}
+"""Words of the verdict and their meaning, from good to bad."""
+
+
+class PeerRun(NamedTuple):
+    """One method in one scene."""
+
+    method: str
+    points: Sequence[tuple[float, float]]
+    """Times in periods, and the error there (rad), as far as the method came."""
+    bounds: Sequence[tuple[float, float]]
+    """Times in periods, and the condition there (rad), over all spans."""
+    evaluations: int | None
+    drift: tuple[float, float] | None
+    """Changes of energy and Lz over the sum of their terms; None if a method has no rates."""
+    remark: str | None
+    """Why a run ended."""
+
+    def error(self, span: float) -> float | None:
+        """Return the greatest error in a span; infinite if the method gave up before its end."""
+        if self.is_missing:
+            return None
+        return _greatest(self.points, span) if self._came_to(span) else math.inf
+
+    def condition(self, span: float) -> float:
+        """Return the greatest condition in a span."""
+        return _greatest(self.bounds, span)
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether the package of the method is not installed."""
+        return (self.remark or "").startswith("needs ")
+
+    def _came_to(self, span: float) -> bool:
+        return bool(self.points) and self.points[-1][0] >= span * (1 - _HAIR)
+
+    @property
+    def growth(self) -> float | None:
+        """The exponent of the error in time, after the first period."""
+        return growth_of([(t, error) for t, error in self.points if t >= 1])
+
+    @property
+    def verdict(self) -> str:
+        """A word of VERDICTS, for the longest span that was done; "" for a missing method."""
+        if self.is_missing:
+            return ""
+        span = self.points[-1][0] if self.points else SPANS[0]
+        worst, condition = self.error(SPANS[0]), self.condition(span)
+        if condition > LOST:
+            return "ill-conditioned"
+        worst = max(worst or 0.0, _greatest(self.points, span))
+        if worst > LOST:
+            return "lost"
+        if worst <= _EXACT * condition:
+            return "exact"
+        steady = (self.growth or 0) <= _ACCURATE_GROWTH
+        return "accurate" if worst < _ACCURATE and steady else "drifting"
+
+
+def _greatest(points: Sequence[tuple[float, float]], span: float) -> float:
+    return max((value for t, value in points if t <= span * (1 + _HAIR)), default=0.0)
+
+
+def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterator[PeerRun]:
+    """Yield the run of each method, whose package may be missing, over growing spans."""
+    most = LONG_EVALUATIONS if len(spans) > len(SPANS) else EVALUATIONS
+    known = CLOSED_FORMS | integrators(SECONDS, most)
+    period = float(reference.T)
+    ends = zip((0.1, *spans), spans, strict=False)
+    grids = [np.geomspace(first, last, TIMES + 1)[1:] for first, last in ends]
+    exact = [[reference.at(t) for t in (grid * period).tolist()] for grid in grids]
+    every = np.concatenate(grids)
+    bounds = [*zip(every.tolist(), _conditions(top, every * period), strict=True)]
+    for name in NAMES:
+        method = known[name]
+        points: list[tuple[float, float]] = []
+        sample, remark = None, None
+        try:
+            method.check_package()
+            with np.errstate(all="ignore"):
+                sample = method.prepare(top, method.settings[-1])  # the tightest
+                for grid, true in zip(grids, exact, strict=True):
+                    found = zip(*sample(grid * period), strict=True)
+                    errors = [turn(x, y) for x, y in zip(found, true, strict=True)]
+                    if math.inf in errors:
+                        raise FailedError("what it gave is not a number")
+                    points += zip(grid.tolist(), errors, strict=True)
+        except NotApplicableError as reason:
+            remark = str(reason)
+        except (FailedError, ArithmeticError, ValueError, LagtopError) as reason:
+            remark = f"gave up: {reason}"
+        work = getattr(sample, "work", None)
+        evaluations = work.evaluations if work else None
+        yield PeerRun(name, points, bounds, evaluations, getattr(sample, "drift", None), remark)
+
+
+def turn(angles: Sequence[Any], exact: ExactAngles) -> float:
+    """Return the angle of the rotation between two attitudes; infinite for what is no number."""
+    with mpmath.workdps(60):
+        theta, phi, psi = (mpmath.mpf(x) for x in angles)
+        plus, minus, half = (psi + phi) / 2, (psi - phi) / 2, theta / 2
+        x, y = mpmath.cos(half), mpmath.sin(half)
+        parts = (
+            *(x * mpmath.cos(plus), y * mpmath.cos(minus)),
+            *(y * mpmath.sin(minus), x * mpmath.sin(plus)),
+        )
+        pairs = list(zip(parts, exact.quaternion, strict=True))
+        away = min(mpmath.sqrt(sum((a - sign * b) ** 2 for a, b in pairs)) for sign in (1, -1))
+        return float(4 * mpmath.asin(away / 2)) if mpmath.isfinite(away) else math.inf
+
+
+def _conditions(top: Top, times: Array) -> list[float]:
+    """Return the condition at times: the turns by each input, added up."""
+    slopes = angle_sensitivities(top, times)
+    inputs = top.as_dict()
+    steps = np.array([math.ulp(float(inputs[name] or 0)) / 2 for name in slopes.inputs])
+    steps[[not inputs[name] for name in slopes.inputs]] = 0.0
+    theta, phi, psi = (np.nan_to_num(x) * steps for x in (slopes.theta, slopes.phi, slopes.psi))
+    together = 2 * phi * psi * np.cos(slopes.angles.theta)[:, None]
+    square = np.maximum(theta**2 + phi**2 + psi**2 + together, 0.0)
+    found: list[float] = np.sqrt(square).sum(axis=1).tolist()
+    return found
