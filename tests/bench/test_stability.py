@@ -22,6 +22,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
+from lagrange_cli.arithmetic.text import value_text
 from lagrange_cli.bench import battery, stability
 from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.battery import HardScene, hard_scene
@@ -123,7 +124,9 @@ def test_report_is_repeatable_in_every_format(
     listed = lagtop("stability", *FEW, "--format", "csv")
     lines = list(csv.DictReader(io.StringIO(listed.stdout)))
     for one, other in zip(lines, whole["rows"], strict=True):
-        shown_there = {key: "" if value is None else str(value) for key, value in other.items()}
+        shown_there = {
+            key: "" if value is None else value_text(value) for key, value in other.items()
+        }
         assert shown_there == {key: text.replace("inf", "") for key, text in one.items()}
     assert "scenes: 2 per stratum" in listed.stderr
     assert ">near a pole<" in picture.read_text()
