@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
@@ -124,13 +123,13 @@ class Cosine(Values):
     def sign(self, P: Polynomial) -> int:
         """Return the sign of a polynomial, -1, 0 or 1."""
         sign = self._clear_sign(P)
-        if sign is None:
-            sign = (
-                0
-                if self._vanishes(P)
-                else decided("a polynomial in cos(theta0)", partial(self._sign_in_balls, P))
-            )
-        return sign
+        if sign is not None or self._vanishes(P):
+            return sign or 0
+
+        def decision(digits: int) -> int:
+            return 1 if self.at(balls(digits), P) > 0 else -1
+
+        return decided("a polynomial in cos(theta0)", decision)
 
     def _clear_sign(self, P: Polynomial) -> int | None:
         """Return the sign where doubles are enough to see it."""
@@ -156,9 +155,6 @@ class Cosine(Values):
         n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
         # phi(n) >= sqrt(n/2): beyond, the degree of the cosine is too high
         return n <= 8 * degree * degree and _vanishes_at_root_of_unity(coefficients, n)
-
-    def _sign_in_balls(self, P: Polynomial, digits: int) -> int:
-        return 1 if self.at(balls(digits), P) > 0 else -1
 
     def at(self, ar: Balls, P: Polynomial) -> Ball:
         """Return the value of a polynomial in balls."""

@@ -16,7 +16,7 @@ from ..errors import LagtopError
 from .complete import complete_k
 from .jacobi import Jacobi, jacobi, jacobi_at
 from .modulus import Modulus
-from .periods import INDICES, Periods, of_quarters
+from .periods import INDICES, Periods, whole_and_rest
 from .request import THIRD, FunctionRequest, known_values, put_exact_values
 from .tables import RealTable
 from .theta import ThetaSeries, in_periods, series_for, series_in_doubles, theta_at, zeta_at
@@ -110,7 +110,7 @@ class FunctionTable(RealTable):
             columns = {"u": u} | dict(self._named(ar, jacobi(ar, u, constants.modulus)))
             return columns | {name: known[name] for name in known.keys() & columns.keys()}
         if self.request.in_quarters:
-            place = of_quarters(ar, u)
+            place = whole_and_rest(ar, u / 2)  # exact up to 2^52 K
             u = times_quarter(ar, u, constants.K)
         else:
             place = in_periods(ar, u, series)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.protocol import FunctionArithmetic, Value
 from ..arithmetic.rounding import triple
@@ -54,11 +54,6 @@ def whole_and_rest(ar: FunctionArithmetic, x: Value) -> Periods:
     """Return a real number of periods as whole ones and the rest."""
     turns = ar.nint(x)
     return Periods(turns, x - turns)
-
-
-def of_quarters(ar: FunctionArithmetic, factor: Value) -> Periods:
-    """Return a real multiple of K in periods 2K; that of an array is exact up to 2^52 K."""
-    return whole_and_rest(ar, factor / 2)
 
 
 def reduced(u: Array, rate: Triple) -> Periods:
@@ -187,15 +182,10 @@ class Lattice(NamedTuple):
 
         `ar` is the arithmetic of arrays.
         """
-        return self._replace(
-            steepness=float(self.steepness),
-            ratio=float(self.ratio),
-            scale=float(self.scale),
-            across=float(self.across),
-            steep=fine(ar, self.steep),
-            bend=fine(ar, self.bend),
-            lift=fine(ar, self.lift),
-        )
+        doubles = ("steepness", "ratio", "scale", "across")
+        values: dict[str, Any] = {name: float(getattr(self, name)) for name in doubles}
+        values |= {name: fine(ar, getattr(self, name)) for name in ("steep", "bend", "lift")}
+        return self._replace(**values)
 
 
 def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
