@@ -120,13 +120,13 @@ def compare_command(
         comparison = compare_files(motion, trajectories, request, with_progress, is_named=is_named)
         for text in comparison.warnings:
             complain(f"Warning: {text}")
+        if not is_named and comparison.motion is motion:
+            complain("Warning: no scene and no inputs: compared with the worked example")
         if plot:
             _draw(comparison, limit, plot)
         return comparison_report(comparison.motion, comparison, request)
 
     report = write_report(out, find)
-    if scene is None and not top.by_key():
-        complain("Warning: no scene and no inputs: compared with the worked example")
     if not exit_zero:
         remedy = "use --exit-zero to look only"
         fail_for(failures(report), len(report.rows), "trajectories", remedy=remedy)

@@ -17,6 +17,8 @@ from .top import INPUTS
 from .value import Value
 
 _ANGULAR = (*ANGLES, "euler")
+_NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
+"""Units that stand for those of the scene, as in a drawn table."""
 _OWN_UNITS = {"position": "m", "rotvec": "rad"}
 """Units of quantities of a trajectory that are in no other."""
 _GREEK = {
@@ -120,7 +122,7 @@ def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | No
 
     Raises LagtopError for a unit that the quantity cannot have.
     """
-    if unit in {None, "-", "1"} or unit == _OWN_UNITS.get(key):
+    if unit in _NO_UNITS or unit == _OWN_UNITS.get(key):
         return None, None
     if key in _ANGULAR and unit in {"deg", "rad"}:
         return unit, None

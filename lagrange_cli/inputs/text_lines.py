@@ -18,6 +18,7 @@ from ..errors import DataError, LagtopError
 LONGEST_LINE = 1 << 20
 """Bytes of a line: memory does not grow with a file that has no line ends."""
 BYTES_AT_ONCE = 1 << 21
+_RULE = "\u2500".encode()
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 SWAP = bytes.maketrans(b",.", b".,")
 """Exchanges decimal points and commas."""
@@ -75,9 +76,9 @@ def at_line(name: str, number: int) -> Iterator[None]:
 
 
 def has_row(line: bytes) -> bool:
-    """Return whether a line is neither blank nor a comment, which begins with #."""
+    """Return whether a line is neither blank, nor a comment, nor the rule of a drawn table."""
     bare = line.strip()
-    return bool(bare) and not bare.startswith(b"#")
+    return bool(bare) and not bare.startswith((b"#", _RULE))
 
 
 def decoded_row(line: bytes) -> str:
@@ -85,7 +86,7 @@ def decoded_row(line: bytes) -> str:
     try:
         text = line.decode().rstrip("\r\n")
     except UnicodeDecodeError:
-        raise LagtopError("a row must be UTF-8 text") from None
+        raise LagtopError("a row must be UTF-8 text: save the file as UTF-8") from None
     if "\0" in text:
         raise LagtopError("a row must be text, got the character NUL")
     return text

@@ -12,7 +12,6 @@ from contextlib import ExitStack, suppress
 from fractions import Fraction
 from io import BufferedIOBase
 from itertools import chain, islice
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..arithmetic.text import parse_number, quoted
@@ -94,9 +93,9 @@ class TopsFile(NamedTuple):
     """Names that are neither read nor carried."""
     named: Collection[str]
     """The inputs that the rows have: by the header, or by the first JSON object with any."""
-    units: Mapping[str, Value] = MappingProxyType({})
+    units: Mapping[str, Value] = {}
     """1 in each column of an input, in the unit of its heading."""
-    factors: Mapping[str, Fraction] = MappingProxyType({})
+    factors: Mapping[str, Fraction] = {}
     """What the numbers of a column are multiplied with, where its heading has a unit."""
     dialect: Dialect = UNDECIDED
     around: bytes | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import pickle
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -150,7 +151,7 @@ def test_a_comma_between_two_numbers_is_unclear(lagtop: Lagtop) -> None:
     assert_one_line(
         lagtop(*words, "--decimal", ",", "--delimiter", "comma", input="0,5\n"),
         2,
-        "--delimiter comma and --decimal comma exclude each other",
+        "use --delimiter comma or --decimal comma, not both",
     )
 
 
@@ -167,3 +168,21 @@ def test_times_of_json_are_exact(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text('{"t":0.1}\n{"t":1e-3}\n')
     assert [str(x) for x in islice(TimesFile(str(path)).decimals(), 2)] == ["1/10", "1/1000"]
+
+
+@pytest.mark.parametrize("text", ["r0,id\n1,x\n", '{"r0":1,"id":"x"}\n', "r0 [rpm];id\n1,5;x\n"])
+def test_lines_go_to_other_processes(text: str, tmp_path: Path) -> None:
+    """JSON lines could not be pickled."""
+    path = tmp_path / "file"
+    path.write_text(text)
+    block = next(open_tops(str(path), set(), 10)[1])
+    again = pickle.loads(pickle.dumps(block))
+    assert list(again.rows()) == list(block.rows())
+
+
+def test_text_in_another_encoding_names_the_remedy(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes("t;theta [°]\n0;30\n".encode("cp1252"))
+    for reader in READERS["t"]:
+        with pytest.raises(DataError, match="line 1: a row must be UTF-8 text: save the file as"):
+            reader(path, UNDECIDED)
