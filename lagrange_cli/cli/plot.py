@@ -164,7 +164,7 @@ def plot_command(
 
         check_film(page, animate, film_dpi)
         paced = {name: None if x is None else float(x) for name, x in pacing.items()}
-        pace = film_pace(motion, animate, t_max=request.t_max, **paced)
+        pace = film_pace(motion, t_max=request.t_max, **paced)
     if output is not None:
         write_bytes(output, lambda: page_bytes(page, written, page_dpi))
     if animate is not None:

@@ -50,9 +50,9 @@ class SmallGifWriter(PillowWriter):
 WRITERS = {".gif": SmallGifWriter, ".mp4": FFMpegWriter}
 """What writes each kind of file, by the ending of its name."""
 
-FRAMES_PER_SECOND, SECONDS = 25.0, 6.0
-"""How fast and how long a film is where nothing is asked for."""
-MOST_FRAMES_PER_SECOND, MOST_FRAMES = 60.0, 3000
+FRAMES_PER_SECOND, SECONDS = 25, 6.0
+"""How fast a film is (a GIF counts hundredths of a second), and how long by default."""
+MOST_FRAMES = 3000
 ALIASED = math.pi / 3
 """The lid repeats after 120 degrees: faster than half of it per frame, its spin cannot be seen."""
 FOOT = 0.16
@@ -67,8 +67,6 @@ USUAL_SIZE = 4.8, 5.0
 class Pace(NamedTuple):
     """How a film runs."""
 
-    fps: float
-    """Frames per second."""
     frames: int
     t_max: float
     """Time of the motion that the whole film shows."""
@@ -76,44 +74,34 @@ class Pace(NamedTuple):
     @property
     def speed(self) -> float:
         """Time of the motion that one second of the film shows."""
-        return self.t_max * self.fps / self.frames
+        return self.t_max * FRAMES_PER_SECOND / self.frames
 
 
 def film_pace(
     motion: Motion,
-    name: str,
     *,
     t_max: float | None = None,
-    fps: float | None = None,
     duration: float | None = None,
     speed: float | None = None,
 ) -> Pace:
     """Return how a film runs that lasts `duration` seconds and shows `speed` of time in each.
 
-    A GIF counts hundredths of a second, so its frames per second are the nearest that it has.
     Raises LagtopError for t_max, duration and speed together, for a number out of its range, and
     for so much time that the path would be a blot.
     """
     if t_max and duration and speed:
         raise LagtopError("speed must be left out where t_max and duration are given", "speed")
-    fps = FRAMES_PER_SECOND if fps is None else fps
-    if not 1.0 <= fps <= MOST_FRAMES_PER_SECOND:
-        raise LagtopError(f"fps must be in [1, {MOST_FRAMES_PER_SECOND:g}], got {fps:g}", "fps")
-    if Path(name).suffix.lower() == ".gif":
-        fps = 100.0 / max(2, round(100.0 / fps))
     if speed is not None and not speed > 0:
         raise LagtopError(f"speed must be > 0, got {speed:g}", "speed")
     if duration is None:
         duration = t_max / speed if t_max and speed else SECONDS
-    if not 2 / fps <= duration <= MOST_FRAMES / fps:
-        bounds = f"[{2 / fps:.3g}, {MOST_FRAMES / fps:.6g}] seconds"
-        raise LagtopError(
-            f"duration must be in {bounds} at {fps:.3g} frames per second, got {duration:g}",
-            "duration",
-        )
+    least, most = 2 / FRAMES_PER_SECOND, MOST_FRAMES / FRAMES_PER_SECOND
+    if not least <= duration <= most:
+        bounds = f"[{least:g}, {most:g}] seconds"
+        raise LagtopError(f"duration must be in {bounds}, got {duration:g}", "duration")
     if t_max is None:
         t_max = film_span(motion) if speed is None else _checked_speed(motion, speed, duration)
-    return Pace(fps, round(fps * duration), t_max)
+    return Pace(round(FRAMES_PER_SECOND * duration), t_max)
 
 
 def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
@@ -142,14 +130,11 @@ def check_film(page: Page, name: str, dpi: float) -> None:
     check_pixels(dpi, page.size or USUAL_SIZE)
 
 
-def film_bytes(
-    page: Page, name: str, dpi: float, pace: Pace | None, progress: Progress = silent
-) -> bytes:
+def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress = silent) -> bytes:
     """Return the film as a GIF or an MP4, as `name` ends.  Raises LagtopError as `check_film`."""
     check_film(page, name, dpi)
-    pace = pace or film_pace(page.motion, name, t_max=page.request.t_max)
     suffix = Path(name).suffix.lower()
-    writer = WRITERS[suffix](fps=pace.fps)
+    writer = WRITERS[suffix](fps=FRAMES_PER_SECOND)
     with styled(page.look), tempfile.TemporaryDirectory() as folder:
         film = Film(page, pace)
         path = Path(folder) / f"film{suffix}"

@@ -90,7 +90,13 @@ def motions() -> dict[str, Motion]:
         if i % 2:
             scene |= {name: rng.uniform(-5, 5) for name in ("thetadot0", "psidot0")}
         found[f"random {i}: {scene}"] = solve(Top(**scene))
-    return {name: solve(Top(**page_scene(motion))) for name, motion in found.items()}
+    tiny = {
+        name
+        for name, motion in found.items()
+        if 0 < motion.top.inputs()["theta0_deg"] < (1e-9 if name.startswith("random") else 1e-12)
+    }  # the page refuses some, and angles next to a pole are judged as attitudes below
+    assert len(tiny) < 15 < len(found) / 4
+    return {name: solve(Top(**page_scene(found[name]))) for name in found if name not in tiny}
 
 
 def times_of(motion: Motion) -> list[float]:
@@ -284,8 +290,8 @@ def test_the_curves_and_the_scene_can_be_saved(browser: Browser) -> None:
         """const [make, parts] = [URL.createObjectURL, []];
         HTMLAnchorElement.prototype.click = function () { parts.push(this.download); };
         URL.createObjectURL = (blob) => { parts.push(blob); return make.call(URL, blob); };
-        for (const kind of [2, 3]) {
-            at.save.selectedIndex = kind; at.save.dispatchEvent(new Event("change"));
+        for (const kind of ["csv", "toml"]) {
+            at.kind.value = kind; at.save.click();
         }
         return Promise.all(parts.map((part) => part.text?.() ?? part));"""
     )

@@ -63,7 +63,7 @@ REFUSED = [
     ("-o x.png sphere --rad --camera 3,2", "[-2π, 2π] and [-π/2, π/2] rad, got '3,2'"),
     ("-o x.png map --colour-limits 5:1", "--colour-limits must be LOW:HIGH with LOW < HIGH"),
     ("-o x.png map --colour-limits inf:1", "LOW < HIGH, got 'inf:1'"),
-    ("--animate x.gif --duration 1e4", "--duration must be in [0.08, 120] seconds at 25"),
+    ("--animate x.gif --duration 1e4", "--duration must be in [0.08, 120] seconds, got"),
     ("--animate x.gif --duration 0", "--duration must be in [0.08, 120] seconds"),
     ("--animate x.gif --speed 0", "--speed must be > 0, got 0"),
     ("--animate x.gif --speed 1e3", "--speed must be at most 71.5417 (1000 nutation periods)"),

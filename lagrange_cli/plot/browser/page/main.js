@@ -71,7 +71,8 @@ class Page {
   }
 
   listen() {
-    const { space, plots, periods, waves, copy, theme, save, record, explained } = this.at;
+    const { space, plots, periods, waves, copy, theme, save, kind } = this.at;
+    const { record, explained } = this.at;
     followHands(space, this.camera, () => this.stale());
     for (const box of document.querySelectorAll("[data-shows]")) {
       const note = () => { this.shown[box.dataset.shows] = box.checked; };
@@ -82,10 +83,7 @@ class Page {
     waves.addEventListener("change", () => this.recurve());
     copy.addEventListener("click", () => this.copyLink());
     theme.addEventListener("click", () => this.changeTheme());
-    save.addEventListener("change", () => {
-      this.save(save.selectedIndex);
-      save.selectedIndex = 0;
-    });
+    save.addEventListener("click", () => this.save(kind.value));
     record.addEventListener("click", (event) => {
       explained.textContent = event.target.closest("tr").title || explained.textContent;
     });
@@ -192,9 +190,9 @@ class Page {
     });
     const table = ["t,theta_deg,phi_deg,psi_deg", ...rows, ""].join("\n");
     const toml = Object.entries(scene).map(([name, x]) => `${name} = ${x}\n`).join("");
-    if (kind === 1) this.at.space.toBlob((blob) => download(blob, "top.png"));
-    if (kind === 2) download(new Blob([table], { type: "text/csv" }), "top.csv");
-    if (kind === 3) download(new Blob([toml], { type: "application/toml" }), "top.toml");
+    if (kind === "png") this.at.space.toBlob((blob) => download(blob, "top.png"));
+    if (kind === "csv") download(new Blob([table], { type: "text/csv" }), "top.csv");
+    if (kind === "toml") download(new Blob([toml], { type: "application/toml" }), "top.toml");
   }
 
   async copyLink() {
