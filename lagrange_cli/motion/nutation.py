@@ -146,7 +146,7 @@ class Nutation(Over[R]):
         """The rate dw/dt of the argument w = sqrt(a (u3 - u2)) t/2 (4,30)."""
         return self.ar.sqrt(self.gaps.a_u3_u2) / 2
 
-    @key("Periods", "T", "of the nutation", "time", "(5,1)", formula="4*K/sqrt(a*(u3 - u2))")
+    @key("Periods", "T", "nutation period", "time", "(5,1)", formula="4*K/sqrt(a*(u3 - u2))")
     def T_nutation(self) -> R:
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate

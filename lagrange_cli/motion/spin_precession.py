@@ -86,7 +86,7 @@ class SpinPrecession(Nutation[R]):
     @key(
         "Mean rates",
         "φ' mean",
-        "spin",
+        "mean spin rate",
         "rad/time",
         "(6,3)",
         formula=f"r0 - b - (P - Q)/(2*K) where {_POLES}",
@@ -108,7 +108,7 @@ class SpinPrecession(Nutation[R]):
     @key(
         "Mean rates",
         "ψ' mean",
-        "precession",
+        "mean precession rate",
         "rad/time",
         "(7,3)",
         formula=f"(P + Q)/(2*K) where {_POLES}",
@@ -119,7 +119,7 @@ class SpinPrecession(Nutation[R]):
             return self._south + self._north
         return self._whole_south + self._whole_north
 
-    @key("Periods", "Tφ", "of the mean spin", "time", "§8", formula="2*pi/abs(mean_spin_rate)")
+    @key("Periods", "Tφ", "mean spin period", "time", "§8", formula="2*pi/abs(mean_spin_rate)")
     def T_spin(self) -> R | None:
         """One turn at the mean spin rate (section 8)."""
         return turn_time(self.ar, self.mean_spin_rate)
@@ -127,7 +127,7 @@ class SpinPrecession(Nutation[R]):
     @key(
         "Periods",
         "Tψ",
-        "of the mean precession",
+        "mean precession period",
         "time",
         "§8",
         formula="2*pi/abs(mean_precession_rate)",
@@ -139,7 +139,7 @@ class SpinPrecession(Nutation[R]):
     @key(
         "Rates",
         "φ'(0)",
-        "spin at the start",
+        "spin rate at start",
         "rad/time",
         "(6,2)",
         formula="r0 - psidot0*cos(theta0)",
@@ -151,7 +151,7 @@ class SpinPrecession(Nutation[R]):
     @key(
         "Rates",
         "φ'(T/2)",
-        "spin at T/2",
+        "spin rate at T/2",
         "rad/time",
         "(6,2)",
         formula=f"r0 - U*precession_rate_half where {_HALF}",
@@ -163,7 +163,7 @@ class SpinPrecession(Nutation[R]):
         below, above = self._half
         return self.r0 - (below - above) / 2 * self.precession_rate_half
 
-    @key("Rates", "ψ'(0)", "precession at start", "rad/time", "(4,7)", formula="psidot0")
+    @key("Rates", "ψ'(0)", "precession rate at start", "rad/time", "(4,7)", formula="psidot0")
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
@@ -171,7 +171,7 @@ class SpinPrecession(Nutation[R]):
     @key(
         "Rates",
         "ψ'(T/2)",
-        "precession at T/2",
+        "precession rate at T/2",
         "rad/time",
         "(4,7)",
         formula=f"(momentum_constant - b*U)/(1 - U**2) where {_HALF}",

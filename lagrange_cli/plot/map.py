@@ -168,9 +168,7 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
 
 def _title(key: Key, unit: str) -> str:
     """Return the quantity, its symbol, its equation and its unit."""
-    kinds = {"Periods": "period ", "Mean rates": "mean rate of ", "Rates": "rate of "}
-    kind = kinds.get(key.group, "")
-    kind = "integral of the " if key.meaning.endswith(("kind, k", "kind, k'")) else kind
+    kind = "integral of the " if key.meaning.endswith(("kind, k", "kind, k'")) else ""
     named = f"{key.symbol}: {kind}{key.meaning} {key.equation}".rstrip()
     return f"{named}, in {unit}" if unit else named
 

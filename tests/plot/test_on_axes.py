@@ -52,7 +52,7 @@ def test_every_kind_has_its_function() -> None:
 
 def test_a_map_of_ones_own() -> None:
     (axes,) = draw("map", key="T_nutation", **MAP)
-    assert axes.get_title() == "T: period of the nutation (5,1), in time"
+    assert axes.get_title() == "T: nutation period (5,1), in time"
     figure = axes.get_figure()
     assert figure is not None
     assert len(figure.axes) == 2  # the bar
