@@ -10,7 +10,7 @@ import click
 
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
-from .app import Command
+from .app import Command, complain
 from .options import (
     FILE,
     Parsed,
@@ -144,6 +144,8 @@ def sweep_command(
         else:
             texts = (part.text for part in passing)
             out.blocks(sweep.header, texts)
+    if parts_folder and parts_folder.found:
+        complain(f"Resumed: {parts_folder.found} parts were already in {folder}")
     tally.check()
     if todo.file is not None and shard is None and not tally.count:
         warn_no_tops(todo.file)

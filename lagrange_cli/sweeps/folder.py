@@ -72,6 +72,7 @@ class Folder:
         """
         self.path = Path(path)
         self.files = PartFiles(self.path, sweep)
+        self.found = 0  # parts of earlier runs
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self._claim(json.loads(json.dumps(description)))
@@ -83,6 +84,7 @@ class Folder:
         """Yield the blocks whose parts are not here yet, and count the others as done."""
         for number, block in blocks:
             if done := self._done(number, block.size):
+                self.found += 1
                 tally.add(done)
             else:
                 yield number, block
