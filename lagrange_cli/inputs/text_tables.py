@@ -122,28 +122,34 @@ def read_head(
         around = b"[], \t\r\n" if start == b"[" else b" \t\r\n"
         return TableHead(lines, kept, comments, None, kept[0][0], asked, around)
     kept, asked = _without_preamble(kept, name, asked)
-    rows = [x for x in kept if has_row(x[1])]
-    titles = [_decoded(x, name) for x in rows[:_MOST_TITLES]]
-    for (number, _), text in zip(rows, titles, strict=False):
+    return _head_of_cells(TableHead(lines, kept, comments, None, 1, asked), known, width)
+
+
+def _head_of_cells(
+    head: TableHead, known: Callable[[Sequence[str]], int], width: int | None
+) -> TableHead:
+    """Return the beginning of a table of cells, of which the first lines have been read."""
+    rows, asked, name = head.rows(), head.dialect, head.lines.name
+    texts = [_decoded(x, name) for x in rows[:_MOST_TITLES]]
+    for (number, _), text in zip(rows, texts, strict=False):
         with at_line(name, number):
             _has_number(text, asked)  # for its errors
-    at, delimiters = _find_headings(titles, asked, known)
-    if width is None and at is not None:
-        below = rows[at + 1 :]
-        delimiter = _fitting(delimiters, titles[at], below, f"{name}, line {rows[at][0]}")
-        headings = _headings(titles[at], delimiter)
+    at, delimiters = _find_headings(texts, asked, known)
+    below = rows if at is None else rows[at + 1 :]
+    headings, place = None, below[0][0] if below else head.lines.number + 1
+    if at is not None and width is None:
+        place = rows[at][0]
+        delimiter = _fitting(delimiters, texts[at], below, f"{name}, line {place}")
+        headings = _headings(texts[at], delimiter)
         if delimiter == " " and below and all(len(_cells(x, Dialect(" "))) == 1 for x in below):
-            headings = [titles[at].strip()]
+            headings = [texts[at].strip()]
+    elif at is not None and len(delimiters) == 1 and delimiters != [" "]:
+        delimiter = delimiters[0]
     else:
-        below, delimiters = (rows, []) if at is None else (rows[at + 1 :], delimiters)
-        if len(delimiters) == 1 and delimiters != [" "]:
-            delimiter = delimiters[0]
-        else:
-            delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
-        headings = None
-    place = rows[at][0] if headings is not None and at is not None else (below or [(1, b"")])[0][0]
-    kept = [x for x in kept if x[0] > place or (x[0] == place and headings is None)]
-    return TableHead(lines, kept, comments, headings, place, asked._replace(delimiter=delimiter))
+        delimiter = asked.delimiter or _delimiter_of_rows(below, name, asked, width)
+    kept = [x for x in head.kept if x[0] >= place + (headings is not None)]
+    asked = asked._replace(delimiter=delimiter)
+    return head._replace(kept=kept, headings=headings, place=place, dialect=asked)
 
 
 def _sample(lines: NumberedLines) -> list[Numbered]:
@@ -249,20 +255,19 @@ def _delimiter_of_rows(
 def _delimiters_of_row(text: str, asked: Dialect, width: int | None) -> set[str]:
     """Return the delimiters by which no cell of a row has several numbers, or a delimiter."""
     present = [x for x in _SEPARATORS if x in text and x != asked.decimal]
-    if "\t" not in present:
-        present.append(" ")
+    present += [] if "\t" in present else [" "]
     found = set()
     for delimiter in present:
         with suppress(LagtopError):
             cells = [x.strip() for x in Dialect(delimiter).cells(text)]
-            fits = width is None or len(cells) == width
-            if fits and all(is_number(x) or not _is_several(x) for x in cells):
+            if width in {None, len(cells)} and not any(map(_is_several, cells)):
                 found.add(delimiter)
     return found
 
 
 def _is_several(cell: str) -> bool:
-    return bool(set(cell) & set(_SEPARATORS) or _NUMBERS.fullmatch(cell))
+    several = set(cell) & set(_SEPARATORS) or _NUMBERS.fullmatch(cell)
+    return bool(several) and not is_number(cell)
 
 
 def _two_delimiters(where: str, text: str) -> DataError:
@@ -274,10 +279,9 @@ def _two_delimiters(where: str, text: str) -> DataError:
 
 def _cells(row: Numbered, dialect: Dialect) -> list[str]:
     """Return the cells of a row, none of one that cannot be read, which its reader will name."""
-    try:
+    with suppress(LagtopError):
         return dialect.cells(decoded_row(row[1]))
-    except LagtopError:
-        return []
+    return []
 
 
 def _mark_of(cell: str) -> str:
