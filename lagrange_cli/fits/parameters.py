@@ -1,12 +1,10 @@
 """The parameters of a fit: the unknowns of the body and of the starts, and what follows from them.
 
-The body is the same in all recordings of a fit: a, and C/A if it ties b to r0.  It does so if it is
-known, or if several recordings show their spin.  Each recording has its own start, b or r0 or both,
-and zeros of psi and phi.
+The body is the same in all recordings of a fit: a, and C/A if it ties b to r0, which it does if it
+is known or several recordings show their spin.  Each has its own start, b or r0 or both, and zeros.
 
-Coordinates for the least squares, in which the parameters of a recording hardly correlate.
-
-A small nutation about a steady precession with the rate Omega has the frequency omega of
+In the coordinates for the least squares the parameters of a recording hardly correlate.  A small
+nutation about a steady precession with the rate Omega has the frequency omega of
 
     omega^2 = (b - 2 Omega cos(theta))^2 + (Omega sin(theta))^2.
 
@@ -40,10 +38,8 @@ BODY = ("m", "s", "g", "C", "A", "A_cm")
 FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero", *BODY)
 """The quantities that a recording depends on, the state first, and the known inputs of the body."""
 _START = ("theta0", "thetadot0", "psidot0")
-
 STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
 """The parameters of a steady precession: values of lines at the first row, and their rates."""
-
 Name = tuple[str, int]
 """A parameter, and the number of its recording; -1 for one of the body."""
 _INSTEAD = ("A_cm", "phidot0")
@@ -68,12 +64,14 @@ class Parameters(NamedTuple):
     def quantities(self, values: Array, i: int) -> tuple[Array, Array]:
         """Return the quantities of recording i, and their derivatives by the parameters.
 
-        They are of shape (14,) and (14, parameters), in the order of FIT_QUANTITIES; a quantity
-        that is neither known nor determined is 0.
+        They are of shape (14,) and (14, parameters), in the order of FIT_QUANTITIES; 0 if unknown.
         """
-        steps = 1j * _STEP * np.eye(len(values))
-        slopes = [np.imag(self._computed(values + step, i)) / _STEP for step in steps]
-        return np.real(self._computed(values, i)), np.stack(slopes, axis=-1)
+        slopes = np.zeros((len(FIT_QUANTITIES), len(values)))
+        for column, (_, recording) in enumerate(self.names):
+            if recording in {-1, i}:
+                step = 1j * _STEP * (np.arange(len(values)) == column)
+                slopes[:, column] = np.imag(self._computed(values + step, i)) / _STEP
+        return np.real(self._computed(values, i)), slopes
 
     def _computed(self, values: Array, i: int) -> Array:
         """Return the quantities at real or complex parameters."""

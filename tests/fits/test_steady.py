@@ -17,7 +17,7 @@ from lagrange_cli import LagtopError, Top, fit, solve
 NOISE = math.radians(0.5)
 BODY = {"m": 1.587, "A": 3.9032e-3, "s": 0.04, "g": 9.81}
 FAST = Top(**BODY, C=1.7458e-3, r0=800, theta0_deg=60)
-"""Its axis nutates between 60 and 60.12 degrees; stability factor 200."""
+"""A top that nutates between 60 and 60.12 degrees; stability factor 200."""
 T = np.linspace(0, 5, 600)
 
 

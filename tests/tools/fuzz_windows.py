@@ -104,7 +104,7 @@ class Judged(NamedTuple):
     pull: float
     """The decay rate less the true one, over its standard deviation."""
     pulls: list[float]
-    """Those of a and of C/A."""
+    """Errors of a and C/A over their standard deviations."""
     chi2_dof: float
     good: float
     """Share of the windows that are called good."""
