@@ -123,7 +123,7 @@ def tops(count: int) -> str:
         ["sweep", "tops.csv", "--keys", "T_nutation", "--fail-fast"],
         ["table", "--tops", "few.csv", "--n", "20000"],
         ["table", "--tops", "few.csv", "--times", "times.txt", "--format", "json"],
-        ["stability", "--samples", "2", "--strata", "fast,slow", "--format", "csv"],
+        ["stability", "--samples", "2", "--strata", "slow,units", "--format", "csv"],
     ],
 )
 def test_bytes_are_those_of_one_process(

@@ -39,7 +39,7 @@ LINES = {
     "more jobs": "sweep --r0 1:100:200000 --psidot0 1 --keys r0,K --jobs 3 -o out",
     "jobs to stdout": "sweep --r0 1:100:200000 --jobs 2",
     "tables by jobs": "table --tops few.csv --n 20000 --jobs 2 -o out",
-    "stability by jobs": "stability --samples 6 --strata fast,slow --jobs 2 -o out",
+    "stability by jobs": "stability --samples 6 --strata slow,units --jobs 2 -o out",
 }
 OLD = b"old\n"
 PATIENCE = 300
