@@ -106,6 +106,9 @@ def test_derivatives_are_those_of_mpmath() -> None:
     [
         ({"r0": 2, "theta0_deg": 90}, {"steady_rate_slow": 0.5, "steady_rate_fast": None}),
         ({"r0": 2, "theta0_deg": 90}, {"r0_steady_min": 0, "r0_sleeping": 2}),
+        ({"r0": -2, "theta0_deg": 90}, {"steady_rate_slow": -0.5, "steady_rate_fast": None}),
+        ({"r0": -3, "theta0_deg": 60, "g": 4.5}, {"steady_rate_slow": -3, "steady_rate_fast": -3}),
+        ({"r0": -5, "theta0_deg": 0, "g": 4}, {"steady_rate_slow": -1, "steady_rate_fast": -4}),
         ({"r0": 0, "theta0_deg": 90}, {"steady_rate_slow": None, "steady_rate_fast": None}),
         ({"r0": 0, "theta0_deg": 120, "A": 2}, {"steady_rate_slow": 1, "steady_rate_fast": -1}),
         ({"r0": 0, "theta0_deg": 60}, {"steady_rate_slow": None, "r0_steady_min": math.sqrt(2)}),
@@ -133,8 +136,11 @@ def test_next_to_a_double_root_both_rates_are_told_apart() -> None:
 
 
 def test_a_derivative_next_to_a_root_that_is_0_does_not_exist() -> None:
-    double = sensitivities(Top(**UNIT, r0=2, theta0_deg=0), ["steady_rate_slow"])
-    assert all(math.isnan(x) for x in double.derivatives["steady_rate_slow"].values())
+    thirds = UNIT | {"A": 3, "m": Fraction(1, 6), "r0": 1}
+    for inputs in (UNIT | {"r0": 2, "theta0_deg": 0}, thirds | {"theta0_deg": 60}):
+        double = sensitivities(Top(**inputs), ["steady_rate_slow"])
+        slopes = double.derivatives["steady_rate_slow"]
+        assert all(math.isnan(slopes[name]) for name in ("m", "A", "r0", "theta0_deg"))
     level = sensitivities(Top(**UNIT, r0=2, theta0_deg=90), ["r0_steady_min", "stability_factor"])
     assert math.isnan(level.derivatives["r0_steady_min"]["theta0_deg"])
     assert set(level.reasons) == {"r0_steady_min"}
