@@ -136,7 +136,6 @@ def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Pat
     for words in (
         ("find", scene, "--r0", "10:200", "T_precession=2", "--keys", "r0"),
         ("find", scene, "theta_min=30", "theta_max=60", "T_nutation=0.4"),
-        ("fit", recording, scene, "--fix", "m"),
         ("view", scene, "-o", tmp_path / "top.html"),
         ("compare", recording, scene),
     ):
@@ -152,7 +151,7 @@ def test_commands_that_use_no_uncertainties_say_so(lagtop: Lagtop, tmp_path: Pat
         (["--m", "9(2)", "--derivation"], "use --derivation or uncertain inputs, not both"),
         (["--budget", "T_nutation"], "no input is uncertain: give one as in --m '1587(2)'"),
         (["--get", "T_nutation_std"], "no input is uncertain"),
-        (["--theta0", "30(1)", "--budget", "T"], "--budget must be among 26 names, got 'T': a, b"),
+        (["--theta0", "30(1)", "--budget", "T"], "--budget must be among 33 names, got 'T': a, b"),
         (["--theta0", "30(1)", "--samples", "5"], "--samples must be in [100, 1000000], got 5"),
         (["--theta0", "30(1)", "--seed", "5"], "--seed needs --samples"),
         (["--theta0", "30(1)", "--samples", "200", "--seed", "-1"], "--seed must be >= 0, got -1"),
