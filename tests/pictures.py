@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from scenes import UNIT
+from scenes import SAMPLES, UNIT
 
 from lagrange_cli import Motion, Top, solve
 from lagrange_cli.inputs.given import read_scene
+from lagrange_cli.plot.curves import tilt_period
 from lagrange_cli.plot.kinds import PlotRequest
 from lagrange_cli.plot.page import Page, draw_page
 from lagrange_cli.plot.style import LIGHT, styled
@@ -33,6 +34,10 @@ REGIMES: dict[str, dict[str, float]] = {
 def sample_motion(path: Path) -> Motion:
     """Return the motion of a scene file."""
     return solve(read_scene(str(path)))
+
+
+NUTATING = [path for path in SAMPLES if tilt_period(sample_motion(path))]
+"""The shipped scenes whose tilt has a period."""
 
 
 def regime_motion(name: str) -> Motion:

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from pictures import REGIMES, regime_motion, sample_motion
-from scenes import SAMPLES
+from pictures import NUTATING, REGIMES, regime_motion, sample_motion
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.types import Array
@@ -29,7 +28,7 @@ from lagrange_cli.plot.curves import (
 from lagrange_cli.plot.sphere import axis_path
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", NUTATING, ids=lambda path: path.stem)
 def test_the_path_is_on_the_sphere_and_touches_both_circles(path: Path) -> None:
     scene = sample_motion(path)
     course = axis_path(scene, turn_span(scene))
@@ -40,7 +39,7 @@ def test_the_path_is_on_the_sphere_and_touches_both_circles(path: Path) -> None:
     assert (np.diff(course.t) > 0).all()
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", NUTATING, ids=lambda path: path.stem)
 def test_the_path_is_smooth(path: Path) -> None:
     """No corner of the polygon is sharp but the cusps: what is drawn is the curve."""
     scene = sample_motion(path)

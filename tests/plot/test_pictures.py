@@ -14,7 +14,7 @@ import pytest
 from conftest import ROOT
 from matplotlib.collections import LineCollection
 from matplotlib.text import Annotation
-from pictures import REGIMES, drawn, regime_motion, sample_motion
+from pictures import NUTATING, REGIMES, drawn, regime_motion, sample_motion
 from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
@@ -174,7 +174,7 @@ def test_the_cubic_without_torque_is_a_parabola() -> None:
 # The phase plane.
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", NUTATING, ids=lambda path: path.stem)
 def test_the_orbit_in_the_phase_plane_keeps_the_energy(path: Path) -> None:
     scene = sample_motion(path)
     portrait = phase_portrait(scene)
