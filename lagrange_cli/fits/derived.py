@@ -19,15 +19,23 @@ from ..motion.solve import solve
 from .model import STATE, inputs_of
 
 _SPIN = "mean_spin_rate"
-_EXACT = {
+_MEANINGS = {
     "T_nutation": "nutation period",
     "T_precession": "period of the mean precession",
     "mean_precession_rate": "mean precession rate",
     _SPIN: "mean spin rate",
     "theta_min_deg": "least tilt",
     "theta_max_deg": "greatest tilt",
+    "stability_factor": "b^2/2a",
+    "T_nutation_elementary": "2 pi A/(C |r0|)",
+    "precession_rate_elementary": "mgs/(C r0)",
 }
 """The keys of the record that are derived, and their meanings."""
+_STANDS_FOR = {
+    "T_nutation_elementary": "T_nutation",
+    "precession_rate_elementary": "mean_precession_rate",
+}
+"""The exact numbers that elementary formulas stand for."""
 _BY = {"a": ("g", 0.5), "b": ("r0", 1.0), "theta0": ("theta0_rad", 1.0)}
 """The inputs of a top with A = C = m = s = 1 that stand for a, b and theta0, and their slopes."""
 
@@ -65,34 +73,15 @@ def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[Der
 
     Keys that the motion does not have are left out.
     """
-    a, b = values["a"], values["b"]
     top = Top(**inputs_of(*(values[name] for name in STATE)))
-    motion, slopes = solve(top), sensitivities(top, list(_EXACT)).derivatives
-    for key, meaning in _EXACT.items():
+    motion, slopes = solve(top), sensitivities(top, list(_MEANINGS)).derivatives
+    for key, meaning in _MEANINGS.items():
         if key not in slopes or (key == _SPIN and not spins):
             continue
         by = [_BY.get(name, (name, 1.0)) for name in STATE]
         gradient = {name: slopes[key][x] * n for name, (x, n) in zip(STATE, by, strict=True)}
         value = float(getattr(motion, key))
         if key == _SPIN:  # the top has r0 = b: the spin of the body grows by (r0 - b) t more
-            value += values["r0"] - b
+            value += values["r0"] - values["b"]
             gradient |= {"r0": 1.0, "b": gradient["b"] - 1}
-        yield DerivedNumber(key, value, gradient, meaning)
-    yield DerivedNumber(
-        "stability_factor", b * b / (2 * a), {"a": -b * b / (2 * a * a), "b": b / a}, "b^2/2a"
-    )
-    if b:
-        yield DerivedNumber(
-            "T_nutation_elementary",
-            2 * math.pi / abs(b),
-            {"b": -2 * math.pi / (b * abs(b))},
-            "2 pi A/(C |r0|)",
-            "T_nutation",
-        )
-        yield DerivedNumber(
-            "precession_rate_elementary",
-            a / (2 * b),
-            {"a": 1 / (2 * b), "b": -a / (2 * b * b)},
-            "mgs/(C r0)",
-            "mean_precession_rate",
-        )
+        yield DerivedNumber(key, value, gradient, meaning, _STANDS_FOR.get(key, ""))
