@@ -113,8 +113,7 @@ def fit_command(
 
     Only the inputs given as options, and those of the scene named by --fix, count as known.
 
-    -o FILE.toml writes the fitted top as a scene, beside the report.  If a fit has failed, the exit
-    code is 1 and no scene is written.
+    -o FILE.toml writes the fitted top as a scene, unless the fit fails.
     """
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings

@@ -155,7 +155,7 @@ def test_radii_need_no_package_and_no_other_digits(lagtop: Lagtop) -> None:
     radii = json.loads(lagtop("solve", "--format", "json", "--certify").stdout)
     assert {key: radii[key] for key in plain} == plain
     assert radii.keys() - plain.keys() == {
-        f"{key}_radius" for key in plain if key not in ("regime", "path", "remark")
+        f"{key}_radius" for key in plain if key not in ("regime", "path", "remark", "summary")
     }
     drawn = lagtop("solve", "--certify").stdout
     assert f"{radii['T_nutation_radius']}" in drawn

@@ -104,7 +104,7 @@ def test_what_is_no_number_of_jobs(text: str, lagtop: Lagtop) -> None:
 
 
 def test_jobs_need_something_to_share(lagtop: Lagtop) -> None:
-    assert_one_line(lagtop("table", "--jobs", 2), 2, "--jobs shares out many tops")
+    assert_one_line(lagtop("table", "--jobs", 2), 2, "--jobs needs --tops: one top")
     refused = lagtop("sweep", "--jobs", 2, "--dask", "local")
     assert_one_line(refused, 2, "use --jobs or --dask, not both")
 

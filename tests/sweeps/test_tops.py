@@ -31,9 +31,9 @@ def test_get_what_is_not_there(lagtop: Lagtop) -> None:
     assert absent.stderr == "Error: a top of the regime 'sleeping' has no T_nutation\n"
     unknown = lagtop("solve", "--get", "T")
     assert (unknown.exit_code, unknown.stdout) == (2, "")
-    assert unknown.stderr.startswith("Error: --get must be among 69 names, got 'T': m, A, C")
+    assert unknown.stderr.startswith("Error: --get must be among 76 names, got 'T': m, A, C")
     assert lagtop("solve", "--get", "T_nut").stderr.startswith(
-        "Error: --get must be among 69 names, got 'T_nut' (did you mean 'T_nutation'?): m, A, C"
+        "Error: --get must be among 76 names, got 'T_nut' (did you mean 'T_nutation'?): m, A, C"
     )
     in_csv = lagtop("solve", "--get", "T_nutation,k", "--format", "csv").stdout
     bare = lagtop("solve", "--get", "T_nutation,k").stdout
