@@ -40,7 +40,7 @@ _SMALL = 2.0**-56
 
 
 class Start(NamedTuple):
-    """Where tops are at t = 0, by sn^2 and cn^2 of their argument w there."""
+    """Positions of tops at t = 0: sn^2 and cn^2 of their argument w."""
 
     sn2: DoubleDouble
     cn2: DoubleDouble
@@ -53,15 +53,15 @@ class PairMotions(NamedTuple):
 
     motion: Nutating[DoubleDouble]
     start: Start | None
-    """None where all tops start at the top of the nutation."""
+    """None if all tops start at the top of the nutation."""
     noise: Array
     """Bound of the relative errors of the gaps."""
     rate_size: Array
-    """Size of what is added up to give the mean rates."""
+    """Size of the terms whose sum is the mean rate."""
     sure: Mask
 
     def part(self, rows: NDArray[np.intp]) -> PairMotions:
-        """Return some of the motions, with what is known of them."""
+        """Return some of the motions, with their starts and error bounds."""
         whole, facts = self.motion, self.motion.facts
         signs = {name: getattr(facts, name)[rows] for name in ("sign_plus", "sign_minus")}
         state, gaps = State(*(x[rows] for x in whole.state)), Gaps(*(x[rows] for x in whole.gaps))
@@ -71,11 +71,11 @@ class PairMotions(NamedTuple):
         return PairMotions(motion, *_rows_of(list(self[1:]), rows))
 
     def hyperbolic(self) -> Mask:
-        """Return where K > K', so that the series run in the nome of the complement."""
+        """Return which motions have K > K', so that their series use the complementary nome."""
         return self.motion.m.high > 0.5
 
     def reach(self) -> Array:
-        """Return the longest times at which the angles are trusted; NaN where none is."""
+        """Return the latest times at which the angles are trusted; NaN if there are none."""
         with PAIRS.working():
             period = self.motion.T_nutation.high
             reach = _SMALL / self.noise / (self.rate_size + 8 / period)
@@ -91,7 +91,7 @@ def released_motions(tops: TopArrays) -> PairMotions:
         facts = facts.replace(sign_plus=sign, sign_minus=-sign)
         motion = Nutating(PAIRS, facts, state, gaps_from_rest(PAIRS, state))
         parts = np.maximum(state.a.high, state.b.high**2 / 2)
-        noise = EPS * (1 + parts / abs(state.sleep.high))  # lambda - 1 is what cancels
+        noise = EPS * (1 + parts / abs(state.sleep.high))  # the cancellation is in lambda - 1
         size = abs(tops.r0) + abs(motion.mean_precession_rate.high)
         return PairMotions(motion, None, noise, size, np.isfinite(noise))
 
@@ -115,7 +115,7 @@ def moving_motions(tops: TopArrays) -> PairMotions:
 
 
 class ArraySampler(NamedTuple):
-    """The theta series of many tops that all run in the same nome; each constant is a column."""
+    """The theta series of many tops, all in the same nome; each constant is a column."""
 
     step: Period
     offset: Array
@@ -129,7 +129,7 @@ class ArraySampler(NamedTuple):
     frames: list[Frame]
     """The coefficients of all tops, about u1 and about u2."""
     slopes: list[Array]
-    """What the mean growth of arg X and arg Y has more than these, per unit of the argument."""
+    """Mean rates of arg X and arg Y less their growth in the series, per unit of the argument."""
     growths: Growths
 
     def part(self, rows: slice) -> ArraySampler:
@@ -137,7 +137,7 @@ class ArraySampler(NamedTuple):
         return ArraySampler(*_rows_of(list(self), rows))
 
     def attitude(self, t: Array, farthest: float, space: Array) -> Attitude:
-        """Return the attitude at times, a row per top, in a workspace of that shape."""
+        """Return the attitude at times of shape (tops, times), in the workspace `space`."""
         step, since, lost = whole_periods(t, self.step, farthest, space[:3], self.offset)
         since -= lost
         since *= self.speed
@@ -150,7 +150,7 @@ class ArraySampler(NamedTuple):
         return Attitude(self.growths, Times(t, farthest, space[12:]), spinor)
 
     def _parts(self, argument: Array, upper: Mask, parts: Array) -> Array:
-        """Return real and imaginary parts of X and Y; `upper` tells phases counted from u1."""
+        """Return real and imaginary parts of X and Y; `upper` marks phases counted from u1."""
         S = np.sinh(argument) if self.hyperbolic else np.tan(argument)
         square = S * S
         C = np.sqrt(square + 1.0) if self.hyperbolic else None
@@ -173,7 +173,7 @@ class ArraySampler(NamedTuple):
 def _polynomials(
     one: list[Array], other: list[Array], place: NDArray[np.intp], x: Array, value: Array
 ) -> None:
-    """Write the value of a polynomial of each top, or of another one, by its place in both."""
+    """Write the value of one of two polynomials of each top, selected by `place`."""
     value[:] = 0.0
     for pair in zip(reversed(one), reversed(other), strict=True):
         value *= x
@@ -181,7 +181,7 @@ def _polynomials(
 
 
 def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
-    """Return the theta series of motions that all run in the same nome."""
+    """Return the theta series of motions whose series all use the same nome."""
     motion = motions.motion
     with PAIRS.working():
         c = theta_constants(motion, 0 * motion.K)
@@ -232,7 +232,7 @@ def _at_start(motions: PairMotions, series: Series) -> tuple[Array, Mask, Array,
 
 
 def _phase(motion: Nutating[DoubleDouble], start: Start, lower: Mask) -> Array:
-    """Return the phase w/K of a start after u1, counted from u2 where that is nearer."""
+    """Return the phase w/K of a start after u1, counted from u2 if that is nearer."""
     sn2, cn2, _ = start
     total = sn2 + cn2
     mc = motion.k_prime * motion.k_prime
@@ -268,7 +268,7 @@ def _growth(rate: DoubleDouble, start: DoubleDouble) -> Growth:
 
 
 def _columns(x: DoubleDouble, count: int) -> tuple[Array, Array]:
-    """Return both parts of a number of each top, or of one for all, as columns."""
+    """Return both parts of a number of each top (or of one number for all) as columns."""
     return tuple(np.broadcast_to(part, (count,))[:, None] for part in (x.high, x.low))  # type: ignore[return-value]
 
 

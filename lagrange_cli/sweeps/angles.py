@@ -1,4 +1,4 @@
-"""Angles of many tops over time: as arrays where that can be trusted, else one by one."""
+"""Angles of many tops over time: as arrays if their errors are small enough, else one by one."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from .top_arrays import TopArrays
 def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Results:
     """Return theta, phi and psi (radians) of many tops at the times t, and `error`.
 
-    Inputs are those of `sweep`.  The times are a number or one list for all tops, or a list for
-    each of them, in the shape of the inputs together and one more dimension; that is the shape of
-    the angles, and the shape of the inputs that of `error`, which says what is wrong with a top;
-    its angles are NaN.  Angles are as exact as those of `Motion.angles`.  Raises LagtopError for an
-    unknown input, or for shapes that do not go together.
+    Inputs are as for `sweep`.  Pass one time or a list of n times for all tops, or an array of
+    shape (*inputs, n).  Here `inputs` is the shape to which the inputs broadcast.  The angles have
+    the shape (*inputs, n), and `error` has the shape of the inputs.  If a top has an `error`, its
+    angles are NaN.  The angles are as exact as those of `Motion.angles`.  Raises LagtopError for an
+    unknown input, or if shapes do not broadcast together.
     """
     together = Together(inputs)
     if together.stds:
@@ -56,7 +56,7 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Re
 
 
 def angles_of_tops(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDArray[np.object_]]:
-    """Return theta, phi and psi of each top at its row of times, and what is wrong with it."""
+    """Return theta, phi and psi of each top at its row of times, and its error message or None."""
     angles = np.full((len(ANGLES), *t.shape), np.nan)
     error = np.full(tops.m.size, None)
     with ARRAYS.working():
@@ -67,7 +67,7 @@ def angles_of_tops(tops: TopArrays, t: Array, *, wrap: bool) -> tuple[Array, NDA
 
 
 class _Block(NamedTuple):
-    """The times of a block of tops, a row each, and where their angles go."""
+    """The times of a block of tops, a row each, and the arrays for their angles."""
 
     t: Array
     wrap: bool
@@ -75,7 +75,7 @@ class _Block(NamedTuple):
 
 
 def _fill(tops: TopArrays, block: _Block, error: NDArray[np.object_]) -> None:
-    """Write the angles of a block of tops, and what is wrong with them."""
+    """Write the angles of a block of tops, and their error messages."""
     left = np.ones(tops.m.size, dtype=np.bool_)
     at_rest = tops.regimes().get(Regime.REGULAR, ~left)
     for make, chosen in ((released_motions, at_rest), (moving_motions, tops.moving())):
@@ -92,7 +92,7 @@ def _fill(tops: TopArrays, block: _Block, error: NDArray[np.object_]) -> None:
 
 
 def _fill_arrays(motions: PairMotions, index: NDArray[np.intp], block: _Block) -> Mask:
-    """Write the angles of the motions that can be trusted, in their rows; return which they are."""
+    """Write the angles of motions that can be trusted; return which motions these are."""
     farthest = np.abs(block.t[index]).max(axis=1, initial=0.0)
     trusted: Mask = farthest <= motions.reach()
     for hyperbolic in (False, True):
@@ -104,7 +104,7 @@ def _fill_arrays(motions: PairMotions, index: NDArray[np.intp], block: _Block) -
 
 
 def _sample(sampler: ArraySampler, index: NDArray[np.intp], block: _Block) -> None:
-    """Write the angles of the tops of a sampler, as many samples at once as make a block."""
+    """Write the angles of the tops of a sampler, a block of samples at a time."""
     count, farthest = block.t.shape[1], float(np.abs(block.t[index]).max(initial=0.0))
     step = max(1, BLOCK // max(count, 1))
     for first in range(0, index.size, step):

@@ -1,7 +1,4 @@
-"""Inputs of many tops as arrays: numbers, arrays, and those of other libraries.
-
-These may be labelled, in units, or uncertain.
-"""
+"""Inputs of many tops as arrays, from numbers, arrays, and objects of other libraries."""
 
 from __future__ import annotations
 
@@ -26,10 +23,10 @@ _TILTS = {"theta0_deg": "degree", "theta0_rad": "radian"}
 
 
 class Together:
-    """Inputs of `Top`, numbers or arrays, as arrays of one shape, from which blocks are taken."""
+    """Inputs of `Top`, numbers or arrays, broadcast to one shape, from which blocks are taken."""
 
     def __init__(self, inputs: Mapping[str, ArrayLike]) -> None:
-        """Raise LagtopError for an unknown input, or for shapes that do not go together."""
+        """Raise LagtopError for an unknown input, or if shapes do not broadcast together."""
         if unknown := set(inputs) - set(INPUTS):
             raise LagtopError(f"inputs must be among {' '.join(INPUTS)}, got {min(unknown)}")
         one_of_each(name for name in inputs if not name.startswith("theta0_"))
@@ -52,12 +49,12 @@ class Together:
         self._flat = dict(zip(given, flat, strict=True))
 
     def part(self, rows: slice) -> TopArrays:
-        """Return some of the tops; nothing but these rows is copied."""
+        """Return some of the tops; only these rows are copied."""
         count = len(range(*rows.indices(self.size)))
         return top_arrays({name: x[rows] for name, x in self._flat.items()}, count)
 
     def results(self, columns: Mapping[str, ResultColumn], t: Array | None = None) -> Results:
-        """Return columns with the inputs that vary, and with the times of a last dimension."""
+        """Return columns as results, with the inputs that vary and the times as dimensions."""
         dimensions, coordinates = dimensions_of(self._given, self._names, self.shape)
         if t is not None and t.ndim:
             dimensions += ("t" if t.ndim == 1 else "sample",)
@@ -85,11 +82,11 @@ class Arguments(NamedTuple):
 
 
 def read_arguments(inputs: Mapping[str, Any]) -> Arguments:
-    """Return inputs as doubles: arrays, pandas Series, xarray, pint and uncertainties objects.
+    """Return inputs as doubles, from arrays, pandas Series, xarray, pint and uncertainties objects.
 
     Labelled arrays (xarray) are broadcast by the names of their dimensions.  Quantities (pint) are
     converted to SI.  Raises LagtopError for an input of another kind, and for an input without a
-    unit beside others that have one.
+    unit if others have one.
     """
     inputs, dimensions = _aligned(inputs)
     inputs, stds = _nominal(inputs)
@@ -114,7 +111,7 @@ def _aligned(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]
 
 
 def _nominal(inputs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, float]]:
-    """Return numbers without their uncertainties, and these."""
+    """Return the nominal values of numbers, and their standard uncertainties."""
     uncertain = {name: x for name, x in inputs.items() if hasattr(x, "nominal_value")}
     stds = {name: float(x.std_dev) for name, x in uncertain.items()}
     return {**inputs, **{name: x.nominal_value for name, x in uncertain.items()}}, stds
@@ -147,7 +144,7 @@ def _in_one_system(
 
 
 def _scaled(magnitude: Any, factor: Fraction) -> ArrayLike:
-    """Return numbers in another unit, a single one rounded once."""
+    """Return numbers in another unit; a single number is rounded once."""
     magnitude = getattr(magnitude, "nominal_value", magnitude)
     if isinstance(magnitude, int | float):
         return float(Fraction(magnitude) * factor)
@@ -159,7 +156,7 @@ def dimensions_of(
 ) -> tuple[tuple[str, ...], dict[str, Array]]:
     """Return a name for each dimension, and the inputs that vary with all dimensions.
 
-    A dimension along which one input alone varies has the name of that input.
+    If only one input varies along a dimension, the dimension has the name of that input.
     """
     full = {name: x.reshape((1,) * (len(shape) - x.ndim) + x.shape) for name, x in arrays.items()}
     varying = {name: x for name, x in full.items() if x.size > 1}

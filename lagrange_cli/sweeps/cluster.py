@@ -1,4 +1,4 @@
-"""Where the parts of a sweep are computed: here, by several processes or by a Dask cluster."""
+"""Computation of the parts of a sweep: in this process, in several, or on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from distributed import Client, Future
 
 PATIENCE = 8.0
-"""Seconds to wait for a scheduler that does not answer, or for a first or another worker."""
+"""Seconds to wait for an answer of a scheduler, for a first worker, or for a replacement."""
 
 _BETWEEN_LOOKS = 1.0
 _SECONDS_PER_TASK = 1.0
-"""Work that is worth the way to a worker and back."""
+"""Seconds of work per task, long enough to outweigh the way to a worker and back."""
 MOST_PARTS_PER_TASK = 16
 """Parts that a task may send back, some 30 MB with all keys."""
 
@@ -37,8 +37,8 @@ def connected(address: str | None) -> Iterator[Client | None]:
     """Yield the client of a Dask cluster, or None if there is no address.
 
     The address may be `local`, for a cluster on this machine that ends with the block.  Raises
-    UnavailableError for a cluster that cannot be reached, has no worker, or whose workers have no
-    lagtop or another version of it, and LagtopError for an address that is none.
+    UnavailableError if the cluster cannot be reached or has no worker, or if a worker has no lagtop
+    or another version of it.  Raises LagtopError for an invalid address.
     """
     if address is None:
         yield None
@@ -49,16 +49,16 @@ def connected(address: str | None) -> Iterator[Client | None]:
             _check_workers(client)
             yield client
         finally:
-            with suppress(Exception):  # what ended the sweep is what matters
+            with suppress(Exception):  # report the error that ended the sweep, not one of closing
                 client.close(timeout=20 if address == "local" else 2)
 
 
 def computed(
     make: Make, blocks: Iterable[NumberedBlock], client: Client | None, jobs: int = 1
 ) -> AbstractContextManager[Iterator[Part]]:
-    """Return the parts in their order, to be closed: made by a cluster, or by so many processes.
+    """Return a context of the parts in order, computed on a cluster or in `jobs` processes.
 
-    Raises UnavailableError for a cluster that is lost, and what `make` raises.
+    Raises UnavailableError if the cluster is lost, and any error of `make`.
     """
     return closing(
         in_order(make, blocks, jobs) if client is None else _gathered(client, make, blocks)
@@ -66,14 +66,14 @@ def computed(
 
 
 def _client(address: str) -> Client:
-    """Return a client.  Raises UnavailableError, and LagtopError for an address that is none."""
+    """Return a client.  Raises UnavailableError, and LagtopError for an invalid address."""
     try:
         from distributed import Client
     except ImportError:
         raise UnavailableError(
             "dask needs distributed: pip install 'lagtop[cluster]'", "dask"
         ) from None
-    silent = logging.CRITICAL  # one line of ours says what is wrong
+    silent = logging.CRITICAL  # lagtop reports the error in one line
     for name in ("distributed", "distributed.client", "asyncio", "tornado"):
         logging.getLogger(name).setLevel(silent)
     try:
@@ -86,14 +86,14 @@ def _client(address: str) -> Client:
         raise LagtopError(
             f"dask must be local or a scheduler, got {address}: {error}", "dask"
         ) from None
-    except Exception as error:  # of any kind: whatever answers may be no scheduler
+    except Exception as error:  # of any kind: the peer may be no scheduler
         started = "a cluster of this machine cannot be started"
         what = started if address == "local" else f"no scheduler answers at {address}"
         raise UnavailableError(f"{what}: {error}") from None
 
 
 async def _greet(address: str) -> None:
-    """Exchange greetings with a scheduler: a client waits for them without end."""
+    """Exchange greetings with a scheduler, with a time limit: a client would wait forever."""
     from distributed.comm.core import connect
 
     connection = await connect(address, timeout=PATIENCE)
@@ -101,13 +101,13 @@ async def _greet(address: str) -> None:
 
 
 def _check_workers(client: Client) -> None:
-    """Raise UnavailableError where there is no worker, or one that would compute otherwise."""
+    """Raise UnavailableError if there is no worker, or if one has no lagtop or another version."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError:
         _threads(client)
         raise UnavailableError("the cluster has no worker") from None
-    # A function of the standard library: a worker that cannot unpickle what it is sent would die.
+    # A function of the standard library: a worker dies if it cannot unpickle a message.
     versions = _answer(
         lambda: client.run(
             pkgutil.resolve_name,
@@ -132,7 +132,7 @@ def _threads(client: Client) -> dict[str, int]:
 
 
 def _answer(ask: Callable[[], Any]) -> Any:
-    """Return what the cluster answers.  Raises UnavailableError where it does not."""
+    """Return the answer of the cluster.  Raises UnavailableError if there is none."""
     try:
         return ask()
     except TimeoutError:
@@ -144,9 +144,9 @@ def _answer(ask: Callable[[], Any]) -> Any:
 class _Call:
     """Some parts that are computed by being unpickled.
 
-    A worker is sent `pickle.loads` and these bytes: one that joined later and has no lagtop, or
-    another version, fails in the task, where an error is reported, and not in reading the message,
-    where it would die.
+    The message to a worker holds `pickle.loads` and these bytes.  A worker that joined later may
+    have no lagtop, or another version.  It then fails in the task, where the error is reported, and
+    not while it reads the message, where it would die.
     """
 
     def __init__(self, make: Make, blocks: Sequence[NumberedBlock]) -> None:
@@ -157,7 +157,7 @@ class _Call:
 
 
 class Computed(NamedTuple):
-    """What a task has made, and how long it took."""
+    """The result of a task, and its run time in seconds."""
 
     parts: Sequence[Part]
     seconds: float
@@ -181,10 +181,10 @@ def compute(version: str, content: bytes) -> Computed:
 def _gathered(
     client: Client, make: Make, blocks: Iterable[NumberedBlock]
 ) -> Generator[Part, None, None]:
-    """Yield the parts in their order; those of a lost worker are computed by another one.
+    """Yield the parts in order; if a worker is lost, another one computes its parts.
 
     A few tasks per worker are under way at a time, so that memory does not grow with their number.
-    The first have a part each; how long they took says how many the next have.
+    The first tasks have one part each; their run times set the size of the next ones.
     """
     most = 2 * max(sum(_threads(client).values()), 4)
     waiting: deque[Future[Computed]] = deque()
@@ -202,19 +202,19 @@ def _gathered(
 
 
 def _result(client: Client, future: Future[Computed]) -> Computed:
-    """Wait for some parts.  Raises UnavailableError as soon as nothing is left to wait for."""
+    """Wait for some parts.  Raises UnavailableError as soon as they cannot arrive any more."""
     from distributed import KilledWorker, wait
 
-    seen = monotonic()  # when there was a worker last
+    seen = monotonic()  # time at which a worker was last seen
     try:
         while True:
             with suppress(TimeoutError):
                 wait([future], timeout=_BETWEEN_LOOKS)
-                return future.result(timeout=PATIENCE / 2)  # its worker may die before it is here
+                return future.result(timeout=PATIENCE / 2)  # its worker may die first
             if _threads(client):
                 seen = monotonic()
             elif monotonic() - seen > PATIENCE:
-                raise UnavailableError("the cluster has no worker left")
+                raise UnavailableError("all workers of the cluster are lost")
     except (ImportError, AttributeError) as error:
         raise UnavailableError(f"a worker of the cluster has no lagtop: {error}") from None
     except CancelledError:

@@ -1,8 +1,8 @@
-"""A folder of parts of one sweep: what it is a part of, and which parts are whole already.
+"""A folder of parts of one sweep, which runs resume or fill together.
 
-Besides the parts, `part-000000.csv` and so on, it holds `sweep.json`, which describes the sweep,
-and an `errors-000000.json` for each part in which some tops have an error.  Any number of runs of
-one sweep may fill a folder at once.
+The folder holds parts such as `part-000000.csv`, and `sweep.json`, which describes the sweep.  If
+tops of a part have errors, an `errors-000000.json` counts them.  Any number of runs of one sweep
+may fill a folder at once.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ _MOST_BYTES = 1 << 24
 
 
 class PartFiles(NamedTuple):
-    """The files of the parts of a sweep in a folder, written by whoever sees the folder."""
+    """The files of the parts of a sweep in a folder, written by any machine that sees it."""
 
     path: Path
     sweep: Sweep
     token: str = ""
-    """The name of a file that tells this folder from any other of its name, on other machines."""
+    """The name of a file by which workers recognise this folder (others may have the same path)."""
 
     def made(self, numbered: NumberedBlock) -> Part:
-        """Compute a part, and write it where this machine sees the folder and may write to it."""
+        """Compute a part, and write it if this machine sees the folder and may write to it."""
         part = self.sweep.part(numbered)
         if not ((self.path / self.token).exists() and os.access(self.path, os.W_OK)):
             return part
@@ -45,7 +45,7 @@ class PartFiles(NamedTuple):
 
     def write(self, part: Part) -> None:
         """Write a part into a file of its own, which appears whole or not at all."""
-        if part.failed:  # before the part, which counts as done from then on
+        if part.failed:  # before the part, because a part that exists counts as done
             errors = {"failed": part.failed, "first": part.first_error}
             with opened(str(self.errors(part.number)), _mark()) as stream:
                 stream.write(json.dumps(errors).encode() + b"\n")
@@ -66,9 +66,9 @@ class Folder:
     """A folder that holds the parts of one sweep and of no other."""
 
     def __init__(self, path: str, sweep: Sweep, description: Mapping[str, Any]) -> None:
-        """Take a folder for a sweep, and remove what killed runs left in it.
+        """Take a folder for a sweep, and remove temporary files of killed runs.
 
-        Raises CannotWriteError for a folder that cannot be made or holds parts of another sweep.
+        Raises CannotWriteError if the folder cannot be made or holds parts of another sweep.
         """
         self.path = Path(path)
         self.files = PartFiles(self.path, sweep)
@@ -81,7 +81,7 @@ class Folder:
             raise CannotWriteError(f"cannot write {path}: {error.strerror}") from None
 
     def missing(self, blocks: Iterable[NumberedBlock], tally: Tally) -> Iterator[NumberedBlock]:
-        """Yield the blocks whose parts are not here yet, and count the others as done."""
+        """Yield the blocks whose parts are still missing, and count the others as done."""
         for number, block in blocks:
             if done := self._done(number, block.size):
                 self.found += 1
@@ -97,10 +97,10 @@ class Folder:
 
     @contextmanager
     def made_by_workers(self) -> Iterator[Make]:
-        """Yield what computes a part and, where a worker sees this folder, writes it there.
+        """Yield the function that computes a part, and writes it on workers that see this folder.
 
-        Such a worker sees a file that is here meanwhile, of a name that nobody else would think of.
-        What workers of this machine that were killed have left is removed at the end.
+        Workers recognise the folder by a file with a random name, which exists during the block.
+        At the end the temporary files of killed workers of this machine are removed.
         """
         token = f"{_TEMPORARY}{_mark()}{secrets.token_hex(8)}"
         try:
@@ -115,9 +115,9 @@ class Folder:
                 self._remove_leftovers()
 
     def _done(self, number: int, count: int) -> Part | None:
-        """Return a part that is whole already, without its text, or None if it is to be made.
+        """Return a part that is complete, without its text, or None if it must be computed.
 
-        A count of errors that is damaged is one that is not there: the part is made again.
+        If the count of errors is damaged, the part is computed again.
         """
         errors = self.files.errors(number)
         if not _is_there(self.files.part(number)):
@@ -131,7 +131,7 @@ class Folder:
         return None
 
     def _claim(self, description: Mapping[str, Any]) -> None:
-        """Write the description, or compare it with the one that is there already."""
+        """Write the description, or compare it with the existing one."""
         file = self.path / DESCRIPTION
         if not _is_there(file):
             if alien := next(self.path.glob("part-*"), None):
@@ -159,7 +159,7 @@ class Folder:
 
 
 def _is_there(path: Path) -> bool:
-    """Return whether a file is there.  Raises CannotWriteError for anything else of its name."""
+    """Return whether a file exists.  Raises CannotWriteError if it is not a regular one."""
     if path.exists() and not path.is_file():
         raise CannotWriteError(f"cannot write {path}: it is there, and is no regular file")
     return path.exists()
@@ -176,7 +176,7 @@ def _object_in(path: Path) -> dict[str, Any] | None:
 
 
 def _create(file: Path, content: bytes) -> None:
-    """Write a file that is not there yet, whole; leave one that another run has made meanwhile."""
+    """Write a new file, whole; keep a file that another run has made meanwhile."""
     own = file.with_name(f"{_TEMPORARY}{_mark()}{file.name}")
     own.write_bytes(content)
     try:
@@ -191,7 +191,7 @@ def _create(file: Path, content: bytes) -> None:
 
 
 def _difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
-    """Return the first thing in which two descriptions differ, and how; nothing if they agree."""
+    """Return how two descriptions first differ, as text; empty if they agree."""
     for key in dict.fromkeys([*one, *other]):
         there, here = one.get(key), other.get(key)
         if there == here:
@@ -208,7 +208,7 @@ def _shown(value: object) -> str:
 
 
 def _mark() -> str:
-    """Return what tells temporary files of this process from those of others."""
+    """Return a mark for temporary files of this process: its machine and number."""
     return f"{os.getpid()}@{_host()}@"
 
 
@@ -217,7 +217,7 @@ def _host() -> str:
 
 
 def _is_running(pid: int) -> bool:
-    """Return whether a process of this machine is running; True where that cannot be told."""
+    """Return whether a process of this machine is running; True if that cannot be determined."""
     if os.name != "posix":
         return True
     try:

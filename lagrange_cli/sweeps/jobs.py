@@ -1,8 +1,8 @@
-"""Work shared by several processes of this machine, with results in the order of the work.
+"""Work shared by several processes of this machine, with results in the order of the items.
 
-The processes are started afresh and not forked, so that they behave alike on every system.  Items
-and results are handed over in files of a temporary folder: a pipe is read in small pieces, and
-whoever writes to it would wait for a reader that computes.
+The processes are spawned, not forked, so that they behave alike on every system.  Items and results
+pass through files of a temporary folder, not through pipes.  A pipe is read in small pieces, and
+its writer would wait for a reader that computes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ..output.signals import ENDING, terminated_by
 
 MOST_JOBS = 1024
 _HANDED_OUT = 3
-"""Items that each other process has: one that it works at, and the next ones."""
+"""Items that each other process holds: the current one, and the next ones."""
 _AHEAD = 8
 """Results per process that may wait for an earlier one: memory does not grow with the work."""
 _SIGNALS_TAKE = 0.2
@@ -51,11 +51,11 @@ def parse_jobs(text: str) -> int:
 
 
 def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator[P, None, None]:
-    """Yield what the work makes of each item, in their order; this process is one of the `jobs`.
+    """Yield `work(item)` for each item, in order; this process is one of the `jobs`.
 
-    With more than one, the work, its items and its results must be picklable.  Raises
-    UnavailableError if a process cannot be started or is lost, CannotWriteError if there is no
-    space for items or results, and whatever the work raises.
+    If `jobs` > 1, the work, its items and its results must be picklable.  Raises UnavailableError
+    if a process cannot be started or is lost, and CannotWriteError if there is no space for items
+    or results.  Errors of the work are raised again.
     """
     if jobs == 1:
         yield from map(work, items)
@@ -69,7 +69,7 @@ def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator
 
 
 def _folder() -> TemporaryDirectory[str]:
-    """Return a folder for results that goes when it is left.  Raises CannotWriteError."""
+    """Return a temporary folder for results, as a context.  Raises CannotWriteError."""
     with temporary_files():
         return TemporaryDirectory(prefix="lagtop-", ignore_cleanup_errors=True)
 
@@ -80,14 +80,14 @@ class _Team:
     def __init__(self, work: Callable[[Any], Any], jobs: int, folder: str) -> None:
         self._work, self._others, self._folder = work, jobs - 1, folder
         self.most = _AHEAD * jobs
-        """Items that may be under way or done before the next result is taken."""
+        """Items that may be in progress or done before the next result is taken."""
         self._workers: dict[Any, _Worker] = {}
         self._done: dict[int, tuple[str, Any]] = {}
         """The file of each result, or the result itself."""
         self._next = 0
 
     def do(self, number: int, item: Any) -> None:
-        """Hand an item out, or do the work here if no other process has room for it."""
+        """Hand an item to another process, or do the work here if all have enough items."""
         if len(self._workers) < self._others:  # one by one, as there may be few items
             new = _Worker(self._work)
             self._workers[new.pipe] = new  # from now on `close` ends it
@@ -101,7 +101,7 @@ class _Team:
         self._done[number] = "", self._work(item)
 
     def results(self, least: int) -> Iterator[Any]:
-        """Yield the results that come next; wait for those before the number `least`."""
+        """Yield the next results; wait for all results before the number `least`."""
         while self._next < least or self._next in self._done:
             while self._next not in self._done:
                 self._collect(None)
@@ -110,13 +110,13 @@ class _Team:
             yield _load(path) if path else result
 
     def _collect(self, timeout: float | None) -> None:
-        """Take what others have done, and wait for the first of them if need be."""
+        """Take the results of other processes; wait up to `timeout` seconds for the first one."""
         for pipe in wait(self._workers, timeout):
             for number, path in self._workers[pipe].answer():
                 self._done[number] = path, None
 
     def close(self) -> None:
-        """End the other processes at once: nobody waits for their results."""
+        """End the other processes at once, without waiting for their results."""
         for process in (worker.process for worker in self._workers.values()):
             if process.pid is not None:
                 process.kill()
@@ -124,10 +124,10 @@ class _Team:
 
 
 class _Worker:
-    """Another process, and the tasks that it has: numbers, and files for items and results."""
+    """Another process, and its tasks: numbers, and files for items and results."""
 
     def __init__(self, work: Callable[[Any], Any]) -> None:
-        self.tasks = deque([(-1, "")] * _HANDED_OUT)  # as many as it can have until it has started
+        self.tasks = deque([(-1, "")] * _HANDED_OUT)  # full until it has started
         context = multiprocessing.get_context("spawn")
         self.pipe, self._other = context.Pipe()
         self.process = context.Process(target=_serve, args=(self._other, work), daemon=True)
@@ -149,7 +149,7 @@ class _Worker:
         self.tasks.append((number, f"{path}.result"))
 
     def answer(self) -> Iterator[tuple[int, str]]:
-        """Yield the task that is done.  Raises UnavailableError, and what the work raised."""
+        """Yield the task that is done.  Raises UnavailableError, and any error of the work."""
         with _known_to_be_alive():
             error = self.pipe.recv()
         if error is not None:
@@ -173,7 +173,7 @@ def _known_to_be_alive() -> Iterator[None]:
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Start Python processes that import nothing from the current folder: they inherit this."""
+    """Start Python processes in the block that import nothing from the current folder."""
     before = os.environ.get(_SAFE_PATH, "")
     os.environ[_SAFE_PATH] = "1"
     try:
@@ -184,7 +184,7 @@ def safe_path() -> Iterator[None]:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Start processes that leave Ctrl-C to this one: they inherit the blocked signal."""
+    """Start processes that leave Ctrl-C to this one, because they inherit the blocked signal."""
     if not hasattr(signal, "pthread_sigmask"):  # on Windows
         yield
         return
@@ -199,7 +199,7 @@ def interrupts_blocked() -> Iterator[None]:
 
 
 def _serve(pipe: Connection, work: Callable[[Any], Any]) -> None:
-    """Say that the process has started, then do tasks until it is ended."""
+    """Report that the process has started, then do tasks until it is ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # where signals cannot be blocked
     Thread(target=_end_with_parent, daemon=True).start()
     with suppress(EOFError, BrokenPipeError):  # the other end is gone
@@ -208,7 +208,7 @@ def _serve(pipe: Connection, work: Callable[[Any], Any]) -> None:
             path, error = pipe.recv(), None
             try:
                 _dump(work(_load(path)), f"{path}.result")
-            except Exception as wrong:  # of any kind: it is raised where the result is wanted
+            except Exception as wrong:  # of any kind: raised again by the reader of the result
                 error = wrong
             pipe.send(error)
 

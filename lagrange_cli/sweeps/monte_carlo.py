@@ -1,7 +1,7 @@
 """Monte Carlo propagation of uncertainties (GUM supplement 1), through `sweep`.
 
-Inputs are normal and independent.  A tilt beyond a pole is the tilt on its other side.  Samples
-that are no top, such as those with s < 0, are counted and left out.
+Inputs are normal and independent.  A tilt beyond a pole is reflected at the pole.  Invalid samples,
+such as s < 0, are counted and left out.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from ..output.progress import Progress, silent
 from .records import sweep
 
 QUANTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
-"""Percents; the ends are those of the interval that covers 95 %."""
+"""Quantiles in percent; the first and the last bound the interval that covers 95 %."""
 SAMPLES_AT_ONCE = 1 << 14
-"""Samples that are computed together."""
+"""Number of samples computed together."""
 MOST_SAMPLES = 1_000_000
 LEAST_SAMPLES = 100
 COVERAGE = 1.959963984540054
 """Standard deviations on either side that cover 95 % of a normal distribution."""
 HOLDS, OPEN, FAILS = "yes", "undecided", "no"
 _MISSING = 1e-3
-"""Share of samples without a key, from which on its distribution is not that of one motion."""
+"""Share of samples without a key, beyond which linear propagation counts as failed."""
 _HALF_TURN, _TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}, 2.0
 
 
@@ -39,7 +39,7 @@ class Spread(NamedTuple):
     key: str
     value: float
     first_order_std: float | None
-    """Uncertainty of first order; None where there is no derivative."""
+    """First-order uncertainty; None if there is no derivative."""
     sampled_mean: float
     sampled_std: float
     q2_5: float
@@ -48,22 +48,22 @@ class Spread(NamedTuple):
     q84: float
     q97_5: float
     first_order: str
-    """Whether the interval of first order is that of the samples."""
+    """Whether the first-order interval agrees with the sampled one."""
     samples: int
-    """How many samples have the key."""
+    """Number of samples that have the key."""
 
     @property
     def noise(self) -> float:
-        """The standard error of the sampled mean; those of the other numbers are about as large."""
+        """The standard error of the sampled mean; the other numbers have similar errors."""
         return self.sampled_std / math.sqrt(self.samples) if self.samples else math.nan
 
 
 class Propagated(NamedTuple):
-    """What became of the samples."""
+    """Distributions of the keys, and regimes of the samples."""
 
     spreads: Sequence[Spread]
     regimes: Mapping[str, float]
-    """The share of the samples in each regime, those that are no top among them."""
+    """The share of the samples in each regime; invalid samples count as `no top`."""
 
 
 def propagate(
@@ -78,8 +78,8 @@ def propagate(
 ) -> Propagated:
     """Return the distributions of keys of the record, and the regimes of the samples.
 
-    `numbers` has the value and the uncertainty of first order of each key.  Raises LagtopError for
-    a number of samples or a seed that is none, and where no sample is a top.
+    `numbers` has the value and the first-order uncertainty of each key.  Raises LagtopError for an
+    invalid number of samples or seed, and if no sample is a valid top.
     """
     if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
         limits = f"[{LEAST_SAMPLES}, {MOST_SAMPLES}]"
@@ -119,7 +119,7 @@ def _drawn(rng: np.random.Generator, name: str, value: float, std: float, count:
 
 
 def _regime(regime: str | None, remark: str | None) -> str:
-    """Return the regime of a sample; a sleeping top is stable or not."""
+    """Return the regime of a sample, with the stability of a sleeping top."""
     if regime is None:
         return "no top"
     if regime != "sleeping" or not remark:
@@ -140,10 +140,10 @@ def _spread(key: str, ordered: Array, value: float, std: float | None, samples: 
 
 
 def first_order_holds(ordered: Array, value: float, std: float) -> str:
-    """Return whether the interval of first order that covers 95 % is that of samples in order.
+    """Return whether the first-order 95 % interval agrees with that of ordered samples.
 
-    Its ends may be off by half a unit of the first digit of the uncertainty (GUM supplement 1, 8.1,
-    with one digit); where the noise of the quantiles leaves that open, it says so.
+    Its ends may differ by half a unit of the first digit of the uncertainty (GUM supplement 1, 8.1,
+    with one digit).  If the noise of the quantiles is too large to decide, the result is OPEN.
     """
     if not std:
         return HOLDS if ordered[0] == ordered[-1] else FAILS

@@ -1,8 +1,8 @@
-"""A sweep: what is to be done, from a scene, ranges and a file of tops, and its parts.
+"""The plan of a sweep, from a scene, ranges and a file of tops, and its parts.
 
-A part is a block of tops that any process can compute, in any order.  Its bytes depend on nothing
-but its number, so a run on one machine writes what all parts hold in their order, wherever each of
-them was made.
+A part is a block of tops that any process can compute, in any order.  The bytes of a part depend
+only on the sweep and on the number of the part.  The parts in order are therefore the output of a
+single run, wherever they were computed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 NumberedBlock = tuple[int, Block]
 """The number of a part, and the tops that it is made of."""
 Make = Callable[[NumberedBlock], "Part"]
-"""What computes a part; a worker that is sent it must be able to unpickle it."""
+"""A function that computes a part; workers must be able to unpickle it."""
 
 
 class Part(NamedTuple):
@@ -52,16 +52,16 @@ class Part(NamedTuple):
     """The number of tops that have an error."""
     first_error: str
     is_written: bool = False
-    """Whether the worker that computed it wrote it into its folder, and sent no text back."""
+    """Whether the worker wrote the part into its folder, and returned no text."""
 
 
 class Sweep(NamedTuple):
-    """What to do with every part: what to compute of it and how to write it."""
+    """Instructions for every part: the keys to compute and the format of the output."""
 
     header: Sequence[str]
-    """The names of the columns that are written: what is carried through, and the keys."""
+    """The names of the columns that are written: copied columns, and the keys."""
     shared: Mapping[str, float]
-    """Inputs of all tops that have none of their own."""
+    """Inputs of tops that do not have their own."""
     keys: Sequence[str]
     radians: bool
     fmt: str
@@ -70,13 +70,13 @@ class Sweep(NamedTuple):
     stds: Sequence[tuple[str, float]] = ()
     """Standard uncertainties of inputs that all tops share, by name."""
     system: System | None = None
-    """The units of the output, which remarks name, where inputs have units."""
+    """The units of the output, if inputs have units; remarks name them."""
     is_described: bool = False
-    """Whether the output begins with a description of what all tops share."""
+    """Whether the output begins with a description of the shared inputs."""
 
     @property
     def computed_keys(self) -> list[str]:
-        """The keys, and after them their uncertainties."""
+        """The keys, followed by their uncertainties."""
         return [*self.keys, *(std_keys(self.keys) if self.stds else [])]
 
     def part(self, numbered: NumberedBlock) -> Part:
@@ -102,16 +102,16 @@ class Sweep(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """A sweep, and the blocks it is made of."""
+    """A sweep, and its blocks."""
 
     sweep: Sweep
     blocks: Iterator[NumberedBlock]
     size: int
-    """The number of tops; 0 where only the end of the file can tell."""
+    """The number of tops; 0 if it is unknown before the end of the file."""
     description: Mapping[str, Any]
-    """What decides about the bytes of the parts, for the folder they are written to."""
+    """Everything that the bytes of the parts depend on, for the folder of parts."""
     given: Given
-    """What all tops share, and what of it nobody gave."""
+    """Inputs that all tops share, and which of them are defaults."""
     file: str | None = None
     """The file of tops, if there is one."""
 
@@ -131,8 +131,8 @@ def plan(
 ) -> Plan:
     """Return the plan for a scene (a `.toml` file) and a grid, or for a scene and a file of tops.
 
-    The last axis varies fastest.  Where the plan is to be `described`, the file is read twice, for
-    its digest, and standard input is kept on disk meanwhile.  Raises LagtopError.
+    The last axis varies fastest.  If `described`, the file is read twice, for its digest, and
+    standard input is kept on disk meanwhile.  Raises LagtopError.
     """
     scenes = [file for file in files if is_scene_file(file)]
     tables = [file for file in files if file not in scenes]
@@ -181,7 +181,7 @@ def _with_inputs(
     varying: Collection[str],
     carried: Sequence[str] = (),
 ) -> Sweep:
-    """Return a sweep with the inputs that all tops share, and the columns it carries through."""
+    """Return a sweep with the inputs that all tops share, and the columns that are copied."""
     sweep = wanted._replace(shared=shared, stds=tuple(stds.items()), system=found.system)
     header = [*carried, *sweep.computed_keys]
     if not sweep.is_described:
@@ -192,7 +192,7 @@ def _with_inputs(
 
 
 def _described(sweep: Sweep, **decides: Any) -> dict[str, Any]:
-    """Return what decides about the bytes of the parts; some of it only if it is given."""
+    """Return everything that the bytes of the parts depend on; options only if they are set."""
     told: dict[str, Any] = {"lagtop": __version__, "format": sweep.fmt, "radians": sweep.radians}
     told |= {"keys": sweep.keys, **decides}
     told |= {"header_comments": True} if sweep.is_described and sweep.fmt == "csv" else {}
@@ -206,9 +206,9 @@ def ranges_of(axes: Mapping[str, Points]) -> dict[str, Points]:
 
 
 def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, float]:
-    """Return inputs by key as doubles: those given, over those of the worked example.
+    """Return inputs by key as doubles; the worked example gives the missing ones.
 
-    Raises LagtopError for one that no top could have; the `varying` ones are not looked at.
+    Raises LagtopError for an invalid input; inputs in `varying` are not checked.
     """
     loose = set(varying)
     if loose & {"A", "A_cm", "C"} or ("A_cm" in found.inputs and loose & {"m", "s"}):
@@ -247,13 +247,13 @@ def shard_of(
 
 
 class Tally:
-    """A count of the tops that have an error, taken as the parts pass by."""
+    """A count of the tops that have an error, updated as the parts pass."""
 
     def __init__(self, *, fail_fast: bool = False) -> None:
         self.fail_fast = fail_fast
         self.count = self.failed = self.shown = 0
         self.first: tuple[int, str] | None = None
-        """The part with the first error, and that error."""
+        """The number of the part with the first error, and the error."""
 
     def add(self, part: Part) -> None:
         """Count one part."""
@@ -269,9 +269,9 @@ class Tally:
             yield part
 
     def until_error(self, parts: Iterable[Part], *, ended: bool) -> Iterator[Part]:
-        """Yield the parts, counted, to the first error and no further.
+        """Yield the parts, counted, up to the first error.
 
-        There the parts end, or SomeFailedError is raised before the part with the error.
+        The parts end there, or SomeFailedError is raised before the part with the error.
         """
         for part in self.passing(parts):
             if not ended:

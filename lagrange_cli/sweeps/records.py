@@ -1,9 +1,9 @@
 """Many tops at once: the records of `solve`, a column for each key.
 
 Tops released from rest go through the formulas of `motion` as arrays of doubles, others as arrays
-of pairs of doubles.  A top whose sizes are unusual (beyond 1e+-30), or whose digits a cancellation
-uses up, goes through `solve` by itself, and so does every top where a key on request is asked for;
-an invalid one gets an `error` and no numbers.
+of pairs of doubles.  `solve` computes a top by itself if its sizes are beyond 1e+-30, or if a
+cancellation costs too many digits.  It also computes all keys on request.  An invalid top gets an
+`error` and no numbers.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .start_arrays import StartArrays
 from .top_arrays import TopArrays, facts_at_rest
 
 BLOCK_ROWS = 1 << 12
-"""Tops that are computed together: their arrays stay in the cache."""
+"""Number of tops computed together, so that their arrays stay in the cache."""
 _SHARE, _LEAST_ROWS = 80, 512
 """A top takes 800 bytes while it is computed: such a share of the tops times keys of a sweep takes
 1.25 times its result."""
@@ -47,12 +47,12 @@ def sweep(
 ) -> Results:
     """Return the records of many tops: arrays by key, in the shape of the inputs together.
 
-    Inputs are those of `Top`: numbers, arrays, pandas Series, xarray DataArrays (broadcast by the
-    names of their dimensions), pint quantities (converted to SI) or, for single numbers, ufloats,
-    which add `KEY_std`.  A number that a regime does not have is NaN, a text None; `error` says
-    what is wrong with a top, which has neither, or with a number beyond the range of doubles, which
-    alone is NaN.  Only `keys` are computed.
-    Raises LagtopError for an unknown input or key, or for shapes that do not go together.
+    Inputs are those of `Top`, as numbers, arrays or pandas Series.  Also accepted are xarray
+    DataArrays (broadcast by the names of their dimensions) and pint quantities (converted to SI).
+    Single numbers may be ufloats, which add `KEY_std`.  If a regime has no value for a key, its
+    number is NaN and its text None.  An invalid top has an `error` and no values.  If a number is
+    beyond the range of doubles, it is NaN, and `error` says so.  Only `keys` are computed.  Raises
+    LagtopError for an unknown input or key, or if shapes do not broadcast together.
     """
     chosen = check_keys(keys, radians=radians)
     together = Together(inputs)
@@ -73,14 +73,14 @@ def sweep(
 
 
 def _empty_columns(keys: Sequence[str], count: int) -> dict[str, ResultColumn]:
-    """Return columns for so many tops, to be filled."""
+    """Return empty columns for `count` tops."""
     return {key: np.empty(count, dtype=object if key in TEXTS else np.float64) for key in keys}
 
 
 def check_keys(keys: Sequence[str] | None, *, radians: bool = False) -> Sequence[str]:
     """Return the keys, by default all of a record and `error`.
 
-    Raises LagtopError for one that no motion has, or that comes twice.
+    Raises LagtopError for an unknown or repeated key.
     """
     known = column_keys(radians=radians)
     if keys is None:
@@ -98,10 +98,10 @@ def records(
     errors: Mapping[int, str] | None = None,
     columns: dict[str, ResultColumn] | None = None,
 ) -> dict[str, ResultColumn]:
-    """Return the columns of a block of tops; rows that have an error already stay empty.
+    """Return the columns of a block of tops; rows that already have an error stay empty.
 
-    They are new, or those of `_empty_columns` that are given.  Nothing depends on the
-    `numpy.errstate` of the caller.
+    The columns are new, unless columns of `_empty_columns` are passed.  The result does not depend
+    on the `numpy.errstate` of the caller.
     """
     with ARRAYS.working():
         columns = _empty_columns(keys, tops.m.size) if columns is None else columns
@@ -166,7 +166,7 @@ class _Block:
                 self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
 
     def _fast_remarks(self, tops: TopArrays, motion: Any) -> list[str | None]:
-        """Return what `solve` says of each pseudo-regular precession among tops."""
+        """Return the remark of `solve` on each pseudo-regular precession among tops."""
         remarks: list[str | None] = [None] * tops.m.size
         rows = np.flatnonzero(motion.b * motion.b > 0.99 * FAST * motion.a)
         rows = rows[tops.part(rows).fast()] if rows.size else rows
@@ -179,7 +179,7 @@ class _Block:
         return remarks
 
     def fill_moving(self, left: Mask) -> Mask:
-        """Fill rows that start with other rates as far as they can be trusted; return the rest."""
+        """Fill the rows with other initial rates that can be trusted; return the other rows."""
         if not left.any() or not (moving := left & self.tops.moving()).any():
             return left
         chosen: Any = slice(None) if moving.all() else np.flatnonzero(moving)

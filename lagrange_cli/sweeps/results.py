@@ -1,4 +1,4 @@
-"""Results of many tops: arrays by name, which pandas, polars, xarray and notebooks take over."""
+"""Results of many tops: arrays by name, for pandas, polars, xarray and notebooks."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ from ..motion.record import KEYS, TEXT_KEYS, requested_keys
 from .top_arrays import TopArrays
 
 ResultColumn = Array | NDArray[np.object_]
-"""Numbers, NaN if a regime has none; or texts, None if there is none."""
+"""A column: numbers (NaN if a regime has none) or texts (None if there is none)."""
 TEXTS = frozenset({*TEXT_KEYS, "error"})
 """The columns of texts."""
 _ROWS_SHOWN = 20
 
 
 class Results(dict[str, ResultColumn]):
-    """Arrays by name: a dict of columns that knows the inputs that vary along each dimension.
+    """Arrays by name: a dict of columns, with the inputs that vary along each dimension.
 
-    The first dimensions are those of the inputs together; the times of `sweep_angles` are the last.
+    The first dimensions are those of the broadcast inputs; the times of `sweep_angles` are the
+    last.
     """
 
     def __init__(
@@ -118,7 +119,7 @@ def _library(name: str) -> Any:
 
 
 def std_keys(keys: Sequence[str]) -> list[str]:
-    """Return the names of the uncertainties of those keys that are numbers."""
+    """Return the names of the uncertainties of numeric keys."""
     return [f"{key}_std" for key in keys if key not in TEXTS]
 
 
@@ -128,9 +129,9 @@ def std_columns(
     given: Mapping[str, Array | float],
     stds: dict[str, float],
 ) -> dict[str, Array]:
-    """Return `KEY_std` for each number of some records, NaN where there is none.
+    """Return `KEY_std` for each number of some records, NaN if there is none.
 
-    `given` has the inputs as they were given, NaN where a top has none.
+    `given` has the inputs as they were passed, NaN if a top has none.
     """
     from ..motion.sensitivity.uncertainty import FirstOrder, stds_of  # for start-up
 

@@ -1,4 +1,4 @@
-"""Tables of many tops, one after the other, each row with what its top carries."""
+"""Tables of many tops, one after the other, each row with the copied columns of its top."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ from .top_arrays import top_arrays
 
 _TOPS_AT_ONCE = 1024
 _ROWS_PER_TASK = 50_000
-"""Rows that are worth the way to another process."""
+"""Rows per task, enough to outweigh the way to another process."""
 _WORTH_ARRAYS = 16
-"""Tops that are sooner computed together, as arrays, than one by one."""
+"""Number of tops from which arrays are faster than tops one by one."""
 
 
 class Tables(NamedTuple):
-    """What to do with every top of a file."""
+    """Instructions for every top of a file: shared inputs, times and columns."""
 
     source: TopsFile
     shared: Mapping[str, float]
-    """Inputs of all tops that have none of their own."""
+    """Inputs of tops that do not have their own."""
     request: TableRequest
     fmt: str
     same: Array | None = None
-    """The times of all tops, where these are few and do not depend on the motion."""
+    """The times of all tops, if these are few and do not depend on the motion."""
 
     @property
     def header(self) -> list[str]:
-        """The names of what is carried (or `line`, if nothing is), of the columns, and `error`."""
+        """The names of the copied columns (or `line` if none), the columns, and `error`."""
         return [*(self.source.carried or ["line"]), *self.request.headings(), "error"]
 
     def parts(self, lines: Lines) -> Iterator[Part]:
@@ -56,16 +56,16 @@ class Tables(NamedTuple):
             yield from chain.from_iterable(map(self._table, lines.rows()))
 
     def computed(self, lines: Iterable[Lines], jobs: int) -> Iterator[Part]:
-        """Yield the parts of all lines in their order, computed by so many processes."""
+        """Yield the parts of all lines in order, computed by `jobs` processes."""
         work = self.parts if jobs == 1 else self._listed
         return chain.from_iterable(in_order(work, lines, jobs))
 
     def _listed(self, lines: Lines) -> list[Part]:
-        """Return the parts of some lines together, as another process has to."""
+        """Return the parts of some lines as a list, for another process to send."""
         return list(self.parts(lines))
 
     def _angles(self, lines: Lines, times: Array) -> Iterator[Part]:
-        """Yield tables of angles, computed for all tops at once."""
+        """Yield tables of angles, computed for all tops together."""
         given = lines.arrays(self.shared)
         tops = top_arrays(given.inputs, given.size)
         each = np.broadcast_to(times, (tops.m.size, times.size))
@@ -94,7 +94,7 @@ class Tables(NamedTuple):
             yield Part(0, self._text(row, block, None), 0 if i else 1, 0, "")
 
     def _refused(self, row: TopRow, error: str) -> Part:
-        """Return the one row of a top that has no table."""
+        """Return the single row of a top that has no table."""
         reason = f"line {row.line}: {error}"
         nothing = np.full((1, len(self.request.headings())), np.nan)
         return Part(0, self._text(row, nothing, reason), 1, 1, reason)
@@ -114,10 +114,10 @@ def open_tables(
     system: str | None,
     dialect: Dialect = UNDECIDED,
 ) -> tuple[Tables, Iterator[Lines], Given]:
-    """Return the tables of the tops in a file, its lines a few at a time, and what is shared.
+    """Return the tables of the tops in a file, its lines in blocks, and the shared inputs.
 
-    Inputs missing from a row come from `inputs` by key, and from a scene file.  The lines are fewer
-    where a top has many rows, or nobody knows how many.  Raises DataError for a file that cannot be
+    Inputs missing from a row come from `inputs` by key, and from a scene file.  Blocks are smaller
+    if a top has many rows, or an unknown number of rows.  Raises DataError if the file cannot be
     read, LagtopError for bad inputs.
     """
     count, same = request.rows_per_top, _same_times(request)
@@ -131,8 +131,8 @@ def open_tables(
 
 
 def _same_times(request: TableRequest) -> Points | None:
-    """Return the times of all tops, if there are any that do not depend on the motion."""
+    """Return the times of all tops, or None if they depend on the motion."""
     try:
         return request.times(solve(Top())) if request.same else None
-    except LagtopError:  # every row says so
+    except LagtopError:  # every row reports the error
         return None

@@ -1,8 +1,9 @@
 """Many tops at once: arrays in place of the numbers of a `Top`.
 
-What `motion.gaps` and `Top.tilt` form from exact fractions is formed here from pairs of doubles and
-rounded once, so that the formulas start from the same numbers.  Inputs as they are measured, A_cm
-and phidot0, are made into A and r0 likewise; fractions decide where a cancellation could show.
+`motion.gaps` and `Top.tilt` compute their numbers from exact fractions.  Here the same numbers are
+computed from pairs of doubles and rounded once, so that the formulas start from equal values.  The
+measured inputs A_cm and phidot0 are converted to A and r0 in the same way, with fractions if a
+cancellation could show.
 """
 
 from __future__ import annotations
@@ -24,18 +25,18 @@ from ..motion.gaps import State
 from ..motion.regime import FAST, Facts, Regime, regimes
 
 _LARGE, _SMALL = 1e30, 1e-30
-"""Between these sizes no formula leaves the range of doubles."""
+"""Sizes between which no formula leaves the range of doubles."""
 _DEGREE = DoubleDouble(np.array([np.pi / 180]), np.array([2.9486522708701687e-19]))
 _LEAST_DISTANCE = 2.0**-45
-"""Distance of lambda from 1 from which on a pair of doubles gives lambda - 1 to its last bit."""
+"""Distance of lambda from 1 beyond which a pair of doubles gives lambda - 1 to its last bit."""
 _RATIONAL = (60, 90, 120)
 """Tilts in degrees whose cosines are rational, where a sum may be 0 or a tie."""
 _LITTLE_LEFT = 1e-10
-"""Share of the parts below which a sum has lost digits of its pairs."""
+"""Ratio of a sum to its parts, below which the sum has lost digits of its pairs."""
 
 
 class TopArrays(NamedTuple):
-    """The inputs of `Top`, an array each; the tilt is NaN in the unit it is not given in."""
+    """The inputs of `Top`, an array each; the tilt is NaN in the unit that is not given."""
 
     m: Array
     A: Array
@@ -53,7 +54,7 @@ class TopArrays(NamedTuple):
         return TopArrays(*(x[rows] for x in self))
 
     def one(self, row: int) -> dict[str, float]:
-        """Return the inputs of one top, with the tilt in the unit that it is given in."""
+        """Return the inputs of one top, with the tilt in the given unit."""
         inputs = {name: float(x[row]) for name, x in zip(self._fields, self, strict=True)}
         unused = "theta0_rad" if np.isnan(inputs["theta0_rad"]) else "theta0_deg"
         if np.isnan(inputs[unused]):
@@ -67,9 +68,9 @@ class TopArrays(NamedTuple):
         return np.where(np.isnan(self.theta0_deg), np.degrees(self.theta0_rad), self.theta0_deg)
 
     def regimes(self) -> dict[Regime, Mask]:
-        """Return the rows of each regime, of tops released from rest whose sizes are usual.
+        """Return the rows of each regime, for tops released from rest with usual sizes.
 
-        The others start with other rates, are out of range or invalid; they belong to none here.
+        Tops with other initial rates, out of range or invalid belong to no regime here.
         """
         usual = self._usual() & (self.thetadot0 == 0) & (self.psidot0 == 0)
         none = np.zeros_like(usual)
@@ -85,7 +86,7 @@ class TopArrays(NamedTuple):
         return {regime: mask for regime, mask in rows.items() if mask.any()}
 
     def moving(self) -> Mask:
-        """Return the tops of usual sizes, with a torque, off the vertical, that start moving."""
+        """Return the moving tops of usual sizes, with a torque and off the vertical."""
         moving = self._usual() & (self.g > 0) & (self.s > 0)
         moving &= (self.theta0_deg != 0) & (self.theta0_rad != 0) & (self.theta0_deg != 180)
         moving &= (self.thetadot0 != 0) | (self.psidot0 != 0)
@@ -188,7 +189,7 @@ class TopArrays(NamedTuple):
 
 
 def _tilt_of_degrees(tilt: Array) -> Tilt[Array]:
-    """Return sines and cosines: those of a pair high + low are sin(high) + low cos(high)."""
+    """Return sines and cosines of a pair high + low, such as sin(high) + low cos(high)."""
     nearer = np.minimum(tilt, 180 - tilt)
     arc, up = DoubleDouble(nearer) * _DEGREE, DoubleDouble(*two_sum(90.0, -nearer)) * _DEGREE
     sin, sin_half, cos_half = np.sin(arc.high), np.sin(arc.high / 2), np.cos(arc.high / 2)
@@ -214,7 +215,7 @@ _SINE, _SINE_TAIL = _TERMS[:8], _TERMS[8:]
 
 
 def facts_at_rest(regime: Regime, r0: Array) -> Facts:
-    """Return what the regime of tops released from rest says of all of them."""
+    """Return the facts common to all tops of a regime that are released from rest."""
     plane = regime is Regime.NO_SPIN
     sign = np.where(r0 < 0, -1.0, 1.0)
     return Facts(
@@ -235,7 +236,7 @@ def facts_at_rest(regime: Regime, r0: Array) -> Facts:
 def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
     """Return the inputs of tops, numbers or arrays, as arrays; A_cm and phidot0 are resolved.
 
-    An input that is not there is NaN.
+    A missing input is NaN.
     """
 
     def filled(name: str) -> Array:
@@ -252,9 +253,9 @@ def top_arrays(inputs: Mapping[str, Any], size: int) -> TopArrays:
 
 
 def _moments(tops: TopArrays, A_cm: Array) -> Array:
-    """Return A_cm + m s^2 (Steiner's theorem), or A where there is no A_cm.
+    """Return A_cm + m s^2 (Steiner's theorem), or A if A_cm is missing.
 
-    A negative A_cm is left as it is, for the guards of a top to refuse.
+    A negative A_cm is returned unchanged, and `Top` refuses it.
     """
     with np.errstate(all="ignore"):
         s, total = DoubleDouble(tops.s), DoubleDouble(A_cm)
@@ -264,7 +265,7 @@ def _moments(tops: TopArrays, A_cm: Array) -> Array:
 
 
 def _spins(tops: TopArrays, phi_rate: Array) -> Array:
-    """Return phi' + psi' cos(theta0) (4,1), or r0 where there is no phi'."""
+    """Return phi' + psi' cos(theta0) (4,1), or r0 if phi' is missing."""
     psi_rate = tops.psidot0
     with np.errstate(all="ignore"):
         precession = DoubleDouble(psi_rate) * tops.pair_state().cos
