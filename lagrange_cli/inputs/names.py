@@ -53,14 +53,21 @@ def repeated(names: Iterable[str]) -> str | None:
 def suggestion(name: object, known: Iterable[str]) -> str:
     """Return ` (did you mean 'x'?)` with the known name that is near a wrong one, if any is.
 
-    A name of which the wrong one is the beginning comes before those that are merely alike.
+    A name of the same words in another order comes first, then one that begins with the wrong one,
+    then one that is similar.
     """
     from difflib import get_close_matches
 
     known, wrong = list(known), str(name)[:80]
+    same = [x for x in known if _words(x) == _words(wrong)]
     longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
-    nearest = longer or get_close_matches(wrong, known, 1)
+    nearest = same or longer or get_close_matches(wrong, known, 1)
     return f" (did you mean {nearest[0]!r}?)" if nearest else ""
+
+
+def _words(name: str) -> set[str]:
+    """Return the words of a name; a period is T in the names of keys."""
+    return set(name.lower().replace("period", "t").split("_"))
 
 
 def usual_spelling(text: str, units: Collection[str]) -> str:

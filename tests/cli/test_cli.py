@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import random
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -73,6 +74,21 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
     groups = dict.fromkeys(key.group for key in SHOWN.values() if key.meaning)
     order = [shown.index(f" {group}\n") for group in groups]
     assert order == sorted(order)
+
+
+def test_tables_of_ordinary_tops_fit_80_columns(lagtop: Lagtop) -> None:
+    rng = random.Random(80)
+    for _ in range(40):
+        A, tilt = 10 ** rng.uniform(-5, 5), rng.choice([0, 180, rng.uniform(0, 180)])
+        body = {"m": 10 ** rng.uniform(-3, 4), "A": A, "C": A * rng.uniform(0.01, 2)}
+        body |= {"s": 10 ** rng.uniform(-2, 1), "g": rng.choice([0, 9.81, 981])}
+        rates = {name: rng.choice([0, 10 ** rng.uniform(-2, 3)]) for name in ("r0", "psidot0")}
+        rates |= {} if 0 < tilt < 180 else {"psidot0": 0}
+        given = body | rates | {"theta0": tilt, "thetadot0": rng.choice([0, rng.uniform(-9, 9)])}
+        options = [word for name, x in given.items() for word in (f"--{name}", repr(x))]
+        shown = lagtop("solve", *options)
+        assert shown.exit_code == 0, shown.stderr
+        assert max(map(len, shown.stdout.splitlines())) <= 80, options
 
 
 def test_the_remark_stands_below_the_table(lagtop: Lagtop) -> None:

@@ -183,3 +183,27 @@ def test_only_fit_writes_scenes(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "FITTED.TOML"
     assert lagtop("fit", ROOT / "sample_inputs" / "recording.csv", "-o", scene).exit_code == 0
     assert "r0 = " in scene.read_text()
+
+
+def test_reports_and_rows_in_markdown(lagtop: Lagtop) -> None:
+    summary, blank, heading, rule, *rows = lagtop("solve", "--format", "markdown").stdout.split(
+        "\n"
+    )
+    assert summary.startswith("The axis nutates between 30.00 and 73.92 deg")
+    assert blank == ""
+    assert heading.split("|")[1:4] == [" Symbol ", " Name ", " Value "]
+    assert set(rule) == {"|", "-", " "}
+    assert {row.count("|") for row in rows if row} == {heading.count("|")}
+
+
+def test_functions_as_files_of_numbers(lagtop: Lagtop, tmp_path: Path) -> None:
+    request = ["jacobi", "--k", "0.8", "--u", "0:1:5"]
+    rows = list(csv.reader(io.StringIO(lagtop(*request, "--format", "csv").stdout)))
+    for name in ("table.npy", "table.parquet"):
+        assert lagtop(*request, "-o", tmp_path / name).exit_code == 0
+    array = np.load(tmp_path / "table.npy")
+    frame = parquet.read_table(tmp_path / "table.parquet").to_pydict()
+    assert list(array.dtype.names) == list(frame) == rows[0]
+    for i, name in enumerate(rows[0]):
+        expected = [float(row[i]) for row in rows[1:]]
+        assert array[name].tolist() == frame[name] == expected

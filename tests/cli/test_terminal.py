@@ -30,7 +30,9 @@ IMPATIENT = """if True:
 """
 
 
-def on_terminal(columns: int, line: str, *, only_errors: bool = False, code: str = "") -> str:
+def on_terminal(
+    columns: int, line: str, *, only_errors: bool = False, code: str = "", exit_code: int = 0
+) -> str:
     """Return what a command writes to a terminal that is so wide, or what only its errors do."""
     terminal, child = os.openpty()
     fcntl.ioctl(child, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
@@ -46,7 +48,7 @@ def on_terminal(columns: int, line: str, *, only_errors: bool = False, code: str
         os.close(child)
         written = b"".join(chunks(terminal))
     os.close(terminal)
-    assert running.returncode == 0, written
+    assert running.returncode == exit_code, written
     return written.decode()
 
 
@@ -192,3 +194,16 @@ def test_reports_fold_with_the_names_of_their_rows(monkeypatch: pytest.MonkeyPat
     assert plain.count("1.5") == 12
     wide = report.text("table", View()).decode()
     assert wide.count("method") == 1
+
+
+@pytest.mark.parametrize("form", ["npy", "parquet"])
+def test_binary_formats_are_not_written_to_a_terminal(form: str) -> None:
+    shown = on_terminal(80, f"table --t-max 1 --n 3 --format {form}", exit_code=2)
+    assert re.search(r"Error: .*terminal", shown)
+    assert "NUMPY" not in shown
+
+
+def test_few_rows_are_a_table_on_a_terminal() -> None:
+    shown = on_terminal(80, "sweep --theta0 30,40 --keys theta0_deg,T_nutation")
+    assert "T_nutation [time]" in shown or "\u2500" in shown
+    assert "," not in shown

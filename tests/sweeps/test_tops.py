@@ -29,6 +29,8 @@ def test_get_what_is_not_there(lagtop: Lagtop) -> None:
     absent = lagtop("solve", "--theta0", "0", "--get", "T_nutation")
     assert (absent.exit_code, absent.stdout) == (1, "")
     assert absent.stderr == "Error: a top of the regime 'sleeping' has no T_nutation\n"
+    for wrong, meant in (("nutation_period", "T_nutation"), ("spin_rate_mean", "mean_spin_rate")):
+        assert f"(did you mean '{meant}'?)" in lagtop("solve", "--get", wrong).stderr
     unknown = lagtop("solve", "--get", "T")
     assert (unknown.exit_code, unknown.stdout) == (2, "")
     assert unknown.stderr.startswith("Error: --get must be among 76 names, got 'T': m, A, C")
