@@ -41,11 +41,11 @@ def _halves(x: float | Array) -> tuple[Array, Array]:
     return high, x - high
 
 
-def reduce_phase(t: Array, rate: Pair, offset: float | Array = 0.0) -> tuple[Array, Array]:
-    """Return the integer nearest to t * rate + offset, and t * rate less it, with all digits."""
+def reduce_phase(t: Array, rate: Pair) -> tuple[Array, Array]:
+    """Return the integer nearest to t * rate, and t * rate less it, with all digits."""
     since, rest = two_product(t, rate.high)
     rest += t * rate.low
-    step: Array = np.rint(since + offset)
+    step: Array = np.rint(since)
     return step, (since - step) + rest
 
 

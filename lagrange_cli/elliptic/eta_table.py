@@ -19,7 +19,6 @@ from .periods import whole_and_rest
 from .tables import ProvedNumbers, RealTable
 
 if TYPE_CHECKING:
-    from ..arithmetic.types import Array
     from .tables import Known
 
 
@@ -40,7 +39,7 @@ class EtaMotion(NamedTuple):
 
 
 class EtaTable(RealTable):
-    """Eta of times tau, eta = delta* at tau = -c3, its rate, and h1, theta and xi'.
+    """Eta of times tau, eta = delta* at tau = 0, its rate, and h1, theta and xi'.
 
     Raises LagtopError as `Quadrature.check` does and, in doubles, as `Quadrature.check_doubles`
     does and for times beyond 2^50 periods.
@@ -50,14 +49,13 @@ class EtaTable(RealTable):
         self,
         points: Points,
         quadrature: Quadrature,
-        c3: Fraction = Fraction(0),
         *,
         names: Collection[str] = ("eta",),
         angle: str = "deg",
     ) -> None:
         """Take the inputs: `names` are some of COLUMNS, `angle` the unit of theta, deg or rad."""
         super().__init__(points)
-        self.quadrature, self.c3, self.names, self.angle = quadrature, c3, names, angle
+        self.quadrature, self.names, self.angle = quadrature, names, angle
 
     def in_doubles(self) -> EtaTable:
         """Return the table itself."""
@@ -71,10 +69,10 @@ class EtaTable(RealTable):
     def constants(self, ar: Balls) -> EtaMotion:
         """Return the motion in balls."""
         c, band = eta_constants(ar, self.quadrature), band_of(ar, self.quadrature)
-        c3, quarter = ar.convert(self.c3), complete_k(ar, modulus_in_use(c, band).k_prime)
+        quarter = complete_k(ar, modulus_in_use(c, band).k_prime)
 
         def periods(tau: Value) -> tuple[Value, Value]:
-            turns, rest, _ = whole_and_rest(ar, (tau + c3) / c.period)
+            turns, rest, _ = whole_and_rest(ar, tau / c.period)
             return turns, rest
 
         return EtaMotion(c, band, 2 * quarter, periods)
@@ -84,24 +82,16 @@ class EtaTable(RealTable):
         from ..arithmetic.arrays import ARRAYS
         from ..arithmetic.double_double import reduce_phase
 
-        def rounded(digits: int) -> tuple[EtaConstants, Pair, float, float]:
-            ar = balls(digits)
-            exact = eta_constants(ar, self.quadrature)
-            offset = ar.convert(self.c3) / exact.period
-            whole = ar.nint(offset)
-            c = EtaConstants(*map(float, exact))
-            return c, pair(1 / exact.period), float(whole), float(offset - whole)
+        def rounded(digits: int) -> tuple[EtaConstants, Pair]:
+            exact = eta_constants(balls(digits), self.quadrature)
+            return EtaConstants(*map(float, exact)), pair(1 / exact.period)
 
-        c, rate, whole, shift = decided("the constants of eta", rounded)
+        c, rate = decided("the constants of eta", rounded)
         check_reach("tau", self.points, min(MAX_PERIODS * c.period, MAX_TIME))
         band = band_of(ARRAYS, self.quadrature)
         quarter = complete_k(DOUBLES, float(modulus_in_use(c, band).k_prime))
 
-        def periods(tau: Array) -> tuple[Array, Array]:
-            turns, since = reduce_phase(tau, rate, shift)
-            return turns + whole, since + shift
-
-        return EtaMotion(c, band, 2 * quarter, periods)
+        return EtaMotion(c, band, 2 * quarter, lambda tau: reduce_phase(tau, rate))
 
     def columns(
         self, ar: FunctionArithmetic, x: Value, constants: EtaMotion, known: Known
@@ -127,7 +117,7 @@ class EtaTable(RealTable):
         1937).
         """
         lower, still = self.quadrature.lower, self.quadrature.lower == self.quadrature.upper
-        at_start = still or x + self.c3 == 0
+        at_start = still or x == 0
         zero = {"tau": x == 0, "eta": at_start and not lower, "etadot": at_start}
         return {name: 0 for name, is_zero in zero.items() if is_zero}
 
@@ -193,9 +183,7 @@ def place_in_band(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band)
     return PlaceInBand(eta, risen, left, sn * cn < 0)
 
 
-def record(
-    quadrature: Quadrature, digits: int | None = None, c3: Fraction = Fraction(0)
-) -> dict[str, Any]:
+def record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
     """Return roots and constants, each the nearest double or to so many significant digits.
 
     Raises LagtopError as `Quadrature.check` does and, for doubles, `Quadrature.check_doubles`.
@@ -205,7 +193,7 @@ def record(
     else:
         quadrature.check_doubles()
     zeros = dict.fromkeys(_zeros_of_record(quadrature), 0)
-    return ProvedNumbers(digits).of(lambda ar: _record_in(ar, quadrature, c3), zeros)
+    return ProvedNumbers(digits).of(lambda ar: _record_in(ar, quadrature), zeros)
 
 
 def _zeros_of_record(quadrature: Quadrature) -> set[str]:
@@ -230,7 +218,7 @@ def _zeros_of_record(quadrature: Quadrature) -> set[str]:
     return zeros | {name.replace("k", "k1") for name in zeros & {"k", "k_imag"}}
 
 
-def _record_in(ar: FunctionArithmetic, quadrature: Quadrature, c3: Fraction) -> dict[str, Any]:
+def _record_in(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Any]:
     """Return the record in balls; None for what the layout does not have."""
     c, outer = eta_constants(ar, quadrature), quadrature.outer
     pair_of_roots, imaginary = len(outer) > 1, bool(quadrature.height)
@@ -257,5 +245,5 @@ def _record_in(ar: FunctionArithmetic, quadrature: Quadrature, c3: Fraction) -> 
         "d": c.d,
         "gamma": c.gamma,
         "period": c.period,
-        "tau3": ar.convert(c3) - c.period / 4,
+        "tau3": -c.period / 4,
     }
