@@ -10,7 +10,10 @@ import random
 from collections.abc import Callable
 from fractions import Fraction
 
-from lagrange_cli.bench.hard_scenes import STRATA, TILTS, Scene, generic, power, signed
+from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic, power, signed
+
+TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
+"""Degrees whose cosine is rational."""
 
 
 def separatrix(rng: random.Random) -> Scene:

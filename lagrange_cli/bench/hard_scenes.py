@@ -16,8 +16,6 @@ from fractions import Fraction
 from typing import Any
 
 Scene = dict[str, Any]
-TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
-"""Degrees whose cosine is rational."""
 _HALF_PI = Decimal("1.57079632679489661923132169163975144209858469968755291048747")
 _RATES = ("r0", "thetadot0", "psidot0")
 

@@ -33,7 +33,6 @@ COMMANDS = {
 NAMES = [name for names in COMMANDS.values() for name in names]
 _MODULES = {"view": "plot", "scenes": "explain", "stability": "bench"}
 """Commands that share the module of another one."""
-VERSION = f"lagtop, version {__version__}"
 _COLOURS = {"Error": "red", "Warning": "yellow"}
 
 

@@ -253,8 +253,3 @@ def names_in_comments(comments: Sequence[str], cells: int) -> list[str] | None:
         if len(words) == cells and "t" in quantities_in(words):
             return words
     return None
-
-
-def shown_quantities() -> Mapping[str, str]:
-    """Return the meaning and the names of each quantity, for the help."""
-    return {key: f"{x.meaning}: {x.shown}" for key, x in QUANTITIES.items()}
