@@ -1,1 +1,1 @@
-"""What is given: tops, scene files, ranges and files of tops."""
+"""User input: tops, scene files, units, ranges, tables of text and trajectories."""

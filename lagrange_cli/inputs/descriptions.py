@@ -1,6 +1,6 @@
 """Descriptions in files: the scene, the version, the units and the conventions of their numbers.
 
-They stand in the metadata of a Parquet schema, or in comments above a table of text.
+A description is stored in the metadata of a Parquet schema, or in comments above a text table.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .units import System
 
 Description = Mapping[str, str]
-"""Texts by the keys `lagtop`, `scene`, `units` and `conventions`, or none at all."""
+"""Texts by the keys `lagtop`, `scene`, `units` and `conventions`; may be empty."""
 _KEYS = ("lagtop", "scene", "shared inputs", "units", "conventions")
 _FRAMES = (
     f"{ANGLES[0]} is the tilt, {ANGLES[1]} the spin and {ANGLES[2]} the precession; "
@@ -35,7 +35,7 @@ def describe(
     radians: bool,
     is_whole: bool = True,
 ) -> Description:
-    """Return the description of numbers of a top, or of tops that share some inputs."""
+    """Return the description of results for one top, or for tops that share some inputs."""
     angles = "radians" if radians else "degrees"
     return {
         "lagtop": version,
@@ -55,7 +55,7 @@ def description_in(comments: Iterable[str]) -> Description:
 
 
 def scene_in(description: Description, name: str) -> Top | None:
-    """Return the top that a file describes, if any.  Raises DataError for one that cannot be."""
+    """Return the top that a file describes, if any.  Raises DataError for an impossible top."""
     if "scene" not in description:
         return None
     pairs = dict(x.split(" = ", 1) for x in description["scene"].split(", ") if " = " in x)
@@ -64,11 +64,11 @@ def scene_in(description: Description, name: str) -> Top | None:
             raise LagtopError("it must have inputs by key")
         return Top(**{key: float(parse_number(text)) for key, text in pairs.items()})
     except LagtopError as error:
-        raise DataError(f"{name}: the scene in its description is none: {error}") from None
+        raise DataError(f"{name}: the scene in its description is invalid: {error}") from None
 
 
 def difference(found: Top, wanted: Top) -> str:
-    """Return the inputs by which two tops differ, as in `r0 = -50.0, not 50.0`; empty if none."""
+    """Return the inputs that differ, as in `r0 = -50.0, not 50.0`; empty if the tops are equal."""
     other = wanted.inputs()
     return "; ".join(
         f"{key} = {float(x)}, not {float(other[key])}"

@@ -1,6 +1,6 @@
-"""Files that are read, or standard input for `-`: their names, and their bytes.
+"""Input files, or standard input for `-`: their names and their bytes.
 
-Whatever is wrong with a file of inputs is a DataError, that it is not there among it.
+Every error in reading an input file is a DataError, even if the file does not exist.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _GZIP, _UTF16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
 def reading(path: str) -> Iterator[BufferedIOBase]:
     """Open a file for reading bytes, or standard input for `-`.
 
-    Raises DataError where it cannot be opened, and where it cannot be read inside.
+    Raises DataError if the file cannot be opened, or if reading fails inside the block.
     """
     try:
         if path == "-":
@@ -37,9 +37,9 @@ def reading(path: str) -> Iterator[BufferedIOBase]:
 
 @contextmanager
 def decoded(stream: BufferedIOBase, name: str) -> Iterator[BufferedReader]:
-    """Yield the bytes of a stream; gzip is decompressed, and UTF-16 with its mark becomes UTF-8.
+    """Yield the bytes of a stream: gzip is decompressed, and marked UTF-16 becomes UTF-8.
 
-    The stream stays open.  Raises DataError, here or while it is read, for a file that is broken.
+    The stream stays open.  Raises DataError for a broken file, here or while it is read.
     """
     reader = BufferedReader(cast(Any, stream), _AT_ONCE)
     found = reader
@@ -50,22 +50,22 @@ def decoded(stream: BufferedIOBase, name: str) -> Iterator[BufferedReader]:
     try:
         yield found
     finally:
-        with suppress(ValueError):  # of a stream that is closed
+        with suppress(ValueError):  # the stream may be closed
             reader.detach()
 
 
 class _Chunks(RawIOBase):
-    """Chunks of bytes as a stream that only goes forward."""
+    """Forward-only stream over chunks of bytes."""
 
     def __init__(self, chunks: Iterator[bytes]) -> None:
         self._chunks, self._left = chunks, memoryview(b"")
 
     def readable(self) -> bool:
-        """Return True."""
+        """Return True: the stream is readable."""
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Fill a buffer with the next bytes, and return how many these are."""
+        """Fill a buffer with the next bytes, and return their number."""
         if not self._left:
             self._left = memoryview(next(filter(None, self._chunks), b""))
         count = min(len(buffer), len(self._left))
@@ -74,7 +74,7 @@ class _Chunks(RawIOBase):
 
 
 def _decompressed(stream: BufferedReader, name: str) -> Iterator[bytes]:
-    import gzip  # for few files only, as zlib
+    import gzip  # for few files only, like zlib
     import zlib
 
     try:
@@ -108,9 +108,9 @@ def temporary_files() -> Iterator[None]:
 
 @contextmanager
 def temporary_copy(stream: BufferedIOBase) -> Iterator[BinaryIO]:
-    """Yield a file with what is left of a stream, which is gone when the block ends.
+    """Copy the unread part of a stream to a temporary file, deleted at the end of the block.
 
-    Raises CannotWriteError if there is no space for it.
+    Raises CannotWriteError if there is no space for the file.
     """
     from tempfile import TemporaryFile
 
@@ -126,7 +126,7 @@ def temporary_copy(stream: BufferedIOBase) -> Iterator[BinaryIO]:
 
 
 def utf8_path(path: str) -> str:
-    """Return the name of a file with escapes in place of bytes that are not UTF-8."""
+    """Return the name of a file, with bytes that are not UTF-8 escaped."""
     return path.encode("utf-8", "backslashreplace").decode()
 
 

@@ -1,4 +1,4 @@
-"""What is given of a top, by options and by a scene file, and the top that it describes."""
+"""Combine the inputs from options and from a scene file into a top."""
 
 from __future__ import annotations
 
@@ -24,27 +24,27 @@ class Given(Values):
     """Inputs of a top by key, all in units of one system."""
 
     inputs: Mapping[str, Any]
-    """The numbers that were given, or the `Points` or `Span` in their place."""
+    """The given numbers; the `Points` of a sweep or the `Span` of a search in their place."""
     others: Mapping[str, Any]
-    """What else was given with units, such as times."""
+    """Other quantities that may have units, such as times."""
     body: Mapping[str, Number]
     """The body of the worked example, in these units."""
     system: System | None
-    """The units, where the inputs were given with units."""
+    """The system of units; None if the inputs have no units."""
     missing: Mapping[str, float]
-    """The inputs of the body, in CGS, that the worked example gives while others were given."""
+    """The body inputs taken from the worked example, in CGS, if only some of the body was given."""
     blame: Callable[[LagtopError], LagtopError]
-    """Names the file, and the line, in an error about an input that stands in a scene file."""
+    """Adds the file and the line to an error about an input of a scene file."""
     stds: Mapping[str, float] = MappingProxyType({})
     """Standard uncertainties of the inputs that have one, in these units."""
     empty: str | None = None
-    """The name of the scene file, where it has no inputs."""
+    """The name of the scene file if it has no inputs, else None."""
 
     def top(self, *, exact: bool = False, without: Collection[str] = ()) -> Top:
         """Return the top, its inputs rounded to doubles or kept `exact`.
 
-        Those `without` which it is made are as in the worked example.  Raises LagtopError for an
-        input that no top can have, SceneError where a file has it.
+        The inputs in `without` are ignored: they default to the worked example.  Raises LagtopError
+        for an impossible input, SceneError if it is in a file.
         """
         kept = {key: x for key, x in self.inputs.items() if key not in without}
         numbers = overridden(self.body, kept).items()
@@ -66,12 +66,12 @@ def gather(
     varying: Collection[str] = (),
     others: Mapping[str, Value] = MappingProxyType({}),
 ) -> Given:
-    """Return the inputs of a scene file, if any, and those that are `given`, which win.
+    """Return the `given` inputs and those of a scene file, if any; given inputs override the file.
 
-    An input is a `Value`, or a number without a unit; those with units are converted to a
-    `system`, `si` (the default) or `cgs`, and so are `others`, such as times or the units of
-    columns.  Inputs that are `varying` are given later.  Raises SceneError for a file, LagtopError
-    for an input that was given.
+    An input is a `Value`, or a number without a unit.  Inputs with units are converted to a
+    `system`, `si` (the default) or `cgs`.  So are `others`, such as times or the units of columns.
+    `varying` names inputs that are given later.  Raises SceneError for a bad file, LagtopError for
+    a bad given input.
     """
     inputs = {name: as_value(x) for name, x in given.items()}
     file: SceneFile | None = None
@@ -106,18 +106,18 @@ def gather(
 
 
 def _if_one(value: Any) -> Any:
-    """Return a number, also that of an axis of a sweep that has only one."""
+    """Return a number as it is, and the only value of a sweep's axis with one value."""
     return value.bounds()[0] if getattr(value, "count", 0) == 1 else value
 
 
 def read_scene(
     path: str | os.PathLike[str], given: Mapping[str, Number] | None = None, *, exact: bool = False
 ) -> Top:
-    """Return the top of a scene file; `given` inputs take the place of those of the file.
+    """Return the top of a scene file; `given` inputs override those of the file.
 
-    Numbers are rounded to doubles, or kept as `exact` decimals; those with units are converted to
-    SI.  A MixedBodyWarning names inputs of the body that are those of the worked example, where
-    others are given.  Raises SceneError, or LagtopError for an input that was given.
+    Numbers are rounded to doubles, or kept as `exact` decimals.  Numbers with units are converted
+    to SI.  A MixedBodyWarning names the defaults if only some of the body is given.  Raises
+    SceneError for a bad file, LagtopError for a bad given input.
     """
     check_type("given", given, Mapping, NoneType)
     found = gather(given or {}, os.fsdecode(path))
@@ -128,18 +128,18 @@ def read_scene(
 
 
 def _not_given(error: LagtopError, missing: Collection[str]) -> LagtopError:
-    """Return an error about A and C with a remedy where one of them was not given."""
+    """Return an error about A and C, with a remedy if one of them was not given."""
     moments = [name for name in ("A", "C") if name in missing]
     if not moments or error.key not in {"A", "C"}:
         return error
     which = f"{' and '.join(moments)} of the worked example"
-    return LagtopError(f"{error} (this is with {which}: give the whole body)", error.key)
+    return LagtopError(f"{error} (with {which}: give the whole body)", error.key)
 
 
 def checked_double(key: str, value: Number) -> float:
-    """Return the double nearest to an input.
+    """Return an input rounded to the nearest double.
 
-    Raises LagtopError beyond all doubles, and for what is no real number.
+    Raises LagtopError beyond the range of doubles, and for anything but a real number.
     """
     try:
         if not is_real(value):

@@ -1,6 +1,6 @@
-"""Headings of columns: names in ASCII or Greek, units, and slips in the names of inputs.
+"""Headings of columns: names in ASCII or Greek, units, and misspelt inputs.
 
-A unit stands in brackets, in parentheses or after a blank: `t [ms]`, `theta (deg)`, `r0 rpm`.
+Write a unit in brackets, in parentheses or after a blank: `t [ms]`, `theta (deg)`, `r0 rpm`.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from .value import Value
 
 _ANGULAR = (*ANGLES, "euler")
 _NO_UNITS = {None, "-", "1", "time", "rad/time", "1/time"}
-"""Units that stand for those of the scene, as in a drawn table."""
+"""Units that mean those of the scene, as in a drawn table."""
 _OWN_UNITS = {"position": "m", "rotvec": "rad"}
-"""Units of quantities of a trajectory that are in no other."""
+"""Quantities of a trajectory that have one possible unit."""
 _GREEK = {
     "\u03b8": "theta",
     "\u03d1": "theta",
@@ -32,10 +32,10 @@ _GREEK = {
     "\u2032": "'",
     "\u2080": "0",
 }
-"""The letters of the angles in both shapes, omega, a dot above, a prime, and a lowered 0."""
+"""ASCII spellings of the Greek letters, a dot above, a prime, and a subscript 0."""
 _UNITS = {"\u00b0": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad"}
 _UNITS |= {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "rev/min": "rpm"}
-"""Units that are spelt otherwise."""
+"""Other spellings of units."""
 _AFTER_A_BLANK = re.compile(
     r"(.*\S)\s+((?:us|ms|s|sec|min|h|deg|\u00b0|rad|mrad|turn|rev|rpm|[mkg]?g|[cm]?m)"
     r"(?:\*[cm]?m(?:\^2)?)?(?:/(?:s|min|s\^2))?)"
@@ -59,27 +59,27 @@ def name_and_unit(heading: str) -> tuple[str, str]:
 
 
 def column_of(heading: str) -> tuple[str, str]:
-    """Return the name of a column of a file of tops and, if it is an input, its unit."""
+    """Return the name of a column in a file of tops and, for an input, its unit."""
     name, unit = name_and_unit(heading)
     return (name, unit) if name in {*INPUTS, TILT} else (heading, "")
 
 
 def check_spelling(carried: Sequence[str], named: Collection[str], name: str) -> None:
-    """Raise DataError for a column that is not read but looks like an input that is not `named`."""
+    """Raise DataError for an unread column that looks like an input missing from `named`."""
     missing = [known for known in reversed(INPUTS) if known not in named]
-    inputs = {_plain(known): known for known in missing}  # the first of those alike
+    inputs = {_plain(known): known for known in missing}  # the first of similar names
     for column in carried:
         if known := inputs.get(_plain(column)):
             raise DataError(f"{name}: the column {column} must be spelt {known}")
 
 
 def _plain(column: str) -> str:
-    """Return a name without case, underscores, the 0 of theta0 and the unit: easily mistaken."""
+    """Return a name without easily mistaken parts: case, underscores, the 0 of theta0, the unit."""
     return re.sub("_|0|deg$|rad$", "", column.lower()) or column
 
 
 def check_header(columns: Sequence[str], known: Collection[str], name: str) -> None:
-    """Raise DataError for a header that names a column twice, or none of the `known` inputs."""
+    """Raise DataError for a header that repeats a column, or names none of the `known` inputs."""
     if (twice := repeated(columns)) is not None:
         raise DataError(f"{name} must name each column once, got {twice!r} twice")
     if not set(columns) & set(known):
@@ -92,9 +92,9 @@ def check_header(columns: Sequence[str], known: Collection[str], name: str) -> N
 def heading_units(
     headings: Sequence[tuple[str, str]], known: Collection[str], name: str
 ) -> dict[str, Value]:
-    """Return 1 in each column of an input, in the unit of its heading.
+    """Return the value 1 in the unit of its heading, for each column of an input.
 
-    Raises DataError for a unit that is none of its input, UnavailableError where pint is missing.
+    Raises DataError for a unit that its input cannot have, UnavailableError if pint is missing.
     """
     found = {x: Value(Fraction(1), unit) for x, unit in headings if x in known}
     for column, one in found.items():
@@ -118,7 +118,7 @@ def _check_unit(column: str, one: Value, name: str) -> None:
 
 
 def in_known_unit(key: str, unit: str | None) -> tuple[str | None, Fraction | None]:
-    """Return the unit that a quantity is brought to, and the factor, None if it is in it.
+    """Return the unit that a quantity is converted to, and the factor; None without conversion.
 
     Raises LagtopError for a unit that the quantity cannot have.
     """

@@ -1,4 +1,4 @@
-"""The inputs of a top by key: what each is, its unit and its default, and which stands for which.
+"""The inputs of a top by key: meaning, unit, default and alternatives.
 
 Help texts, tables of records, units, pictures and READMEs take the inputs from here.
 """
@@ -27,9 +27,9 @@ class Input(Values):
     """The full meaning, for help texts."""
     bound: str
     unit: str
-    """The unit in words; `angle` stands for degrees or radians."""
+    """The unit in words; `angle` means degrees or radians."""
     default: float | None
-    """The value in the worked example, in CGS; None for an input that stands for another."""
+    """The value in the worked example, in CGS; None for an alternative to another input."""
 
 
 _TABLE = """
@@ -54,19 +54,19 @@ psidot0 | ψ'0 | precession rate at start
 
 
 def _declared(table: str) -> Iterator[tuple[str, Input]]:
-    """Yield the inputs of a table, a line each, which may go on in an indented line."""
+    """Yield the inputs of a table, one per line; indented lines continue the line before."""
     for line in table.strip().replace("\n ", " ").split("\n"):
         key, symbol, name, meaning, bound, unit, default = re.split(r"\s*\|\s*", line)
         yield key, Input(symbol, name, meaning, bound, unit, float(default) if default else None)
 
 
 DECLARED = dict(_declared(_TABLE))
-"""Every input by key, in the order in which they stand everywhere."""
+"""Every input by key, in the order used everywhere."""
 
 TILT = "theta0"
-"""The key of a tilt that has a unit of its own; `theta0_deg` and `theta0_rad` have none."""
+"""The key of a tilt whose value has a unit; the keys `theta0_deg` and `theta0_rad` imply one."""
 STANDS_FOR = {"A_cm": "A", "phidot0": "r0"}
-"""The inputs that are measured, and what a top has in their place."""
+"""The measured inputs, and the inputs of a top that they replace."""
 NINE = tuple(name for name in DECLARED if name not in STANDS_FOR)
 EXAMPLE = {
     f"{name}_deg" if name == TILT else name: x.default
@@ -79,9 +79,9 @@ _SAME = STANDS_FOR | dict.fromkeys(("theta0_deg", "theta0_rad"), TILT)
 
 
 def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
-    """Return inputs by key, with those given in the place of others.
+    """Return inputs by key, overridden by the given ones.
 
-    A tilt takes the place of one in either unit, A_cm that of A, and phidot0 that of r0.
+    A tilt replaces a tilt in either unit, A_cm replaces A, and phidot0 replaces r0.
     """
     taken = {_SAME.get(key, key) for key in given}
     kept = {key: x for key, x in inputs.items() if _SAME.get(key, key) not in taken}
@@ -89,7 +89,7 @@ def overridden(inputs: Mapping[str, N], given: Mapping[str, N]) -> dict[str, N]:
 
 
 def one_of_each(given: Iterable[str]) -> None:
-    """Raise LagtopError where an input is given in two ways."""
+    """Raise LagtopError if an input is given in two ways."""
     keys = set(given)
     for key, other in (*STANDS_FOR.items(), ("theta0_rad", "theta0_deg")):
         if {key, other} <= keys:
@@ -97,9 +97,10 @@ def one_of_each(given: Iterable[str]) -> None:
 
 
 def from_example(given: Mapping[str, Any]) -> dict[str, float]:
-    """Return the inputs of the body that are not given, where others of them are, by key.
+    """Return the missing inputs of an incomplete body by key, with their defaults.
 
-    What is given as 0 fits in any units: no gravity, or a centre of mass in the pivot.
+    If all given body inputs are 0, none is missing, because zeros fit any units: no gravity, or the
+    mass centre at the pivot.
     """
     own = {"A" if name == "A_cm" else name for name in given} & BODY.keys()
     if all(isinstance(given.get(name), int | float | Fraction) and not given[name] for name in own):
@@ -108,14 +109,14 @@ def from_example(given: Mapping[str, Any]) -> dict[str, float]:
 
 
 def remark_on(missing: Iterable[str], words: Sequence[str]) -> str:
-    """Return the line on the inputs that were not given, with the words that would give them."""
+    """Return a warning about missing inputs, with the words that set them."""
     *others, last = missing
-    named = f"{', '.join(others)} and {last} are those" if others else f"{last} is that"
-    return f"{named} of the worked example, in g, cm and s: {' '.join(words)}"
+    named = f"{', '.join(others)} and {last} default" if others else f"{last} defaults"
+    return f"{named} to the worked example, in g, cm and s: {' '.join(words)}"
 
 
 def example_options(missing: Mapping[str, float], *, units: bool = False) -> list[str]:
-    """Return the options that give what the worked example has, with units or without."""
+    """Return the options that set the defaults of the worked example, with units or without."""
     if not units:
         return [f"--{name} {value:g}" for name, value in missing.items()]
     return [
@@ -131,6 +132,6 @@ def _in_cgs(unit: str) -> str:
 
 
 def warn_of(missing: Mapping[str, float], stacklevel: int) -> None:
-    """Warn of inputs that were not given, with the arguments that would give them."""
+    """Warn of missing inputs, with the arguments that set them."""
     arguments = ", ".join(f"{name}={value:g}" for name, value in missing.items())
     warnings.warn(remark_on(missing, [arguments]), MixedBodyWarning, stacklevel)

@@ -1,4 +1,4 @@
-"""Inputs as they are measured: the moment about the centre of mass, the rate of the spin angle."""
+"""Measured inputs: the moment about the centre of mass, and the rate of the spin angle."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ..errors import LagtopError
 from .input_keys import STANDS_FOR
 
 EXACT_DIGITS = 1100
-"""Digits of an irrational number that has to stand as a fraction: more than any output shows."""
+"""Digits of a fraction that approximates an irrational number: more than any output shows."""
 
 
 def as_solved(inputs: Mapping[str, Number]) -> dict[str, Number]:
-    """Return all inputs of a top with A in the place of A_cm, and r0 in that of phidot0.
+    """Return the inputs of a top, with A computed from A_cm and r0 from phidot0.
 
-    Each is a double, the one nearest to the exact value, unless it comes from a fraction.  Raises
-    LagtopError for an A_cm that is negative.
+    Each result is rounded to the nearest double, unless an input is a fraction.  Raises LagtopError
+    for a negative A_cm.
     """
     solved = dict(inputs)
     for measured, formula in (("A_cm", moment), ("phidot0", spin)):
@@ -43,14 +43,14 @@ def moment(inputs: Mapping[str, Number]) -> Number:
 def spin(inputs: Mapping[str, Number]) -> Number:
     """Return the total rate about the figure axis, r0 = phi' + psi' cos(theta0) (4,1).
 
-    Where the cosine is irrational a fraction has `EXACT_DIGITS` digits.
+    If the cosine is irrational, the fraction has `EXACT_DIGITS` digits.
     """
     phi_rate, psi_rate = Fraction(inputs["phidot0"]), Fraction(inputs["psidot0"])
     degrees, radians = inputs.get("theta0_deg"), inputs.get("theta0_rad")
     keeps = is_exact(*(x for x in (inputs["phidot0"], inputs["psidot0"], degrees, radians) if x))
     cosine = Cosine(*(None if x is None else Fraction(x) for x in (degrees, radians)))
     if not 0 <= (degrees or 0) <= 180 or not 0 <= (radians or 0) <= 4:
-        return inputs["phidot0"]  # the guards of the top refuse such a tilt
+        return inputs["phidot0"]  # `Top` refuses such a tilt
     rational = cosine.rational if psi_rate else Fraction(0)
     if rational is not None:
         exact = phi_rate + psi_rate * rational
@@ -70,12 +70,12 @@ def spin(inputs: Mapping[str, Number]) -> Number:
 
 
 def is_exact(*inputs: Number) -> bool:
-    """Return whether some of the inputs are kept as fractions, and not as doubles."""
+    """Return whether any input is kept as a fraction instead of a double."""
     return any(isinstance(x, Fraction) for x in inputs)
 
 
 def _nearest(exact: Fraction) -> float:
-    """Return the double nearest to a fraction, infinite beyond all doubles."""
+    """Return a fraction rounded to the nearest double; infinite beyond all doubles."""
     try:
         return float(exact)
     except OverflowError:

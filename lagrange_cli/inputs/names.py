@@ -1,4 +1,4 @@
-"""Lists of names: how they are written, and which of them are known."""
+"""Lists of names: parsing, and checks against the known names."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ from ..arithmetic.text import quoted
 from ..errors import LagtopError
 
 ANGLES = ("theta", "phi", "psi")
-"""Tilt, spin and precession, in the order in which they stand everywhere."""
+"""Tilt, spin and precession, in the order used everywhere."""
 _MOST_CHARACTERS, _FIRST = 240, 12
-"""The longest list that stands in a message, and how many names stand for a longer one."""
+"""The most characters of a list in a message, and the number of names shown of a longer list."""
 
 
 def split_names(text: str) -> list[str]:
-    """Return the names of a text in which commas stand between them."""
+    """Return the names in a comma-separated text."""
     return [name.strip() for name in text.split(",")]
 
 
 def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[str]:
     """Return the names of the argument `key` as a list.
 
-    Raises LagtopError for anything but a sequence of texts, for an empty one, and for a name that
-    is not known, with the name that was meant and the first of those there are, or comes twice.
+    Raises LagtopError for anything but a sequence of texts, for an empty sequence, and for an
+    unknown or repeated name.  The message suggests the name that was probably meant and lists known
+    names.
     """
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise LagtopError(f"{key} must be a list of names, got {quoted(names)}", key)
@@ -36,12 +37,12 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
             some = f"{', '.join(known[:_FIRST])} and {len(known) - _FIRST} more"
             raise LagtopError(f"{key} must be among {len(known)} names, {wrong}: {some}", key)
     if (twice := repeated(names)) is not None:
-        raise LagtopError(f"{key} must name each one once, got {twice!r} twice", key)
+        raise LagtopError(f"{key} must not repeat a name, got {twice!r} twice", key)
     return names
 
 
 def repeated(names: Iterable[str]) -> str | None:
-    """Return the first name that comes a second time, or None."""
+    """Return the first repeated name, or None."""
     seen: set[str] = set()
     for name in names:
         if name in seen:
@@ -51,10 +52,10 @@ def repeated(names: Iterable[str]) -> str | None:
 
 
 def suggestion(name: object, known: Iterable[str]) -> str:
-    """Return ` (did you mean 'x'?)` with the known name that is near a wrong one, if any is.
+    """Return ` (did you mean 'x'?)` with the known name closest to a wrong one, or an empty text.
 
-    A name of the same words in another order comes first, then one that begins with the wrong one,
-    then one that is similar.
+    Names with the same words in another order come first, then names that begin with the wrong one,
+    then similar names.
     """
     from difflib import get_close_matches
 
@@ -71,9 +72,9 @@ def _words(name: str) -> set[str]:
 
 
 def usual_spelling(text: str, units: Collection[str]) -> str:
-    """Return a question with the unit in its usual spelling, such as rpm for RPM, if there is one.
+    """Return a question with the usual spelling of a unit, such as rpm for RPM, or an empty text.
 
-    A figure after a name counts as its power, as in `kg m2`.
+    A digit after a name counts as its power, as in `kg m2`.
     """
     known = {name.lower(): name for name in units}
     usual = re.sub(r"[^\W\d_]+", lambda name: known.get(name[0].lower(), name[0]), text)

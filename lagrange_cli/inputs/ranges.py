@@ -1,4 +1,4 @@
-"""The one grammar of ranges, `[log:]start:stop:count`, also of multiples of K; blocks of tops."""
+"""Ranges `[log:]start:stop:count`, of numbers or of multiples of K, and grids of tops in blocks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> Points:
-    """Return the points of `start:stop:count` or, with equal ratios, `log:start:stop:count`.
+    """Return the points of `start:stop:count` or, with equal ratios, of `log:start:stop:count`.
 
     `parse` reads the two ends.  Raises LagtopError for anything else, for a count of 1 between
     different ends, and for a logarithmic range over 0.
@@ -38,28 +38,28 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
 
 
 def parse_values(text: str) -> Points:
-    """Return the points of a number, of a list `1,2,3` or of a range.  Raises LagtopError."""
+    """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
     if ":" in text:
         return parse_range(text)
     return ListedPoints([parse_number(part) for part in text.split(",")])
 
 
 class Span(NamedTuple):
-    """The values that an unknown input may have: from one end to the other."""
+    """The interval in which an unknown input is searched for."""
 
     first: Fraction
     last: Fraction
     logarithmic: bool = False
-    """Whether it is cut into equal ratios, not into equal steps."""
+    """Whether the interval is divided into equal ratios instead of equal steps."""
 
     def points(self, count: int) -> Points:
-        """Return so many points of it, the ends among them."""
+        """Return `count` points of the interval, both ends included."""
         if self.logarithmic:
             return LogPoints(self.first, self.last, count)
         return EvenPoints(self.first, (self.last - self.first) / (count - 1), count)
 
     def scaled(self, factor: Fraction) -> Span:
-        """Return the values times a factor > 0."""
+        """Return the interval multiplied by a factor > 0."""
         return self._replace(first=self.first * factor, last=self.last * factor)
 
     def __str__(self) -> str:
@@ -67,9 +67,9 @@ class Span(NamedTuple):
 
 
 def parse_span(text: str) -> Span:
-    """Return the values of `from:to` or `log:from:to`: a range without its count.
+    """Parse an interval, `from:to` or `log:from:to`.
 
-    Raises LagtopError for anything else, and where the second end is not the larger one.
+    Raises LagtopError for anything else, and unless the second end is the larger one.
     """
     logarithmic, ends = text.startswith("log:"), text.removeprefix("log:").split(":")
     if len(ends) != 2:
@@ -83,7 +83,7 @@ def parse_span(text: str) -> Span:
 
 
 def parse_number_or_span(text: str) -> Fraction | Span:
-    """Return a number, or the values of a range `[log:]from:to`.  Raises LagtopError."""
+    """Parse a number, or an interval `[log:]from:to`.  Raises LagtopError."""
     return parse_span(text) if ":" in text else parse_number(text)
 
 
@@ -102,7 +102,7 @@ class Multiples(NamedTuple):
 
 
 def parse_multiple(text: str) -> Multiple:
-    """Return a number such as `0.5` or, in units of K, one such as `K`, `-2.5K`, `K/2` or `3K/4`.
+    """Parse a number such as `0.5`, or a multiple of K such as `K`, `-2.5K`, `K/2` or `3K/4`.
 
     Raises LagtopError for anything else.
     """
@@ -123,9 +123,9 @@ def parse_multiple(text: str) -> Multiple:
 
 
 def parse_multiples(text: str) -> Multiples:
-    """Return the points of a range whose ends are `parse_multiple`s, both of one kind.
+    """Parse a range whose ends are read by `parse_multiple`.
 
-    Raises LagtopError as `parse_range` does, and for one end alone in units of K (0 goes with both
+    Raises LagtopError as `parse_range` does, and if only one end is in units of K (0 fits both
     kinds).
     """
     units = set()
@@ -143,7 +143,7 @@ def parse_multiples(text: str) -> Multiples:
 
 
 def listed_multiples(single: tuple[Multiple, ...]) -> Multiples:
-    """Return multiples that are listed one by one.  Raises LagtopError for both kinds together."""
+    """Return a list of multiples as one object.  Raises LagtopError for a mixture of both kinds."""
     units = {multiple.in_quarters for multiple in single if multiple.factor}
     if len(units) > 1:
         raise LagtopError("u must be in units of K every time or never, got both", "u")
@@ -151,18 +151,18 @@ def listed_multiples(single: tuple[Multiple, ...]) -> Multiples:
 
 
 class InputArrays(NamedTuple):
-    """The inputs of some tops and what goes with each of them."""
+    """The inputs of some tops, with the columns, lines and errors of each."""
 
     size: int
     """The number of tops."""
     inputs: Mapping[str, Array | float]
-    """An array for each input, or one number for all; NaN where a top lacks it."""
+    """For each input an array, or one number for all tops; NaN for a top without the input."""
     carried: Sequence[Sequence[Any]] = ()
-    """The columns that are carried through."""
+    """The extra columns, which are copied to the output."""
     lines: Sequence[int] | None = None
-    """The number of the line of each top, if they come from a file."""
+    """The line number of each top, if the tops come from a file."""
     errors: Mapping[int, str] = {}
-    """What is already known to be wrong, by row."""
+    """Messages of the errors found so far, by row."""
 
 
 class Block(Protocol):
@@ -173,7 +173,7 @@ class Block(Protocol):
         """The number of tops."""
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the tops; `shared` ones stand where a top has none of its own."""
+        """Return the inputs of the tops; `shared` inputs are the defaults."""
 
 
 class Product(NamedTuple):
@@ -193,13 +193,13 @@ class Product(NamedTuple):
             yield Combinations(self, first, min(first + size, self.size))
 
     def check(self) -> None:
-        """Raise LagtopError where there are more than 1e9 combinations."""
+        """Raise LagtopError if there are more than 1e9 combinations."""
         if self.size > MOST_POINTS:
             raise LagtopError(f"a sweep has at most 1e9 tops, this one would have {self.size:.4g}")
 
 
 class Combinations(NamedTuple):
-    """The combinations of a product from one number to before another."""
+    """The combinations of a product from number `first` up to, but not including, `stop`."""
 
     product: Product
     first: int
@@ -222,5 +222,5 @@ class Combinations(NamedTuple):
         return values
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the combinations; those that do not vary are `shared`."""
+        """Return the inputs of the combinations; `shared` holds those that do not vary."""
         return InputArrays(self.size, {**shared, **self.values()})

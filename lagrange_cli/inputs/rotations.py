@@ -1,7 +1,7 @@
-"""Rotations, and the rates of the Euler angles and the angular velocity from each other (4,1).
+"""Rotations, and conversion between Euler angle rates and angular velocity (4,1).
 
-Quaternions are w, x, y, z along the last axis, and need not be normalised.  Rates take numbers or
-arrays that broadcast, angles in radians.  Equation numbers are Chrapan's.
+Quaternions are w, x, y, z along the last axis, and need not be normalised.  Functions of rates take
+numbers or arrays that broadcast.  Angles are in radians.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _TO_Z = {
     "y": np.array([0.5, 0.5, 0.5, 0.5]),
     "z": IDENTITY,
 }
-"""Cyclic exchanges of the axes that bring one of them to z."""
+"""Cyclic exchanges of the axes that turn one of them to z."""
 
 
 def product(first: Array, second: Array) -> Array:
@@ -40,7 +40,7 @@ def product(first: Array, second: Array) -> Array:
 
 
 def directed(values: Array) -> Array:
-    """Return quaternions or vectors, those of length 0 as NaN: they have no direction."""
+    """Return quaternions or vectors, with NaN for those of length 0, which have no direction."""
     length = np.linalg.norm(values, axis=-1, keepdims=True)
     known: Array = np.where(length > 0, values, np.nan)
     return known
@@ -53,7 +53,7 @@ def conjugate(rotation: Array) -> Array:
 
 
 def angle_between(first: Array, second: Array) -> Array:
-    """Return the angle of the rotation between two, in [0, pi], exact for tiny ones too."""
+    """Return the angle of the rotation between two, in [0, pi], accurate for tiny angles too."""
     between = product(conjugate(first), second)
     angle: Array = 2.0 * np.arctan2(np.linalg.norm(between[..., 1:], axis=-1), abs(between[..., 0]))
     return angle
@@ -68,20 +68,20 @@ def rotated(rotation: Array, vectors: Array) -> Array:
 
 
 def about_z(angle: float | Array) -> Array:
-    """Return the rotation by an angle about z, or one for each of an array of angles."""
+    """Return the rotation about z by an angle, or by each angle of an array."""
     half = np.asarray(angle) / 2
     none = np.zeros_like(half)
     return np.stack([np.cos(half), none, none, np.sin(half)], axis=-1)
 
 
 def to_z(axis: str) -> Array:
-    """Return a rotation that brings an axis (x, -x, y, -y, z or -z) to z."""
+    """Return a rotation that turns an axis (x, -x, y, -y, z or -z) to z."""
     turn: Array = _TO_Z[axis[-1]]
     return product(HALF_TURN_X, turn) if axis.startswith("-") else turn
 
 
 def of_angles(theta: Array, phi: Array, psi: Array) -> Array:
-    """Return the rotation from body to space of tilt, spin and precession."""
+    """Return the rotation from body to space for tilt, spin and precession."""
     sum_, difference = (psi + phi) / 2, (psi - phi) / 2
     upper, lower = np.cos(theta / 2), np.sin(theta / 2)
     parts = [
@@ -102,7 +102,7 @@ def angles_of(rotation: Array) -> dict[str, Array]:
 
 
 def axis_of(rotation: Array) -> Array:
-    """Return where rotations from body to space take the body's z axis."""
+    """Return the body's z axis in space, for rotations from body to space."""
     return rotated(rotation, np.broadcast_to([0.0, 0.0, 1.0], (*rotation.shape[:-1], 3)))
 
 
@@ -113,23 +113,23 @@ def angles_of_axis(axis: Array) -> dict[str, Array]:
 
 
 def angle_between_vectors(first: Array, second: Array) -> Array:
-    """Return the angle between vectors, in [0, pi], exact for tiny ones too."""
+    """Return the angle between vectors, in [0, pi], accurate for tiny angles too."""
     across = np.linalg.norm(np.cross(first, second), axis=-1)
     angle: Array = np.arctan2(across, np.sum(first * second, axis=-1))
     return angle
 
 
 def within_half_turn(angle: Array) -> Array:
-    """Return the angle brought to (-pi, pi] by whole turns."""
+    """Return the angle reduced to (-pi, pi] by whole turns."""
     brought: Array = angle - np.ceil(angle / (2 * np.pi) - 0.5) * (2 * np.pi)
     return brought
 
 
 def of_matrix(rows: Array) -> tuple[Array, Array]:
-    """Return the rotations nearest to matrices, given row by row, and how far these are from them.
+    """Return the rotations nearest to matrices, given row by row, and the distance of each matrix.
 
-    The distance is the greatest element of R R^T - 1.  What is no rotation, such as a reflection,
-    is NaN.
+    The distance is the greatest element of |R R^T - 1|. The rotation is NaN for a matrix that is
+    not a rotation, such as a reflection.
     """
     from scipy.spatial.transform import Rotation
 
@@ -152,7 +152,7 @@ def of_euler(sequence: str, angles: Array) -> Array:
 
 
 def of_vector(vectors: Array) -> Array:
-    """Return rotations by vectors: each about its direction, by its length."""
+    """Return rotations from rotation vectors: the direction is the axis, the length the angle."""
     angle = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.concatenate([np.cos(angle / 2), np.sinc(angle / (2 * np.pi)) / 2 * vectors], axis=1)
 
@@ -178,7 +178,7 @@ def body_rates(
 ) -> BodyRates:
     """Return p, q, r of a top at a tilt and a spin angle, from the rates of its angles (4,1).
 
-    Raises LagtopError for what is not real numbers that broadcast.
+    Raises LagtopError for anything but real numbers that broadcast.
     """
     tilt, spin, nutation, own, precession = _together(
         theta=theta, phi=phi, thetadot=thetadot, phidot=phidot, psidot=psidot
@@ -194,18 +194,18 @@ def body_rates(
 def euler_rates(
     theta: ArrayLike, phi: ArrayLike, *, p: ArrayLike, q: ArrayLike, r: ArrayLike
 ) -> EulerRates:
-    """Return the rates of the angles from p, q, r at a tilt and a spin angle: (4,1) solved.
+    """Return the rates of the angles from p, q, r at a tilt and a spin angle, by solving (4,1).
 
-    Raises LagtopError for what is not real numbers that broadcast, and for a vertical axis, where
-    spin and precession have no rates of their own.
+    Raises LagtopError for anything but real numbers that broadcast, and for a vertical axis, where
+    the rates of spin and precession are undefined.
     """
     tilt, spin, x, y, z = _together(theta=theta, phi=phi, p=p, q=q, r=r)
     sin, cos, sine = np.sin(spin), np.cos(spin), np.sin(tilt)
     vertical = (sine == 0) | (abs(tilt) == np.pi)
     if vertical.any():
         raise LagtopError(
-            "theta must be off the vertical, where spin and precession have rates of their own, "
-            f"got {tilt[vertical].flat[0]}",
+            f"theta must be off the vertical, got {tilt[vertical].flat[0]} "
+            "(the rates of spin and precession are undefined)",
             "theta",
         )
     precession = (x * sin + y * cos) / sine
@@ -221,4 +221,4 @@ def _together(**values: ArrayLike) -> list[Array]:
         return [x.astype(np.float64) for x in np.broadcast_arrays(*arrays)]
     except (TypeError, ValueError):
         shown = ", ".join(f"{name} {repr(value)[:30]}" for name, value in values.items())
-        raise LagtopError(f"numbers that broadcast must be given, got {shown}") from None
+        raise LagtopError(f"arguments must be numbers that broadcast, got {shown}") from None

@@ -17,13 +17,13 @@ from .value import STEADY_WORDS, Value, parse_value
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
-"""Dots in one line: the time `tomllib` takes grows with the square of the parts of a key."""
+"""Most dots in one line: the run time of `tomllib` grows with the square of the parts of a key."""
 SCENE_KEYS = (*INPUTS, TILT)
 _ENDING = ".toml"
 
 
 def _shipped() -> str:
-    """Return the folder of the shipped scenes: inside the package or, in a checkout, beside it."""
+    """Return the folder of the shipped scenes: inside the package, or beside it in a checkout."""
     package = os.path.dirname(os.path.dirname(__file__))
     inside = os.path.join(package, "scenes")
     return inside if os.path.isdir(inside) else os.path.join(package, "..", "sample_inputs")
@@ -36,14 +36,14 @@ def scene_names() -> list[str]:
 
 
 def scene_path(name: str) -> str:
-    """Return the path of a scene: a file as it is, or the file of a shipped scene."""
+    """Return the path of a scene: the given file, or the file of a shipped scene."""
     is_word = name.replace("-", "").isalnum() and not os.path.exists(name)
     path = os.path.join(_shipped(), name + _ENDING) if is_word else name
     return path if os.path.exists(path) else name
 
 
 def scene_remark(name: str) -> str:
-    """Return the first line of a shipped scene, which says what its top shows."""
+    """Return the first line of a shipped scene, which describes it."""
     with open(scene_path(name), encoding="utf-8") as file:
         return file.readline().removeprefix("#").strip()
 
@@ -54,7 +54,7 @@ def is_scene_file(word: str) -> bool:
 
 
 class SceneFile:
-    """A scene file that has been read: its inputs, and where in it an input stands."""
+    """The contents of a scene file: its inputs and their line numbers."""
 
     def __init__(self, path: str) -> None:
         """Read a file, or standard input for `-`.  Raises SceneError."""
@@ -65,16 +65,16 @@ class SceneFile:
         except DataError as error:
             raise SceneError(f"{error}{suggestion(path, scene_names())}") from None
         if len(raw) > _MOST_BYTES:
-            raise SceneError(f"{self.name}: more than 64 KiB is no scene file")
+            raise SceneError(f"{self.name}: a scene file must have at most 64 KiB")
         try:
             self.text = raw.decode("utf-8-sig")
             _check_dots(self.text)
             table = tomllib.loads(self.text, parse_float=_parsed)
-        except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, endless digits
+        except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, too many digits
             why = f"{error}{_remedy(str(error), self.text)}"
             raise SceneError(f"{self.name}: not a TOML file: {why}") from None
         found = {key: self._value(key, value) for key, value in table.items()}
-        # a tilt without a unit is in degrees, as on the command line
+        # A tilt without a unit is in degrees, as on the command line.
         degrees = {TILT: f"{TILT}_deg"}
         self.inputs = {x if y.unit else degrees.get(x, x): y for x, y in found.items()}
 
@@ -91,12 +91,12 @@ class SceneFile:
             wrong = f"{key} must be a finite number, got {quoted(value)}"
             raise self.error(LagtopError(wrong, key))
         if key == TILT:
-            wrong = f"{key} must have a unit, as '30 deg', or be called {key}_deg or {key}_rad"
+            wrong = f"{key} must have a unit, such as '30 deg', or be called {key}_deg or {key}_rad"
             raise self.error(LagtopError(wrong, key))
         return Value(value)
 
     def _value_of_text(self, key: str, text: str) -> Value:
-        """Return a number in a unit, or an uncertain one."""
+        """Return a number with a unit or an uncertainty."""
         try:
             value = parse_value(text, uncertain=True, steady=key == "psidot0")
         except LagtopError as error:
@@ -108,14 +108,12 @@ class SceneFile:
             )
             raise self.error(LagtopError(wrong, key))
         if value.unit and key.startswith(f"{TILT}_"):
-            wrong = (
-                f"{key} must be called {TILT} where it has a unit of its own, got {quoted(text)}"
-            )
+            wrong = f"{key} must be called {TILT} if its value has a unit, got {quoted(text)}"
             raise self.error(LagtopError(wrong, key))
         return value
 
     def error(self, error: LagtopError) -> SceneError:
-        """Return the error with the name of the file, and the line of its key, in front."""
+        """Return the error prefixed with the name of the file and the line of its key."""
         pattern = re.compile(rf"""\s*\[*\s*["']?{re.escape(error.key or "")}\b""")
         numbered = enumerate(self.text.splitlines(), 1)
         line = next((i for i, text in numbered if error.key and pattern.match(text)), None)
@@ -124,29 +122,29 @@ class SceneFile:
 
 
 def _check_dots(text: str) -> None:
-    """Raise ValueError for a key of very many parts."""
+    """Raise ValueError for a key with too many parts."""
     for number, line in enumerate(text.splitlines(), 1):
         if line.count(".") > _MOST_DOTS and not line.lstrip().startswith("#"):
             raise ValueError(f"line {number} has more than {_MOST_DOTS} dots")
 
 
 def _remedy(wrong: str, text: str) -> str:
-    """Return a hint in brackets on a decimal comma, or on a key that is there twice."""
+    """Return a hint in parentheses about a decimal comma or a repeated key."""
     if "overwrite" in wrong:
-        return " (a key is there twice: delete one line)"
+        return " (a key is repeated: delete one line)"
     place = re.search(r"at line (\d+)", wrong)
     line = text.splitlines()[int(place[1]) - 1] if place else ""
     return " (write a decimal point, not a comma)" if re.search(r"=.*\d,\d", line) else ""
 
 
 class _NoNumber(str):
-    """What TOML takes for a number and lagtop does not, such as nan."""
+    """A number in TOML that lagtop does not accept, such as nan."""
 
     __slots__ = ()
 
 
 def _parsed(text: str) -> Fraction | _NoNumber:
-    """Return a number as a fraction, or as its text where it is none."""
+    """Return a number as a fraction, or its text if it is not a decimal number."""
     try:
         return parse_number(text.replace("_", ""))
     except LagtopError:

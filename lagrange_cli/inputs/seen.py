@@ -1,4 +1,4 @@
-"""What a trajectory shows of the motion: its quantities, read by their conventions."""
+"""The observed motion: the quantities of a trajectory, interpreted by their conventions."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ FRAMES = ("body", "space")
 
 
 class Conventions(NamedTuple):
-    """How numbers are meant where their names do not say it."""
+    """Conventions of quantities whose names do not imply them."""
 
     quaternion: str | None = None
-    """Order of its parts, `wxyz` or `xyzw`; None for the one that the first row proves."""
+    """Order of the parts, `wxyz` or `xyzw`; None to determine it from the first row."""
     euler: str = "xyz"
-    """Sequence of axes as scipy writes it: small letters for those of space, large for the body."""
+    """Sequence of axes in SciPy's notation: lower case for space, upper case for the body."""
     rates: str = "body"
     """Frame of the angular velocity, `body` or `space`."""
     radians: bool = False
 
     def checked(self) -> Conventions:
-        """Return the conventions.  Raises LagtopError for one that is not known."""
+        """Return the conventions.  Raises LagtopError for an unknown one."""
         if self.quaternion not in {None, *ORDERS}:
             _refuse("quaternion_order", "wxyz or xyzw", self.quaternion)
         try:
@@ -45,12 +45,12 @@ class Conventions(NamedTuple):
 
 
 def euler_sequence(text: str) -> str:
-    """Return a text that names three axes of which neighbours differ, in scipy's notation.
+    """Return a valid sequence of three axes in SciPy's notation; neighbours must differ.
 
-    Raises LagtopError for another one.
+    Raises LagtopError for any other text.
     """
     if not re.fullmatch(r"(?!.*(.)\1)([xyz]{3}|[XYZ]{3})", str(text)):
-        wanted = "three axes, as in xyz (about those of space) or XYZ (of the body)"
+        wanted = "three axes, such as xyz (axes of space) or XYZ (axes of the body)"
         raise LagtopError(f"must be {wanted}, got {quoted(str(text))}")
     return text
 
@@ -61,7 +61,7 @@ def _refuse(key: str, wanted: str, got: object) -> None:
 
 @dataclass(frozen=True)
 class Seen:
-    """The motion at some times, as far as it is given; what is not given is None."""
+    """The motion at some times; quantities that are not given are None."""
 
     t: Array
     quaternion: Array | None = None
@@ -69,18 +69,18 @@ class Seen:
     axis: Array | None = None
     """Figure axis in space, shape (n, 3)."""
     angles: Mapping[str, Array] = field(default_factory=dict)
-    """Tilt, spin and precession in radians, where only some of them are given."""
+    """Tilt, spin and precession in radians, if only some of them are given."""
     body_rates: Array | None = None
     space_rates: Array | None = None
     norm: Array | None = None
-    """Distance of a quaternion's norm from 1, and the like for matrices and axes."""
+    """Distance of a quaternion's or an axis's norm from 1, or of a matrix from a rotation."""
     distance: Array | None = None
     """Distance of the mass centre from the pivot."""
 
     def turned(self, space: Array, body: Array) -> Seen:
-        """Return the motion seen from other frames.
+        """Return the motion in other frames.
 
-        `space` takes the coordinates in space to the new ones, `body` those in the body.
+        `space` converts coordinates in space to the new ones, `body` converts body coordinates.
         """
         q, axis, rates, fixed = self.quaternion, self.axis, self.body_rates, self.space_rates
         return replace(
@@ -99,13 +99,13 @@ Quantities = Mapping[str, Array]
 
 
 Said = Mapping[str, tuple[str, str | None]]
-"""The convention and the unit of angles that go with the name of a quantity."""
+"""The convention and the angle unit that its name implies, by quantity."""
 
 
 def see(given: Quantities, conventions: Conventions, said: Said) -> Seen:
-    """Return what quantities show.  What names say wins over the conventions.
+    """Return the motion from its quantities; names override the conventions.
 
-    Raises LagtopError for rates of the angles alone: without an attitude they say nothing.
+    Raises LagtopError for rates of the angles without an attitude.
     """
     reader = _Reader(given, conventions, said)
     seen = Seen(given["t"][:, 0], **reader.attitude())
@@ -113,7 +113,7 @@ def see(given: Quantities, conventions: Conventions, said: Said) -> Seen:
 
 
 def angles_in(given: Quantities, conventions: Conventions, said: Said) -> dict[str, Array]:
-    """Return those of tilt, spin and precession, in radians, that have a column of their own."""
+    """Return tilt, spin and precession, in radians, as far as each has its own column."""
     reader = _Reader(given, conventions, said)
     return {key: reader.angle(key)[:, 0] for key in ANGLES if key in given}
 
@@ -125,7 +125,7 @@ class _Reader:
         self.given, self.conventions, self.said = given, conventions, said
 
     def attitude(self) -> dict[str, Any]:
-        """Return the attitude, from the first quantity that gives all of it, or most of it."""
+        """Return the attitude from the first quantity that gives all of it, or most of it."""
         alone = angles_in(self.given, self.conventions, self.said)
         if len(alone) == len(ANGLES) and not {"quaternion", "matrix"} & set(self.given):
             return {"quaternion": rotations.of_angles(**alone)}
@@ -167,7 +167,7 @@ class _Reader:
         return {"axis": rotations.directed(axis), "norm": np.linalg.norm(axis, axis=1) - 1.0}
 
     def rates(self, seen: Seen) -> dict[str, Any]:
-        """Return the angular velocity, in the frame that it is given in.
+        """Return the angular velocity, in the frame in which it is given.
 
         Raises LagtopError for rates of the angles without any attitude.
         """
@@ -189,7 +189,7 @@ class _Reader:
         return {"body_rates": np.stack(found, axis=1)}
 
     def convention(self, key: str, other: str) -> str:
-        """Return what the names of a quantity say, or else the other."""
+        """Return the convention that the name of a quantity implies, or else `other`."""
         return self.said.get(key, ("", None))[0] or other
 
     def angle(self, key: str) -> Array:

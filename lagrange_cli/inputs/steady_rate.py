@@ -1,7 +1,7 @@
 """The rates of steady precession at a given tilt: the roots of a quadratic equation.
 
-The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0, which is
-cos(theta) Omega^2 - b Omega + a/2 = 0 by a = 2mgs/A (4,4) and b = C r0/A (4,5).
+The tilt stays constant if A cos(theta) Omega^2 - C r0 Omega + mgs = 0.  With a = 2mgs/A (4,4) and b
+= C r0/A (4,5) this is cos(theta) Omega^2 - b Omega + a/2 = 0.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SLOW, FAST = STEADY_WORDS
 
 
 class SteadyRate(float):
-    """A rate of steady precession: the nearest double, which is written as its word."""
+    """A rate of steady precession, rounded to the nearest double and printed as its word."""
 
     word: str
 
@@ -41,7 +41,7 @@ class SteadyRate(float):
         return repr(self.word)
 
     def __reduce__(self) -> tuple[type, tuple[str, float]]:
-        """Return how copies and pickles are made."""
+        """Return the constructor and its arguments, for copies and pickles."""
         return SteadyRate, (self.word, float(self))
 
 
@@ -54,20 +54,20 @@ class SteadyRates(Values):
 
     @property
     def discriminant(self) -> Polynomial:
-        """The discriminant b^2 - 2 a cos(theta) of the equation, by the cosine."""
+        """The discriminant b^2 - 2 a cos(theta) as a polynomial in the cosine."""
         return Polynomial(self.b * self.b, -2 * self.a)
 
     def exists(self, word: str) -> bool:
-        """Return whether a root is real and finite; at 90 degrees there is only the slow one."""
+        """Return whether a root is real and finite; at 90 degrees only the slow one is."""
         if self.cosine.vanishes(U):
             return word == SLOW and bool(self.b)
         return self.cosine.sign(self.discriminant) >= 0
 
     def rate(self, ar: Arithmetic[R], a: R, b: R, cos: R, word: str) -> R:
-        """Return a root that exists, by a, b and the cosine in an arithmetic.
+        """Return an existing root from a, b and the cosine, in the arithmetic `ar`.
 
-        Nothing cancels: with q = b + sgn(b) sqrt(b^2 - 2 a cos(theta)) the fast root is
-        q/(2 cos(theta)) and the slow one a/q.  If r0 = 0 both have the same size, and the slow root
+        No digits cancel: with q = b + sgn(b) sqrt(b^2 - 2 a cos(theta)) the fast root is q/(2
+        cos(theta)) and the slow one a/q.  If r0 = 0, both roots have the same size; the slow root
         is the positive one, as in the limit of small positive r0.
         """
         if not (self.a or self.b):
@@ -77,14 +77,14 @@ class SteadyRates(Values):
         return q / (2 * cos) if word == FAST else a / q
 
     def in_balls(self, digits: int, word: str) -> Ball:
-        """Return a ball that holds a root that exists."""
+        """Return a ball that contains an existing root."""
         ar = balls(digits)
         with ar.working():
             a, b = ar.convert(self.a), ar.convert(self.b)
             return self.rate(ar, a, b, self.cosine.value(ar), word)
 
     def fraction(self, word: str) -> Fraction | None:
-        """Return a root if it is rational; without torque the slow one is 0."""
+        """Return a root if it is rational, else None; without torque the slow root is 0."""
         u = self.cosine.rational
         if not self.exists(word):
             return None
@@ -98,9 +98,9 @@ class SteadyRates(Values):
 
 
 def steady_rate_of(top: Any, word: str) -> SteadyRate:
-    """Return the rate of steady precession of a top whose own precession rate is not used.
+    """Return the rate of steady precession that a word names; the top's own rate is not used.
 
-    Raises LagtopError for a word that is unknown, and for a top that has no such rate.
+    Raises LagtopError for an unknown word, and for a top that has no such rate.
     """
     if word not in STEADY_WORDS:
         raise LagtopError(
@@ -113,7 +113,8 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
     rates = rates_of(top)
     if top.pole:
         raise LagtopError(
-            f"psidot0 must be 0 where the axis is vertical, got {word} (nothing precesses there)",
+            f"psidot0 must be 0 if the axis is vertical, got {word} "
+            "(a vertical axis cannot precess)",
             "psidot0",
         )
     if not rates.exists(word):
@@ -135,7 +136,7 @@ def rates_of(top: Any) -> SteadyRates:
 
 
 def _why(top: Any, rates: SteadyRates) -> str:
-    """Return why a top has no such rate of steady precession."""
+    """Return the reason why a top has no rate of steady precession."""
     if rates.cosine.vanishes(U):
         return f"at 90 degrees {'the fast rate is infinite' if rates.b else 'r0 must not be 0'}"
     ratio = float(Fraction(top.A) / Fraction(top.C))
@@ -144,6 +145,6 @@ def _why(top: Any, rates: SteadyRates) -> str:
 
 
 def rational_root(square: Fraction) -> Fraction | None:
-    """Return the square root of a fraction that is not negative, if it is rational."""
+    """Return the square root of a non-negative fraction if it is rational, else None."""
     root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
     return root if root * root == square else None

@@ -1,6 +1,6 @@
-"""Lines of text files: numbered, of limited length, with a row, a comment or nothing in each.
+"""Lines of text files: numbered, of limited length, each with a row, a comment or nothing.
 
-The cells of a row, and the numbers in them, are those of a `Dialect`.
+A `Dialect` splits a row into cells and reads the numbers in them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..arithmetic.text import json_text, quoted, shortened
 from ..errors import DataError, LagtopError
 
 LONGEST_LINE = 1 << 20
-"""Bytes of a line: memory does not grow with a file that has no line ends."""
+"""Most bytes of a line, so that memory stays limited for a file without line ends."""
 BYTES_AT_ONCE = 1 << 21
 _RULE = "\u2500".encode()
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -66,7 +66,7 @@ class NumberedLines:
 
 @contextmanager
 def at_line(name: str, number: int) -> Iterator[None]:
-    """Raise an error about a line as a DataError that names it."""
+    """Turn a LagtopError about a line into a DataError that names the line."""
     try:
         yield
     except DataError:
@@ -76,7 +76,7 @@ def at_line(name: str, number: int) -> Iterator[None]:
 
 
 def has_row(line: bytes) -> bool:
-    """Return whether a line is neither blank, nor a comment, nor the rule of a drawn table."""
+    """Return whether a line holds a row: no blank line, comment, or rule of a drawn table."""
     bare = line.strip()
     return bool(bare) and not bare.startswith((b"#", _RULE))
 
@@ -93,7 +93,7 @@ def decoded_row(line: bytes) -> str:
 
 
 def json_object(line: bytes) -> dict[str, Any]:
-    """Return the object of a line.  Raises LagtopError for any other line."""
+    """Parse a line as a JSON object.  Raises LagtopError for any other line."""
     import orjson
 
     try:
@@ -106,22 +106,22 @@ def json_object(line: bytes) -> dict[str, Any]:
 
 
 def shown_json(value: Any) -> str:
-    """Return a JSON value for a message."""
+    """Return a JSON value as text for a message."""
     return shortened(json_text(value))
 
 
 class Dialect(NamedTuple):
-    """The delimiter and the decimal mark of a table; an empty one is decided by the file."""
+    """The delimiter and the decimal mark of a table; an empty text means not decided yet."""
 
     delimiter: str = ""
-    """A comma, semicolon, tab, or a blank, which stands for any white space."""
+    """A comma, a semicolon, a tab, or a blank for any white space."""
     decimal: str = ""
     """A point or a comma."""
 
     def cells(self, text: str) -> list[str]:
         """Return the cells of a line.
 
-        A quoted cell ends on its line, or one open quote would swallow the rows that follow.
+        A quoted cell must end on its line; otherwise an open quote would swallow the rows below.
         Raises LagtopError for a wrong quote.
         """
         delimiter = self.delimiter
@@ -139,14 +139,14 @@ class Dialect(NamedTuple):
             raise _wrong_quote(cell, number) from None
 
     def with_point(self, cell: str) -> str:
-        """Return a number with a decimal point; one with the other mark is no number then."""
+        """Return a cell with a decimal point; a cell with the other mark then fails to parse."""
         return cell.translate({44: 46, 46: 44}) if self.decimal == "," else cell
 
     def remedy(self, cell: str) -> str:
-        """Return a hint in brackets if a cell would be a number with the other decimal mark."""
+        """Return a hint in parentheses if a cell is a number with the other decimal mark."""
         other = "point" if self.decimal == "," else "comma"
         helps = self.delimiter != "," and is_number(cell) and set(cell) & {",", "."}
-        return f" (--decimal {other} reads it)" if helps else ""
+        return f" (use --decimal {other})" if helps else ""
 
 
 UNDECIDED = Dialect()

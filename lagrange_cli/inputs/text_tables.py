@@ -1,8 +1,8 @@
-"""Tables as text: the one grammar of files of tops, trajectories, recordings and times.
+"""Text tables: the common grammar of files of tops, trajectories, recordings and times.
 
-A row is a line: cells between commas, semicolons, tabs or white space, or a JSON object.  The
-delimiter and the decimal mark are decided once per file, from its headings and its first rows.  A
-comma is a decimal mark only if it is not the delimiter.  A file that can be read in two ways, or
+A row is one line: a JSON object, or cells separated by commas, semicolons, tabs or white space.
+The delimiter and the decimal mark are decided once per file, from its headings and its first rows.
+A comma is a decimal mark only if it is not the delimiter.  A file that can be read in two ways, or
 that has thousands separators, is refused.
 """
 
@@ -29,9 +29,9 @@ from .text_lines import (
 )
 
 SAMPLE_ROWS, _SAMPLE_BYTES = 1000, 1 << 22
-"""The first rows, which decide how a file is read, and the most bytes of them."""
+"""The number of rows that decide how a file is read, and their most bytes."""
 _MOST_TITLES = 5
-"""Rows among which the headings are, below titles such as Tracker's `mass A`."""
+"""The headings are within these first rows, perhaps below a title such as Tracker's `mass A`."""
 _SEPARATORS = "\t;,"
 _NUMBERS = re.compile(rf"[+-]?{DIGITS}(?:\s+[+-]?{DIGITS})+", re.ASCII)
 _THOUSANDS = re.compile(
@@ -45,30 +45,30 @@ _LABVIEW, _END_OF_HEADER = "LabVIEW Measurement", b"***End_of_Header***"
 
 
 class TableHead(NamedTuple):
-    """The beginning of a table: its headings, its first lines, and the way to read its rows."""
+    """The beginning of a table: its headings, its first lines, and its dialect."""
 
     lines: NumberedLines
-    """The lines that have not been read."""
+    """The unread lines."""
     kept: Sequence[Numbered]
-    """Lines below the headings that have been read, blank ones and comments among them."""
+    """The lines already read below the headings, with blank lines and comments."""
     comments: Sequence[str]
     """The comments above the first row."""
     headings: Sequence[str] | None
-    """None if there are none, or if the rows are JSON objects."""
+    """The headings; None without headings, or if the rows are JSON objects."""
     place: int
-    """The line of the headings, or else of the first row."""
+    """The line number of the headings, or else of the first row."""
     dialect: Dialect = UNDECIDED
     around: bytes | None = None
-    """For JSON objects, the characters that may stand around each; None for cells."""
+    """The characters that may surround a JSON object; None for a table of cells."""
 
     def rows(self) -> list[Numbered]:
         """Return the first rows."""
         return [x for x in self.kept if has_row(x[1].strip(self.around))]
 
     def decided(self, columns: Iterable[int] | None = None) -> Dialect:
-        """Return the dialect with the decimal mark that the numbers of some columns have.
+        """Return the dialect with the decimal mark found in some columns (default: all).
 
-        Raises DataError for thousands separators, and for numbers that can be read in two ways.
+        Raises DataError for thousands separators, and for ambiguous numbers.
         """
         if self.dialect.decimal:
             return self.dialect
@@ -104,11 +104,11 @@ def read_head(
     known: Callable[[Sequence[str]], int],
     width: int | None = None,
 ) -> TableHead:
-    """Return the beginning of a table.
+    """Read the beginning of a table.
 
-    `known` counts the headings that are known, which tells them from titles.  `width` is the number
-    of columns if their names are given: the file needs no headings then, and those it has are left
-    out.  Raises DataError for a file that can be read with two delimiters.
+    `known` returns the number of known headings in a row, which distinguishes headings from titles.
+    `width` is the number of columns if their names are given; headings in the file are then
+    optional, and ignored.  Raises DataError for a file that can be read with two delimiters.
     """
     lines = NumberedLines(stream, name)
     kept = _sample(lines)
@@ -128,7 +128,7 @@ def read_head(
 def _head_of_cells(
     head: TableHead, known: Callable[[Sequence[str]], int], width: int | None
 ) -> TableHead:
-    """Return the beginning of a table of cells, of which the first lines have been read."""
+    """Return the beginning of a table of cells whose first lines have been read."""
     rows, asked, name = head.rows(), head.dialect, head.lines.name
     texts = [_decoded(x, name) for x in rows[:_MOST_TITLES]]
     for (number, _), text in zip(rows, texts, strict=False):
@@ -153,7 +153,7 @@ def _head_of_cells(
 
 
 def _sample(lines: NumberedLines) -> list[Numbered]:
-    """Return the first lines, with `SAMPLE_ROWS` rows if there are so many."""
+    """Return the first lines, with up to `SAMPLE_ROWS` rows."""
     kept, rows, size = [], 0, 0
     for number, line in lines:
         kept.append((number, line))
@@ -166,7 +166,7 @@ def _sample(lines: NumberedLines) -> list[Numbered]:
 def _without_preamble(
     kept: list[Numbered], name: str, asked: Dialect
 ) -> tuple[list[Numbered], Dialect]:
-    """Return the lines below Excel's `sep=;` or LabVIEW's header, and the dialect these give."""
+    """Return the lines below Excel's `sep=;` or LabVIEW's header, and the declared dialect."""
     first = _decoded(kept[0], name).strip()
     if found := re.fullmatch(r'"?sep=(.)"?', first):
         return kept[1:], asked._replace(delimiter=asked.delimiter or found[1])
@@ -182,9 +182,9 @@ def _without_preamble(
 def _find_headings(
     titles: Sequence[str], asked: Dialect, known: Callable[[Sequence[str]], int]
 ) -> tuple[int | None, list[str]]:
-    """Return which of the first rows has the headings, and the delimiters that it may have.
+    """Return the index of the row with the headings, or None, and its possible delimiters.
 
-    That is the row with most known headings among those without numbers, or else the last of them.
+    Among the first rows without numbers it is the one with most known headings, or else the last.
     """
     found, most = None, 0
     for i, text in enumerate(titles):
@@ -203,7 +203,7 @@ def _find_headings(
 
 
 def _delimiters_in(text: str, asked: Dialect) -> list[str]:
-    """Return the delimiters that a row may have: those in it, or white space."""
+    """Return the possible delimiters of a row: those in it, or white space."""
     bare = _ENCLOSED.sub("", text)
     return [asked.delimiter] if asked.delimiter else [x for x in _SEPARATORS if x in bare] or [" "]
 
@@ -213,16 +213,16 @@ def _has_number(text: str, asked: Dialect) -> bool:
 
 
 def _headings(text: str, delimiter: str) -> list[str]:
-    """Return the headings in a row; white space before a unit in brackets separates nothing."""
+    """Return the headings in a row; white space before a unit in brackets is not a delimiter."""
     if delimiter == " ":
         return [x.strip('"') for x in _HEADING.findall(text)]
     return [x.strip() for x in Dialect(delimiter).cells(text)]
 
 
 def _fitting(delimiters: Sequence[str], text: str, rows: Sequence[Numbered], where: str) -> str:
-    """Return the delimiter by which rows have as many cells as their headings.
+    """Return the delimiter that gives rows and headings the same number of cells.
 
-    Raises DataError if there are several.
+    Raises DataError if several delimiters do.
     """
     if len(delimiters) == 1:
         return delimiters[0]
@@ -238,13 +238,13 @@ def _fitting(delimiters: Sequence[str], text: str, rows: Sequence[Numbered], whe
 def _delimiter_of_rows(
     rows: Sequence[Numbered], name: str, asked: Dialect, width: int | None
 ) -> str:
-    """Return the delimiter of rows without headings, by which no cell has several numbers.
+    """Return the delimiter of rows without headings: no cell may then hold several numbers.
 
-    Raises DataError if there are several, or none.
+    Raises DataError if several delimiters fit, or none.
     """
     texts = [_decoded(row, name) for row in rows]
     possible = [x for text in texts if (x := _delimiters_of_row(text, asked, width))]
-    if width is not None and not possible:  # their reader will name the width
+    if width is not None and not possible:  # the reader of the rows reports the width
         return _delimiters_in(texts[0], asked)[0] if texts else " "
     common = set.intersection(*possible) if possible else {" "}
     if len(common) != 1:
@@ -253,7 +253,7 @@ def _delimiter_of_rows(
 
 
 def _delimiters_of_row(text: str, asked: Dialect, width: int | None) -> set[str]:
-    """Return the delimiters by which no cell of a row has several numbers, or a delimiter."""
+    """Return the delimiters with which no cell of a row holds several numbers or a delimiter."""
     present = [x for x in _SEPARATORS if x in text and x != asked.decimal]
     present += [] if "\t" in present else [" "]
     found = set()
@@ -278,7 +278,7 @@ def _two_delimiters(where: str, text: str) -> DataError:
 
 
 def _cells(row: Numbered, dialect: Dialect) -> list[str]:
-    """Return the cells of a row, none of one that cannot be read, which its reader will name."""
+    """Return the cells of a row; none if it cannot be read, which its reader reports later."""
     with suppress(LagtopError):
         return dialect.cells(decoded_row(row[1]))
     return []

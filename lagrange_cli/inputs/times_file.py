@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 
 
 class TimesFile(Points):
-    """The times of a file, which can be gone through once and need no memory."""
+    """The times of a file, which can be iterated once and are not held in memory."""
 
     count = 0
 
     def __init__(self, path: str, *, counted: bool = False, dialect: Dialect = UNDECIDED) -> None:
         """Open the file (standard input for `-`) and read its first block of lines.
 
-        If the times are to be `counted`, the file is read twice; otherwise their count is 0.
-        Raises DataError for a file that cannot be read and for a row without a time, here or
-        while the rest is read.
+        `counted` reads the file twice to count the times; otherwise their count is 0.  Raises
+        DataError for a file that cannot be read and for a row without a time, here or during
+        iteration.
         """
         if counted:
             self.count = sum(1 for _ in _read(path, dialect))
@@ -50,7 +50,7 @@ class TimesFile(Points):
         return self._times
 
     def bounds(self) -> list[float]:
-        """Return nothing: only the end of the file can tell."""
+        """Return an empty list: the bounds are not known before the end of the file."""
         return []
 
     def blocks(self) -> Iterator[Array]:
@@ -61,12 +61,12 @@ class TimesFile(Points):
             yield np.array(block)
 
     def listed(self, most: int | None = None) -> ListedPoints:
-        """Return the times as a list, of which no more than `most` are read."""
+        """Return at most `most` times as a list (default: all)."""
         return ListedPoints(list(islice(self._times, most)))
 
 
 def _read(path: str, dialect: Dialect) -> Iterator[Fraction]:
-    """Yield the times of a file, which stand in its column `t` or in its only column."""
+    """Yield the times of a file, from its column `t` or its only column."""
     name = shown_path(path)
     with reading(path) as file, decoded(file, name) as stream:
         head = read_head(stream, name, dialect, known_quantities)
@@ -106,7 +106,7 @@ def _reader(head: TableHead) -> Callable[[bytes], Fraction]:
 
 
 def _time_among(names: Sequence[str]) -> tuple[str, Fraction]:
-    """Return the name of the column of times, and the size of its unit."""
+    """Return the name of the column of times, and the size of its unit in seconds."""
     found = quantities_in(names)
     if "t" not in found:
         shown = shortened(", ".join(map(repr, names)))

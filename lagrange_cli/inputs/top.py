@@ -1,4 +1,4 @@
-"""One scene: the top, how it starts, and the guards on both."""
+"""The top: its body, its initial state, and the checks on both."""
 
 from __future__ import annotations
 
@@ -24,31 +24,31 @@ _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals,
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _DIGITS_SHOWN = own_context(50, [])
-"""A context of our own, so that no message depends on the one of the caller."""
+"""Decimal context of this module, so that messages do not depend on the caller's context."""
 
 
 class Top(Values):
-    """A heavy symmetric top with a fixed point, and its state at t = 0 (phi = psi = 0 there).
+    """A heavy symmetric top with a fixed point, and its state at t = 0, where phi = psi = 0.
 
-    Any consistent units will do; an input that is not given is that of the worked example of
-    Chrapan (1952), section 8, in CGS.  A MixedBodyWarning names such inputs where others of m, A,
-    C, s and g are given.  Each is a real number: int, float, Fraction, Decimal or a NumPy scalar,
-    taken exactly: one that is no double, such as Decimal("0.1"), is kept as a Fraction.
+    Use any consistent units.  Inputs you omit default to the worked example of Chrapan (1952),
+    section 8, in CGS.  A MixedBodyWarning names the defaults if you give only some of m, A, C, s
+    and g.  Each input is a real number: int, float, Fraction, Decimal or a NumPy scalar.  It is
+    taken exactly: a number that is not a double, such as Decimal("0.1"), is kept as a Fraction.
 
-    m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
-    A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
-    s, g        distance from the pivot to the centre of mass, and gravity, >= 0
-    r0          spin: the angular velocity about the figure axis, which is constant (any sign)
-    phidot0     in place of r0: the rate of the angle phi, r0 = phidot0 + psidot0 cos(theta0)
-    theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
-    theta0_rad  or the same in radians, 0 to pi; not both
-    thetadot0   nutation rate at t = 0
-    psidot0     precession rate at t = 0; "steady" or "steady-fast" is the exact rate of smaller or
-                larger size at which the tilt stays constant, for thetadot0 = 0
+        m, A, C     mass, equatorial and polar moment of inertia about the pivot, > 0; C <= 2A
+        A_cm        in place of A: that moment about the centre of mass, A = A_cm + m s^2
+        s, g        distance from the pivot to the centre of mass, and gravity, >= 0
+        r0          spin: the angular velocity about the figure axis, which is constant (any sign)
+        phidot0     in place of r0: the rate of the angle phi, r0 = phidot0 + psidot0 cos(theta0)
+        theta0_deg  tilt of the figure axis from the upward vertical, 0 to 180 degrees (default 30),
+        theta0_rad  or the same in radians, 0 to pi; not both
+        thetadot0   nutation rate at t = 0
+        psidot0     precession rate at t = 0; "steady" or "steady-fast" is the exact rate of
+                    smaller or larger size at which the tilt stays constant, for thetadot0 = 0
 
-    What A_cm and phidot0 stand for is a double, rounded once, unless a Fraction is among the inputs
-    it comes from.  Raises LagtopError for a body or a start that
-    cannot be.
+    A and r0 computed from A_cm and phidot0 are rounded once, to the nearest double.  They stay
+    exact if one of the inputs they depend on is a Fraction.  Raises LagtopError for a body or a
+    start that is impossible.
     """
 
     m: Number
@@ -106,14 +106,14 @@ class Top(Values):
             warn_of(missing, stacklevel=3)
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Top], tuple[dict[str, Any]]]:
-        """Return the inputs for copies and pickles, which go through the guards again."""
+        """Return the inputs for copies and pickles, which are checked again."""
         return _top_of, (self.as_dict(),)
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
 
-        A tilt in either unit takes the place of the one there is, A_cm that of A, phidot0 that of
-        r0.  Raises LagtopError.
+        A tilt in either unit replaces the present tilt, A_cm replaces A, and phidot0 replaces r0.
+        Raises LagtopError.
         """
         present = {name: value for name, value in self.as_dict().items() if value is not None}
         return type(self)(**overridden(present, changes))
@@ -137,7 +137,7 @@ class Top(Values):
         return ar.convert(_known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
 
     def texts(self) -> dict[str, str]:
-        """Return the inputs by key as decimals, which have all digits of a double."""
+        """Return the inputs by key as decimals with all digits of a double."""
         return {key: _shown(x) for key, x in self.as_dict().items() if x is not None}
 
     def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
@@ -162,7 +162,7 @@ class Top(Values):
 
     @property
     def pole(self) -> int:
-        """1 where the axis starts upright, -1 where it hangs, else 0."""
+        """1 if the axis starts upright, -1 if it hangs, else 0."""
         if self.theta0_deg == 0 or self.theta0_rad == 0:
             return 1
         return -1 if self.theta0_deg == 180 else 0
@@ -170,7 +170,7 @@ class Top(Values):
     def caveat(self) -> str | None:
         """Return a line on a body that can be computed but not built, or None.
 
-        A disc whose A is right but for its rounding can be built.
+        A disc passes if its A is correct to rounding.
         """
         offset = Fraction(self.m) * Fraction(self.s) ** 2
         limit, rounding = 2 * (Fraction(self.A) - offset), Fraction(self.A) * _EPS
@@ -180,10 +180,10 @@ class Top(Values):
             bound = f"C <= 2 (A - m s^2) = {float(limit)}, got {float(self.C)}"
         else:
             return None
-        return f"a rigid body with its mass centre at s has {bound}; computing all the same"
+        return f"a rigid body with its mass centre at s has {bound}; computing anyway"
 
     def options(self) -> str:
-        """Return the top as the options that give it to any command."""
+        """Return the top as command-line options."""
         words = [f"--{name} {getattr(self, name)!r}" for name in ("m", "A", "C", "s", "g", "r0")]
         if self.theta0_rad is None:
             words.append(f"--theta0 {self.theta0_deg!r}")
@@ -197,7 +197,7 @@ class Top(Values):
 
 
 INPUTS = (*Top.fields, "A_cm", "phidot0")
-"""The keys that a top can be given by: its own inputs, and those that stand for A and r0."""
+"""The keys of all inputs of a top: its fields, and the alternatives to A and r0."""
 
 
 def _top_of(inputs: dict[str, Any]) -> Top:
@@ -215,7 +215,7 @@ def _finite(name: str, value: Any) -> Number:
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) > _LARGEST:
         raise LagtopError(f"{name} must be within 1e100 in size, got {_shown(value)}", name)
     is_long = is_real(value) and getattr(getattr(value, "dtype", None), "itemsize", 0) > 8
-    if is_long and abs(value) > _LARGEST:  # NumPy would warn of what no double can hold
+    if is_long and abs(value) > _LARGEST:  # NumPy would warn of numbers beyond all doubles
         raise LagtopError(f"{name} must be within 1e100 in size, got {value!r}", name)
     try:
         if not is_real(value):
@@ -260,7 +260,7 @@ def _require(fine: bool, name: str, wanted: str, value: Number, remedy: str = ""
 
 
 def _shown(value: Number) -> str:
-    """Return a number as text, in so many digits that 180.00000000000000000001 is not 180."""
+    """Return a number as text, with enough digits to tell 180.00000000000000000001 from 180."""
     if isinstance(value, float) or (abs(value) <= _LARGEST and float(value) == value):
         return str(float(value))
     exact = Fraction(value)

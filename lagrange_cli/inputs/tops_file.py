@@ -1,7 +1,7 @@
 """Files of tops, one per row: a table with headings, or JSON objects.
 
-Lines are cut into blocks without being read closer, so that any machine can take any block; a line
-that cannot be read becomes an error of its own row and harms no other.
+Lines are split into blocks before they are parsed, so that any machine can process any block.  A
+line that cannot be read becomes an error of its own row and does not affect other rows.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from .top import INPUTS
 from .value import Value
 
 LARGEST_BLOCK = 1 << 27
-"""Bytes of lines that are kept at a time."""
+"""Most bytes of lines kept in memory at a time."""
 
 
 class TopRow(NamedTuple):
-    """One top: its line, what is carried through, and its inputs or what is wrong with them."""
+    """One top: its line number, its extra columns, and its inputs or an error message."""
 
     line: int
     carried: Sequence[Any]
@@ -39,19 +39,19 @@ class TopRow(NamedTuple):
     error: str | None = None
 
     def completed(self, shared: Mapping[str, float]) -> Mapping[str, float]:
-        """Return the inputs, with shared ones where the row has none.
+        """Return the inputs; `shared` inputs are the defaults.
 
-        Where there is an error these are the inputs that could be read.
+        If the row has an error, only the inputs that could be read are returned.
         """
         return self.inputs if self.error else overridden(shared, self.inputs)
 
 
 class Lines(NamedTuple):
-    """Lines of a file of tops that follow one another."""
+    """Consecutive lines of a file of tops."""
 
     file: TopsFile
     first: int
-    """The number of the first one in its file, from 1."""
+    """The number of the first line in its file, from 1."""
     texts: list[bytes]
 
     @property
@@ -66,7 +66,7 @@ class Lines(NamedTuple):
                 yield self.file.row(number, text)
 
     def arrays(self, shared: Mapping[str, float]) -> InputArrays:
-        """Return the inputs of the tops; `shared` ones stand where a row has none of its own."""
+        """Return the inputs of the tops; `shared` inputs are the defaults."""
         import numpy as np
 
         rows = list(self.rows())
@@ -81,33 +81,33 @@ class Lines(NamedTuple):
 
 
 class TopsFile(NamedTuple):
-    """The way to read the lines of a file, the same for all of its blocks."""
+    """The format of a file, the same for all of its blocks."""
 
     name: str
-    """What the file is called in messages."""
+    """The name of the file in messages."""
     columns: Sequence[str] | None
     """The header of a table; None for JSON lines."""
     carried: Sequence[str]
-    """The names that are carried through, in their order."""
+    """The extra columns, which are copied to the output, in their order."""
     computed: frozenset[str]
-    """Names that are neither read nor carried."""
+    """Names that are neither read nor copied."""
     named: Collection[str]
-    """The inputs that the rows have: by the header, or by the first JSON object with any."""
+    """The inputs in the header, or in the first JSON object with any."""
     units: Mapping[str, Value] = {}
-    """1 in each column of an input, in the unit of its heading."""
+    """The value 1 in the unit of its heading, for each column of an input."""
     factors: Mapping[str, Fraction] = {}
-    """What the numbers of a column are multiplied with, where its heading has a unit."""
+    """The conversion factor of each column whose heading has a unit."""
     dialect: Dialect = UNDECIDED
     around: bytes | None = None
-    """The characters that may stand around JSON objects."""
+    """The characters that may surround JSON objects; None for a table."""
 
     def among(
         self, inputs: Mapping[str, Any], scene: str | None, system: str | None
     ) -> tuple[Given, TopsFile]:
-        """Return what is given beside the file, and the way to read the file in the units of that.
+        """Return the inputs given in addition to the file, and its format in the same units.
 
-        Raises DataError for a heading that lacks a unit, LagtopError for JSON lines where other
-        inputs have units, and otherwise as `gather` does.
+        Raises DataError for a heading that lacks a unit, LagtopError for JSON lines if other inputs
+        have units, and the errors of `gather`.
         """
         try:
             found = gather(inputs, scene, system=system, varying=self.named, others=self.units)
@@ -120,7 +120,7 @@ class TopsFile(NamedTuple):
             return found, self._in_units(found)
         if found.system is not None:
             raise LagtopError(
-                f"{self.name}: JSON lines have no units: take CSV with headings such as m [g], or "
+                f"{self.name}: JSON lines have no units: use CSV with headings such as m [g], or "
                 "inputs without units"
             )
         return found, self
@@ -132,11 +132,11 @@ class TopsFile(NamedTuple):
         return self._replace(columns=[keys.get(x, x) for x in self.columns], factors=factors)
 
     def has_top(self, line: bytes) -> bool:
-        """Return whether a line holds a top, and is not blank, a comment or a bracket."""
+        """Return whether a line holds a top, not a blank, a comment or a bracket."""
         return has_row(line.strip(self.around))
 
     def row(self, number: int, raw: bytes) -> TopRow:
-        """Return the top of a line, or what is wrong with it."""
+        """Return the top of a line, or its error message."""
         carried: dict[str, Any] = {}
         inputs: dict[str, float] = {}
         error = None
@@ -203,11 +203,11 @@ def open_tops(
     stream: BufferedIOBase | None = None,
     dialect: Dialect = UNDECIDED,
 ) -> tuple[TopsFile, Iterator[Lines]]:
-    """Return the way to read a file (standard input for `-`), and its lines, `size` at a time.
+    """Return the format of a file (standard input for `-`), and its lines, `size` at a time.
 
-    Columns whose names are in `computed` are neither read nor carried through.  A `stream` that is
-    open already is read in place of the path.  Raises DataError for a file that cannot be read, for
-    one that has neither headings nor an object, and for a heading whose unit is wrong.
+    Columns named in `computed` are neither read nor copied.  An open `stream` is read in place of
+    the path.  Raises DataError for a file that cannot be read or has neither headings nor an
+    object, and for a wrong unit in a heading.
     """
     name = shown_path(path)
     with ExitStack() as stack:
@@ -224,7 +224,7 @@ def open_tops(
 
 
 def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:
-    """Return the way to read a table.  Raises DataError for bad headings."""
+    """Return the format of a table.  Raises DataError for bad headings."""
     name, first = head.lines.name, head.kept[0][1] if head.kept else b""
     headings = [column_of(x) for x in head.headings or [first.decode(errors="replace").strip()]]
     columns = [column for column, _ in headings]
@@ -239,7 +239,7 @@ def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:
 
 
 def _of_objects(head: TableHead, first: Iterable[Numbered], computed: Collection[str]) -> TopsFile:
-    """Return the way to read JSON objects, whose keys the first of them name."""
+    """Return the format of JSON objects, whose keys are taken from the first ones."""
     objects = [raw.strip(head.around) for _, raw in first]
     carried = [x for x in _names(objects) if x not in computed]
     named = _named(objects)
@@ -248,7 +248,7 @@ def _of_objects(head: TableHead, first: Iterable[Numbered], computed: Collection
 
 
 def _known_inputs(names: Sequence[str]) -> int:
-    """Return how many inputs some headings name."""
+    """Return the number of inputs that some headings name."""
     return sum(column_of(name)[0] in {*INPUTS, TILT} for name in names)
 
 
@@ -263,7 +263,7 @@ def _blocks(file: TopsFile, lines: Iterator[tuple[int, bytes]], size: int) -> It
 
 
 def _some(name: str, lines: Iterable[tuple[int, bytes]], size: int) -> Iterator[tuple[int, bytes]]:
-    """Yield the next lines.  Raises DataError if all of them are too long to be kept."""
+    """Yield the next lines.  Raises DataError if together they are too long to keep."""
     left = LARGEST_BLOCK
     for number, raw in islice(lines, size):
         left -= len(raw)
@@ -274,7 +274,7 @@ def _some(name: str, lines: Iterable[tuple[int, bytes]], size: int) -> Iterator[
 
 
 def _names(lines: Iterable[bytes]) -> list[str]:
-    """Return the keys of JSON lines that name no input, in the order in which they come."""
+    """Return the keys of JSON lines that name no input, in order of appearance."""
     names: dict[str, None] = {}
     for raw in lines:
         with suppress(LagtopError):  # which the row will name
@@ -283,7 +283,7 @@ def _names(lines: Iterable[bytes]) -> list[str]:
 
 
 def _named(lines: Iterable[bytes]) -> set[str]:
-    """Return the inputs of the first JSON object that has some of a body, not all, or any."""
+    """Return the inputs of the first JSON object with an incomplete body, or with any input."""
     named: set[str] = set()
     for raw in lines:
         with suppress(LagtopError):  # which the row will name

@@ -1,7 +1,7 @@
 """Trajectories from files or from standard input, a block of rows at a time.
 
-What a file is its first bytes tell, and not its name: Parquet, npy, npz, JSON lines, or else text
-with a row per line.
+The first bytes of a file determine its format, not its name: Parquet, npy, npz, JSON lines, or else
+text with a row per line.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _MAGIC = {b"PAR1": "parquet", b"\x93NUM": "npy", b"PK\x03\x04": "npz", b"PK\x05\
 
 
 class Trajectory:
-    """A trajectory that has been opened: its quantities, and its rows."""
+    """An open trajectory: its quantities and its rows."""
 
     def __init__(self, path: str, table: Table, columns: Sequence[str] | None) -> None:
-        """Find the quantities.  Raises DataError where there is no time, or nothing else."""
+        """Find the quantities.  Raises DataError without a time, or with nothing but times."""
         self.name, self._table = shown_path(path), table
         self.description = table.description
         self.names = self._column_names(columns)
@@ -47,12 +47,13 @@ class Trajectory:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
             raise DataError(
-                f"{self.name} must have columns among {wanted}, got {shown}: name them by --columns"
+                f"{self.name} must have columns among {wanted}, got {shown}: "
+                "name them with --columns"
             )
         if twice := named_twice(self.names, self.quantities):
             raise DataError(
                 f"{self.name} must name each quantity once, got {twice[0]!r} and {twice[1]!r}: "
-                "name the columns by --columns, with _ for one of them"
+                "name the columns with --columns, and one of them _"
             )
         try:
             self.quantities, self._factors = _in_known_units(self.quantities, self.names)
@@ -70,13 +71,13 @@ class Trajectory:
             return list(columns)
         if self._table.names is None:
             raise DataError(
-                f"{self.name} has no header: name its {self._table.width} columns by --columns, "
+                f"{self.name} has no header: name its {self._table.width} columns with --columns, "
                 "such as t,quaternion"
             )
         return list(self._table.names)
 
     def add(self, key: str, column: str) -> None:
-        """Read one more column, as a quantity with this key."""
+        """Read one more column, as a quantity named `key`."""
         self.quantities[key] = Found([self.names.index(column)], "", None)
 
     def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
@@ -91,15 +92,15 @@ class Trajectory:
         return known
 
     def add_words(self, key: str, column: str) -> Words:
-        """Read one more column, of words, whose numbers the words that are returned explain."""
+        """Read one more column, of words, as numbers; the returned `Words` map them back."""
         self.add(key, column)
         return self._table.words_of(self.names.index(column))
 
     def blocks(self, *, repeats: bool = False) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
         """Yield the quantities, once, as arrays of shape (rows, parts), and the places of rows.
 
-        Raises DataError for what is no number, for a time that is missing or turns back, and unless
-        it may, for one that repeats.
+        Raises DataError for a cell that is not a number, and for a time that is missing or turns
+        back.  A repeated time is an error too, unless `repeats` is true.
         """
         clock = Clock(self, repeats=repeats)
         for found, places in self.rows():
@@ -107,9 +108,7 @@ class Trajectory:
             yield found, places
 
     def rows(self) -> Iterator[tuple[dict[str, Array], Sequence[int]]]:
-        """Yield the same, whatever the times: those of several clocks, say, each of which a `Clock`
-        may watch.
-        """
+        """Yield blocks without checking the times (for files that hold several recordings)."""
         wanted = sorted(i for found in self.quantities.values() for i in found.columns)
         at = {
             key: [wanted.index(i) for i in found.columns] for key, found in self.quantities.items()
@@ -130,9 +129,9 @@ class Trajectory:
 def _in_known_units(
     found: Mapping[str, Found], names: Sequence[str]
 ) -> tuple[dict[str, Found], dict[str, Fraction]]:
-    """Return quantities in radians, degrees or no unit, and the factors that bring them there.
+    """Return quantities in radians, degrees or no unit, and the factors that convert them.
 
-    Times are in seconds then, and rates in radians per second.  Raises LagtopError for a unit that
+    Times are then in seconds, and rates in radians per second.  Raises LagtopError for a unit that
     a quantity cannot have, and for parts in different units.
     """
     plain, factors = dict(found), {}
@@ -149,7 +148,7 @@ def _in_known_units(
 
 
 class Clock:
-    """The times of a trajectory, which go on in one direction and may or may not repeat."""
+    """The check that times proceed in one direction, with or without repetitions."""
 
     def __init__(self, trajectory: Trajectory, *, repeats: bool) -> None:
         self.trajectory, self.repeats, self.direction = trajectory, repeats, 0.0
@@ -186,8 +185,8 @@ def open_trajectory(
 ) -> Iterator[Trajectory]:
     """Open the trajectory of a file, or of standard input for `-`.
 
-    `columns` name all columns from the left, whatever the file says.  Raises DataError for a file
-    that cannot be read or holds no trajectory.
+    `columns` names all columns from the left and overrides the names in the file.  Raises DataError
+    for a file that cannot be read or holds no trajectory.
     """
     names, name = None if columns is None else expanded(columns), shown_path(path)
     with reading(path) as file, decoded(file, name) as stream:
@@ -205,7 +204,7 @@ def open_trajectory(
 
 @contextmanager
 def _seekable(stream: BufferedReader, kind: str | None) -> Iterator[BinaryIO]:
-    """Yield a stream, or a file with its content if it only goes forward and is no text."""
+    """Yield a seekable stream: a forward-only stream of a binary format is copied to a file."""
     if kind is None or stream.seekable():
         yield stream
         return

@@ -1,8 +1,8 @@
 """Trajectories as arrays: npy, npz and Parquet.
 
-Rows are read as they are needed, so that memory does not grow with their number.  Sizes that a file
-declares are limited before anything of that size is made, and whatever a library raises for a
-broken file is a DataError.  Streams must be seekable.
+Rows are read as they are needed, so that memory does not grow with their number.  Sizes declared in
+a file are checked before memory is allocated.  Any exception of a library for a broken file becomes
+a DataError.  Streams must be seekable.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 ROWS_AT_ONCE = 1 << 15
 NUMBERS_AT_ONCE = 1 << 21
 LARGEST_ROW = 1 << 20
-"""Bytes of a row, as of a line of text."""
+"""Most bytes of a row, as for a line of text."""
 LARGEST_WHOLE = 1 << 28
-"""Bytes of an array in Fortran order that is no file of its own: it is read whole."""
+"""Most bytes of an array in Fortran order inside an npz file, which is read whole."""
 MOST_ARRAYS = 1000
-"""Arrays in an npz file."""
+"""Most arrays in an npz file."""
 
 
 class _Numbers:
-    """A table that holds nothing but numbers."""
+    """A table that holds only numbers."""
 
     place = "row"
     description: Description = MappingProxyType({})
@@ -48,11 +48,11 @@ class _Numbers:
         self.name, self.form, self.names, self.width = name, form, names, width
 
     def words_of(self, column: int) -> Words:
-        """Return the texts of its numbers."""
+        """Return the numbers of the column as texts."""
         return PlainNumbers()
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns of the rows; null is NaN."""
+        """Yield some columns of the rows; null becomes NaN."""
         tables, first = self._tables(min(ROWS_AT_ONCE, 1 + NUMBERS_AT_ONCE // (1 + self.width))), 1
         while True:
             with _sound(self.name, self.form):
@@ -63,27 +63,27 @@ class _Numbers:
             first += len(table)
 
     def _tables(self, most: int) -> Iterator[Array]:
-        """Yield the next rows, at most so many, with all columns."""
+        """Yield blocks of at most `most` rows with all columns."""
         raise NotImplementedError
 
 
 @contextmanager
 def _sound(name: str, form: str) -> Iterator[None]:
-    """Raise DataError for whatever a library raises when it reads a broken file."""
+    """Turn any exception of a library that reads a broken file into a DataError."""
     try:
         yield
     except LagtopError:
         raise
-    except Exception as error:  # of any kind: none of the libraries has a list
+    except Exception as error:  # no library lists its exceptions
         why = " ".join(str(error).split())[:100] or type(error).__name__
         raise DataError(f"{name}: not {form} file: {why}") from None
 
 
 class NpyStream:
-    """An array of an npy file whose rows are read one after the other."""
+    """An array of an npy file, read row by row."""
 
     def __init__(self, stream: BinaryIO, name: str) -> None:
-        """Read the header.  Raises DataError for what is no table of real numbers."""
+        """Read the header.  Raises DataError for anything but a table of real numbers."""
         self.stream, self.name = stream, name
         header = {
             (1, 0): np.lib.format.read_array_header_1_0,
@@ -105,7 +105,7 @@ class NpyStream:
         self._whole = self._in_columns() if fortran and self.shape[1:] else None
 
     def rows(self, most: int) -> Array:
-        """Return the next rows, at most so many, as columns of float64."""
+        """Return the next rows, at most `most`, as columns of float64."""
         count, start = min(most, self.left), self.shape[0] - self.left
         self.left -= count
         if self._whole is None:
@@ -131,8 +131,8 @@ class NpyStream:
         except UnsupportedOperation:  # a member of an npz file
             if self.left * self._row_bytes > LARGEST_WHOLE:
                 raise DataError(
-                    f"{self.name}: in Fortran order an array of an npz file must have at most "
-                    f"{LARGEST_WHOLE} bytes (numpy.ascontiguousarray brings it into the other)"
+                    f"{self.name}: an array in Fortran order in an npz file must have at most "
+                    f"{LARGEST_WHOLE} bytes (convert it with numpy.ascontiguousarray)"
                 ) from None
             return self._read(self.left).reshape(self.shape, order="F")
         self._check_size(size, self.left)
@@ -141,10 +141,10 @@ class NpyStream:
 
     def _check_size(self, size: int, rows: int) -> None:
         if size < rows * self._row_bytes:
-            raise DataError(f"{self.name} must hold {self.shape[0]} rows, but ends before")
+            raise DataError(f"{self.name} must hold {self.shape[0]} rows, but ends early")
 
     def names(self) -> list[str] | None:
-        """Return the names of the columns of a structured array; others have none."""
+        """Return the names of the columns of a structured array; None for other arrays."""
         if not self._fields:
             return None
         sizes = ((name, math.prod(x.shape) if x.shape else 0) for name, x in self._fields)
@@ -152,7 +152,7 @@ class NpyStream:
 
 
 class ArrayTable(_Numbers):
-    """Arrays side by side, each with some of the columns."""
+    """Arrays side by side; each holds some of the columns."""
 
     arrays: Sequence[NpyStream]
 
@@ -162,7 +162,7 @@ class ArrayTable(_Numbers):
 
 
 def read_npy(stream: BinaryIO, name: str) -> ArrayTable:
-    """Return the rows of an npy file: a structured array, or one of two dimensions."""
+    """Return the rows of an npy file: a structured or a two-dimensional array."""
     form = "an npy"
     with _sound(name, form):
         array = NpyStream(stream, name)
@@ -174,7 +174,7 @@ def read_npy(stream: BinaryIO, name: str) -> ArrayTable:
 
 
 def read_npz(stream: BinaryIO, name: str) -> ArrayTable:
-    """Return the rows of an npz file, of all its arrays that are as long as that of the time."""
+    """Return the rows of an npz file, from all arrays that are as long as the array of times."""
     form = "an npz"
     with _sound(name, form):
         arrays = _arrays(stream, name)
@@ -194,7 +194,7 @@ def read_npz(stream: BinaryIO, name: str) -> ArrayTable:
 
 
 def _arrays(stream: BinaryIO, name: str) -> dict[str, NpyStream]:
-    """Return the arrays of an npz file, by their keys."""
+    """Return the arrays of an npz file by key."""
     from zipfile import ZipFile
 
     archive = ZipFile(stream)
@@ -244,7 +244,7 @@ def _is_numeric(kind: Any) -> bool:
 
 
 def _column(array: Any) -> Array:
-    """Return the numbers of a column, of lists too; what is null is NaN."""
+    """Return the numbers of a column, or of a column of lists; null becomes NaN."""
     size = getattr(array.type, "list_size", 1)
     flat = array.values.slice(array.offset * size, len(array) * size) if size > 1 else array
     numbers = flat.to_numpy(zero_copy_only=False).astype(np.float64).reshape(len(array), -1)

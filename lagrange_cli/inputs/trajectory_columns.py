@@ -1,7 +1,7 @@
-"""The columns of a trajectory by their names: which quantities they are, and what names say.
+"""The columns of a trajectory by name: their quantities, and the conventions that names imply.
 
-Another name, or another quantity, is an entry of QUANTITIES; the help of `lagtop compare` and the
-table in the README of the room `judge` are made from it.
+To add a name or a quantity, add an entry to QUANTITIES.  The help of `lagtop compare` and the table
+in the README of `judge` are generated from it.
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ from .headings import name_and_unit
 from .names import suggestion
 
 ELEVATION = "elevation"
-"""The convention of an angle that counts from the horizontal."""
+"""The convention of an angle measured from the horizontal."""
 SKIPPED = "_"
-"""The name of a column that is left out."""
+"""The name of an ignored column."""
 
 
 class Spelling(NamedTuple):
-    """Plain names that the parts of a quantity may have."""
+    """Plain names of the parts of a quantity, in one spelling."""
 
     names: Sequence[str]
     says: str = ""
-    """A convention that goes with the names, such as the order of a quaternion."""
+    """A convention that the names imply, such as the order of a quaternion."""
 
 
 class Quantity(NamedTuple):
-    """What columns of a trajectory may hold."""
+    """A quantity that columns of a trajectory may hold."""
 
     meaning: str
     shown: str
-    """Names as examples, for people."""
+    """Examples of names, for help texts."""
     spellings: Sequence[Spelling]
 
     @property
@@ -47,14 +47,14 @@ class Found(NamedTuple):
     """A quantity that was found in a trajectory."""
 
     columns: Sequence[int]
-    """Where its parts are."""
+    """The indices of the columns of its parts."""
     says: str
     unit: str | None
-    """The unit that its headings have."""
+    """The unit in its headings."""
 
 
 def _spelt(prefixes: str, parts: str, says: str = "") -> list[Spelling]:
-    """Return a spelling for each prefix before every part; `-` stands for nothing."""
+    """Return one spelling for each prefix, joined to every part; `-` means an empty text."""
     return [
         Spelling([f"{prefix}{part}".replace("-", "") for part in parts.split()], says)
         for prefix in prefixes.split()
@@ -151,7 +151,7 @@ QUANTITIES: dict[str, Quantity] = {
         ],
     ),
 }
-"""The quantities by name, in the order in which an attitude is taken from them."""
+"""The quantities by name, in the order of preference for the attitude."""
 
 _BY_PLAIN_NAME = {name.replace("_", ""): quantity for name, quantity in QUANTITIES.items()}
 
@@ -163,11 +163,11 @@ _EXUDYN = {
     "Position": ["t", "position"],
     "Displacement": ["t", "position"],
 }
-"""The columns of a sensor file of EXUDYN by the kind of output that its comments name."""
+"""The columns of an EXUDYN sensor file by the kind of output in its comments."""
 
 
 def quantities_in(names: Sequence[str]) -> dict[str, Found]:
-    """Return the quantities of some columns; a column belongs to the first one that claims it."""
+    """Return the quantities of some columns; a column belongs to the first quantity that fits."""
     words: dict[str, int] = {}
     for i, name in enumerate(names):
         words.setdefault(plain_name(name)[0], i)
@@ -183,7 +183,7 @@ def quantities_in(names: Sequence[str]) -> dict[str, Found]:
 
 
 def known_quantities(names: Sequence[str]) -> int:
-    """Return how many quantities some headings name; 0 if the time is not among them."""
+    """Return the number of quantities that some headings name; 0 without a time."""
     found = quantities_in(names)
     return len(found) if "t" in found else 0
 
@@ -194,7 +194,7 @@ def numeric_columns(names: Sequence[str]) -> list[int]:
 
 
 def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, str] | None:
-    """Return two names of the same part of a quantity that was found, if there are any."""
+    """Return two names of the same part of a quantity, or None."""
     for i in (i for quantity in found.values() for i in quantity.columns):
         for other in range(i + 1, len(names)):
             if plain_name(names[other])[0] == plain_name(names[i])[0]:
@@ -203,10 +203,10 @@ def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, 
 
 
 def plain_name(name: str) -> tuple[str, str | None]:
-    """Return a name in small letters and digits only, and its unit.
+    """Return a name in lower-case letters and digits only, and its unit.
 
-    An angle may have its unit at the end of its name, as in `theta_deg`.  Of the path of a message
-    in ROS the last two parts count, as in `/imu/orientation/x`.
+    The name of an angle may end in its unit, as in `theta_deg`.  Only the last two parts of the
+    path of a ROS message count, as in `/imu/orientation/x`.
     """
     text, unit = name_and_unit(name)
     text = text.lower()
@@ -219,9 +219,9 @@ def plain_name(name: str) -> tuple[str, str | None]:
 
 
 def expanded(names: Sequence[str]) -> list[str]:
-    """Return the names of columns one by one: `quaternion` stands for quaternion_0 and so on.
+    """Return the names of columns, groups expanded: `quaternion` becomes quaternion_0 and so on.
 
-    Raises LagtopError for a name that is not known.
+    Raises LagtopError for an unknown name.
     """
     single: list[str] = []
     for name in names:
@@ -244,7 +244,7 @@ def expanded(names: Sequence[str]) -> list[str]:
 
 
 def names_in_comments(comments: Sequence[str], cells: int) -> list[str] | None:
-    """Return the names of so many columns from the comments above them, if these give any."""
+    """Return the names of `cells` columns from the comments above them, or None."""
     for comment in reversed(comments):
         if kind := re.fullmatch(r"OutputVariableType\s*=\s*(\w+)", comment):
             names = _EXUDYN.get(kind[1])

@@ -1,7 +1,7 @@
 """Trajectories as text: a row per line, or JSON lines.
 
-A block of lines goes through NumPy's parser.  If this refuses it, the lines are read one by one:
-empty cells are NaN, and what is no number is named by its line and column.
+NumPy parses a block of lines at once.  If that fails, the lines are read one by one.  Empty cells
+then become NaN, and errors name the line and column of a bad cell.
 """
 
 from __future__ import annotations
@@ -34,47 +34,47 @@ if TYPE_CHECKING:
 
 
 class Block(NamedTuple):
-    """Rows that follow one another, and where they stand."""
+    """Consecutive rows and their places in the file."""
 
     values: Array
-    """A row for each row, a column for each one that was asked for; NaN for an empty cell."""
+    """Array of shape (rows, requested columns); NaN for an empty cell."""
     places: Sequence[int]
-    """The number of the line, or of the row where there are no lines, from 1."""
+    """The numbers of the lines, or of the rows in a file without lines, from 1."""
 
 
 class Words:
-    """The words of a column, each with a number in the order in which they come."""
+    """The words of a column, numbered in order of appearance."""
 
     def __init__(self) -> None:
         self._numbers: dict[str, float] = {}
 
     def number(self, word: str) -> float:
-        """Return the number that stands for a word, whose quotes and blanks do not count."""
+        """Return the number of a word; quotes and blanks around it are ignored."""
         return self._numbers.setdefault(word.strip().strip('"'), float(len(self._numbers)))
 
     def word(self, number: float) -> str:
-        """Return the word that a number stands for."""
+        """Return the word with a number."""
         return list(self._numbers)[int(number)]
 
 
 class PlainNumbers(Words):
-    """The words of a column that holds numbers only: their texts."""
+    """The numbers of a column, as words."""
 
     def number(self, word: str) -> float:
         """Return the number itself."""
         return float(word)
 
     def word(self, number: float) -> str:
-        """Return the number as text, without a fraction where it has none."""
+        """Return the number as text, without a fraction if it is whole."""
         return f"{number:.17g}"
 
 
 class Table(Protocol):
-    """Rows of numbers, in whatever form they are stored."""
+    """Rows of numbers, in any file format."""
 
     @property
     def place(self) -> str:
-        """What is counted by the places of a block: `line` or `row`."""
+        """The unit of the places of a block: `line` or `row`."""
 
     @property
     def width(self) -> int:
@@ -82,23 +82,23 @@ class Table(Protocol):
 
     @property
     def description(self) -> Description:
-        """What the file says of its numbers; empty if it has no description."""
+        """The description in the file; empty if it has none."""
 
     @property
     def names(self) -> Sequence[str] | None:
-        """The names of the columns, if they have any."""
+        """The names of the columns, or None."""
 
     def blocks(self, columns: Sequence[int], names: Sequence[str]) -> Iterator[Block]:
-        """Yield some columns, once, a block of rows at a time; names are for errors."""
+        """Yield some columns, once, a block of rows at a time; `names` are used in errors."""
 
     def words_of(self, column: int) -> Words:
-        """Return the words of a column, which from now on stand for numbers in it."""
+        """Return the words of a column, which is read as their numbers from now on."""
 
 
 def read_text(stream: BinaryIO, name: str, dialect: Dialect, width: int | None) -> Table:
-    """Return the rows of a text, whose `width` columns may have been named.
+    """Return the rows of a text; `width` is the number of columns if their names are given.
 
-    Raises DataError if there are none.
+    Raises DataError if there are no rows.
     """
     head = read_head(stream, name, dialect, known_quantities, width)
     if not head.kept and head.headings is None:
@@ -158,7 +158,7 @@ class TextTable:
         text = b"\n".join(texts)
         swaps = self._dialect.decimal == ","
         is_plain = text.isascii() and b'"' not in text and b"\0" not in text
-        if is_plain and not (swaps and self._words):  # others are left to `_row`
+        if is_plain and not (swaps and self._words):  # `_row` reads all others
             delimiter = None if self._dialect.delimiter == " " else self._dialect.delimiter
             if swaps:
                 texts = text.translate(SWAP).split(b"\n")
@@ -198,7 +198,7 @@ class TextTable:
 
 
 class JsonTable:
-    """JSON lines, an object per row; an array with an object per line is read as well."""
+    """JSON lines, an object per row; an array with one object per line is accepted too."""
 
     place = "line"
 
@@ -236,7 +236,7 @@ class JsonTable:
                 yield Block(values[:, columns], [i for i, _ in block])
 
     def words_of(self, column: int) -> Words:
-        """Return the words of a column, or the texts of its numbers."""
+        """Return the words of a column, or its numbers as texts."""
         name = self.names[column]
         return self._words.setdefault(name, Words()) if name in self._texts else PlainNumbers()
 
@@ -265,7 +265,7 @@ class JsonTable:
 
 
 def _check_once(line: bytes, name: str) -> None:
-    """Raise DataError for an object that has a key twice, of which a reader sees the last alone."""
+    """Raise DataError for an object with a repeated key, of which a parser keeps only the last."""
     import json
 
     counts = Counter(key for key, _ in json.loads(line, object_pairs_hook=list))
@@ -281,5 +281,5 @@ def _are_real(values: Sequence[Any]) -> bool:
 
 
 def parts(name: str, size: int) -> list[str]:
-    """Return the names of the columns of an entry of so many numbers; a size of 0 is one number."""
+    """Return the names of the columns of an entry with `size` numbers; 0 means a single number."""
     return [f"{name}_{i}" for i in range(size)] if size else [name]

@@ -1,4 +1,4 @@
-"""Units of inputs: the dimensions that each has, and the system that all of them are put in."""
+"""Units of inputs: their dimensions, and conversion to one system of units."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ DIMENSIONS = {name: _KINDS[unit][0] for name, unit in _UNIT_OF.items()}
 
 _NAME = r"(?:[^\W\d]\w*|°)(?:\s*(?:\*\*|\^)\s*-?\d(?!\d))?"
 _GRAMMAR = re.compile(rf"(?:1?\s*/\s*)?{_NAME}(?:\s*[*·/ ]\s*{_NAME})*")
-"""Names of units with powers of one figure, times or over one another: others never reach pint."""
+"""Products and quotients of named units with one-digit powers; pint sees no other text."""
 _MOST_CHARACTERS = 60
 _RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _HERTZ = "turns or radians per second? write rpm, turn/s or rad/s"
@@ -53,7 +53,7 @@ _FIGURES = {figure: raised for raised, figure in _RAISED.items()}
 
 
 class System(Values):
-    """A system of units, its mass and length in grams and metres; its time is the second."""
+    """A system of units; mass and length are in grams and metres, and time is in seconds."""
 
     mass: str
     length: str
@@ -61,11 +61,11 @@ class System(Values):
     metres: Fraction
 
     def factor(self, dimensions: tuple[int, int, int]) -> Fraction:
-        """Return the unit of these dimensions in those of pint: grams, metres and seconds."""
+        """Return the size of the unit of these dimensions in grams, metres and seconds."""
         return self.grams ** dimensions[0] * self.metres ** dimensions[1]
 
     def worked_example(self) -> dict[str, Number]:
-        """Return the body of the worked example, which is in CGS, in these units."""
+        """Return the body of the worked example (CGS) in these units."""
         return {
             key: Fraction(value) * CGS.factor(DIMENSIONS[key]) / self.factor(DIMENSIONS[key])
             for key, value in BODY.items()
@@ -89,7 +89,7 @@ class System(Values):
         return f"{above or 1}/({below})" if " " in below else f"{above or 1}/{below}"
 
     def in_words(self, remark: str) -> str:
-        """Return a remark with the second after numbers and strokes."""
+        """Return a remark with `time` replaced by the second."""
         return re.sub(r"(?<=\d )time\b|(?<=/)time\b", "s", remark)
 
 
@@ -104,24 +104,24 @@ SYSTEMS = {"si": System("kg", "m", Fraction(1000), Fraction(1)), "cgs": CGS}
 
 
 def system_of(inputs: Mapping[str, Value], name: str | None) -> System | None:
-    """Return the system for inputs in units or without; None where nothing but a tilt has a unit.
+    """Return the system of units of some inputs; None if only a tilt has a unit.
 
-    A 0 and a time need none.  Raises LagtopError for an input without a unit where others have one,
-    or where a system is asked for.
+    A zero and a time need no unit.  Raises LagtopError for an input without a unit if others have
+    one, or if a system is requested.
     """
     bare = [x for x in inputs if needs_unit(x, inputs[x])]
     united = [x for x in inputs if inputs[x].unit and x != TILT]
     if bare and (united or name is not None):
-        why = f"as {united[0]} has" if united else "where a time or the output has one"
+        why = f"as {united[0]} has" if united else "as a time or the output has"
         number, example = inputs[bare[0]].number, _KINDS[_UNIT_OF[bare[0]]][1]
-        if isinstance(number, Fraction) and number != 1:  # a heading of a file stands for 1
+        if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
             example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
         raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
     return SYSTEMS[name or "si"] if united or name else None
 
 
 def converted(inputs: Mapping[str, Value], system: System | None) -> dict[str, Value]:
-    """Return inputs in a system; a tilt with a unit is in degrees or in radians.
+    """Return inputs converted to a system; a tilt with a unit becomes degrees or radians.
 
     Raises LagtopError for a unit of other dimensions.
     """
@@ -139,7 +139,7 @@ def converted(inputs: Mapping[str, Value], system: System | None) -> dict[str, V
 
 
 def needs_unit(key: str, value: Value) -> bool:
-    """Return whether an input is a number without a unit that would need one."""
+    """Return whether an input needs a unit but has none."""
     if DIMENSIONS.get(key, TIME) == TIME or value.unit or key == TILT:
         return False
     number = value.number
@@ -156,7 +156,7 @@ def factor_of(key: str, value: Value) -> Fraction:
 
 
 def _tilt(value: Value) -> tuple[str, Fraction]:
-    """Return the key of a tilt, in degrees or in radians, whichever is exact, and the factor."""
+    """Return the key of a tilt, in degrees or radians, whichever is exact, and the factor."""
     unit = _unit_in(TILT, value)
     if unit.dimensions != DIMENSIONS[TILT] or not unit.angular:
         raise _refused(TILT, value)
@@ -199,11 +199,11 @@ class Unit(NamedTuple):
     angles: int
     """The power of plane angles."""
     of_times: bool = False
-    """Whether it is a product of units of time alone."""
+    """Whether the unit is a product of units of time alone."""
 
     @property
     def angular(self) -> bool:
-        """Whether a plane angle is in the unit, or nothing but times, which goes for a rate too."""
+        """Whether the unit contains a plane angle, or only times, which serves as a rate too."""
         return self.angles == 1 or (self.of_times and self.dimensions == RATE)
 
     @property
@@ -213,7 +213,7 @@ class Unit(NamedTuple):
 
 
 class UnknownUnitError(Exception):
-    """A unit that pint does not know, or that is none of mechanics."""
+    """A unit that pint does not know, or that does not belong to mechanics."""
 
 
 def _units(dimensions: Dimensions, sizes: str, pi: int = 0, angles: int = 0) -> dict[str, Unit]:
@@ -233,14 +233,14 @@ UNITS = {
     **_units((0, 0, 0), "deg=1/180 \u00b0=1/180 arcmin=1/10800 turn=2 rev=2", pi=1, angles=1),
     **_units(RATE, "rpm=1/30", pi=1, angles=1),
 }
-"""The common units; their sizes are those of pint."""
+"""The common units, with the same sizes as in pint."""
 _FACTOR = re.compile(r"([*\u00b7/\s]*)(1|[^\W\d]\w*|\u00b0)(?:\s*(?:\*\*|\^)\s*(-?\d))?")
 
 
 def unit_of_text(text: str) -> Unit:
-    """Return what a unit is.
+    """Return the unit that a text names.
 
-    Raises UnknownUnitError, and ImportError without pint for one that is not common.
+    Raises UnknownUnitError, and ImportError for an uncommon unit if pint is not installed.
     """
     common = _common_unit(text)
     return common if common and common.angles in {0, 1} else unit_by_pint(text)
@@ -267,12 +267,12 @@ def _common_unit(text: str) -> Unit | None:
 
 @lru_cache(maxsize=256)
 def unit_by_pint(text: str) -> Unit:
-    """Return what a unit is by pint, whose constants are exact, but for pi."""
+    """Look up a unit in pint, whose constants are exact except pi."""
     registry = _registry()
     try:
         unit = registry.Quantity(Fraction(1), registry.parse_units(text))
         root = unit.to_root_units()
-    except Exception as error:  # pint raises errors of many kinds, those of the language among them
+    except Exception as error:  # pint raises errors of many kinds, built-in ones among them
         raise UnknownUnitError("no such unit") from error
     powers = dict(root.unit_items())
     angles = powers.pop("radian", 0)

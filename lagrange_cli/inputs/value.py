@@ -1,4 +1,4 @@
-"""An input as people write it: a number, its standard uncertainty and its unit.
+"""Input values as users write them: a number, its standard uncertainty and its unit.
 
 `1587(2)`, `1587+/-2`, `1587+-2`, `1587±2` and `1587 +/- 0.1 %` are uncertain numbers.
 """
@@ -15,9 +15,9 @@ from ..arithmetic.values import Values
 from ..errors import LagtopError
 
 _UNIT = r"(?s)(?:(?:(?<=\s)1\s*)?/\s*)?(?![eE][+-]?\d)(?:[^\W\d_]|°).*"
-"""From the first letter on that begins no exponent; `1/` or `/` before it belongs to the unit."""
+"""Pattern of a unit: any text from its first letter, which begins no exponent; `1/` may precede."""
 _LOG = "log:"
-"""How a range with equal ratios begins."""
+"""Prefix of a range with equal ratios."""
 _DECIMAL = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _PLUS_MINUS = rf"(?P<number>{_DECIMAL})\s*(?:\+/?-|±)\s*(?P<std>{_DECIMAL})\s*(?P<percent>%?)"
 _FORMS = (
@@ -28,21 +28,20 @@ _FORMS = (
 
 
 STEADY_WORDS = ("steady", "steady-fast")
-"""Words in place of a precession rate: the rate of steady precession of smaller or larger size."""
+"""Words accepted as a precession rate: the steady rate of smaller or of larger size."""
 
 
 class Value(Values):
-    """An input as it was given; nothing is converted yet."""
+    """An input as it was given, without any conversion."""
 
     number: Any
-    """A real number or one of `STEADY_WORDS`; in a sweep the `Points` of an input, in a search its
-    `Span`."""
+    """A real number or one of `STEADY_WORDS`; the `Points` of a sweep or the `Span` of a search."""
     unit: str = ""
     std: Fraction | None = None
-    """Standard uncertainty, in the same unit; None for a number that is certain."""
+    """Standard uncertainty, in the same unit; None if there is none."""
 
     def scaled(self, factor: Fraction) -> Value:
-        """Return the value times the size of its unit, without the unit."""
+        """Return the value multiplied by the size of its unit, without the unit."""
         number = self.number
         number = number * factor if isinstance(number, Fraction) else number.scaled(factor)
         return Value(number, "", None if self.std is None else self.std * abs(factor))
@@ -60,11 +59,10 @@ def parse_value(
     uncertain: bool = False,
     steady: bool = False,
 ) -> Value:
-    """Return the value that a text stands for; `parse` reads its number.
+    """Parse an input; `parse` reads its number.
 
-    Only where it may be `uncertain` an uncertainty is read, and one of `STEADY_WORDS` only if it
-    may be the rate of a `steady` precession.  Raises LagtopError as `parse` does,
-    with the whole text in place of the number, and for an uncertainty that is none.
+    `uncertain` allows an uncertainty, and `steady` allows `STEADY_WORDS`.  Raises LagtopError if
+    `parse` does, with the whole text in place of the number, and for a bad uncertainty.
     """
     number, unit = split_unit(text)
     if steady and number in STEADY_WORDS:
@@ -79,12 +77,12 @@ def parse_value(
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """Return the number part of an input text and its unit, empty where there is none.
+    """Return the number part of an input text and its unit, empty if it has none.
 
-    The number part is what stands before the first letter that is not the e of an exponent; it may
-    hold an uncertainty, such as `1587(2)` or `1587 +/- 0.1 %`.  A text without a digit before its
-    first letter, such as `nan`, has no unit.  The unit of a range or a list stands at its end,
-    behind a number: no colon and no comma follows it or precedes it.
+    The unit begins at the first letter that is not the e of an exponent.  The number part may hold
+    an uncertainty, such as `1587(2)` or `1587 +/- 0.1 %`.  A text without a digit before its first
+    letter, such as `nan`, has no unit.  A range or a list has its unit at the end, after a number:
+    no colon and no comma follows or precedes it.
     """
     text = text.strip()
     found = re.compile(_UNIT).search(text, len(_LOG) if text.startswith(_LOG) else 0)
@@ -99,7 +97,7 @@ def split_unit(text: str) -> tuple[str, str]:
 def _uncertain(text: str, parse: Callable[[str], Any]) -> Value:
     """Return an uncertain number.
 
-    Raises LagtopError for another text, and for an uncertainty that is negative.
+    Raises LagtopError for any other text, and for a negative uncertainty.
     """
     found = next((match for form in _FORMS if (match := re.fullmatch(form, text))), None)
     if found is None:

@@ -147,8 +147,8 @@ def exact(top: Top) -> Exact:
     psi_rate = Fraction(top.psidot0)
     if top.pole and psi_rate:
         raise LagtopError(
-            f"psidot0 must be 0 where the axis is vertical, got {float(psi_rate)} "
-            "(nothing precesses there; count it as spin)",
+            f"psidot0 must be 0 if the axis is vertical, got {float(psi_rate)} "
+            "(a vertical axis cannot precess; count the rate as spin)",
             "psidot0",
         )
     a, b = 2 * m * g * s / A, C * r0 / A

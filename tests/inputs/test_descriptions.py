@@ -36,7 +36,7 @@ def test_another_program_describes_nothing() -> None:
 
 @pytest.mark.parametrize("text", ["", "m", "mass = 1", "m = x", "m = -1, A = 2", "m = 1 = 2"])
 def test_scenes_that_are_none(text: str) -> None:
-    with pytest.raises(DataError, match=r"^file: the scene in its description is none: "):
+    with pytest.raises(DataError, match=r"^file: the scene in its description is invalid: "):
         scene_in({"scene": text}, "file")
 
 

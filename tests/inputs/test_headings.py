@@ -121,7 +121,7 @@ def test_wrong_units(header: str, message: str, tmp_path: Path) -> None:
 def test_an_unknown_heading_lists_what_was_found(lagtop: Lagtop) -> None:
     refused = lagtop("compare", "-", input="when;how far\n1;2\n")
     assert_one_line(refused, 65, "standard input must have columns among")
-    assert "got 'when', 'how far': name them by --columns" in refused.stderr
+    assert "got 'when', 'how far': name them with --columns" in refused.stderr
 
 
 def test_inputs_in_greek_and_with_units(lagtop: Lagtop) -> None:

@@ -22,15 +22,15 @@ SAID = {
     "npz of text": "not an npz file: ",
     "npz of pickles": "array t must be an array of real numbers",
     "npz of many members": "must have at most 1000 arrays, got 5001",
-    "npz of a bomb in Fortran order": "in Fortran order an array of an npz file must have at most",
+    "npz of a bomb in Fortran order": "an array in Fortran order in an npz file must have at most",
     "npy of minus signs": "not an npy file: ",
     "npy of brackets": "not an npy file: ",
     "npy with an open text": "not an npy file: ",
     "npy of a call": "not an npy file: malformed node",
     "npy with a negative size": "must be an array of real numbers with 1 or 2 dimensions",
     "npy of 1e12 rows": "must have columns among",
-    "npy of 1e23 rows in Fortran order": "must hold 1" + "0" * 23 + " rows, but ends before",
-    "npy of 1e12 rows in Fortran order": "must hold 1000000000000 rows, but ends before",
+    "npy of 1e23 rows in Fortran order": "must hold 1" + "0" * 23 + " rows, but ends early",
+    "npy of 1e12 rows in Fortran order": "must hold 1000000000000 rows, but ends early",
     "npy of 1e9 columns": "a row must have at most 1048576 bytes",
     "npy with a field of 2e8 numbers": "a row must have at most 1048576 bytes",
     "npy with a field of no number": "must be an array of real numbers with 1 or 2 dimensions",
@@ -47,7 +47,7 @@ def test_each_is_one_line(command: str, title: str, tmp_path: Path, lagtop: Lagt
     path.write_bytes(HOSTILE[title]())
     words = ["--columns", "t,theta"] if title in {"npy of 1e12 rows"} else []
     result = lagtop(command, path, *words)
-    said = "must hold 1000000000000 rows, but ends before" if words else SAID[title]
+    said = "must hold 1000000000000 rows, but ends early" if words else SAID[title]
     assert_one_line(result, 65, str(path))
     assert said in result.stderr
 
@@ -106,7 +106,7 @@ def test_the_largest_array_in_fortran_order_of_npz(
     monkeypatch.setattr(trajectory_arrays, "LARGEST_WHOLE", axis.nbytes)
     assert lagtop("compare", path, "--exit-zero").exit_code == 0
     monkeypatch.setattr(trajectory_arrays, "LARGEST_WHOLE", axis.nbytes - 1)
-    assert_one_line(lagtop("compare", path), 65, f"{path}, array axis: in Fortran order")
+    assert_one_line(lagtop("compare", path), 65, f"{path}, array axis: an array in Fortran order")
 
 
 def test_npz_files_by_other_methods_are_read(tmp_path: Path, lagtop: Lagtop) -> None:

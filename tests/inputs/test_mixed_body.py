@@ -17,7 +17,7 @@ from lagrange_cli import MixedBodyWarning, Top, read_scene, sweep, sweep_angles
 BODY = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81}
 WHOLE = " ".join(f"--{name} {value}" for name, value in BODY.items()).split()
 PARTS = ["--m", "0.35", "--C", "4e-4", "--g", "9.81"]
-SAID = "Warning: A and s are those of the worked example, in g, cm and s: --A 39032 --s 4\n"
+SAID = "Warning: A and s default to the worked example, in g, cm and s: --A 39032 --s 4\n"
 
 
 @pytest.fixture(autouse=True)
@@ -49,10 +49,10 @@ def test_nothing_given_or_a_whole_body_is_silent(inputs: dict[str, Any]) -> None
 @pytest.mark.parametrize(
     ("inputs", "said"),
     [
-        ({"m": 1}, "A, C, s and g are those .*: A=39032, C=17458, s=4, g=981$"),
-        ({"m": 1, "g": 0}, "A, C and s are those .*: A=39032, C=17458, s=4$"),
-        ({"A_cm": 1e5}, "m, C, s and g are those"),
-        ({name: BODY[name] for name in "mACs"}, "^g is that of the worked example, .*: g=981$"),
+        ({"m": 1}, "A, C, s and g default .*: A=39032, C=17458, s=4, g=981$"),
+        ({"m": 1, "g": 0}, "A, C and s default .*: A=39032, C=17458, s=4$"),
+        ({"A_cm": 1e5}, "m, C, s and g default"),
+        ({name: BODY[name] for name in "mACs"}, "^g defaults to the worked example, .*: g=981$"),
     ],
 )
 def test_parts_of_a_body_are_named_where_they_were_given(
@@ -118,6 +118,6 @@ def test_an_error_that_comes_of_mixing_says_so(lagtop: Lagtop) -> None:
     assert result.exit_code == 2
     assert result.stderr == (
         "Error: --C must be <= 2 A = 0.0017, got 17458.0 (no rigid body has more) "
-        "(this is with C of the worked example: give the whole body)\n"
+        "(with C of the worked example: give the whole body)\n"
     )
     assert "worked example" not in lagtop("solve", "--m", "-1").stderr

@@ -24,7 +24,7 @@ def test_names_that_are_fine() -> None:
     [
         (["gamma"], "keys must be among alpha, beta, T_nutation, got 'gamma'"),
         (["T_nutatoin"], "got 'T_nutatoin' (did you mean 'T_nutation'?)"),
-        (["alpha", "alpha"], "keys must name each one once, got 'alpha' twice"),
+        (["alpha", "alpha"], "keys must not repeat a name, got 'alpha' twice"),
         ([], "keys must be among alpha, beta, T_nutation, got ''"),
         (["alpha", ""], "got ''"),
         ([1], "got 1"),
@@ -70,7 +70,7 @@ def test_lists_of_names_are_refused_everywhere(command: str, lagtop: Lagtop) -> 
         f",{known}": "must be among ",
         f"{known},x": "must be among ",
         f"{known} {known}": "must be among ",
-        f"{known}, {known}": f"must name each one once, got '{known}' twice",
+        f"{known}, {known}": f"must not repeat a name, got '{known}' twice",
     }.items():
         result = lagtop(*command.split(), names)
         assert (result.exit_code, result.stdout) == (2, "")

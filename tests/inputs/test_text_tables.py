@@ -112,7 +112,7 @@ def test_options_decide(first: str, tmp_path: Path) -> None:
     path, text = tmp_path / "file", f"FIRST;{SECOND[first]}\n1,234;30\n"
     assert read(path, text, first, Dialect(decimal=",")) == [1.234]
     for reader in READERS[first]:
-        with pytest.raises(DataError, match=r"got '1,234' \(--decimal comma reads it\)"):
+        with pytest.raises(DataError, match=r"got '1,234' \(use --decimal comma\)"):
             reader(path, Dialect(decimal="."))
     path.write_text(f"{first};x,{first}\n5;2,3\n")
     assert READERS[first][0](path, Dialect(";")) == [5.0]
@@ -160,7 +160,7 @@ def test_the_decision_is_made_once(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_text("t;theta\n" + "".join(f"{i};30\n" for i in range(2000)) + "2000,5;30\n")
     for reader in READERS["t"]:
-        with pytest.raises(DataError, match=r"line 2002.*got '2000,5' \(--decimal comma"):
+        with pytest.raises(DataError, match=r"line 2002.*got '2000,5' \(use --decimal comma"):
             reader(path, UNDECIDED)
 
 

@@ -323,7 +323,7 @@ def test_wrong_headings(header: str, options: list[str], message: str, lagtop: L
         ("--theta0 1m", "--theta0 must have a unit as in 30deg or 0.5rad, got the unit 'm'"),
         ("--theta0 1ppm", "--theta0 must have a unit"),
         ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
-        ("--units cgs --m 1", "--m must have a unit such as 350g, where a time or the output has"),
+        ("--units cgs --m 1", "--m must have a unit such as 350g, as a time or the output has"),
     ],
 )  # fmt: skip
 def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
@@ -411,4 +411,4 @@ def test_a_tilt_between_quotes_means_degrees_as_an_option_does(
 def test_a_key_that_is_there_twice_is_named_as_such(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "twice.toml"
     scene.write_text("m = 1\nm = 2\n")
-    assert "(a key is there twice: delete one line)" in lagtop("solve", scene).stderr
+    assert "(a key is repeated: delete one line)" in lagtop("solve", scene).stderr

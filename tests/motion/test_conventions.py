@@ -97,13 +97,13 @@ def test_rates_of_one_instant_are_those_of_its_velocity() -> None:
 
 @pytest.mark.parametrize("theta", [0.0, np.pi, [1.0, 0.0]])
 def test_upright_and_hanging_there_are_no_rates(theta: float) -> None:
-    with pytest.raises(LagtopError, match=r"^theta must be off the vertical, .*, got "):
+    with pytest.raises(LagtopError, match=r"^theta must be off the vertical, got "):
         euler_rates(theta, 0.0, p=1.0, q=0.0, r=3.0)
 
 
 @pytest.mark.parametrize("p", ["1", 1j, [1.0, 2.0, 3.0], None])
 def test_what_does_not_broadcast_is_refused(p: Any) -> None:
-    with pytest.raises(LagtopError, match=r"^numbers that broadcast must be given, got theta "):
+    with pytest.raises(LagtopError, match=r"^arguments must be numbers that broadcast, got theta "):
         euler_rates([0.5, 0.6], 0.0, p=p, q=0.0, r=3.0)
 
 

@@ -146,7 +146,7 @@ def test_no_spin_is_the_plane_pendulum() -> None:
 
 @pytest.mark.parametrize("inputs", [{"theta0_deg": 0}, {"theta0_deg": 180, "thetadot0": 1}])
 def test_no_precession_on_the_vertical(inputs: dict[str, float]) -> None:
-    with pytest.raises(LagtopError, match="psidot0 must be 0 where the axis is vertical, got 1"):
+    with pytest.raises(LagtopError, match="psidot0 must be 0 if the axis is vertical, got 1"):
         solve(Top(**inputs, psidot0=1.0))
 
 

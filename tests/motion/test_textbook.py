@@ -229,7 +229,7 @@ def test_the_word_is_kept(tmp_path: Path) -> None:
     [
         ({"r0": 50}, r"psidot0 .* steady: \|r0\| must be at least 52.5611 at this tilt, got .* 50"),
         ({"r0": 60, "thetadot0": 1}, "thetadot0 must be 0 for psidot0 = steady, got 1.0"),
-        ({"r0": 60, "theta0_deg": 180}, "psidot0 must be 0 where the axis is vertical, got steady"),
+        ({"r0": 60, "theta0_deg": 180}, "psidot0 must be 0 if the axis is vertical, got steady"),
         ({"r0": 0, "theta0_deg": 90}, "psidot0 .* got steady: at 90 degrees r0 must not be 0"),
         ({"psidot0": "steady-fast", "theta0_deg": 90}, "at 90 degrees the fast rate is infinite"),
         ({"psidot0": "fast"}, "psidot0 must be a real number, steady or steady-fast, got 'fast'"),

@@ -112,7 +112,7 @@ def test_bad_input(lagtop: Lagtop, tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_tilt_that_rounds_to_the_vertical_does_not_precess() -> None:
-    with pytest.raises(LagtopError, match="psidot0 must be 0 where the axis is vertical"):
+    with pytest.raises(LagtopError, match="psidot0 must be 0 if the axis is vertical"):
         view(solve(Top(theta0_rad=3.141592653589793, psidot0=1)))
 
 

@@ -494,7 +494,7 @@ def test_a_large_file_with_rubbish_in_it(tmp_path: Path, lagtop: Lagtop) -> None
     result = lagtop("sweep", file, "--keys", "r0,theta0_deg,mean_precession_rate")
     assert result.exit_code == 1
     warned, error = result.stderr.splitlines()  # m alone is half a body
-    assert warned.startswith("Warning: A, C, s and g are those of the worked example")
+    assert warned.startswith("Warning: A, C, s and g default to the worked example")
     assert error.startswith(f"Error: {len(bad)} of 20000 tops have an error")
     rows = table(result.stdout)
     assert {i: row["error"].partition(":")[0] for i, row in enumerate(rows) if row["error"]} == {

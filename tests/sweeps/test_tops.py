@@ -41,7 +41,7 @@ def test_get_what_is_not_there(lagtop: Lagtop) -> None:
     bare = lagtop("solve", "--get", "T_nutation,k").stdout
     assert in_csv == f"T_nutation,k\n{bare.replace(chr(10), ',', 1)}"
     assert lagtop("solve", "--get", "a,k,a").stderr == (
-        "Error: --get must name each one once, got 'a' twice\n"
+        "Error: --get must not repeat a name, got 'a' twice\n"
     )
 
 
