@@ -184,8 +184,9 @@ def rewrite() -> None:
         text = path.read_text()
         for command, shown in sessions(text):
             text = text.replace(f"$ {command}\n{shown}", f"$ {command}\n{run(command)}", 1)
-        for table, _ in TABLES:
-            text = with_table(text, table())
+        for table, folder in TABLES:
+            if path.parent == ROOT / folder:
+                text = with_table(text, table())
         path.write_text(text)
 
 
