@@ -1,7 +1,9 @@
-"""The functions of both sources: elliptic integrals, Jacobi's functions, theta functions and nomes.
+"""Elliptic integrals, Jacobi's functions, theta functions and nomes of both sources.
 
 Every function takes the arithmetic as its first argument: `arithmetic.arrays.ARRAYS` for NumPy
 arrays, or `many_digits.ManyDigits(n)`, an mpmath context (any number of digits; complex arguments).
-Modulus k, complement k', parameter m = k^2 and nome q = exp(-pi K'/K) are always named in the call,
-and 1 - k^2 is never formed, so nothing is lost as k -> 1.  Files, domains and errors: README.md.
+
+Calls name the modulus k, the complement k', the parameter m = k^2 or the nome q = exp(-pi K'/K).
+No function forms 1 - k^2, so no digits are lost as k -> 1.  See README.md for files, domains and
+errors.
 """

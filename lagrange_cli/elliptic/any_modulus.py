@@ -1,10 +1,13 @@
-"""Moduli beyond [0, 1]: the imaginary ones, k = i kbar, and those above 1.
+"""Moduli beyond [0, 1]: imaginary k = i kbar, and k above 1.
 
-Functions of such a modulus are those of one in [0, 1] at an argument that is stretched by a real
-factor.  For imaginary k = i kbar these are kbar/sqrt(1 + kbar^2) and sqrt(1 + kbar^2), Chrapan's
-(1,1), (2,2) and (3,4), where tau = iK'/K is taken one unit further.  For k > 1 they are 1/k and k
-(DLMF 22.17), where tau/(1 - tau) takes the place of tau; K is complex then, on the side of its cut
-where k^2 has a small negative imaginary part, as in mpmath.
+The functions of such a modulus are functions of a modulus in [0, 1] at an argument that is
+stretched by a real factor.
+
+- k = i kbar: the modulus is kbar/sqrt(1 + kbar^2), and the factor is sqrt(1 + kbar^2).  One unit is
+  added to tau = iK'/K (Chrapan (1,1), (2,2) and (3,4)).
+- k > 1: the modulus is 1/k, the factor k, and tau/(1 - tau) replaces tau (DLMF 22.17).  K is
+  complex, on the side of its branch cut on which k^2 has a small negative imaginary part, as in
+  mpmath.
 """
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ if TYPE_CHECKING:  # mpmath is loaded for complex numbers only
 
 
 class ModulusKind(Enum):
-    """Where a modulus lies."""
+    """The kind of a modulus: in [0, 1], imaginary, or above 1."""
 
     UNIT = "in [0, 1]"
     IMAGINARY = "imaginary"
@@ -33,16 +36,16 @@ class ModulusKind(Enum):
 
 
 class AnyModulus(NamedTuple):
-    """A modulus in [0, 1], and how the functions of any modulus follow from those of this one."""
+    """The modulus in [0, 1] to which a modulus of any kind is reduced, and the reduction."""
 
     kind: ModulusKind
     modulus: Modulus
     stretch: Value = 1
-    """What the argument is multiplied by."""
+    """Factor of the argument."""
 
 
 class AnyConstants(NamedTuple):
-    """K, K', E, E' and the nome q of any modulus; None for what is infinite."""
+    """K, K', E, E' and the nome q of any modulus; None for infinite values."""
 
     k_prime: Value
     K: Value
@@ -53,7 +56,7 @@ class AnyConstants(NamedTuple):
 
 
 def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
-    """Return what a modulus k >= 0, or an imaginary one i kbar with kbar > 0, is reduced to.
+    """Reduce a modulus k >= 0, or i kbar with kbar > 0, to a modulus in [0, 1].
 
     `ar` is an mpmath context.  Raises LagtopError for other numbers.
     """
@@ -69,7 +72,7 @@ def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
 
 
 def check_any_modulus(k: ExactComplex | complex) -> None:
-    """Raise LagtopError unless k is 0 or more, or i times a positive number."""
+    """Raise LagtopError unless k is 0, positive, or i times a positive number."""
     real, imag = k.real, k.imag
     if not (real >= 0 and imag >= 0 and not (real and imag) and max(real, imag) < math.inf):
         raise LagtopError(f"k must be 0 or more, or imaginary as 0.8i, got {k}", "k")
@@ -78,8 +81,8 @@ def check_any_modulus(k: ExactComplex | complex) -> None:
 def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:
     """Return the constants of a modulus in an mpmath context.
 
-    Imaginary k: K' = k'(K' - iK) of the modulus in [0, 1], and q is negative.  k > 1: k' is i
-    sqrt(k^2 - 1), and K, E and q are complex.
+    For imaginary k, q is negative and K' = k'(K' - iK), with the constants of the modulus in [0, 1]
+    on the right.  For k > 1, k' = i sqrt(k^2 - 1), and K, E and q are complex.
     """
     (k, k_prime, _), s = given.modulus, given.stretch
     K, K_prime, E, E_prime, q = constants(ar, given.modulus)
@@ -95,9 +98,10 @@ def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:
 
 
 def _e_beyond(ar: ManyDigits, k: Value, k_prime: Value) -> Value:
-    """Return E of the modulus 1/k > 1, which is {E - k'^2 K + i (E' - k^2 K')}/k (DLMF 19.7.3).
+    """Return E of the modulus 1/k > 1, {E - k'^2 K + i (E' - k^2 K')}/k (DLMF 19.7.3).
 
-    E - k'^2 K is k^2 K times the mean of cn^2 over a period, so that nothing cancels.
+    The difference E - k'^2 K is computed as k^2 K times the mean of cn^2 over a period, so that
+    nothing cancels.
     """
     here = complete_k(ar, k_prime) * period_mean(ar, k_prime, 1, 1, 0 * k)
     there = complete_k(ar, k) * period_mean(ar, k, 1, 1, 0 * k)

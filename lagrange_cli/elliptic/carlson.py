@@ -1,8 +1,11 @@
 """Carlson's symmetric elliptic integrals R_F, R_C, R_D, R_J by duplication (DLMF 19.36(i)).
 
-Real arguments as stated, from 1e-100 to 1e100 in doubles, or complex ones off the negative axis in
-mpmath.  Each step replaces the arguments by others four times closer to their mean; the rest is a
-Taylor series about the mean.  Over forty decades of arguments all four are within 4 eps.
+Arguments are real, within the limits that each function states, and from 1e-100 to 1e100 in
+doubles.  In mpmath they may also be complex, off the negative axis.
+
+Each step replaces the arguments by others four times closer to their mean.  A Taylor series about
+the mean gives the integral of the last arguments.  Over forty decades of arguments the errors of
+all four functions are at most 4 eps.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def blockwise(function: F) -> F:
-    """Return a formula f(ar, *arguments) that is evaluated block by block over long arrays."""
+    """Return the formula f(ar, *arguments), evaluated block by block over long arrays."""
 
     @in_arithmetic
     @wraps(function)
@@ -50,9 +53,9 @@ def _in_blocks(function: Callable[..., Any], ar: Any, arguments: tuple[Any, ...]
 
 
 def in_pairs(function: F) -> F:
-    """Return a formula f(ar, *arguments) that computes arrays in pairs of doubles.
+    """Return the formula f(ar, *arguments), evaluated in pairs of doubles for arrays.
 
-    So the rounding errors of many steps do not add up.
+    The rounding errors of many steps then do not add up.
     """
 
     @blockwise
@@ -73,12 +76,13 @@ def in_pairs(function: F) -> F:
 def carlson_rf(ar: Arithmetic[R], x: R, y: R, z: R) -> R:
     """Return Carlson's R_F(x, y, z) for x, y, z >= 0, at most one of them zero (DLMF 19.36.1).
 
-    F(phi, k) = sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1).
+        F(phi, k) = sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1)
 
-    What the series to order 7 leaves out: about the mean A it is the sum of T_n (1/2)_n/(3/2)_n
-    (DLMF 19.19.7), where T_n, a polynomial of order n in dx, dy and dz, is at most r^n (3/2)_n/n!
-    if these are at most r in size.  So a term is at most r^n (1/2)_n/n!, of which the factor falls
-    and is 0.197 for n = 8, and the rest at most r^8/(5 (1 - r)).
+    The truncation error of the series to order 7 is bounded as follows.  About the mean A, the
+    series is the sum of T_n (1/2)_n/(3/2)_n (DLMF 19.19.7).  T_n is a polynomial of order n in dx,
+    dy and dz.  If these are at most r in size, |T_n| <= r^n (3/2)_n/n!, and each term is at most
+    r^n (1/2)_n/n!.  The factor (1/2)_n/n! decreases with n and is 0.197 for n = 8, so the error is
+    at most r^8/(5 (1 - r)).
     """
     mean = (x + y + z) / 3
     spread = _spread(ar, mean, x, y, z)
@@ -126,8 +130,8 @@ def carlson_rd(ar: FunctionArithmetic, x: Value, y: Value, z: Value) -> Value:
 def carlson_rj(ar: FunctionArithmetic, x: Value, y: Value, z: Value, p: Value) -> Value:
     """Return R_J(x, y, z, p) for x, y, z >= 0, at most one of them 0, and p > 0 (DLMF 19.36.2).
 
-    Each step adds an R_C(1, 1 + e); 1 + e is formed as a quotient of sums, so that nothing cancels
-    where p is much smaller than the other arguments.
+    Each step adds an R_C(1, 1 + e).  A quotient of sums gives 1 + e, so that nothing cancels if p
+    is much smaller than the other arguments.
     """
 
     def gain(roots: Roots, p: Value, shift: Value) -> Value:
@@ -140,7 +144,7 @@ def carlson_rj(ar: FunctionArithmetic, x: Value, y: Value, z: Value, p: Value) -
 
 
 def _spread(ar: Arithmetic[R], mean: R, *arguments: R) -> R:
-    """Return the greatest distance from the mean, over the one at which the series is exact."""
+    """Return the greatest distance from the mean, divided by the tolerance of the series."""
     distances = [absolute(mean - x) for x in arguments]
     greatest = reduce(lambda a, b: ar.where(a > b, a, b), distances)
     scale: R = root_of_epsilon(ar, 4, 8)
@@ -148,7 +152,7 @@ def _spread(ar: Arithmetic[R], mean: R, *arguments: R) -> R:
 
 
 def _radius(*shares: R) -> R:
-    """Return a bound of the size of each of some numbers whose sum is 0: half of all sizes."""
+    """Return a bound on the sizes of numbers whose sum is 0: half the sum of their sizes."""
     total: R = reduce(lambda a, b: a + b, map(absolute, shares)) / 2
     return total
 
@@ -172,9 +176,9 @@ def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
 def _near_mean(ar: FunctionArithmetic, dx: Value, dy: Value, dz: Value) -> Value:
     """Return the Taylor series of R_J about equal arguments, to seventh order (DLMF 19.36.2).
 
-    What it leaves out, as in `carlson_rf` with 3/2 and 5/2 for 1/2 and 3/2: terms of at most r^n
-    (3/2)_n/n!, 3.4 r^8 for n = 8 and then each at most 19 r/18 of the one before, so that all are
-    at most 4 r^8/(1 - 2 r).
+    The truncation error is bounded as in `carlson_rf`, with 3/2 and 5/2 in place of 1/2 and 3/2.
+    The terms from order 8 on are at most r^n (3/2)_n/n!.  This bound is 3.4 r^8 for n = 8 and grows
+    by a factor of at most 19 r/18 per order.  The sum is at most 4 r^8/(1 - 2 r).
     """
     dp = -(dx + dy + dz) / 2
     xyz, p2 = dx * dy * dz, dp * dp

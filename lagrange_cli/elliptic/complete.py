@@ -1,12 +1,12 @@
 """Complete elliptic integrals and the nome; the place of a point in a period.
 
-By the arithmetic-geometric mean, and by Landen's descending transformation (DLMF 22.7(i)),
+The methods are the arithmetic-geometric mean and Landen's descending transformation (DLMF 22.7(i)),
 
-    sn(u, k) = (1 + l) sn(u/(1 + l), l)/(1 + l sn^2(u/(1 + l), l)),    l = k^2/(1 + k')^2,
+    sn(u, k) = (1 + l) sn(u/(1 + l), l)/(1 + l sn^2(u/(1 + l), l)),    l = k^2/(1 + k')^2.
 
-which keeps the place u/K; l falls as a nome that is squared at each step, until sn is a sine.
-Every loop adds and multiplies positive numbers only, so each result is good to a few eps, however
-close to a zero.  Points are given by numbers s2 : c2 = sn^2 : cn^2, with any common factor.
+The transformation keeps the place u/K and squares the nome, so l falls quickly, until sn is a sine.
+Every loop only adds and multiplies positive numbers, so each result is good to a few eps, even next
+to a zero.  Points are given by numbers s2 : c2 = sn^2 : cn^2, with any common factor.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 def agm(ar: Arithmetic[R], a: R | int, b: R) -> R:
     """Return the arithmetic-geometric mean M of a > 0 and b > 0 (DLMF 19.8.1).
 
-    The last step leaves out (a + b)/2 - M.  With x = (a - b)/(a + b), 2 M/(a + b) is pi/2K(x)
-    (DLMF 19.8.5).  The powers of x^2 in 2K/pi have logarithmically convex coefficients, so that
-    those of its inverse are negative from the second on (Kaluza 1928).  As M = 0 at x = 1, their
-    sizes add up to 1: none is larger than those of x^2/(1 - x^2), which bounds their derivatives
-    too.
+    The error of the last step is (a + b)/2 - M.  With x = (a - b)/(a + b), 2 M/(a + b) is pi/2K(x)
+    (DLMF 19.8.5).  The powers of x^2 in 2K/pi have logarithmically convex coefficients, so the
+    coefficients of its inverse are negative from the second on (Kaluza 1928).  As M = 0 at x = 1,
+    the sizes of these coefficients add up to 1.  None is larger than the same coefficient of x^2/(1
+    - x^2), which therefore bounds the error and its derivatives.
     """
     tolerance = ar.sqrt(ar.eps)
     while ar.anywhere(abs(a - b) > tolerance * a):
@@ -50,20 +50,26 @@ def complete_k(ar: Arithmetic[R], k_prime: R) -> R:
 def period_mean(ar: Arithmetic[R], k_prime: R, p: R | int, a: R | int, b: R | int) -> R:
     """Return the mean over a period of (a cn^2 + b sn^2)/(cn^2 + p sn^2).
 
-    k' and p are positive, a and b are not negative.  Bulirsch's complete integral cel(k', p, a, b)
-    is K times this mean (DLMF 19.2.11), so
-    E = K period_mean(k', 1, 1, k'^2)  and  R_J(0, k'^2, 1, p) = 3 K period_mean(k', p, 0, 1).
+    k' and p are positive; a and b are not negative.  Bulirsch's complete integral cel(k', p, a, b)
+    is K times this mean (DLMF 19.2.11), so that
 
-    Each step is Bartky's transformation (Bulirsch 1969), and keeps the mean of
-    R = (a m^2 c^2 + b p s^2)/(m^2 c^2 + p^2 s^2), c = cos z, s = sin z, over a quarter turn of z
-    with the weight M/sqrt(m^2 c^2 + g^2 s^2), where M is the agm of m and g.  The last step takes
-    the weight 1, with which the mean of R is (a m + b)/(m + p).
+        E = K period_mean(k', 1, 1, k'^2),    R_J(0, k'^2, 1, p) = 3 K period_mean(k', p, 0, 1).
 
-    With x = (m - g)/(m + g) the weight is pi/2K(x) (see `agm`) times the sum of P_n(-cos 2z) x^n
-    (DLMF 18.12.11), so that it is 1 and powers of x with coefficients of at most those of
-    1/(1 - x)^2 - 1, and these of 2 x/(1 - 2 x).  As R is not negative, the
-    error is at most that times its mean.  By the ratio p/m the two terms of R change by at most
-    twice and once their own relative change, which is what the powers of the ratio say.
+    Each step is Bartky's transformation (Bulirsch 1969).  It keeps the mean, over a quarter turn of
+    z and with the weight M/sqrt(m^2 c^2 + g^2 s^2), of
+
+        R = (a m^2 c^2 + b p s^2)/(m^2 c^2 + p^2 s^2),    c = cos z,  s = sin z,
+
+    where M is the agm of m and g.  The last step uses the weight 1, for which the mean of R is (a m
+    + b)/(m + p).
+
+    The error of the last step is bounded as follows.  Let x = (m - g)/(m + g).  The weight is
+    pi/2K(x) (see `agm`) times the sum of P_n(-cos 2z) x^n (DLMF 18.12.11).  It is therefore 1 plus
+    powers of x.  Their coefficients are at most those of 1/(1 - x)^2 - 1, and so of 2 x/(1 - 2 x).
+    As R is not negative, the error is at most 2 x/(1 - 2 x) times its mean.
+
+    The derivatives of the two terms of R by log(p/m) are at most twice and once the terms
+    themselves.  The powers of `ratio` in the bound express this.
     """
     tolerance = ar.sqrt(ar.eps)
     mean, geometric, p = k_prime * 0 + 1, k_prime, ar.sqrt(p)
@@ -99,16 +105,17 @@ def complete_e(ar: Arithmetic[R], k_prime: R) -> R:
 def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
     """Return the nome q = exp(-pi K'/K) of m = k^2 < 1, equation (2,4), to a few eps.
 
-    The exponential would lose log(1/q) digits where q is small.  Instead: along the AGM of (1, k')
-    the nome is squared at each step, until the series q = e + 2 e^5 + 15 e^9 ... (DLMF 19.5.5) is
-    short.
+    The exponential would lose log(1/q) digits if q is small.  Instead, each step of the AGM of (1,
+    k') squares the nome, until the series q = e + 2 e^5 + 15 e^9 ... (DLMF 19.5.5) is short.
 
     The series leaves out powers of e whose coefficients are at most those of (2 e)^21/(1 - 2 e).
-    With e = k^(1/2)(q^4)/2 and dq/dm = q/(m
-    theta4(q)^4) (DLMF 20.9.2, 22.2) it solves e dq/de = q/theta4(q^4)^4.  The powers of 1/theta4 =
-    (1 + q)(1 + q^2).../(1 - q)(1 - q^2)... have no negative coefficients, so that a comparison of
-    powers of e on both sides gives none to q(e), one after the other.  As q(1/2) = 1, no
-    coefficient of e^n is larger than 2^n.
+    With e = k^(1/2)(q^4)/2 and dq/dm = q/(m theta4(q)^4) (DLMF 20.9.2, 22.2), it solves
+
+        e dq/de = q/theta4(q^4)^4,    1/theta4 = (1 + q)(1 + q^2).../(1 - q)(1 - q^2)...
+
+    The powers of 1/theta4 have no negative coefficients.  Comparing powers of e on both sides, one
+    after the other, shows that q(e) has none either.  As q(1/2) = 1, no coefficient of e^n is
+    larger than 2^n.
     """
     tolerance = 2 * root_of_epsilon(ar, 20910, 20)
     a, b = (1 + k_prime) / 2, ar.sqrt(k_prime)
@@ -132,13 +139,14 @@ def nome(ar: Arithmetic[R], *, m: R, k_prime: R) -> R:
 def place(ar: Arithmetic[R], *, m: R, k_prime: R, sn: R, cn2: R) -> R:
     """Return x = pi u/2K from sn(u, k) and cn^2(u, k), for -K <= u <= K and m = k^2 < 1.
 
-    Legendre's F(phi, k) is 2K x/pi, by the sine of phi and the square of its cosine.
+    Legendre's F(phi, k) is 2K x/pi, with sn = sin phi and cn2 = cos^2 phi.
 
-    The last step leaves out x - am u.  Since 2K x/pi = F(am u, m), a sum of b_j m^j S_j(am u) where
-    S_j is the integral of sin^(2j) and b_j <= 1 its mean, it is pi/2K times the sum of b_j m^j p_j
-    where p_j = S_j(phi) - b_j phi has a slope of at most 1.  The powers of m in pi/2K have no
-    coefficients larger than those of 1/(1 - m) (see `complete.agm`).  So phi m/(1 - m)^2, and more
-    so phi m/(1 - 2 m), bounds it and its derivatives by phi and m.
+    The error of the last step, x - am u, is bounded as follows.  Let S_j be the integral of
+    sin^(2j), and b_j <= 1 its mean.  Then F(am u, m) = 2K x/pi is the sum of b_j m^j S_j(am u).
+    The error is therefore pi/2K times the sum of b_j m^j p_j.  The slope of p_j = S_j(phi) - b_j
+    phi is at most 1.  The powers of m in pi/2K have coefficients of at most those of 1/(1 - m) (see
+    `agm`). Hence phi m/(1 - m)^2 bounds the error and its derivatives by phi and m, and so does phi
+    m/(1 - 2 m).
     """
     m, factor, cn2 = _descended(ar, m, k_prime, cn2)
     amplitude = ar.atan2(sn / factor, ar.sqrt(cn2))
@@ -147,10 +155,10 @@ def place(ar: Arithmetic[R], *, m: R, k_prime: R, sn: R, cn2: R) -> R:
 
 @in_arithmetic
 def first_kind(ar: Arithmetic[R], *, m: R, k_prime: R, sn: R, cn2: R) -> R:
-    """Return Legendre's F(phi, k), phi up to a quarter turn, from sin phi, cos^2 phi and m = k^2.
+    """Return Legendre's F(phi, k) from sin phi, cos^2 phi and m = k^2, for |phi| <= pi/2.
 
-    Arrays take Carlson's R_F (DLMF 19.25.5), which rounds less; in many digits it would take a
-    hundred times as many steps.
+    Arrays use Carlson's R_F (DLMF 19.25.5), which has smaller rounding errors.  In many digits it
+    would take a hundred times as many steps.
     """
     if ar.is_array:
         from .carlson import carlson_rf
@@ -164,15 +172,15 @@ def first_kind(ar: Arithmetic[R], *, m: R, k_prime: R, sn: R, cn2: R) -> R:
 def cosine_and_sine(ar: Arithmetic[R], *, m: R, k_prime: R, s2: R, c2: R) -> tuple[R, R]:
     """Return cos x and sin x for x = pi u/2K, where sn^2(u, k) : cn^2(u, k) = s2 : c2.
 
-    0 <= u <= K and m = k^2 < 1.
+    The domain is 0 <= u <= K and m = k^2 < 1.
 
-    By the series of the amplitude (DLMF 22.16.9), with q <= m (the powers of m in q/m, which is 1
-    at m = 1, have no negative coefficients),
+    The error follows from the series of the amplitude (DLMF 22.16.9),
 
-        am u - x = sum over n >= 1 of 2 q^n sin(2 n x)/(n (1 + q^(2n))),
+        am u - x = sum over n >= 1 of 2 q^n sin(2 n x)/(n (1 + q^(2n))).
 
-    and sin(2 n x) <= n sin 2x in size, am u is within 4 q/(1 - q) |sin x cos x| of x, and sn and cn
-    are within that share of sin x and cos x: they are wrong by at most 4 m/(1 - 5 m) of themselves.
+    Here q <= m, since q/m is 1 at m = 1 and its powers of m have no negative coefficients.  As
+    |sin(2 n x)| <= n |sin 2x|, am u is within 4 q/(1 - q) |sin x cos x| of x.  The relative errors
+    of both results are then at most 4 m/(1 - 5 m).
     """
     m, factor, last = _descended(ar, m, k_prime, c2 / (s2 + c2))
 
@@ -185,7 +193,7 @@ def cosine_and_sine(ar: Arithmetic[R], *, m: R, k_prime: R, s2: R, c2: R) -> tup
 
 
 def _descended(ar: Arithmetic[R], m: R, k_prime: R, cn2: R) -> tuple[R, R, R]:
-    """Return m, the number that sn has been divided by, and cn^2 where m is below eps^2."""
+    """Return m, the total divisor of sn, and cn^2 after steps that take m below eps^2."""
     factor = 0 * cn2 + 1
     falling = True
     while falling:
@@ -204,12 +212,17 @@ def _descended(ar: Arithmetic[R], m: R, k_prime: R, cn2: R) -> tuple[R, R, R]:
 def hyperbolic_cosine_and_sine(ar: Arithmetic[R], *, m: R, k_prime: R, s2: R, c2: R) -> tuple[R, R]:
     """Return cosh y and sinh y for y = pi v/2K, where sn^2(v, k') : cn^2(v, k') = s2 : c2.
 
-    0 <= v <= K' and m = k^2 < 1: the transformation at imaginary u = iv, sn(iv, k) = i sc(v, k').
+    The domain is 0 <= v <= K' and m = k^2 < 1.  The transformation is applied at imaginary u = iv,
+    where sn(iv, k) = i sc(v, k').
 
-    With am(iv, k) = i p the series of `cosine_and_sine` gives 0 <= p - y <=
-    2 q sinh(2 y)/(1 - q e^(2 y)), as sinh(2 n y) <= n sinh(2 y) e^(2 (n - 1) y).  Since y <= p and
-    e^(2 p) <= 4 C^2 with C = cosh p, both results are wrong by at most 4 m C^2/(1 - 4 m C^2) of
-    themselves.
+    With am(iv, k) = i p, the series of `cosine_and_sine` gives
+
+        0 <= p - y <= 2 q sinh(2 y)/(1 - q e^(2 y)),
+
+    as sinh(2 n y) <= n sinh(2 y) e^(2 (n - 1) y).  Since y <= p and e^(2 p) <= 4 C^2 with C = cosh
+    p, the relative errors of both results are at most
+
+        4 m C^2/(1 - 4 m C^2).
     """
     falling = True
     while falling:

@@ -25,29 +25,29 @@ if TYPE_CHECKING:
     from .tables import ArrayColumns, DigitRows
 
 _LEAST = 1e-150
-"""Least k and k' in doubles, of the modulus that another one is reduced to."""
+"""Least k and k' of the reduced modulus in doubles."""
 _MOST = 1e20
-"""Greatest k above 1 in doubles."""
+"""Greatest k in doubles."""
 
 
 class _ComplexConstants(NamedTuple):
-    """What follows from the modulus and the parameter alone."""
+    """Constants that depend only on the modulus and the parameter."""
 
     modulus: AnyModulus
     periods: Lattice | None
-    """None if only am, sn, cn, dn are due."""
+    """None if only am, sn, cn and dn are requested."""
     third: dict[str, Parameter]
 
     def rounded(self) -> _ComplexConstants:
-        """Return them for arrays."""
+        """Return the constants in doubles, for arrays."""
         third = {ij: kind.rounded(ARRAYS) for ij, kind in self.third.items()}
         return _ComplexConstants(self.modulus, self.periods and self.periods.rounded(ARRAYS), third)
 
 
 class ComplexTable(TableOfFunctions):
-    """Functions by their real and imaginary parts; u, am, sn, cn, dn of real arguments are real.
+    """Tables of real and imaginary parts; u, am, sn, cn, dn of real arguments have one column.
 
-    Raises LagtopError for a modulus out of range and, in doubles, for a tiny modulus, and for
+    Raises LagtopError for a modulus out of range.  In doubles it also refuses a tiny modulus, and
     arguments or a parameter beyond 2^50 periods.
     """
 
@@ -55,14 +55,14 @@ class ComplexTable(TableOfFunctions):
         self.arguments, self.request, self.count = arguments, request, arguments.real.count
 
     def modulus_in(self, ar: ManyDigits) -> AnyModulus:
-        """Return the modulus in a context.  Raises LagtopError if it is out of range."""
+        """Return the modulus in a context; raise LagtopError if it is out of range."""
         modulus = self.request.modulus
         if isinstance(modulus, ModulusInput):
             return AnyModulus(ModulusKind.UNIT, modulus.in_digits(ar))
         return any_modulus(ar, modulus)
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
-        """Yield rows of numbers with N digits on which two precisions agree."""
+        """Yield rows of numbers with N digits, on which two precisions agree."""
         assert digits is not None
         given, settled = self.modulus_in(ManyDigits()), AgreeingNumbers(digits)
         constants = cache(self._constants)
@@ -99,14 +99,13 @@ class ComplexTable(TableOfFunctions):
         return _ComplexConstants(given, periods, third)
 
     def _check_doubles(self, functions: _ComplexConstants) -> None:
-        """Raise LagtopError for what doubles cannot name: tiny moduli, arguments too far away."""
+        """Raise LagtopError for moduli beyond the range of doubles, and for distant arguments."""
         k, k_prime, _ = functions.modulus.modulus
         if functions.modulus.kind is ModulusKind.LARGE and functions.modulus.stretch > _MOST:
             raise LagtopError(f"k must be at most {_MOST:g} (or give --digits)", "k")
         if 0 < k < _LEAST or 0 < k_prime < _LEAST:
             raise LagtopError(
-                f"k must be farther than {_LEAST:g} from 0 and so that k' is not smaller "
-                "(or give --digits)",
+                f"k must be 0 or at least {_LEAST:g} in size, and so must k' (or give --digits)",
                 "k",
             )
         periods = functions.periods
@@ -133,7 +132,7 @@ class ComplexTable(TableOfFunctions):
         constants: _ComplexConstants,
         poles: Collection[str] = (),
     ) -> dict[str, Value]:
-        """Return the parts of the functions at u by their names; `poles` are not numbers."""
+        """Return the parts of the functions at u by name; `poles` are NaN."""
         parts, both = {"u": u}, {}
         if "am" in self.request.families:
             am, sn, cn, dn = complex_jacobi(ar, u, constants.modulus)
@@ -152,7 +151,7 @@ class ComplexTable(TableOfFunctions):
     def _families(
         self, ar: ComplexArithmetic, at: Place, functions: _ComplexConstants, periods: Lattice
     ) -> Iterator[tuple[str, Callable[[], Value]]]:
-        """Yield the columns of the families by name, and how to compute each."""
+        """Yield the columns of the families by name, each with the function that computes it."""
         functions_of_u = {"theta": theta_at_place, "zeta": zeta_at_place}
         functions_of_both = {"omega": omega_at, "pi": pi_at}
         for family in self.request.families:
@@ -166,7 +165,7 @@ class ComplexTable(TableOfFunctions):
 
 
 def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str, Value]:
-    """Return the constants of a modulus that is imaginary or above 1, by their two parts."""
+    """Return constants of a modulus that is imaginary or above 1, in real and imaginary parts."""
 
     def compute(ar: ManyDigits) -> dict[str, Value]:
         given = any_modulus(ar, modulus)

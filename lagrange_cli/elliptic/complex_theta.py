@@ -1,10 +1,12 @@
 """Theta and Zeta functions of complex arguments and of any modulus (Chrapan section 1).
 
-In the cell of the origin, |x| and |y| within 1/2, the series run in the smaller of the two nomes:
-for k <= k' in that of tau, and their terms grow with y; else by Jacobi's imaginary transformation
-in that of -1/tau, and their terms grow with x.  So one coordinate is a height, along which a series
-is a sum of exponentials, and the other one a phase.  The factors by which theta functions change
-from cell to cell are exponentials of polynomials, which are written out.
+In the cell of the origin, where |x| and |y| are at most 1/2, the series run in the smaller of the
+two nomes.  For k <= k' this is the nome of tau, and the terms grow with y.  For larger k it is the
+nome of -1/tau (Jacobi's imaginary transformation), and the terms grow with x.  So one coordinate is
+a height, along which a series is a sum of exponentials, and the other is a phase.
+
+From cell to cell, theta functions change by factors that are exponentials of polynomials.  These
+factors are written out.
 """
 
 from __future__ import annotations
@@ -38,13 +40,13 @@ _OTHER_NAMES = {
     ModulusKind.IMAGINARY: {"01": "00", "00": "01"},
     ModulusKind.LARGE: {"10": "00", "00": "10"},
 }
-"""The function of the modulus in [0, 1] that one of another modulus is read from."""
+"""The function of the reduced modulus that replaces each function, if the index differs."""
 
 
 def inner_name(ij: str, kind: ModulusKind) -> str:
-    """Return the function of the modulus in [0, 1] that ij of a kind of modulus is read from.
+    """Return the index of the function of the reduced modulus in [0, 1] that replaces ij.
 
-    Raises LagtopError for other indices than 01, 00, 11 and 10.
+    Raises LagtopError for indices other than 01, 00, 11 and 10.
     """
     if ij not in INDICES:
         raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
@@ -58,18 +60,18 @@ def rises(ij: str, periods: Lattice) -> bool:
 
 @in_arithmetic
 def complex_theta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
-    """Return Theta_ij(v) of complex numbers v."""
+    """Return Theta_ij(v) for complex v."""
     return theta_at_place(ar, ij, place_of(ar, v, periods), periods)
 
 
 @in_arithmetic
 def complex_zeta(ar: ComplexArithmetic, ij: str, v: Complex, periods: Lattice) -> Complex:
-    """Return Z_ij(v), the derivative of log Theta_ij(v), of complex numbers v."""
+    """Return Z_ij(v), the derivative of log Theta_ij(v), for complex v."""
     return zeta_at_place(ar, ij, place_of(ar, v, periods), periods)
 
 
 def theta_of_modulus(ar: ComplexArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
-    """Return theta_ij(x, iK'/K) of complex x, for one modulus between 0 and 1."""
+    """Return theta_ij(x, iK'/K) for complex x and one modulus between 0 and 1."""
     periods = _lattice_of(ar, modulus)
     parts = ar.re(x), ar.im(x) / periods.ratio
     if ar.is_array:
@@ -79,12 +81,12 @@ def theta_of_modulus(ar: ComplexArithmetic, ij: str, x: Complex, modulus: Modulu
 
 
 def zeta_of_modulus(ar: ComplexArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
-    """Return Z_ij(v) of complex v, for one modulus between 0 and 1."""
+    """Return Z_ij(v) for complex v and one modulus between 0 and 1."""
     return complex_zeta(ar, ij, v, _lattice_of(ar, modulus))
 
 
 def _lattice_of(ar: ComplexArithmetic, modulus: Modulus) -> Lattice:
-    """Return the periods of a modulus in [0, 1], for arrays rounded from many digits."""
+    """Return the periods of a modulus in [0, 1]; for arrays, rounded from many digits."""
     if not ar.is_array:
         return lattice(ar, AnyModulus(ModulusKind.UNIT, modulus))
     many = ManyDigits()
@@ -128,7 +130,7 @@ _EIGHTH = {
     ModulusKind.IMAGINARY: ("11", "10"),
     ModulusKind.LARGE: ("11", "01"),
 }
-"""The functions that are turned by an eighth, where tau is one unit further or tau/(1 - tau)."""
+"""Functions that gain an eighth of a turn if tau + 1 or tau/(1 - tau) replaces tau."""
 
 
 def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -> Complex:
@@ -143,7 +145,7 @@ def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -
 
 
 def slope_in_cell(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Complex:
-    """Return d log theta by the argument in periods, at the rests of a place."""
+    """Return d log theta/dz at the rests of a place, where z is the argument in periods."""
     slope = base_at(ar, inner, at, periods).slope
     if periods.circular:
         return slope
@@ -165,7 +167,7 @@ def base_at(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> B
 
 
 class Base(NamedTuple):
-    """The value of a series, and the derivative of its logarithm by z."""
+    """The value of a series, and its logarithmic derivative with respect to z."""
 
     value: Complex
     slope: Complex
@@ -175,16 +177,18 @@ class Base(NamedTuple):
         return self.chosen(ar, where, Base(ar.conj(self.value), ar.conj(self.slope)))
 
     def chosen(self, ar: ComplexArithmetic, where: Value, other: Base) -> Base:
-        """Return another one where a condition holds."""
+        """Return the `other` series where a condition holds, and this one elsewhere."""
         return Base(*(ar.where(where, b, a) for a, b in zip(self, other, strict=True)))
 
 
 def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Value) -> Base:
     """Return theta_ij at z = phase + i height t/pi, with the nome exp(-t), and its slope.
 
-    Of 11 and 10: q^(-1/4) exp(-t height) theta_ij.  t is at least pi, the phase within 1/2, and the
-    height from 0 to 1/2.  Each function has one zero there, next to which it is read from the
-    series of sines that vanishes at 0; so all values keep their digits.
+    For 11 and 10, return q^(-1/4) exp(-t height) theta_ij.  Requires t >= pi, a phase within 1/2,
+    and a height from 0 to 1/2.
+
+    Each function has one zero in this range.  Next to it, the series of sines that vanishes at 0
+    gives the value, so that all values keep their digits.
     """
     if ij == "11":
         return _sines(ar, coarse(phase), coarse(height), t)
@@ -202,7 +206,7 @@ def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Va
 
 
 def _cosines(ar: ComplexArithmetic, phase: Fine, height: Value, t: Value) -> Base:
-    """Return the series of theta10; next to its zero as theta11 half a period away."""
+    """Return the series of theta10; next to its zero, theta11 half a period away."""
     here = coarse(phase)
     middle = abs(here) < 0.25
     left = here < 0
@@ -221,7 +225,7 @@ def _sines(ar: ComplexArithmetic, phase: Value, height: Value, t: Value) -> Base
 def _odd(ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, sines: bool) -> Base:
     """Return 2 sum (-1)^n q^(n (n + 1)) sin (2n + 1) pi z, over exp(t height), and its slope.
 
-    Without `sines`: the sum of cosines without the signs.
+    Without `sines`, return the sum of cosines without the signs.
     """
     real = imag = slope_real = slope_imag = 0 * phase
     for n in range(_terms(ar)):
@@ -261,5 +265,5 @@ def _even(
 
 
 def _terms(ar: ComplexArithmetic) -> int:
-    """Return how many terms matter, of which the last is at most exp(-pi (n - 1/2)^2)."""
+    """Return the number n of terms needed; the last is at most exp(-pi (n - 1/2)^2)."""
     return 2 + math.ceil(math.sqrt(negligible(ar) / math.pi))

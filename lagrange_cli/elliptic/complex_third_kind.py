@@ -2,16 +2,21 @@
 
     Omega_ij(eta, v) = log[Theta_ij(eta - v)/Theta_ij(eta + v)]/2,   Pi_ij = eta Z_ij(v) + Omega_ij
 
-The text leaves the branch of the logarithm open, and its equations hold modulo i pi.  Here log
-Theta_ij is continuous on each side of the lines on which Theta_ij has its zeros, which are Im z =
-2nK' for 11 and 10, (2n + 1)K' for 01 and 00; its mirror image in the real axis is its conjugate; it
-is continuous on the imaginary axis, where a zero turns it by half a turn; and on a line it is the
-mean of both sides.  So real and imaginary parameters have the values that `third_kind` gives.
-For k > 1 this is the branch of the modulus 1/k.
+Chrapan leaves the branch of the logarithm open, and his equations hold modulo i pi.  Here the
+branch of log Theta_ij(z) is fixed by the following conditions.
 
-What log Theta is made of, beside a series close to 1, are polynomials in the coordinates of eta and
-v.  Their difference is written out, so that nothing cancels, and what both functions grow by over
-the periods is computed once, in many digits.
+- It is continuous on each side of the lines of zeros: Im z = 2nK' for 11 and 10, Im z = (2n + 1)K'
+  for 01 and 00.
+- It is continuous on the imaginary axis, where a zero turns it by half a turn.
+- Its values at conjugate z are conjugate.
+- On a line of zeros it is the mean of both sides.
+
+Real and imaginary parameters then have the values that `third_kind` gives.  For k > 1 this is the
+branch of the modulus 1/k.
+
+Apart from a series close to 1, log Theta is a sum of polynomials in the coordinates of eta and v.
+Their difference is written out, so that nothing cancels.  The growth of both functions over the
+periods is computed once, in many digits.
 """
 
 from __future__ import annotations
@@ -27,31 +32,31 @@ from .periods import Complex, Fine, Lattice, Place, coarse, fine_whole, place_of
 
 
 class Parameter(NamedTuple):
-    """A parameter v and what Omega_ij and Pi_ij need of it, in a context or in doubles."""
+    """A parameter v and the constants of Omega_ij and Pi_ij, in a context or in doubles."""
 
     ij: str
     v: Complex
     periods: Lattice
     at: Place
     slope: Complex
-    """d log theta by the argument in periods, of the series and its height alone, at v."""
+    """d log theta/dz at v, of the series and its height alone; z is the argument in periods."""
     along: Complex
-    """What Pi grows by when eta grows by 2K, but for half turns."""
+    """Growth of Pi when eta grows by 2K, without half turns."""
     up: Complex
-    """What Pi grows by when eta grows by 2iK', but for half turns."""
+    """Growth of Pi when eta grows by 2iK', without half turns."""
     turns: Value
-    """The half turns that are left out of `along`, so that it is small where they cancel."""
+    """The half turns that `along` leaves out, so that it is small if they cancel."""
     side: int
-    """Sign of the height of v, where the rise of a series with it is not in the slope; else 0."""
+    """Sign of the height of v if the slope leaves out the rise of the series with it; else 0."""
 
     def rounded(self, ar: ComplexArithmetic) -> Parameter:
-        """Return the parameter with its constants in doubles, to go with arrays."""
+        """Return the parameter with its constants in doubles, for use with arrays."""
         import numpy as np
 
         periods = self.periods.rounded(ar)
         return self._replace(
             periods=periods,
-            at=place_of(ar, np.array([complex(self.v)]), periods),  # as eta: equal parts stay equal
+            at=place_of(ar, np.array([complex(self.v)]), periods),  # like eta: equal parts agree
             slope=complex(self.slope),
             along=complex(self.along),
             up=complex(self.up),
@@ -61,7 +66,7 @@ class Parameter(NamedTuple):
 def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Parameter:
     """Return Omega_ij and Pi_ij of a parameter, with constants in an mpmath context.
 
-    Where Z_ij has its pole, at v = 0 of the function 11, the constants of Pi are not numbers.
+    At the pole of Z_ij (v = 0 for the function 11) the constants of Pi are NaN.
     """
     at = place_of(ar, v, periods)
     inner = inner_name(ij, periods.kind)
@@ -86,13 +91,13 @@ def parameter(ar: ManyDigits, ij: str, v: Complex, periods: Lattice) -> Paramete
 
 @in_arithmetic
 def complex_omega(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex:
-    """Return Omega_ij(eta, v) of complex numbers eta."""
+    """Return Omega_ij(eta, v) for complex eta."""
     return omega_at(ar, place_of(ar, eta, given.periods), given)
 
 
 @in_arithmetic
 def complex_pi(ar: ComplexArithmetic, eta: Complex, given: Parameter) -> Complex:
-    """Return Pi_ij(eta, v) of complex numbers eta; not a number where it has a pole for each."""
+    """Return Pi_ij(eta, v) for complex eta; NaN if it has a pole for every eta."""
     return pi_at(ar, place_of(ar, eta, given.periods), given)
 
 
@@ -138,7 +143,7 @@ def pi_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
 
 
 class _Cell:
-    """What log Theta(u - v) - log Theta(u + v) is made of, for u and v less whole periods."""
+    """The parts of log Theta(u - v) - log Theta(u + v), for u and v less whole periods."""
 
     rise: Fine
     """Half the difference of the heights, in units of the steepness."""
@@ -169,7 +174,7 @@ class _Cell:
         self.logarithm = ar.mpc(size, angles[0] - angles[1]) / 2
 
     def _angle(self, ar: ComplexArithmetic, value: Complex, at: Place) -> Value:
-        """Return the angle of the series at a place; on a line of zeros the mean of both sides."""
+        """Return the angle of the series at a place; on a line of zeros, the mean of both sides."""
         angle = ar.atan2(ar.im(value), ar.re(value))
         if self.inner == "11":  # from -pi/2 to 3 pi/2 above the line of zeros
             side = 1 - 2 * (coarse(at.y.rest) < 0)
@@ -179,7 +184,7 @@ class _Cell:
         return angle
 
     def half_turns(self, at: Place) -> Value:
-        """Return the half turns of the difference, those over the periods of u and v included."""
+        """Return the half turns of the difference, including the whole periods of u and v."""
         (less, more), v = self.places, self.given.at
         turns = -less.y.whole * (at.x.whole - v.x.whole) + more.y.whole * (at.x.whole + v.x.whole)
         if self.inner[1] == "1":

@@ -1,15 +1,18 @@
-"""Aksenov section 3.2: eta(tau) from its quadrature, and any other with the same kind of roots.
+"""Eta(tau) from the quadrature of Aksenov section 3.2, for all real roots and a complex pair.
 
     (d eta/d tau)^2 = g (delta - eta)(eta - delta*) times the distances of eta from the outer roots
 
-Of the two outer roots p +- q one lies on each side of the band [delta*, delta] (the satellite), or
-both on one side or beside it as a complex pair (hyperbolic motion), or one or both are at infinity
-(parabolic motion; Lagrange's top).  The
-roots are exact rationals, so their gaps are; and what is made of the gaps are sums and products of
-positive numbers, so that nothing is lost as roots come close to each other.
+The two outer roots p +- q have these layouts:
 
-In doubles sizes are from 1e-100 to 1e100, and eta is within 4 units of
-eps (max(1, |eta|) + |tau d eta/d tau|), tau counted from the nearest passage of delta*.
+- One lies on each side of the band [delta*, delta] (the satellite).
+- Both lie on one side, or beside the band as a complex pair (hyperbolic motion).
+- One or both are at infinity (parabolic motion; Lagrange's top).
+
+The roots are exact rationals, and so are their gaps.  All constants are sums and products of
+positive functions of the gaps, so that no digits are lost as roots approach each other.
+
+In doubles, sizes are from 1e-100 to 1e100.  The error of eta is at most 4 units of eps (max(1,
+|eta|) + |tau d eta/d tau|).  Here tau is counted from the nearest passage of delta*.
 """
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ LEAST, MOST = Fraction("1e-100"), Fraction("1e100")
 class Quadrature(NamedTuple):
     """The radicand: the band, up to two outer roots, and g, which is -2 alpha1 c^2 in (3.2.1).
 
-    `check` it before use.
+    Call `check` before use.
     """
 
     lower: Fraction
@@ -38,14 +41,14 @@ class Quadrature(NamedTuple):
     upper: Fraction
     """delta."""
     outer: tuple[Fraction, ...]
-    """The outer roots that are not at infinity, in any order; of a complex pair the real parts."""
+    """The finite outer roots, in any order; the real parts of a complex pair."""
     g: Fraction = Fraction(1)
-    """The leading coefficient, without its sign."""
+    """Absolute value of the leading coefficient."""
     height: Fraction = Fraction(0)
-    """Size of the imaginary parts of a complex pair."""
+    """Absolute value of the imaginary parts of a complex pair."""
 
     def check(self) -> None:
-        """Raise LagtopError unless the motion is periodic: an empty band, an outer root in it."""
+        """Raise LagtopError unless lower <= upper, g > 0 and the band has no real outer root."""
         if self.upper < self.lower:
             raise LagtopError(
                 f"delta must be >= delta_star = {float(self.lower)}, got {float(self.upper)}",
@@ -66,7 +69,7 @@ class Quadrature(NamedTuple):
                 )
 
     def check_doubles(self) -> None:
-        """Raise LagtopError as `check` does, and where a size is out of reach of doubles."""
+        """Raise LagtopError as `check` does, and for sizes outside 1e-100 to 1e100."""
         self.check()
         gaps = [abs(end - root) for root in self.outer for end in (self.lower, self.upper)]
         sizes = {
@@ -96,7 +99,7 @@ class Quadrature(NamedTuple):
 
     @property
     def layout(self) -> str:
-        """Places of the outer roots, in words."""
+        """The layout of the outer roots, in words."""
         if self.height:
             return "complex pair"
         if not self.outer:
@@ -108,7 +111,7 @@ class Quadrature(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The radicand by its degree, and what is degenerate about it."""
+        """The degree of the radicand and its degeneracy, if any, in words."""
         degree = ("quadratic", "cubic", "quartic")[len(self.outer)]
         if self.lower == self.upper:
             return f"{degree}, the band is a double root: eta is constant"
@@ -120,18 +123,18 @@ class Quadrature(NamedTuple):
 
 
 class EtaConstants(NamedTuple):
-    """The constants of (3.2.3) to (3.2.12) in some arithmetic, and k1' beside k1."""
+    """The constants of (3.2.3) to (3.2.12) and the complement k1', in some arithmetic."""
 
     m1: Value
     """m' (3.2.3)."""
     m2: Value
     """m'' (3.2.3)."""
     k: Value
-    """Modulus (3.2.5); of a complex pair of roots k/i."""
+    """Modulus k (3.2.5), or k/i for a complex pair of roots."""
     k1: Value
-    """Modulus (3.2.8); of a complex pair of roots k1/i."""
+    """Modulus k1 (3.2.8), or k1/i for a complex pair of roots."""
     k1_prime: Value
-    """Complement of k1, which is above 1 where k1 is imaginary."""
+    """Complement of k1; it is above 1 if k1 is imaginary."""
     sigma1: Value
     """Rate of the argument (3.2.8)."""
     s: Value
@@ -147,8 +150,8 @@ class EtaConstants(NamedTuple):
 def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
     """Return the constants in balls, or in an mpmath context.
 
-    m'^2 and m''^2 are products of the distances of delta and delta* from the outer roots, and
-    2 sigma1/sqrt(g) is a sum of square roots of such products, in each layout.
+    The squares m'^2 and m''^2 are products of the distances of delta and delta* from the outer
+    roots.  In each layout, 2 sigma1/sqrt(g) is a sum of square roots of such products.
     """
     if quadrature.height:
         return _constants_of_pair(ar, quadrature)
@@ -169,11 +172,14 @@ def eta_constants(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstant
 
 
 def _constants_of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaConstants:
-    """Return the constants where the outer roots are p +- i height, so that k and k1 are imaginary.
+    """Return the constants for outer roots p +- i height, for which k and k1 are imaginary.
 
-    m' and m'' are the distances of delta and delta* from these roots.  All that is subtracted in
-    kappa^2 = -k^2 = (D^2 - (m' - m'')^2)/(4 m' m''), D = delta - delta*, is exact; and
-    kappa' = sqrt((m' + m'' - D)(m' + m'' + D)/(4 m' m'')) is sigma1/sqrt(g m' m'').
+    m' and m'' are the distances of delta and delta* from these roots.  With D = delta - delta*,
+
+        kappa^2 = -k^2 = (D^2 - (m' - m'')^2)/(4 m' m''),
+        kappa' = sqrt((m' + m'' - D)(m' + m'' + D)/(4 m' m'')) = sigma1/sqrt(g m' m'').
+
+    All numbers that are subtracted in kappa^2 are exact.
     """
     p = quadrature.outer[0]
     above, below = quadrature.upper - p, quadrature.lower - p
@@ -198,7 +204,7 @@ def _constants_of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaCon
 
 
 def _beyond(ar: FunctionArithmetic, distance: Value, part: Fraction, height: Value) -> Value:
-    """Return a distance sqrt(part^2 + height^2) less its part, which may be negative."""
+    """Return distance - part, where distance = sqrt(part^2 + height^2); part may be negative."""
     exact = ar.convert(part)
     return height**2 / (distance + exact) if part > 0 else distance - exact
 
@@ -233,7 +239,7 @@ def _sum_and_difference(
 ) -> tuple[Value, Value]:
     """Return m'' delta + m' delta* and m'' delta - m' delta* from the two terms.
 
-    Where they cancel, the difference of their squares is known exactly.
+    If the terms cancel, the exact difference of their squares gives the result.
     """
     square1, square2 = quadrature.squares
     difference = ar.convert(square2 * quadrature.upper**2 - square1 * quadrature.lower**2)
@@ -244,7 +250,7 @@ def _sum_and_difference(
 
 
 class Band(NamedTuple):
-    """What eta is reckoned from: the ends of the band, and the outer roots by their distances."""
+    """The ends of the band, and the distances of the outer roots from it, in some arithmetic."""
 
     lower: Value
     """delta*."""
@@ -253,9 +259,9 @@ class Band(NamedTuple):
     width: Value
     """delta - delta*."""
     below: list[Value]
-    """Distances of the outer roots that lie below, from delta*."""
+    """Distances from delta* of the outer roots below the band."""
     above: list[Value]
-    """Distances of the outer roots that lie above, from delta."""
+    """Distances from delta of the outer roots above the band."""
     g: Value
     """The leading coefficient."""
     pair: tuple[Value, Value, Value] | None = None
@@ -263,7 +269,7 @@ class Band(NamedTuple):
 
 
 def band_of(ar: FunctionArithmetic, quadrature: Quadrature) -> Band:
-    """Return the gaps of the exact roots, each rounded once."""
+    """Return the band and the gaps of the exact roots, each rounded once."""
     lower, upper, outer, g, height = quadrature
     pair = None
     if height:
@@ -281,7 +287,7 @@ def band_of(ar: FunctionArithmetic, quadrature: Quadrature) -> Band:
 
 
 def modulus_in_use(c: EtaConstants, band: Band) -> Modulus:
-    """Return k1 or, where that is imaginary, kappa = k/i: with k1 = i kappa/kappa'."""
+    """Return k1 or, if it is imaginary, kappa = k/i, for which k1 = i kappa/kappa'."""
     if band.pair:
         return Modulus(c.k, 1 / c.k1_prime, 0 * c.k)
     return Modulus(c.k1, c.k1_prime, 0 * c.k1)

@@ -24,25 +24,25 @@ if TYPE_CHECKING:
 
 _CHAIN = ("h1", "theta", "xi_prime")
 COLUMNS = ("tau", "eta", "etadot", *_CHAIN)
-"""The columns; tau is always there."""
+"""The columns; tau is always included."""
 
 
 class EtaMotion(NamedTuple):
-    """How eta moves in its band."""
+    """The constants of a motion of eta in its band."""
 
     constants: EtaConstants
     band: Band
     half_period: Value
     """2K of the modulus in use."""
     periods: Callable[[Value], tuple[Value, Value]]
-    """Periods at tau since a passage of delta*: whole ones, and the rest."""
+    """Function of tau: periods since a passage of delta*, as whole periods and the rest."""
 
 
 class EtaTable(RealTable):
-    """Eta of times tau, eta = delta* at tau = 0, its rate, and h1, theta and xi'.
+    """Tables of eta, its rate, h1, theta and xi' over tau, with eta = delta* at tau = 0.
 
-    Raises LagtopError as `Quadrature.check` does and, in doubles, as `Quadrature.check_doubles`
-    does and for times beyond 2^50 periods.
+    Raises LagtopError as `Quadrature.check` does.  In doubles it also raises LagtopError as
+    `Quadrature.check_doubles` does, and for times beyond 2^50 periods.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class EtaTable(RealTable):
         names: Collection[str] = ("eta",),
         angle: str = "deg",
     ) -> None:
-        """Take the inputs: `names` are some of COLUMNS, `angle` the unit of theta, deg or rad."""
+        """Take the inputs; `names` are some of COLUMNS, `angle` the unit of theta, deg or rad."""
         super().__init__(points)
         self.quadrature, self.names, self.angle = quadrature, names, angle
 
@@ -96,7 +96,7 @@ class EtaTable(RealTable):
     def columns(
         self, ar: FunctionArithmetic, x: Value, constants: EtaMotion, known: Known
     ) -> dict[str, Value]:
-        """Return tau, eta and what else the table has."""
+        """Return tau, eta and the other columns of the table."""
         c, band, half_period, periods = constants
         turns, rest = periods(x)
         place = place_in_band(ar, half_period * rest, c, band)
@@ -111,10 +111,10 @@ class EtaTable(RealTable):
         return {angle if name == "theta" else name: value for name, value in chosen.items()}
 
     def known(self, x: Fraction) -> dict[str, float]:
-        """Return the columns that are 0 at tau.
+        """Return the columns that are exactly 0 at tau.
 
-        h1 and theta vanish at no rational tau: K is transcendental for algebraic k (Schneider
-        1937).
+        h1 and theta vanish at no rational tau, because K is transcendental for algebraic k
+        (Schneider 1937).
         """
         lower, still = self.quadrature.lower, self.quadrature.lower == self.quadrature.upper
         at_start = still or x == 0
@@ -125,11 +125,12 @@ class EtaTable(RealTable):
 def chain(
     ar: FunctionArithmetic, periods: tuple[Value, Value], c: EtaConstants, band: Band, unit: str
 ) -> tuple[Value, Value, Value]:
-    """Return h1, theta and xi' so many periods, whole ones and a rest, after a passage of delta*.
+    """Return h1, theta and xi' at a time given in periods since a passage of delta*.
 
-    h1 = sigma1 (tau + tau3) (3.2.10), theta = am(h1, k1) (3.2.9), in the unit deg or rad, and
-    xi' = sn(h1, k1) (3.2.11).  Where k1 is imaginary theta is am(v, kappa) - pi/2 and xi' is
-    -cn(v, kappa), v = 4K w/T.
+        h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1) (3.2.11)
+
+    `periods` are whole periods and the rest; theta has the unit deg or rad.  If k1 is imaginary,
+    theta is am(v, kappa) - pi/2 and xi' is -cn(v, kappa), where v = 4K w/T.
     """
     turns, phase = periods
     half_turn = 180 if unit == "deg" else ar.pi
@@ -142,7 +143,7 @@ def chain(
 
 
 class PlaceInBand(NamedTuple):
-    """Where eta is in its band."""
+    """The place of eta in its band, by its distances from both ends."""
 
     eta: Value
     risen: Value
@@ -150,10 +151,10 @@ class PlaceInBand(NamedTuple):
     left: Value
     """delta - eta."""
     falling: Value
-    """Whether eta is on its way back to delta*."""
+    """Whether eta is returning to delta*."""
 
     def rate(self, ar: FunctionArithmetic, band: Band) -> Value:
-        """Return d eta/d tau, the root of (3.2.1) from distances that keep their digits."""
+        """Return d eta/d tau, the root of (3.2.1), from distances that keep their digits."""
         risen, left = self.risen, self.left
         gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
         if band.pair:
@@ -165,11 +166,13 @@ class PlaceInBand(NamedTuple):
 
 
 def place_in_band(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band) -> PlaceInBand:
-    """Return the place of eta where v = 2K w/T, w the time since a passage of delta*.
+    """Return the place of eta at v = 2K w/T, where w is the time since a passage of delta*.
 
-    eta - delta* : delta - eta = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2, which is (3.2.10) to
-    (3.2.12) after a halving of the argument: both distances keep their digits.  Of a complex pair
-    of roots it is m'' (sn v dn v)^2 : m' cn^2 v of the modulus kappa.
+        (eta - delta*) : (delta - eta) = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2
+
+    This ratio follows from (3.2.10) to (3.2.12) by halving the argument, and both distances keep
+    their digits.  For a complex pair of roots it is m'' (sn v dn v)^2 : m' cn^2 v, with the modulus
+    kappa.
     """
     _, sn, cn, dn = jacobi(ar, v, modulus_in_use(c, band))
     if band.pair:
@@ -184,9 +187,10 @@ def place_in_band(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band)
 
 
 def record(quadrature: Quadrature, digits: int | None = None) -> dict[str, Any]:
-    """Return roots and constants, each the nearest double or to so many significant digits.
+    """Return the roots and constants, correctly rounded to doubles or to `digits` digits.
 
-    Raises LagtopError as `Quadrature.check` does and, for doubles, `Quadrature.check_doubles`.
+    Raises LagtopError as `Quadrature.check` does and, for doubles, as `Quadrature.check_doubles`
+    does.
     """
     if digits is not None:
         quadrature.check()
@@ -219,7 +223,7 @@ def _zeros_of_record(quadrature: Quadrature) -> set[str]:
 
 
 def _record_in(ar: FunctionArithmetic, quadrature: Quadrature) -> dict[str, Any]:
-    """Return the record in balls; None for what the layout does not have."""
+    """Return the record in balls; None for keys that the layout does not have."""
     c, outer = eta_constants(ar, quadrature), quadrature.outer
     pair_of_roots, imaginary = len(outer) > 1, bool(quadrature.height)
     return {

@@ -29,28 +29,30 @@ if TYPE_CHECKING:
 
 
 class FunctionConstants(NamedTuple):
-    """The modulus of a request and all that follows from it and the parameter alone."""
+    """The modulus of a request, and the constants that depend only on it and the parameter."""
 
     modulus: Modulus
     series: ThetaSeries | None
-    """None for k = 1, where there are no periods."""
+    """None for k = 1, which has no periods."""
     third: dict[str, ThirdKind]
     K: Value
-    """The quarter period; a pair in doubles, None for k = 1."""
+    """The quarter period; a pair of doubles in a table of doubles, None for k = 1."""
 
     def rounded(self, modulus: Modulus) -> FunctionConstants:
-        """Return them in doubles, beside the modulus in doubles."""
+        """Return the constants in doubles, with the given modulus in doubles."""
         series = self.series and series_in_doubles(self.series)
         third = {ij: kind.rounded() for ij, kind in self.third.items()}
         return FunctionConstants(modulus, series, third, self.K and pair(self.K))
 
 
 class FunctionTable(RealTable):
-    """Am, sn, cn, dn, the theta, Zeta, Omega and Pi functions of arguments u.
+    """Tables of am, sn, cn, dn and the theta, Zeta, Omega and Pi functions of arguments u.
 
-    u is a factor of K if the request says so.  Omega and Pi of an imaginary parameter are given by
-    their imaginary parts.  Raises LagtopError for a modulus or a parameter out of range and, in
-    doubles, for arguments or a parameter at which doubles name no place in the periods.
+    The arguments are in units of K if the request says so.  For an imaginary parameter, Omega and
+    Pi are given by their imaginary parts.
+
+    Raises LagtopError for a modulus or a parameter out of range.  In doubles it also refuses
+    arguments and parameters so large that doubles do not determine their place in a period.
     """
 
     def __init__(self, points: Points, request: FunctionRequest) -> None:
@@ -59,7 +61,7 @@ class FunctionTable(RealTable):
         self.functions, self.rounds = 4 * len(request.families), not request.in_quarters
 
     def in_doubles(self) -> FunctionTable:
-        """Return the table with a parameter in doubles."""
+        """Return the table with its parameter rounded to doubles."""
         request, modulus = self.request.in_doubles(), self.modulus.in_doubles()
         has_periods = modulus.k_prime > 0
         K = complete_k(DOUBLES, modulus.k_prime) if has_periods else MAX_TIME
@@ -73,7 +75,7 @@ class FunctionTable(RealTable):
         return FunctionTable(self.points, request)
 
     def check(self) -> None:
-        """Raise LagtopError if K is infinite, so that no argument is a multiple of it."""
+        """Raise LagtopError if arguments are multiples of K and K is infinite."""
         if not self.request.in_quarters:
             return
         self.modulus.check()
@@ -104,7 +106,7 @@ class FunctionTable(RealTable):
     def columns(
         self, ar: FunctionArithmetic, x: Value, constants: FunctionConstants, known: Known
     ) -> dict[str, Value]:
-        """Return the columns at arguments; those `known` are not computed."""
+        """Return the columns at arguments x, without those that are `known`."""
         u, series = x, constants.series
         if not series:
             columns = {"u": u} | dict(self._named(ar, jacobi(ar, u, constants.modulus)))
@@ -120,14 +122,14 @@ class FunctionTable(RealTable):
         return columns
 
     def _named(self, ar: FunctionArithmetic, found: Jacobi) -> Iterator[tuple[str, Value]]:
-        """Yield am, in the unit of the request, sn, cn and dn by the names of their columns."""
+        """Yield am (in the unit of the request), sn, cn and dn with the names of their columns."""
         yield self.request.am, found.am * (1 if self.request.radians else 180 / ar.pi)
         yield from zip(("sn", "cn", "dn"), found[1:], strict=True)
 
     def _families(
         self, ar: FunctionArithmetic, at: Periods, functions: FunctionConstants, series: ThetaSeries
     ) -> Iterator[tuple[str, Callable[[], Value]]]:
-        """Yield the columns of the families by name, and how to compute each."""
+        """Yield the columns of the families by name, each with the function that computes it."""
         suffix = "_imag" if self.request.imaginary else ""
         for family in self.request.families:
             if family == "am":
@@ -150,12 +152,12 @@ class FunctionTable(RealTable):
         put_exact_values(columns, x, self.request)
 
     def digits_lost(self, x: Fraction) -> int:
-        """Return how many digits the whole periods of u and of the parameter take."""
+        """Return the number of digits taken by the whole periods of u and of the parameter."""
         return len(str(int(max(abs(x), abs(self.request.size)))))
 
 
 def times_quarter(ar: FunctionArithmetic, factor: Value, K: Value) -> Value:
-    """Return a multiple of K, which is a pair for arrays."""
+    """Return `factor` times K, which is a pair of doubles for arrays."""
     if not ar.is_array:
         return factor * K
     from ..arithmetic.double_double import two_product

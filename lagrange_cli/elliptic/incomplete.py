@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Amplitude(NamedTuple):
-    """An amplitude as whole half turns, and sine and cosine of the rest, up to a quarter turn."""
+    """An amplitude: whole half turns, and sine and cosine of the rest, up to a quarter turn."""
 
     half_turns: Value
     sine: Value
@@ -45,12 +45,12 @@ def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
     low -= error + (second_error + half_turns * PI.low)
     sine, cosine = ar.sin(rest), ar.cos(rest)
     sine, cosine = sine + low * cosine, cosine - low * sine
-    beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)  # by its rounding
+    beyond = ar.where(cosine < 0, ar.sign(rest), 0.0)  # rounded beyond a quarter turn
     return Amplitude(half_turns + beyond, ar.where(cosine < 0, -sine, sine), abs(cosine))
 
 
 def in_degrees(ar: FunctionArithmetic, phi: Value) -> Amplitude:
-    """Return an amplitude given in degrees, of which whole half turns are taken exactly."""
+    """Return an amplitude given in degrees; whole half turns are removed exactly."""
     if ar.is_array:
         import numpy as np
 
@@ -69,8 +69,8 @@ def in_degrees(ar: FunctionArithmetic, phi: Value) -> Amplitude:
 def incomplete_f(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
     """Return F(phi, k), the integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 to phi (3.1.2).
 
-    phi is any real amplitude in radians, of numpy or an mpmath context.  F(phi + n pi) is
-    F(phi) + 2 n K; for k = 1 it is infinite from a quarter turn on.
+    `phi` is any real amplitude in radians, of numpy or an mpmath context.  F(phi + n pi) is F(phi)
+    + 2 n K.  For k = 1, F is infinite from a quarter turn on.
     """
     return f_of(ar, in_radians(ar, phi), modulus)
 
@@ -79,14 +79,14 @@ def incomplete_f(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
 def incomplete_e(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
     """Return E(phi, k), the integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi.
 
-    phi is any real amplitude in radians, as in `incomplete_f`; E(phi + n pi) is E(phi) + 2 n E.
+    `phi` is any real amplitude in radians, as in `incomplete_f`.  E(phi + n pi) is E(phi) + 2 n E.
     """
     return e_of(ar, in_radians(ar, phi), modulus)
 
 
 @in_arithmetic
 def f_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
-    """Return F of an amplitude, sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1) within a turn."""
+    """Return F of an amplitude: sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1) within a turn."""
     cosine2, delta2 = _squares(ar, phi, modulus)
     within = phi.sine * carlson_rf(ar, cosine2, delta2, 1 + 0 * delta2)
     unbounded = (modulus.k_prime == 0) & ((phi.half_turns != 0) | (phi.cosine == 0))
@@ -107,7 +107,7 @@ def e_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
 
 
 def _squares(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> tuple[Value, Value]:
-    """Return cos^2 phi and 1 - k^2 sin^2 phi as a sum of squares; both 1 at a quarter turn."""
+    """Return cos^2 phi and 1 - k^2 sin^2 phi as a sum of squares; both are 1 at a quarter turn."""
     cosine2 = phi.cosine * phi.cosine
     delta2 = cosine2 + modulus.k_prime * modulus.k_prime * (1 - cosine2)
     at_quarter = phi.cosine + 0 * delta2 == 0
@@ -121,14 +121,14 @@ def _quasi_periodic(
     complete: Callable[..., Any],
     modulus: Modulus,
 ) -> Value:
-    """Return an integral from its part `within` a quarter turn and the complete one.
+    """Return an integral from its part `within` a quarter turn and the complete integral.
 
-    The complete integral of arrays is a pair of doubles: a difference keeps its digits.
+    For arrays, the complete integral is a pair of doubles, so that a difference keeps its digits.
     """
     quarters = 2 * phi.half_turns + ar.where(phi.cosine == 0, ar.sign(phi.sine), 0)
     within = ar.where(phi.cosine == 0, 0, within)
     k_prime = ar.where(modulus.k_prime == 0, 1, modulus.k_prime)
-    limit = 1 if complete is complete_e else 0  # E for k = 1; F is infinite there
+    limit = 1 if complete is complete_e else 0  # E = 1 for k = 1, where F is infinite
     if not ar.is_array:
         quarter = complete(ar, k_prime) if modulus.k_prime else limit
         return quarters * quarter + within
@@ -145,9 +145,9 @@ def _quasi_periodic(
 
 
 class AmplitudeTable(RealTable):
-    """F and E of amplitudes phi, which are in radians if the modulus is, else in degrees.
+    """Tables of F and E over amplitudes phi, in radians if the modulus is, else in degrees.
 
-    F is infinite for k = 1 from a quarter turn on.  Raises LagtopError for a modulus out of range
+    For k = 1, F is infinite from a quarter turn on.  Raises LagtopError for a modulus out of range
     and, in doubles, for amplitudes beyond 2^50 half turns.
     """
 
@@ -185,7 +185,7 @@ class AmplitudeTable(RealTable):
         return {name: x, "F": f_of(ar, phi, constants), "E": e_of(ar, phi, constants)}
 
     def known(self, x: Fraction) -> dict[str, float]:
-        """Return 0 at 0, and where F is infinite."""
+        """Return the columns that are known exactly: 0 at phi = 0, and an infinite F."""
         names = () if x else ("phi_rad", "phi_deg", "F", "E")
         known: dict[str, float] = dict.fromkeys(names, 0)
         beyond = below_quarters(1, abs(x)) < 0 if self.radians else abs(x) >= 90
@@ -194,5 +194,5 @@ class AmplitudeTable(RealTable):
         return known
 
     def digits_lost(self, x: Fraction) -> int:
-        """Return how many digits the half turns of an amplitude take."""
+        """Return the number of digits taken by the half turns of an amplitude."""
         return len(str(int(abs(x))))

@@ -1,9 +1,9 @@
-"""Jacobi's am, sn, cn, dn (Aksenov section 3.1): of numbers of many digits, or of arrays.
+"""Jacobi's am, sn, cn, dn (Aksenov section 3.1) of numbers with many digits and of arrays.
 
-Complex arguments, and any modulus: by the addition theorem (DLMF 22.8(i), 22.6.1) the functions are
-products and sums of like signs of the functions of the real part, of modulus k, and of the
-imaginary part, of modulus k'; nothing cancels.  An imaginary modulus takes those of the real part a
-quarter of a period further on; a modulus above 1 lets cn and dn change places.
+Complex arguments use the addition theorem (DLMF 22.8(i), 22.6.1).  It combines functions of the
+real part, of modulus k, and of the imaginary part, of modulus k'.  All sums have terms of like
+sign, so nothing cancels.  An imaginary modulus takes the functions of the real part a quarter
+period further on.  A modulus above 1 exchanges cn and dn.
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ class Jacobi(NamedTuple):
 def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
     """Return am, sn, cn, dn of u (3.1.3), for k in [0, 1].
 
-    numpy: real u and a modulus of shapes that broadcast; the worst error seen, also at 1e12 K and
-    at 1 - k^2 = 1e-300, was 1.2 units of eps (max(1, |f|) + |u df/du|), u less the nearest multiple
-    of 2K.  mpmath: u real or complex (am then only within |Im u| < K'), to a few eps and what
-    |u|/K costs.
+    - numpy: u is real and broadcasts with the modulus.  The worst error seen is 1.2 units of eps
+      (max(1, |f|) + |u df/du|), with u less the nearest multiple of 2K.  Tests include u = 1e12 K
+      and 1 - k^2 = 1e-300.
+    - mpmath: u is real or complex, and am is defined for |Im u| < K' only.  Results are good to a
+      few eps, less the digits that |u|/K costs.
     """
     if ar.is_array:
         from .jacobi_arrays import jacobi_of_arrays
@@ -61,8 +62,8 @@ def jacobi_at(
 ) -> Jacobi:
     """Return the functions at x = u/2K, given with all its digits, for one modulus k < 1.
 
-    At whole quarters of arrays sn, cn, dn are 0, 1, -1 and k' exactly, as in Aksenov's table 2.
-    In many digits the series of the modulus may be given.
+    At whole quarter periods, arrays of sn, cn and dn are exactly 0, 1, -1 or k', as in Aksenov's
+    table 2.  In many digits, pass the `series` of the modulus to use it again.
     """
     if ar.is_array:
         from .jacobi_arrays import jacobi_of_places
@@ -87,11 +88,11 @@ def _by_theta(ar: FunctionArithmetic, x: Periods, modulus: Modulus, series: Thet
 
 @in_arithmetic
 def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jacobi:
-    """Return am, sn, cn, dn of complex numbers u; arrays take the digits of one modulus in context.
+    """Return am, sn, cn, dn of complex u; arrays take one modulus, given in many digits.
 
-    am is not a number beyond its branch points, which are the poles next to the real axis: for a
-    modulus in [0, 1] where |Im u| > K'.  am is unwrapped for k < 1 and imaginary k; for k > 1 its
-    real part stays within a quarter of a turn.
+    Beyond its branch points, the poles next to the real axis, am is NaN.  For a modulus in [0, 1]
+    this means |Im u| > K'.  For k < 1 and imaginary k, am is unwrapped.  For k > 1 its real part
+    stays within a quarter of a turn.
     """
     k, k_prime, _ = given.modulus
     inner = (k, k_prime) if not ar.is_array else (float(k), float(k_prime))
@@ -104,7 +105,7 @@ def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jaco
 def _real(
     ar: ComplexArithmetic, u: Value, modulus: Modulus, stretch: Value
 ) -> tuple[Jacobi, Value]:
-    """Return the functions of real numbers times a factor, and the whole periods in these."""
+    """Return the functions of real numbers times a factor, and the number of whole periods."""
     k, k_prime, _ = modulus
     rate = stretch / (2 * complete_k(k.context, k_prime)) if k_prime else 0 * k
     if not ar.is_array:
@@ -122,7 +123,7 @@ def _combined(
     kind: ModulusKind,
     inner: tuple[Value, Value],
 ) -> Jacobi:
-    """Return the functions from those of the real part and of the imaginary part."""
+    """Return the functions from their values at the real part and at the imaginary part."""
     k, k_prime = inner
     am, s, c, d = real
     _, s1, c1, d1 = other
@@ -130,7 +131,7 @@ def _combined(
         s, c, d = c / d, -k_prime * s / d, k_prime / d
     slant, ratio = k * s * s1, d1 / c1
     lift = slant / c1
-    below = c1 + lift * slant  # all over cn of the imaginary part
+    below = c1 + lift * slant  # all divided by cn of the imaginary part
     sn = ar.mpc(s * ratio, c * d * s1) / below
     cn = ar.mpc(c, -s * d * s1 * ratio) / below
     dn = ar.mpc(d * d1, -k * c * lift) / below
@@ -146,5 +147,5 @@ def _combined(
 
 
 def _near(ar: ComplexArithmetic, angle: Value, am: Value) -> Value:
-    """Return an angle with the whole turns that take it next to am of the real part."""
+    """Return an angle with the whole turns added that bring it next to am of the real part."""
     return angle + 2 * ar.pi * ar.nint((am - angle) / (2 * ar.pi))

@@ -1,9 +1,9 @@
 """Jacobi's am, sn, cn, dn of arrays of real u.
 
-They come from tan(am u) = sn u/cn u, a quotient of two theta series that has no cancellation for
-|u| <= K/2; beyond, sn(K - u) : cn(K - u) = cn u : k' sn u.  Up to k = k' the series run in q; for
-larger k, by Jacobi's imaginary transformation, in q' = exp(-pi K/K').  So the nome in use is at
-most exp(-pi) and four terms are enough, however close k is to 1.
+For |u| <= K/2 they come from tan(am u) = sn u/cn u, a quotient of two theta series without
+cancellation.  For larger |u|, sn(K - u) : cn(K - u) = cn u : k' sn u.  Up to k = k' the series run
+in q.  For larger k they run in q' = exp(-pi K/K') (Jacobi's imaginary transformation).  The nome is
+then at most exp(-pi), and four terms are enough, however close k is to 1.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from .periods import Periods
 
 _INVERSE_PI = 0.3183098861837907, -1.9678676675182486e-17
 _LARGEST_ARGUMENT = 350.0
-"""Greatest argument of sinh; beyond, for k' = 0 alone, cn and dn are exponentials."""
+"""Greatest argument of sinh; beyond it, for k' = 0 only, cn and dn are exponentials."""
 _SMALL = 1e-290
-"""Size of q' below which q' = (k'/4)^2 has lost digits, being close to the end of the range."""
+"""Size below which q' = (k'/4)^2 loses digits, being close to the end of the range."""
 
 
 Powers = tuple[Value, ...]
-"""Powers, the lowest power first."""
+"""Coefficients of powers, the lowest power first."""
 JacobiArrays = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
 
 
 def jacobi_of_arrays(u: Value, modulus: Modulus) -> JacobiArrays:
-    """Return the functions of arguments and moduli of shapes that broadcast."""
+    """Return the functions of arguments and moduli that broadcast."""
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
         series = _series(modulus)
@@ -62,8 +62,11 @@ def jacobi_of_places(x: Periods, modulus: Modulus) -> JacobiArrays:
 
 
 class _Series(NamedTuple):
-    """tan(am u) = f(y) P(x)/Q(x): circular with f = tan, x = sin^2; hyperbolic with f = sinh,
-    x = q' sinh^2.  All for one modulus, or for one at each element."""
+    """The coefficients of tan(am u) = f(y) P(x)/Q(x), for one modulus or one per element.
+
+    In the circular family f = tan and x = sin^2 y; in the hyperbolic one f = sinh and x = q' sinh^2
+    y.
+    """
 
     circular: bool
     k_prime: Value
@@ -78,7 +81,7 @@ class _Series(NamedTuple):
 
 
 def _series(modulus: Modulus) -> _Series:
-    """Return the coefficients of moduli that are all of one family."""
+    """Return the coefficients for moduli that are all circular or all hyperbolic."""
     k, k_prime = modulus.k, modulus.k_prime
     finite = np.where(k_prime > 0, k_prime, 1.0)
     rate = rate_of_half_periods(finite, modulus.rest)
@@ -111,7 +114,7 @@ def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
 
 
 def _circular(q: Value, root: Value) -> tuple[Powers, Powers]:
-    """Return theta1 and theta2 in powers of sin^2, but for a factor; `root` is sqrt(k')."""
+    """Return theta1 and theta2 in powers of sin^2, up to a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
     above = 1 - 3 * q2 + 5 * q6, 4 * q2 - 20 * q6, 16 * q6
@@ -120,7 +123,7 @@ def _circular(q: Value, root: Value) -> tuple[Powers, Powers]:
 
 
 def _hyperbolic(q: Value) -> tuple[Powers, Powers]:
-    """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, but for a factor."""
+    """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, up to a factor."""
     q2 = q * q
     q4 = q2 * q2
     q8 = q4 * q4
@@ -148,15 +151,15 @@ def _of_arguments(u: Array, series: _Series) -> JacobiArrays:
 def _evaluate(
     halves: Array, since: Array, u: Value, series: _Series, low: Value = 0.0
 ) -> JacobiArrays:
-    """Return the functions so many periods 2K `since` whole ones; at u itself where k' = 0.
+    """Return the functions at `halves` + `since` periods 2K, or at u itself if k' = 0.
 
-    `low` is what rounding took from `since`.
+    `low` is the part of `since` lost to rounding.
     """
     k_prime = series.k_prime
     far = abs(since) > 0.25
     side = np.copysign(1.0, since)
     y = np.where(far, (0.5 * side - since) - low, since) * series.stretch
-    if np.any(k_prime == 0):  # without a period
+    if np.any(k_prime == 0):  # k = 1 has no period
         endless = np.broadcast_to(k_prime == 0, halves.shape)
         halves, far = np.where(endless, 0.0, halves), far & ~endless
         y = np.where(endless, u, y)
@@ -176,7 +179,7 @@ def _evaluate(
 
 
 def _tangent(y: Array, series: _Series) -> tuple[Array, Array]:
-    """Return numerator and denominator of tan(am u)."""
+    """Return the numerator and denominator of tan(am u)."""
     if series.circular:
         f = np.tan(y)
         square = f * f

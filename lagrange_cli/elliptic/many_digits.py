@@ -1,8 +1,8 @@
 """Many digits of functions of complex numbers, on which two precisions of mpmath agree.
 
-This is no proof: the same cancellation may spoil both.  They must agree on eight digits more than
-are printed, and a computed 0 or pole counts as too few digits: it has to be known from its formula.
-Real functions are proved (see `tables.ProvedNumbers`).
+Agreement is no proof, since the same cancellation could spoil both.  The two must agree to eight
+digits more than are printed.  A computed 0 or pole counts as too few digits, because it must be
+known from its formula.  Real functions are proved (see `tables.ProvedNumbers`).
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from ..arithmetic.text import NumberText
 from ..errors import LagtopError
 
 _GUARD = 8
-"""Digits that must agree beyond those that are printed."""
+"""Digits that must agree beyond the printed digits."""
 
 
 class ManyDigits(Scalars, Unenclosed, MPContext):  # type: ignore[misc]
     """The arithmetic of mpmath: any number of digits, complex numbers, and special functions.
 
-    It is a context of its own: nobody else's precision is touched.  By default it has the digits
-    for constants that are rounded to doubles; 34 would do, the rest is margin.
+    Each instance is a context of its own and leaves other precisions alone.  The default suits
+    constants that are rounded to doubles: 34 digits would do, and the others are margin.
     """
 
     def __init__(self, digits: int = 50) -> None:
@@ -40,9 +40,9 @@ class ManyDigits(Scalars, Unenclosed, MPContext):  # type: ignore[misc]
 
 
 class AgreeingNumbers:
-    """Numbers of a table with so many significant digits, on which two precisions agree.
+    """Numbers of a table with `digits` significant digits, on which two precisions agree.
 
-    The contexts are kept, since making one takes longer than most numbers.
+    Contexts are cached, since making one takes longer than computing most numbers.
     """
 
     def __init__(self, digits: int) -> None:
@@ -50,17 +50,17 @@ class AgreeingNumbers:
         self.context = cache(ManyDigits)
 
     def require(self, ar: ManyDigits, size: Any) -> None:
-        """Raise TooFewDigitsError where a number of this size has too few behind the point."""
+        """Raise TooFewDigitsError if a number of this size has too few digits after the point."""
         if size > 1 and ar.log10(size) + self.digits + 5 > ar.dps:
             raise TooFewDigitsError
 
     def texts(
         self, compute: Callable[[ManyDigits], Mapping[str, Any]], known: Collection[str] = ()
     ) -> dict[str, Any]:
-        """Return numbers written out, all digits right; texts and None as they are.
+        """Return numbers as text with all digits correct; texts and None are left as they are.
 
-        `known` are the names of the numbers that may be 0 or not finite (which makes an empty
-        text).  Raises LagtopError where the digits do not settle.
+        `known` names the numbers that may be 0, or not finite and then an empty text.  Raises
+        LagtopError if the digits do not settle.
         """
         wanted = self.digits + _GUARD
         most = 20 * wanted + 4000
@@ -70,7 +70,7 @@ class AgreeingNumbers:
             ar, working = self.context(working), working * 3 // 2
             try:
                 values = compute(ar)
-            except (TooFewDigitsError, ZeroDivisionError):  # a divisor of which nothing is left
+            except (TooFewDigitsError, ZeroDivisionError):  # a divisor cancelled to 0
                 continue
             if any(_unproved(ar, value) for name, value in values.items() if name not in known):
                 continue
@@ -78,16 +78,16 @@ class AgreeingNumbers:
             if texts == previous:
                 return {name: _text(ar, x, self.digits) for name, x in values.items()}
             previous = texts
-        raise LagtopError(f"{self.digits} digits did not settle with {most} to work with")
+        raise LagtopError(f"{self.digits} digits did not settle at a working precision of {most}")
 
 
 def _unproved(ar: ManyDigits, value: Any) -> bool:
-    """Return whether a number is 0 or no number, which takes a proof."""
+    """Return whether a number is 0 or not finite, which would take a proof."""
     return value is not None and not isinstance(value, str) and not (value and ar.isfinite(value))
 
 
 def _text(ar: ManyDigits, value: Any, digits: int) -> Any:
-    """Return a number as text, empty where it is not finite; texts and None stay."""
+    """Return a number as text, empty if it is not finite; texts and None are left as they are."""
     if value is None or isinstance(value, str):
         return value
     if not ar.isfinite(value):

@@ -1,4 +1,4 @@
-"""The modulus, by whichever of its names keeps the digits, and its constants and their record."""
+"""The modulus, given by the quantity that keeps its digits; its constants and their record."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Modulus(NamedTuple):
     k: Value
     k_prime: Value
     rest: Value = 0.0
-    """What rounding took from k' (arrays only): far away, the period must be known better."""
+    """The part of k' lost to rounding (arrays only); the period needs it far away from 0."""
 
 
 class Constants(NamedTuple):
-    """K, E and the nome q of k; K', E' of the complement.  q = 1, and K has no value, for k = 1."""
+    """K, E and the nome q of k; K' and E' of the complement; for k = 1, K is inf and q = 1."""
 
     K: Value
     K_prime: Value
@@ -49,10 +49,10 @@ def modulus(
 ) -> Modulus:
     """Return the modulus from exactly one of k, k', m = k^2, the modular angle, the nome q.
 
-    The angle arcsin k is in radians.  Give the complement k' where k is close to 1.
+    The angle arcsin k is in radians.  Pass the complement k' if k is close to 1.
 
     `ar` is numpy or an mpmath context.  Raises LagtopError for a value outside [0, 1] (the angle:
-    [0, pi/2]; the nome: [0, 1)) and for none or several of them.
+    [0, pi/2]; the nome: [0, 1)), and unless exactly one value is given.
     """
     names = {"k": k, "k_prime": k_prime, "m": m, "angle": angle, "q": q}
     named = [(name, value) for name, value in names.items() if value is not None]
@@ -67,7 +67,7 @@ def modulus(
         value = ar.convert(value)
     most = ar.pi / 2 if name == "angle" else 1
     inside = value >= 0
-    if ar.everywhere(inside):  # what balls leave open asks for more digits
+    if ar.everywhere(inside):  # an open comparison of balls asks for more digits
         inside = value < 1 if name == "q" else value <= most
     if not ar.everywhere(inside):
         end = {"angle": "pi/2]", "q": "1)"}.get(name, "1]")
@@ -92,12 +92,12 @@ def constants(ar: FunctionArithmetic, modulus: Modulus) -> Constants:
 
 
 def exact_modulus(ar: FunctionArithmetic, k: Fraction) -> Modulus:
-    """Return a modulus in [0, 1], whose complement keeps its digits however close k is to 1."""
+    """Return a modulus in [0, 1] whose complement keeps its digits however close k is to 1."""
     return Modulus(ar.convert(k), ar.sqrt(ar.convert(1 - k * k)))
 
 
 def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
-    """Return the modulus that doubles stand for in balls or an mpmath context."""
+    """Convert a modulus in doubles to balls or to an mpmath context."""
     k, k_prime, rest = map(float, modulus)
     return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
@@ -125,8 +125,8 @@ def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
         power = small ** (n * n)
         theta3, theta4 = theta3 + 2 * power, theta4 + 2 * (-1) ** n * power
     if ar.is_array and (root == 0)[large].any():
-        raise LagtopError("q must be at most 0.9934 in doubles, whose range k' leaves beyond")
-    # the sums leave out less than 4 small^(n^2), as every term is less than half of the one before
+        raise LagtopError("q must be at most 0.9934 in doubles: k' underflows beyond")
+    # each term is less than half of the one before: the truncation error is below 4 small^(n^2)
     theta2, theta3, theta4 = (
         ar.widened(x, lambda: (power,), lambda power: 4 * power, values_only=True)
         for x in (theta2, theta3, theta4)
@@ -136,7 +136,7 @@ def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
 
 
 def _complement(ar: FunctionArithmetic, k: Value) -> tuple[Value, Value]:
-    """Return sqrt(1 - k^2) and what rounding takes from it."""
+    """Return sqrt(1 - k^2) and the part of it lost to rounding."""
     if not ar.is_array:
         return ar.sqrt((1 - k) * (1 + k)), 0 * k
     import numpy as np
@@ -162,7 +162,7 @@ _LEAST_BELOW_1 = Fraction("1e-17")
 
 
 class ModulusInput(NamedTuple):
-    """A modulus as the user named it: k, k_prime, modular_angle (degrees, or radians) or nome."""
+    """A modulus as given: k, k_prime, modular_angle (degrees, or radians) or nome."""
 
     name: str
     value: Fraction
@@ -190,14 +190,14 @@ class ModulusInput(NamedTuple):
         return zeros | ({"k_prime", "nome_prime"} if complement_vanishes else set())
 
     def in_digits(self, ar: FunctionArithmetic) -> Modulus:
-        """Return the modulus in balls or an mpmath context, k and k' with all their digits.
+        """Return the modulus in balls or an mpmath context, with all digits of k and k'.
 
-        Raises LagtopError where it is out of range.
+        Raises LagtopError if it is out of range.
         """
         self.check()
         if self.name == "nome":
             if isinstance(ar, Balls) and 1 - self.value < _LEAST_BELOW_1:
-                raise LagtopError("nome must be at most 1 - 1e-17: k' is beyond decimals", "nome")
+                raise LagtopError("nome must be at most 1 - 1e-17: k' is too small beyond", "nome")
             return modulus(ar, q=ar.convert(self.value))
         if self.name == "modular_angle":
             angles = (None, self.value) if self.radians else (self.value, None)
@@ -207,9 +207,9 @@ class ModulusInput(NamedTuple):
         return exact if self.name == "k" else Modulus(exact.k_prime, exact.k)
 
     def in_doubles(self) -> Modulus:
-        """Return the modulus rounded once, k' as two doubles.
+        """Return the modulus rounded once, with k' as two doubles.
 
-        Raises LagtopError where it is out of range, or k' is too small for a double.
+        Raises LagtopError if it is out of range, or if k' is too small for a double.
         """
 
         def rounded(digits: int) -> Modulus:
@@ -225,7 +225,7 @@ class ModulusInput(NamedTuple):
 
 
 def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[str, Value]:
-    """Return the record of a modulus in the digits of an arithmetic; None for what is infinite."""
+    """Return the record of a modulus in some arithmetic; None for infinite constants."""
     exact, zeros = modulus_input.in_digits(ar), modulus_input.zeros()
     K, K_prime, E, E_prime, q = constants(ar, exact)
     other = constants(ar, Modulus(exact.k_prime, exact.k)).q
@@ -245,7 +245,7 @@ def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[st
 
 
 def constants_record(modulus_input: ModulusInput, digits: int | None) -> dict[str, Any]:
-    """Return the record, each number the nearest double or to so many significant digits."""
+    """Return the record of a modulus, correctly rounded to doubles or to `digits` digits."""
     return ProvedNumbers(digits).of(
         lambda ar: constants_in(ar, modulus_input), dict.fromkeys(modulus_input.zeros(), 0)
     )

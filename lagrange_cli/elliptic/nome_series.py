@@ -1,11 +1,12 @@
-"""The nome series of Aksenov (3.1.4) to (3.1.8), as endless partial sums, and their table.
+"""Aksenov's nome series (3.1.4) to (3.1.8) as endless partial sums, and their table.
 
-For 0 < k < 1 and real u, or complex u with |Im u| < K'; `ar` is an mpmath context.  They show how a
-series converges; `jacobi` and `complete_k` are the way to compute.
+They hold for 0 < k < 1 and real u, or complex u with |Im u| < K'; `ar` is an mpmath context.  Use
+them to study convergence, and `jacobi` and `complete_k` to compute.
 
-The bounds hold for real u.  What n terms leave out has terms smaller in size than those of a
-geometric series, whose sum is the bound: |sin| and |cos| are at most 1, and each weight is at most
-q or k^2 times the one before, but for a factor that falls or is replaced by its greatest value.
+The error bounds hold for real u.  The terms beyond the n-th are bounded in size by a geometric
+series, whose sum is the bound.  This holds because |sin| and |cos| are at most 1 and each weight is
+at most q or k^2 times the one before.  Any further factor decreases, or is replaced by its greatest
+value.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from .tables import Rows
 
 ErrorBound = Callable[[Value], Value]
-"""A bound of the error after n terms."""
+"""A bound on the error after n terms, as a function of n."""
 
 
 def sn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
@@ -45,7 +46,7 @@ def cn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Valu
 def _odd_sums(
     ar: FunctionArithmetic, u: Value, modulus: Modulus, sign: int, wave: Callable[[Value], Value]
 ) -> Iterator[Value]:
-    """Yield sums of the waves of odd order, with a sign beside q^(2n-1)."""
+    """Yield the partial sums of the waves of odd order, with `sign` before q^(2n-1)."""
     q, angle, scale = _parts(ar, u, modulus)
     root = ar.sqrt(q)
     return accumulate(scale * root**n / (1 + sign * q**n) * wave(n * angle) for n in count(1, 2))
@@ -67,10 +68,10 @@ def k_sums(ar: FunctionArithmetic, modulus: Modulus) -> Iterator[Value]:
 
 
 def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
-    """Return 2 pi/(k K) q^(n+1/2)/((1 - q)(1 - q^(2n+1))) of n, above the error of (3.1.4).
+    """Return the bound 2 pi/(k K) q^(n+1/2)/((1 - q)(1 - q^(2n+1))) on the error of (3.1.4).
 
-    Beyond the n-th term 1/(1 - q^(2j-1)) <= 1/(1 - q^(2n+1)), and the sum of q^(j-1/2) over j > n
-    is q^(n+1/2)/(1 - q).
+    Beyond the n-th term, 1/(1 - q^(2j-1)) <= 1/(1 - q^(2n+1)).  The sum of q^(j-1/2) over j > n is
+    q^(n+1/2)/(1 - q).
     """
     q, _, scale = _parts(ar, ar.convert(0), modulus)
     first = scale * ar.sqrt(q) / (1 - q)
@@ -79,9 +80,9 @@ def sn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
 
 
 def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
-    """Return 2 pi/(k K) q^(n+1/2)/(1 - q) of n, above the error of n terms of (3.1.5).
+    """Return the bound 2 pi/(k K) q^(n+1/2)/(1 - q) on the error of n terms of (3.1.5).
 
-    There 1/(1 + q^(2j-1)) < 1, and the rest is as in `sn_bound`.
+    Here 1/(1 + q^(2j-1)) < 1, and the sum is the same as in `sn_bound`.
     """
     q, _, scale = _parts(ar, ar.convert(0), modulus)
     first, power = scale * ar.sqrt(q) / (1 - q), _falling(ar, ar.log(q))
@@ -89,9 +90,9 @@ def cn_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
 
 
 def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
-    """Return 2 q^(n+1)/((n+1)(1 - q)) of n, above the error in radians of n terms of (3.1.7).
+    """Return the bound 2 q^(n+1)/((n+1)(1 - q)) on the error of n terms of (3.1.7) in radians.
 
-    There 1/(j (1 + q^2j)) < 1/(n+1) for j > n, and the sum of q^j is q^(n+1)/(1 - q).
+    For j > n, 1/(j (1 + q^2j)) < 1/(n+1), and the sum of q^j is q^(n+1)/(1 - q).
     """
     q, _, _ = _parts(ar, ar.convert(0), modulus)
     first, power = 2 * q / (1 - q), _falling(ar, ar.log(q))
@@ -99,11 +100,15 @@ def am_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
 
 
 def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
-    """Return k^2n/((2n + 1/2) k'^2) of n, or K if that is less: above the error of (3.1.8).
+    """Return the bound k^2n/((2n + 1/2) k'^2), or K if that is less, on the error of (3.1.8).
 
-    With c_j = 1 3 ... (2j-1)/(2 4 ... 2j): c_j^2 (j + 1/4) grows with j, by the factor
-    (16j^3 + 36j^2 + 24j + 5)/(16j^3 + 36j^2 + 24j + 4), to 1/pi (Wallis's product).  So the terms
-    pi/2 c_j^2 k^2j, j >= n, are below k^2j/(2n + 1/2), and the sum of k^2j is k^2n/k'^2.
+    Let c_j = 1 3 ... (2j-1)/(2 4 ... 2j).  From each j to the next, c_j^2 (j + 1/4) grows by the
+    factor
+
+        (16j^3 + 36j^2 + 24j + 5)/(16j^3 + 36j^2 + 24j + 4)
+
+    and tends to 1/pi (Wallis's product).  So for j >= n the terms pi/2 c_j^2 k^2j are below
+    k^2j/(2n + 1/2), and the sum of k^2j is k^2n/k'^2.
     """
     complement = modulus.k_prime * modulus.k_prime
     half, power = ar.convert(0.5), _falling(ar, ar.log1p(-complement))
@@ -112,7 +117,7 @@ def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
 
 
 def _falling(ar: FunctionArithmetic, fall: Value) -> ErrorBound:
-    """Return exp(n fall) of n, or what is more: exp(-10^6), as exponents take time to reduce."""
+    """Return exp(n fall) as a function of n, but at least exp(-10^6), which is quicker."""
     return lambda n: ar.exp(max(n * fall, -(10**6)))
 
 
@@ -124,14 +129,14 @@ def _parts(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> tuple[Value, V
 
 
 TOLERANCE = "1e-16"
-"""The error, in the unit of the column, that the needed terms are counted for."""
+"""Tolerance of `SeriesTable.needed`, in the unit of the column."""
 
 _DIGITS = 400
-"""Enough for every error that a double can hold."""
+"""Digits enough for every error that a double can hold."""
 
 
 class _Series(NamedTuple):
-    """The partial sums of a series, what they tend to, and a bound of the error after n terms."""
+    """The partial sums of a series, their limit, and a bound on the error after n terms."""
 
     sums: Iterator[Value]
     exact: Value
@@ -139,10 +144,10 @@ class _Series(NamedTuple):
 
 
 class SeriesTable(TableOfFunctions):
-    """Partial sums 1 to `terms`, each with its error and a bound of the error that is proved.
+    """Partial sums 1 to `terms`, each with its error and a proved bound on the error.
 
-    They are of (3.1.8) for K and, at u (a factor of K if `in_quarters`), of (3.1.7), (3.1.4),
-    (3.1.5) for am, sn, cn.
+    The series are (3.1.8) for K and, at u, (3.1.7), (3.1.4) and (3.1.5) for am, sn and cn.  With
+    `in_quarters`, u is in units of K.
     """
 
     def __init__(
@@ -153,9 +158,9 @@ class SeriesTable(TableOfFunctions):
         *,
         in_quarters: bool = False,
     ) -> None:
-        """Raise LagtopError for k = 0 and k = 1, where the series are limits, and for a distant u.
+        """Raise LagtopError unless 0 < k < 1 and u is within 2^50 periods of 0.
 
-        That is one beyond 2^50 periods.
+        At k = 0 and k = 1 the series exist as limits only.
         """
         ar = ManyDigits(_DIGITS)
         modulus = modulus_input.in_digits(ar)
@@ -173,7 +178,7 @@ class SeriesTable(TableOfFunctions):
         self.count, self.tolerance = terms, ar.mpf(TOLERANCE)
 
     def needed(self) -> str:
-        """Return how many terms make the bound of each column at most 1e-16, in words."""
+        """Return, as text, how many terms bring the bound of each column down to 1e-16."""
         counts = {name: terms_needed(x.bound, self.tolerance) for name, x in self.series.items()}
         return ", ".join(
             f"{name} {int(n) if n < 10**9 else n.context.nstr(n, 3)}" for name, n in counts.items()
@@ -212,14 +217,15 @@ def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[st
 
 
 def terms_needed(bound: ErrorBound, tolerance: Value) -> Value:
-    """Return the least number of terms from which a falling bound is at most the tolerance.
+    """Return the least number of terms for which a falling bound is at most the tolerance.
 
-    It is a number of the context, right to 300 bits, as k may be as close to 1 as it likes.
+    The result is a number of the context, correct to 300 bits, since k may be arbitrarily close to
+    1.
     """
     ar = tolerance.context
 
     def bisected(few: Value, enough: Value, terms: Callable[[Value], Value]) -> Value:
-        """Return enough terms, next to too few of them."""
+        """Return the least number that is enough, by bisection."""
         while enough - few > max(1, ar.ldexp(enough, -min(300, ar.prec - 10))):
             middle = (few + enough) // 2
             few, enough = (middle, enough) if bound(terms(middle)) > tolerance else (few, middle)

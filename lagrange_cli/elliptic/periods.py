@@ -1,8 +1,8 @@
-"""Arguments counted in periods 2K and 2iK': whole ones, and rests that keep their digits.
+"""Arguments in periods 2K and 2iK': whole periods, and rests that keep their digits.
 
-Next to a pole of a Zeta function, or far from zero, all that matters is the rest; so 1/(2K) is held
-as a sum of three doubles, and the rest as a sum of two.  A complex number u is 2K (x + y tau) with
-real x and y, each an integer and a rest within 1/2; tau = i K'/K.
+Next to a pole of a Zeta function, or far from zero, only the rest matters.  So 1/(2K) is held as a
+sum of three doubles, and the rest as a sum of two.  A complex number u is 2K (x + y tau) with real
+x and y and tau = i K'/K.  Each of x and y is an integer and a rest within 1/2.
 
 NumPy is loaded for arrays only.
 """
@@ -32,12 +32,12 @@ Complex = Value
 
 
 class Periods(NamedTuple):
-    """A real argument in periods: whole ones and the rest, which is within half of one."""
+    """A real argument in periods: whole periods, and a rest within half a period."""
 
     turns: Value
     rest: Value
     low: Value = 0.0
-    """What rounding took from the rest (arrays only)."""
+    """The part of the rest lost to rounding (arrays only)."""
 
     def half_further(self, ar: FunctionArithmetic) -> Periods:
         """Return the place half a period further on."""
@@ -51,13 +51,13 @@ class Periods(NamedTuple):
 
 
 def whole_and_rest(ar: FunctionArithmetic, x: Value) -> Periods:
-    """Return a real number of periods as whole ones and the rest."""
+    """Split a real number of periods into whole periods and the rest."""
     turns = ar.nint(x)
     return Periods(turns, x - turns)
 
 
 def reduced(u: Array, rate: Triple) -> Periods:
-    """Return real arguments in periods by the rate 1/(2K), for |u| up to 1e290."""
+    """Convert real arguments to periods by the rate 1/(2K), for |u| up to 1e290."""
     import numpy as np
 
     from ..arithmetic.double_double import two_product, two_sum
@@ -75,7 +75,7 @@ def reduced(u: Array, rate: Triple) -> Periods:
 
 
 def negligible(ar: FunctionArithmetic) -> float:
-    """Return -log of the largest number that does not matter beside 1."""
+    """Return -log of the largest number that is negligible beside 1."""
     magnitude: float = ar.magnitude
     return 2.0 - math.log(10) * magnitude
 
@@ -112,7 +112,7 @@ class Coordinate(NamedTuple):
     rest: Fine
 
     def exactly(self) -> Fine:
-        """Return the sum to all its digits."""
+        """Return the sum with all its digits."""
         return fine_whole(self) + self.rest
 
     def total(self) -> Value:
@@ -138,8 +138,8 @@ class Place(NamedTuple):
     def shifted(self, ar: FunctionArithmetic, by: Place, sign: int) -> Place:
         """Return the place of the sum or the difference of the rests of two places.
 
-        Its rest along 2K may be a little more than 1/2, so that two places next to each other are
-        seldom in different cells.
+        Its rest along 2K may be slightly more than 1/2, so that neighbouring places are seldom in
+        different cells.
         """
         x, y = (a.rest + sign * b.rest for a, b in zip(self, by, strict=True))
         across = coordinate_of(ar, x)
@@ -153,32 +153,32 @@ _WIDE = 0.52
 
 
 class Lattice(NamedTuple):
-    """The periods of a modulus, k strictly between 0 and 1 after its reduction."""
+    """The periods of a modulus, reduced to k strictly between 0 and 1."""
 
     kind: ModulusKind
     circular: bool
-    """Whether the series run in the nome of k <= k', rather than in that of k'."""
+    """Whether the series run in the nome of k (k <= k'), not in the nome of k'."""
     steepness: Value
     """pi K'/K or pi K/K', whichever is at least pi."""
     ratio: Value
     """K'/K."""
     scale: Value
-    """Half periods along 2K for each unit of the argument, stretch/(2K)."""
+    """Half periods along 2K per unit of the argument, stretch/(2K)."""
     along: Triple
-    """What a real part is multiplied by."""
+    """Factor of real parts, to three times the precision of doubles."""
     up: Triple
-    """What an imaginary part is multiplied by."""
+    """Factor of imaginary parts, to three times the precision of doubles."""
     across: Value
     """stretch/(2K') in many digits."""
     steep: Fine
-    """The steepness, to go with rests."""
+    """The steepness, in the type of rests."""
     bend: Fine
     """1/(1 + (K'/K)^2)."""
     lift: Fine
     """pi K'/K."""
 
     def rounded(self, ar: FunctionArithmetic) -> Lattice:
-        """Return the lattice with its constants in doubles, and those that go with rests in pairs.
+        """Return the lattice in doubles, with pairs of doubles for constants that multiply rests.
 
         `ar` is the arithmetic of arrays.
         """
@@ -189,7 +189,7 @@ class Lattice(NamedTuple):
 
 
 def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
-    """Return the periods of a modulus.  Raises LagtopError where k is 0 or 1: there is but one."""
+    """Return the periods of a modulus; raise LagtopError for k = 0 and 1, which have only one."""
     k, k_prime, _ = given.modulus
     if not (k and k_prime):
         raise LagtopError("k must not be 0 or 1 for theta functions of complex arguments", "k")
@@ -213,7 +213,7 @@ def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
 
 
 def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
-    """Return the place of complex numbers; arrays keep their digits far away."""
+    """Return the place of complex numbers; arrays keep their digits far from 0."""
     if not ar.is_array:
         return Place(
             coordinate_of(ar, ar.re(u) * periods.scale),
@@ -226,13 +226,13 @@ def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
 
 
 def coordinate_of(ar: FunctionArithmetic, x: Fine) -> Coordinate:
-    """Return a number of periods as whole ones and a rest."""
+    """Split a number of periods into whole periods and a rest."""
     whole = ar.nint(coarse(x))
     return Coordinate(whole, x - type(x)(whole))
 
 
 def fine(ar: FunctionArithmetic, value: Value) -> Fine:
-    """Return a many-digit number as one that goes with the rests of places."""
+    """Convert a number with many digits to the type of rests."""
     if not ar.is_array:
         return value
     from ..arithmetic.arrays import PAIRS
@@ -241,10 +241,10 @@ def fine(ar: FunctionArithmetic, value: Value) -> Fine:
 
 
 def fine_whole(coordinate: Coordinate) -> Fine:
-    """Return the whole periods of a coordinate as a number that goes with rests."""
+    """Return the whole periods of a coordinate in the type of rests."""
     return type(coordinate.rest)(coordinate.whole)
 
 
 def coarse(x: Fine) -> Value:
-    """Return the nearest doubles, or a number of a context as it is."""
+    """Return the nearest doubles, or a number of a context unchanged."""
     return getattr(x, "high", x)

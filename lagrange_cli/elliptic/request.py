@@ -1,4 +1,4 @@
-"""What a table of functions of one modulus is asked for: modulus, families, and arguments."""
+"""Requests for tables of functions of one modulus, and the values that are known exactly."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ THIRD = ("01", "00", "11")
 
 
 class FunctionRequest(NamedTuple):
-    """What to evaluate: some families of functions, Omega and Pi with their parameter."""
+    """A request: a modulus, families of functions, and the parameter of Omega and Pi."""
 
     modulus: ModulusInput | ExactComplex
-    """A modulus in [0, 1] by one of its names, or one that is imaginary or above 1."""
+    """A modulus in [0, 1] by one of its names, or a number that is imaginary or above 1."""
     families: tuple[str, ...] = ("am",)
     """Some of am (with sn, cn and dn), theta, zeta, omega and pi."""
     parameter: ExactComplex = ExactComplex(Fraction(0))
     imaginary: bool = False
-    """Whether a table of real functions has an imaginary parameter, of which 0i is one."""
+    """Whether the parameter of a table of real functions is imaginary (0i counts as imaginary)."""
     radians: bool = False
     in_quarters: bool = False
-    """Whether the arguments, which are real, are factors of K."""
+    """Whether the arguments are real multiples of K."""
 
     @property
     def am(self) -> str:
@@ -49,27 +49,27 @@ class FunctionRequest(NamedTuple):
 
     @property
     def size(self) -> Fraction:
-        """The parameter of a table of real functions or, of an imaginary one, the parameter/i."""
+        """The parameter of a table of real functions, divided by i if it is imaginary."""
         return self.parameter.imag if self.imaginary else self.parameter.real
 
     @property
     def has_parameter(self) -> bool:
-        """Whether Omega or Pi are among the families."""
+        """Whether Omega or Pi is among the families."""
         return bool({"omega", "pi"} & set(self.families))
 
     def in_doubles(self) -> FunctionRequest:
-        """Return the request with the parameter that its nearest double is."""
+        """Return the request with its parameter rounded to doubles."""
         return self._replace(parameter=self.parameter.nearest())
 
 
 class ComplexPoints(NamedTuple):
-    """Complex arguments by their real parts and, if some are not real, their imaginary parts."""
+    """Complex arguments: their real parts and, unless all are real, their imaginary parts."""
 
     real: Points
     imag: Points | None = None
 
     def blocks(self) -> Iterator[Value]:
-        """Yield all of them as complex arrays."""
+        """Yield all arguments as complex arrays."""
         if self.imag is None:
             yield from (block + 0j for block in self.real.blocks())
         else:
@@ -77,7 +77,7 @@ class ComplexPoints(NamedTuple):
             yield from (real + 1j * imag for real, imag in pairs)
 
     def exactly(self) -> Iterator[ExactComplex]:
-        """Yield every one exactly."""
+        """Yield every argument exactly."""
         if self.imag is None:
             yield from map(ExactComplex, self.real.decimals())
         else:
@@ -89,14 +89,14 @@ VANISH = {
     "param": "omega01 omega00 omega11 pi01 pi00",
     "k": "theta11 theta10 zeta01 zeta00 omega01 omega00 pi01 pi00",
 }
-"""The columns that are exactly 0 where u, the parameter or k is; no other is, at rational u."""
+"""The columns that are 0 if u, the parameter or k is 0; no others vanish at rational u."""
 
 
 def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
-    """Return the columns that are exactly 0 at u, and not a number where they have a pole.
+    """Return the columns that are known exactly at u: 0, or NaN at a pole.
 
-    K is transcendental for algebraic k (Schneider 1937), so that u = 0 and u = +-v are the only
-    rational places to think of.
+    K is transcendental for algebraic k (Schneider 1937), so only the rational places u = 0 and u =
+    +-v matter.
     """
     name, value, _ = request.real_modulus
     suffix = "_imag" if request.imaginary else ""
@@ -126,8 +126,8 @@ def known_values(u: Fraction, request: FunctionRequest) -> dict[str, float]:
 def _at_quarter(quarter: int, suffix: str) -> dict[str, float]:
     """Return the columns that are 0, 1, -1 or a pole at the multiples quarter + 4n of K.
 
-    These are the entries of Aksenov's table 2, and what follows for theta and Zeta functions and
-    the Omega functions of a parameter.  dn is k' at odd quarters.
+    The values are the entries of Aksenov's table 2, and their consequences for theta and Zeta
+    functions and for the Omega functions of a parameter.  At odd quarters, dn is k'.
     """
     odd = quarter % 2
     known: dict[str, float] = {"sn": (0, 1, 0, -1)[quarter], "cn": (1, 0, -1, 0)[quarter]}
@@ -138,7 +138,7 @@ def _at_quarter(quarter: int, suffix: str) -> dict[str, float]:
 
 
 def put_exact_values(table: dict[str, Array], u: Array, request: FunctionRequest) -> None:
-    """Put what is known at u = 0, at whole multiples of K and at poles in its place."""
+    """Put exact values into a table at u = 0, at whole multiples of K and at poles."""
     import numpy as np
 
     places = {Fraction(0): u == 0}
@@ -156,24 +156,24 @@ def put_exact_values(table: dict[str, Array], u: Array, request: FunctionRequest
 
 
 _RIGHT = ModulusInput("modular_angle", Fraction(45))
-"""The modulus sin 45 degrees, of which K' = K."""
+"""The modulus sin 45 degrees, for which K' = K."""
 
 
 class Known(NamedTuple):
-    """Parts that may be 0, and columns that are not numbers."""
+    """Parts that may be exactly 0, and columns that are NaN."""
 
     parts: frozenset[str]
     poles: frozenset[str]
     turns: frozenset[str] = frozenset()
-    """Parts that are whole multiples of a quarter turn, of which rounding leaves a trace."""
+    """Parts that are whole multiples of a quarter turn, up to rounding."""
 
     def names(self) -> set[str]:
-        """Return all parts that may be 0 or not a number."""
+        """Return all parts that may be 0 or NaN."""
         split = {f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")}
         return split | self.parts | self.turns
 
     def cleared(self, ar: ManyDigits, parts: dict[str, Value]) -> dict[str, Value]:
-        """Return all parts, those of no turn as 0: a trace is far smaller than a quarter turn."""
+        """Return all parts, with 0 for `turns` that are 0 up to rounding."""
         trace = ar.mpf(10) ** (-ar.dps // 2)
         none = {name for name in self.turns & parts.keys() if abs(parts[name]) < trace}
         return {name: 0 * part if name in none else part for name, part in parts.items()}
@@ -209,7 +209,7 @@ def known_parts(u: ExactComplex, request: FunctionRequest, given: AnyModulus) ->
 
 
 def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
-    """Return the parts of Omega or Pi that vanish by symmetry; half turns may be none."""
+    """Return the parts of Omega or Pi that vanish by symmetry, up to half turns."""
     parts = ""
     if not (any(u) and any(v)):
         parts = "re im"
@@ -224,12 +224,14 @@ def _third(family: str, u: ExactComplex, v: ExactComplex) -> str:
 def _turns(
     u: ExactComplex, v: ExactComplex, modulus: ModulusInput | ExactComplex
 ) -> frozenset[str]:
-    """Return the parts that are multiples of a quarter turn where u and v are on symmetric lines.
+    """Return the parts that are multiples of a quarter turn for u and v on symmetric lines.
 
-    Omega(u, v) is Omega(v, u), but for the odd theta function and half turns; so it is real where u
-    is conj v or -conj v.  For K' = K (or K' = K - iK, of k = i) theta(iu) is theta(u), i theta(u)
-    of the odd one, times exp(pi u^2/4K^2).  On the diagonals conj u is iu or -iu; so Pi is real
-    where u and v are on one of them, and imaginary where they are on both.
+    Omega(u, v) is Omega(v, u), except for the odd theta function and half turns.  It is therefore
+    real if u is conj v or -conj v.
+
+    If K' = K, or K' = K - iK for k = i, theta(iu) is exp(pi u^2/4K^2) times theta(u).  The odd
+    function has a further factor i.  On the diagonals conj u is iu or -iu.  So Pi is real
+    if u and v are on the same diagonal, and imaginary if they are on different ones.
     """
     if not (all(u) and all(v)):
         return frozenset()
@@ -244,7 +246,7 @@ def _turns(
 
 
 def _beyond(u: ExactComplex, given: AnyModulus) -> bool:
-    """Return whether u is beyond the branch points of am."""
+    """Return whether u lies beyond the branch points of am."""
     k = given.modulus.k
     if not k:
         return False

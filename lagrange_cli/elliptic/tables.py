@@ -1,8 +1,8 @@
 """One engine for the tables of functions; each table declares its columns.
 
-With N digits every number is rounded from a proof or, of complex functions, from two precisions
-that agree.  In doubles a table is computed in arrays; a short one of real functions is computed as
-enclosures, which takes less time than to load NumPy.
+With N digits, every number of a real function is rounded from a proof.  Numbers of complex
+functions are rounded if two precisions agree.  In doubles a table is computed in arrays.  A short
+table of real functions is computed as enclosures, which takes less time than loading NumPy.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ if TYPE_CHECKING:
     Known = Mapping[str, float]
 
 _MOST_FOR_DOUBLES = 120
-"""Digits beyond which arrays of doubles are sooner ready."""
+"""Number of digits beyond which arrays of doubles are quicker."""
 _FEW = 24
-"""Numbers that are computed as enclosures in the time that NumPy takes to load."""
+"""Numbers that can be computed as enclosures in the time that NumPy takes to load."""
 
 
 class ProvedNumbers:
-    """Doubles, or numbers with so many significant digits, from enclosures of any precision."""
+    """Doubles, or numbers with N significant digits, from enclosures of any precision."""
 
     def __init__(self, digits: int | None = None, *, short: bool = False) -> None:
-        """Take the digits; a `short` search raises TooFewDigitsError where arrays are sooner."""
+        """Take the digits; a `short` search raises TooFewDigitsError if arrays are quicker."""
         self.digits, self.most = digits, _MOST_FOR_DOUBLES if short else MOST_DIGITS
 
     def of(
@@ -53,10 +53,10 @@ class ProvedNumbers:
         known: Mapping[str, float] = MappingProxyType({}),
         more: int = 0,
     ) -> dict[str, Any]:
-        """Return numbers by name; texts, and None for what there is not, stay as they are.
+        """Return numbers by name; texts, and None for undefined numbers, are left as they are.
 
-        `known` are numbers that need not be computed; one that is not finite has no value.  `more`
-        is how many digits are lost anyway.  Raises LagtopError if nothing decides a number.
+        `known` numbers are not computed; one that is not finite has no value.  `more` is the number
+        of digits that are lost in any case.  Raises LagtopError if no precision decides a number.
         """
         found: dict[str, Any] = {}
         for working in precisions(self.digits or 0, more):
@@ -75,10 +75,10 @@ class ProvedNumbers:
                         continue
                 if len(found) == len(values):
                     return {name: found[name] for name in values}
-        raise LagtopError(f"{MOST_DIGITS} digits do not decide these numbers")
+        raise LagtopError(f"{MOST_DIGITS} digits are not enough to round these numbers")
 
     def _settled(self, value: Any) -> Any:
-        """Return a number as it is printed; None for one that is beyond the doubles."""
+        """Return a number as it is printed, or None if it is beyond the range of doubles."""
         if isinstance(value, Ball):
             rounded = alike(value, self._rounding).value
         elif isinstance(value, int | float):
@@ -91,7 +91,7 @@ class ProvedNumbers:
         return float(value) + 0.0 if self.digits is None else text_of(value, self.digits)
 
     def texts(self, *arguments: Any) -> dict[str, NumberText]:
-        """Return numbers as texts, empty for one without a value; see `of`."""
+        """Return numbers as texts, empty for numbers without a value; see `of`."""
         return {name: _text(value) for name, value in self.of(*arguments).items()}
 
 
@@ -111,14 +111,14 @@ class TableOfFunctions:
     def rows(self, digits: int | None = None) -> Rows:
         """Return the header, and blocks of rows in doubles or with N significant digits.
 
-        In doubles a pole, and a number that no double can hold, is not a number or an empty text;
-        with N digits it is an empty text.  Raises LagtopError, before any row, for what the table
-        cannot hold: see each table.
+        In doubles, a pole or a number that no double can hold is NaN or an empty text.  With N
+        digits, a pole is an empty text.  Raises LagtopError, before any row, for inputs that the
+        table cannot hold (see each table).
         """
         if digits is not None:
             return _listed(self.digit_rows(digits))
         if self.functions * self.count <= _FEW:
-            with suppress(TooFewDigitsError):  # something cancels, so that arrays are sooner ready
+            with suppress(TooFewDigitsError):  # something cancels: arrays are quicker
                 header, blocks = _listed(self.digit_rows(short=True))
                 return header, iter([list(chain.from_iterable(blocks))])
         return self.array_rows()
@@ -130,7 +130,7 @@ class TableOfFunctions:
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
         """Yield rows with N significant digits or, without `digits`, the nearest doubles.
 
-        A `short` search raises TooFewDigitsError for a number that arrays would yield sooner.
+        A `short` search raises TooFewDigitsError for a number that arrays would yield more quickly.
         """
         raise NotImplementedError
 
@@ -143,20 +143,20 @@ class RealTable(TableOfFunctions):
     """A table of functions of real points: numbers with N digits are proved by enclosures."""
 
     rounds = True
-    """Whether a point stands for its nearest double, in a table of doubles."""
+    """Whether points are rounded to the nearest doubles in a table of doubles."""
 
     def __init__(self, points: Points) -> None:
         self.points, self.count = points, points.count
 
     def in_doubles(self) -> Self:
-        """Return the table that doubles stand for; raise LagtopError if they cannot hold it."""
+        """Return the table rounded to doubles; raise LagtopError if doubles cannot hold it."""
         raise NotImplementedError
 
     def check(self) -> None:
-        """Raise LagtopError for inputs that no number of digits can help."""
+        """Raise LagtopError for inputs that are invalid at any number of digits."""
 
     def constants(self, ar: Balls) -> Any:
-        """Return all that does not depend on the point, in balls."""
+        """Return the constants that do not depend on the point, in balls."""
         raise NotImplementedError
 
     def rounded_constants(self) -> Any:
@@ -166,18 +166,18 @@ class RealTable(TableOfFunctions):
     def columns(
         self, ar: FunctionArithmetic, x: Value, constants: Any, known: Known
     ) -> dict[str, Value]:
-        """Return the columns by name at balls or arrays x; `known` ones may be left out."""
+        """Return the columns by name at balls or arrays x; `known` columns may be left out."""
         raise NotImplementedError
 
     def known(self, x: Fraction) -> Known:
-        """Return the columns that are known exactly at a point; a pole is not a number."""
+        """Return the columns that are known exactly at a point; a pole is NaN."""
         raise NotImplementedError
 
     def put_known(self, columns: dict[str, Array], x: Array) -> None:
-        """Put values that are known exactly into columns of doubles."""
+        """Put exactly known values into columns of doubles."""
 
     def digits_lost(self, x: Fraction) -> int:
-        """Return how many digits the whole periods of a point take."""
+        """Return the number of digits taken by the whole periods of a point."""
         return 0
 
     def digit_rows(self, digits: int | None = None, *, short: bool = False) -> DigitRows:
@@ -222,14 +222,14 @@ def _listed(rows: DigitRows) -> tuple[list[str], Iterator[Texts]]:
 
 
 def _stacked(columns: Callable[[Any], dict[str, Array]], arguments: Iterable[Any]) -> Rows:
-    """Return the header of columns of doubles, and blocks of rows; NaN for what is not finite.
+    """Return the header of columns of doubles, and blocks of rows, with NaN for infinite values.
 
-    A complex number of which one part is not finite has no other part either.
+    If one part of a complex number is not finite, the other part is NaN as well.
     """
     import numpy as np
 
     def block(x: Any) -> tuple[list[str], Array]:
-        with np.errstate(all="ignore"):  # poles, and what leaves the doubles, end as empty cells
+        with np.errstate(all="ignore"):  # poles and overflows become empty cells
             found = columns(x)
         table = np.stack(list(found.values()), axis=1)
         wrong = ~np.isfinite(table)

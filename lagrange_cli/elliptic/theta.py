@@ -1,13 +1,14 @@
 """Theta functions and their logarithmic derivatives, the Zeta functions (Chrapan section 1).
 
-theta01, theta00, theta11, theta10 of x are theta4, theta3, theta1, theta2 of the angle pi x:
-two functions, one even (0.) and one odd (1.), and the same shifted by half a period (.0).  Up to
-k = k' they are summed as Fourier series in the nome, beyond as Gaussians (Jacobi's imaginary
-transformation), so that a few terms are enough for every k < 1.
+As functions of x, theta01, theta00, theta11, theta10 are theta4, theta3, theta1, theta2 of the
+angle pi x.  They are one even (0.) and one odd (1.) function, and both shifted by half a period
+(.0).  Up to k = k' they are summed as Fourier series in the nome.  For larger k they are sums of
+Gaussians (Jacobi's imaginary transformation), so that a few terms are enough for every k < 1.
 
-`theta` and `zeta` take an mpmath context, or numpy with arguments and moduli that broadcast (each
-modulus is evaluated alone), real or complex, and raise LagtopError for k = 1, where there are no
-periods.  Complex arguments are those of `complex_theta`.  Errors: see README.md in this folder.
+`theta` and `zeta` take an mpmath context or numpy, and real or complex arguments.  Arrays of
+arguments and moduli broadcast, and each modulus is evaluated alone.  Both raise LagtopError for k =
+1, which has no periods.  Complex arguments use `complex_theta`.  See README.md in this folder for
+errors.
 """
 
 from __future__ import annotations
@@ -50,11 +51,11 @@ class ThetaSeries(NamedTuple):
     rate: Value
     """1/(2K)."""
     exact_rate: Triple | None = None
-    """1/(2K) to reduce arrays of arguments with; None for numbers."""
+    """1/(2K) for reducing arrays of arguments; None for numbers."""
 
 
 def series_for(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
-    """Return the constants of one modulus, for arrays rounded from balls.
+    """Return the constants of one modulus; for arrays, rounded from balls.
 
     Raises LagtopError for k = 1.
     """
@@ -72,7 +73,7 @@ def series_constants(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
     gauss = ar.sqrt(quarter / other)
     steepness = ar.where(circular, ar.pi, ar.pi * quarter / other)
     if not steepness > 3:
-        raise TooFewDigitsError  # the bounds of what the sums leave out take it for granted
+        raise TooFewDigitsError  # the bounds on the truncation errors assume it
     even_size = ar.where(circular, 1 + 0 * q, gauss)
     odd_size = ar.where(circular, ar.sqrt(ar.sqrt(q)), gauss)
     return ThetaSeries(circular, q, steepness, even_size, odd_size, 1 / (2 * quarter))
@@ -81,7 +82,7 @@ def series_constants(ar: FunctionArithmetic, modulus: Modulus) -> ThetaSeries:
 def series_in_doubles(series: ThetaSeries) -> ThetaSeries:
     """Return constants of many digits as doubles.
 
-    Raises TooFewDigitsError for balls that do not know them.
+    Raises TooFewDigitsError if the balls are too wide.
     """
     q, steepness, even_size, odd_size, rate = map(float, series[1:-1])
     exact = triple(series.rate)
@@ -100,7 +101,7 @@ def rounded_series(modulus: Modulus) -> ThetaSeries:
 
 @in_arithmetic
 def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Complex:
-    """Return theta_ij(x, iK'/K) of section 1, `ij` one of 01, 00, 11, 10."""
+    """Return theta_ij(x, iK'/K) of section 1; `ij` is 01, 00, 11 or 10."""
     _check(ij)
 
     def function(x: Complex, *parts: Value) -> Complex:
@@ -117,7 +118,7 @@ def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Comp
 def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Complex:
     """Return Z_ij(v) = d log theta_ij(v/2K)/dv of section 1; Z_01 is Jacobi's Zeta function.
 
-    Poles are infinite in arrays, and at v = 0 in many digits.
+    Poles are infinite in arrays, and at v = 0 also in many digits.
     """
     _check(ij)
 
@@ -127,7 +128,7 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
 
             return zeta_of_modulus(ar, ij, v, Modulus(*parts))
         series = series_for(ar, Modulus(*parts))
-        if not ar.is_array and v == 0:  # to all digits
+        if not ar.is_array and v == 0:  # exactly
             return ar.inf if ij == "11" else 0 * v
         return zeta_at(ar, ij, in_periods(ar, ar.re(v), series), series)
 
@@ -161,10 +162,10 @@ def in_periods(ar: FunctionArithmetic, v: Value, series: ThetaSeries) -> Periods
 
 
 def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
-    """Return theta_ij(x) over the size of the function and its `_bell`.
+    """Return theta_ij(x) divided by the size of the function and its `_bell`.
 
-    theta10 is evaluated as theta11 half a period away, which is accurate next to the zero of
-    theta10; its derivative is accurate next to 0, and is not evaluated there.
+    To be accurate next to its zero, theta10 is evaluated as theta11 half a period away.  The
+    derivative of theta10 is accurate next to 0, and is not evaluated there.
     """
     if ij == "10":
         ij, x = "11", x.half_further(ar)
@@ -174,7 +175,7 @@ def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> 
 def _sums(
     ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries, *, slopes: bool = True
 ) -> tuple[Value, Value]:
-    """Return the sum of a series and, where it is wanted, of its derivative."""
+    """Return the sum of a series and, if `slopes` is set, of its derivative."""
     if series.circular:
         value, slope = _fourier(ar, ij, x.rest, series.q, slopes=slopes)
     else:
@@ -186,10 +187,11 @@ def _sums(
 def _fourier(
     ar: FunctionArithmetic, ij: str, x: Value, q: Value, *, slopes: bool
 ) -> tuple[Value, Value]:
-    """Return the series of section 1 in q <= exp(-pi) and its derivative.
+    """Return the series of section 1 in q <= exp(-pi), and its derivative.
 
-    01 and 00: 1 + 2 sum (-+1)^h q^(h^2) cos 2 pi h x; over q^(1/4), 11 and 10:
-    2 sum (-1)^h q^(h(h+1)) sin 2 pi (h+1/2) x, and cosines without the sign.
+    - 01 and 00: 1 + 2 sum (-+1)^h q^(h^2) cos 2 pi h x.
+    - 11, over q^(1/4): 2 sum (-1)^h q^(h(h+1)) sin 2 pi (h+1/2) x.
+    - 10, over q^(1/4): the same with cosines, without the sign.
     """
     odd, sines = ij[0] == "1", ij == "11"
     wave, other = (ar.sin, ar.cos) if sines else (ar.cos, ar.sin)
@@ -201,13 +203,13 @@ def _fourier(
         value = value + weight * wave(rate * x)
         if slopes:
             slope = slope + weight * (rate if sines else -rate) * other(rate * x)
-    # from N = terms on they are at most 2 q^(N^2), and each less than half of the last
+    # from N = terms on, terms are at most 2 q^(N^2), each less than half of the one before
     left_out = q ** (terms * terms)
     return widened_by(ar, value, 4 * left_out), widened_by(ar, slope, 26 * terms * left_out)
 
 
 def _bell(ar: FunctionArithmetic, ij: str, x: Value, series: ThetaSeries) -> Value:
-    """Return the greatest of the Gaussians, over which their sums are; 1 for Fourier series."""
+    """Return the greatest Gaussian, by which sums are divided; 1 for Fourier series."""
     if series.circular:
         return 1
     distance = ar.where(x < 0, 0.5 + x, 0.5 - x) if ij[1] == "1" else x
@@ -217,10 +219,11 @@ def _bell(ar: FunctionArithmetic, ij: str, x: Value, series: ThetaSeries) -> Val
 def _gaussians(
     ar: FunctionArithmetic, ij: str, x: Value, c: Value, *, slopes: bool
 ) -> tuple[Value, Value]:
-    """Return sum (+-1)^n exp(-c (x - n)^2) and its derivative, over the greatest of them.
+    """Return sum (+-1)^n exp(-c (x - n)^2) and its derivative, over the greatest Gaussian.
 
-    c is the steepness; n are the half-integers for 01 and 11, the integers for 00 and 10.  A
-    Gaussian and its mirror image are taken together, so that nothing cancels near x = 0.
+    c is the steepness.  For 01 and 11, n runs over the half-integers; for 00 and 10, over the
+    integers.  A Gaussian and its mirror image are taken together, so that nothing cancels near x =
+    0.
     """
     half, subtracted = ij[1] == "1", ij == "11"
     left = x < 0
@@ -240,7 +243,7 @@ def _gaussians(
         value = value + total
         if slopes:
             slope = slope - 2 * c * (x * total - n * difference)
-    # from N = terms on each pair is at most 2 exp(-c N^2), and less than half of the one before
+    # from N = terms on, each pair is at most 2 exp(-c N^2) and less than half of the one before
     bell = ar.exp(-c * (terms * terms))
     value = widened_by(ar, value, 4 * bell)
     slope = widened_by(ar, slope, 8 * c * (terms + 2) * bell)
@@ -249,5 +252,5 @@ def _gaussians(
 
 
 def widened_by(ar: FunctionArithmetic, value: Value, left_out: Value) -> Value:
-    """Return a number with all that are at most so far away, in balls."""
+    """Return a ball with `left_out` added to its radius; other numbers are left as they are."""
     return ar.widened(value, lambda: (left_out,), lambda x: x, values_only=True)

@@ -2,18 +2,17 @@
 
     Omega_ij(eta, v) = log[Theta_ij(eta - v)/Theta_ij(eta + v)]/2,   Pi_ij = eta Z_ij(v) + Omega_ij
 
-Two theta functions that nearly agree would leave nothing of their quotient, and eta Z nothing
-beside Omega where the two cancel.  So what depends on the modulus and the parameter v alone is
-computed once, in many digits, and what depends on eta is arranged so that nothing cancels:
-Theta(eta -+ v) are taken apart as P +- Q, and the growth of Pi over a period is one constant.
+The logarithm would lose digits if both theta functions nearly agree, and so would Pi if eta Z and
+Omega cancel.  So the constants of the modulus and the parameter v are computed once, in many
+digits.  The functions of eta are arranged so that nothing cancels.  Theta(eta -+ v) is split into P
++- Q, and the growth of Pi over a period is one constant.
 
-A parameter of many digits and one rounded to doubles obey the same formulas, over balls and arrays.
+Parameters in many digits and in doubles obey the same formulas, over balls and over arrays.
 
-The classes below are for an imaginary parameter i alpha, |alpha| < K'; both functions are over i,
-so that they are real.  Omega is the phase of theta(x - i y), continuous in x = eta/2K, where
-y = alpha/2K.  Of the odd function it is -pi/2 at x = 0, for alpha > 0, as in (2,5), and grows by
-half a turn in a period.  All is odd in alpha, so y > 0 below.
-"""
+The classes below are for an imaginary parameter i alpha, |alpha| < K'.  Both functions are divided
+by i, so that they are real.  Omega is the phase of theta(x - i y), continuous in x = eta/2K, where
+y = alpha/2K.  The phase of the odd function grows by half a turn per period.  For alpha > 0 it is
+-pi/2 at x = 0, as in (2,5).  Both functions are odd in alpha, so y > 0 below."""
 
 from __future__ import annotations
 
@@ -40,13 +39,13 @@ def third_kind(
 ) -> ThirdKind:
     """Return Omega_ij and Pi_ij of a parameter, with constants in balls or an mpmath context.
 
-    The parameter is `size`, or i times it if `imaginary`.  Raises LagtopError for k = 1, and for an
-    imaginary parameter whose size is K' or more.
+    The parameter is `size`, or i times `size` if `imaginary`.  Raises LagtopError for k = 1, and
+    for an imaginary parameter whose size is K' or more.
     """
     if imaginary and modulus.k and abs(size) >= (limit := complete_k(ar, modulus.k)):
         most, got = (float(getattr(x, "middle", x)) for x in (limit, size))
         raise LagtopError(
-            f"param must be smaller than K' = {most:.6g} in size where it is imaginary, "
+            f"param must be smaller than K' = {most:.6g} in size if it is imaginary, "
             f"got {got:.6g}i",
             "param",
         )
@@ -73,9 +72,12 @@ def third_kind(
 def omega(ar: ComplexArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus) -> Complex:
     """Return Omega_ij(eta, v) of section 2, for real eta.
 
-    Real v: the real part.  Imaginary v = i alpha, |alpha| < K': i times a phase continuous in eta,
-    which for `ij` = 11 and alpha > 0 is -pi/2 at eta = 0, as in (2,5).  Arrays are evaluated a pair
-    of modulus and parameter at a time.  Raises LagtopError for other v and for k = 1.
+    - For real v, return the real part.
+    - For imaginary v = i alpha, |alpha| < K', return i times a phase that is continuous in eta.  If
+      `ij` is 11 and alpha > 0, the phase is -pi/2 at eta = 0, as in (2,5).
+
+    Arrays are evaluated for one pair of modulus and parameter at a time.  Raises LagtopError for
+    other v and for k = 1.
     """
     return _evaluate(ar, "omega", ij, (eta, v), modulus)
 
@@ -123,21 +125,21 @@ class ImaginaryCircular(ThirdKind):
 
     odd: bool
     shifted: bool
-    """Whether the function is that of x + 1/2."""
+    """Whether the series are evaluated at x + 1/2."""
     sign: int
     """Sign of alpha."""
     zeta: Value
     """2K Z(i |alpha|)/i."""
     growth: Value
-    """What Pi grows by in a period: zeta, and half a turn of the odd function."""
+    """Growth of Pi per period: zeta, with half a turn for the odd function."""
     floor: Value
-    """theta01(i y) of the even function, which vanishes with K' - alpha."""
+    """theta01(i y) for the even function; it vanishes with K' - alpha."""
     heights: tuple[Value, ...]
-    """Coefficients with cosh."""
+    """Coefficients that contain cosh."""
     slants: tuple[Value, ...]
-    """Coefficients with sinh."""
+    """Coefficients that contain sinh."""
     left_out: Value
-    """A bound of what each series leaves out."""
+    """A bound on the truncation error of each series."""
 
     @classmethod
     def at(
@@ -145,8 +147,9 @@ class ImaginaryCircular(ThirdKind):
     ) -> ImaginaryCircular:
         """Return the constants from y = alpha/2K and the nome.
 
-        As 2 pi |y| <= log(1/q), the terms of the sums from h = N on are at most 4 q^(N(N-1)), those
-        of the slopes (2 N + 1) pi times that, and each is less than half of the one before.
+        As 2 pi |y| <= log(1/q), the terms of the sums from h = N on are at most 4 q^(N(N-1)).  The
+        terms of the slopes are at most (2 N + 1) pi times as large.  Each term is less than half of
+        the one before.
         """
         odd, shifted, size = ij[0] == "1", ij[1] == "0", abs(y)
         orders = range(terms) if odd else range(1, terms)
@@ -177,14 +180,14 @@ class ImaginaryCircular(ThirdKind):
         return self.sign * (ar.pi * half_turns + within)
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi, by its growth over the periods and what is left within one."""
+        """Return Pi, from its growth over whole periods and its value within one."""
         half_turns, within = self._phase(ar, x)
         if self.odd:
             within = within + ar.pi * (half_turns - x.turns)
         return self.sign * (self.growth * x.turns + (self.zeta * x.rest + within))
 
     def _phase(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value]:
-        """Return whole half turns of the phase, and the rest of it."""
+        """Return the whole half turns of the phase, and the rest."""
         turns, rest, _ = x.half_further(ar) if self.shifted else x
         series = list(enumerate(zip(self.heights, self.slants, strict=True)))
         if self.odd:
@@ -196,7 +199,7 @@ class ImaginaryCircular(ThirdKind):
         return 0 * turns, self._angle(ar, across, along)
 
     def _angle(self, ar: FunctionArithmetic, across: Value, along: Value) -> Value:
-        """Return the angle of two sums, with what they leave out."""
+        """Return the angle of two sums, widened by their truncation errors."""
         return ar.atan2(*(widened_by(ar, x, self.left_out) for x in (across, along)))
 
     def rounded(self, **others: Any) -> Self:
@@ -208,8 +211,10 @@ class ImaginaryCircular(ThirdKind):
 class ImaginaryHyperbolic(ThirdKind):
     """The parameter for k > k', where the theta functions are sums of Gaussians.
 
-    theta(x - i y) is exp(2 i c x y) times a sum over n > 0, half-integers or (for 00 and 10)
-    integers, of exp(-c n^2) cosh or sinh 2 c n (x - i y); c = pi K/K' is the steepness.
+        theta(x - i y) = exp(2 i c x y) times the sum over n > 0 of exp(-c n^2) f(2 c n (x - i y))
+
+    The function f is cosh or sinh, and n runs over half-integers or, for 00 and 10, over integers.
+    The steepness is c = pi K/K'.
     """
 
     ij: str
@@ -221,7 +226,7 @@ class ImaginaryHyperbolic(ThirdKind):
     slope: Value
     """Z of the sum alone: 2K Z(i |alpha|)/i + 2 c y."""
     growth: Value
-    """What Pi grows by in a period: 2K Z(i |alpha|)/i, and half a turn of the odd function."""
+    """Growth of Pi per period: 2K Z(i |alpha|)/i, with half a turn for the odd function."""
     cosines: tuple[Value, ...]
     """cos 2 c n y."""
     sines: tuple[Value, ...]
@@ -261,7 +266,7 @@ class ImaginaryHyperbolic(ThirdKind):
         return self.sign * (half_turns + (self.turn * x.rest + self._phase(ar, x.rest)))
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi, by its growth over the periods and what is left within one."""
+        """Return Pi, from its growth over whole periods and its value within one."""
         within = self.slope * x.rest + self._phase(ar, x.rest)
         return self.sign * (self.growth * x.turns + within)
 
@@ -286,6 +291,6 @@ class ImaginaryHyperbolic(ThirdKind):
         return ar.where(rest < 0, turned - ar.pi, -turned)
 
     def rounded(self, **others: Any) -> Self:
-        """Return the parameter with its constants in doubles, of which fewer matter."""
+        """Return the parameter with its constants in doubles, of which fewer are needed."""
         few = {"cosines": self.cosines[:5], "sines": self.sines[:5]}
         return super().rounded(**few, **others)

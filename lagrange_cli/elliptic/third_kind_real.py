@@ -1,7 +1,7 @@
 """Omega and Pi of a real parameter v: y = v/2K, and x = eta/2K is a place in the periods.
 
-Both are odd in x and in y and, but for the growth of Pi, periodic; so the formulas are in |x| and
-|y| up to 1/2.  The functions 00 and 10 are 01 and 11 of v + K.
+Both functions are odd in x and in y and, except for the growth of Pi, periodic.  The formulas are
+therefore in |x| and |y| up to 1/2.  The functions 00 and 10 are 01 and 11 of v + K.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .theta import widened_by
 class ThirdKind:
     """Omega and Pi of one modulus and one parameter, with constants in balls or in doubles.
 
-    Those of an imaginary parameter are imaginary, and given without the i.
+    For an imaginary parameter both are imaginary, and are returned without the i.
     """
 
     def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
@@ -29,18 +29,18 @@ class ThirdKind:
         raise NotImplementedError
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi at x = eta/2K; not a number where it has a pole for every eta."""
+        """Return Pi at x = eta/2K; NaN if it has a pole for every eta."""
         raise NotImplementedError
 
     def rounded(self, **others: Any) -> Self:
-        """Return the parameter with its constants in doubles, but for `others`."""
+        """Return the parameter with its constants in doubles and with `others` replaced."""
         values = {x.name: getattr(self, x.name) for x in fields(self)} | others
         return replace(self, **{name: _in_doubles(x) for name, x in values.items()})
 
 
 @dataclass(frozen=True)
 class ZeroParameter(ThirdKind):
-    """The parameter 0, where Omega vanishes, and Pi but for the pole of Z_11."""
+    """The parameter 0, where Omega is 0 and Pi is 0 except at the pole of Z_11."""
 
     ij: str
 
@@ -49,19 +49,19 @@ class ZeroParameter(ThirdKind):
         return 0 * x.rest
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return 0 or, of the function 11, not a number."""
+        """Return 0, or NaN for the function 11."""
         return (math.nan if self.ij == "11" else 0) * x.rest
 
 
 def _in_doubles(x: Any) -> Any:
-    """Return a ball, or the balls of a tuple, in doubles, and others as they are."""
+    """Convert a ball or a tuple of balls to doubles; leave other values as they are."""
     if isinstance(x, tuple):
         return tuple(map(float, x))
     return float(x) if isinstance(x, Ball) else x
 
 
 def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Value:
-    """Return how far |x| and |y| are apart, |y| being size + low."""
+    """Return the distance between |x| and |y|, where |y| is size + low."""
     return abs((abs(x.rest) - size) + (ar.where(x.rest < 0, -x.low, x.low) - low))
 
 
@@ -73,7 +73,7 @@ class RealCircular(ThirdKind):
     sign: int
     """Sign of y."""
     growth: Value
-    """2K Z(|v|), what Pi grows by in a period."""
+    """2K Z(|v|), the growth of Pi per period."""
     cosines: tuple[Value, ...]
     """Coefficients of the series of P (odd: of A) below."""
     sines: tuple[Value, ...]
@@ -83,9 +83,9 @@ class RealCircular(ThirdKind):
     size: Value
     """|y|."""
     left_out: Value
-    """A bound of what each series leaves out."""
+    """A bound on the truncation error of each series."""
     low: Value = 0.0
-    """What rounding took from |y|."""
+    """The part of |y| lost to rounding."""
 
     @classmethod
     def at(
@@ -93,10 +93,17 @@ class RealCircular(ThirdKind):
     ) -> RealCircular:
         """Return the constants from y and the nome.
 
-        Even: theta(x -+ y) = P +- Q, P = 1 + 2 sum (-1)^h q^(h^2) cos 2 pi h x cos 2 pi h y, and Q
-        with sines.  Odd, over 2 q^(1/4): A -+ B, A = sum (-1)^h q^(h(h+1)) sin (2h+1) pi x
-        cos (2h+1) pi y, and B with cos and sin exchanged.  From h = N on the terms are at most
-        2 q^(N^2), and each is less than half of the one before.
+        For an even function, theta(x -+ y) = P +- Q, where Q has sines in place of the cosines of
+
+            P = 1 + 2 sum (-1)^h q^(h^2) cos 2 pi h x cos 2 pi h y.
+
+        For an odd function, theta(x -+ y) over 2 q^(1/4) is A -+ B, where B has cos and sin
+        exchanged in
+
+            A = sum (-1)^h q^(h(h+1)) sin (2h+1) pi x cos (2h+1) pi y.
+
+        From h = N on, the terms are at most 2 q^(N^2), and each is less than half of the one
+        before.
         """
         size, orders = abs(y), range(terms)
         if odd:
@@ -112,9 +119,10 @@ class RealCircular(ThirdKind):
         return cls(odd, sign, growth, cosines, sines, tuple(weights), size, left_out)
 
     def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Omega = artanh Q/P or, of the odd function, -artanh B/A or A/B.
+        """Return Omega: artanh Q/P or, for the odd function, -artanh B/A or -artanh A/B.
 
-        Next to its pole the latter is log[(A - B)/(A + B)]/2, A - B being the series at |x| - |y|.
+        Next to its pole, the odd function is log[(A - B)/(A + B)]/2, with A - B from the series at
+        |x| - |y|.
         """
         size, side = abs(x.rest), self.sign * ar.sign(x.rest)
         series = list(enumerate(zip(self.cosines, self.sines, strict=True)))
@@ -133,11 +141,11 @@ class RealCircular(ThirdKind):
         return side * ar.where(pole, logarithm, -ar.atanh(ar.where(pole, 0 * ratio, ratio)))
 
     def _whole(self, ar: FunctionArithmetic, total: Value) -> Value:
-        """Return a sum with what it leaves out."""
+        """Return a sum, widened by its truncation error."""
         return widened_by(ar, total, self.left_out)
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi, by its growth over the periods and what is left within one."""
+        """Return Pi, from its growth over whole periods and its value within one."""
         return (self.sign * self.growth) * x.turns + (
             (self.sign * self.growth) * x.rest + self.omega(ar, x)
         )
@@ -151,16 +159,16 @@ class RealCircular(ThirdKind):
 class RealHyperbolic(ThirdKind):
     """The parameter for k > k', where the theta functions are sums of Gaussians.
 
-    theta(a) = exp(-c (1/2 - a)^2) S(a) for a in [0, 1/2], where S is close to 1 unless a is small,
-    and c is the steepness pi K/K'.  With a = |x - y| and b = x + y or 1 - x - y, whichever is at
-    most 1/2, Omega is log[theta(a)/theta(b)]/2.
+    For a in [0, 1/2], theta(a) = exp(-c (1/2 - a)^2) S(a), where c is the steepness pi K/K'.  The
+    sum S is close to 1 unless a is small.  Let a = |x - y|, and let b be x + y or 1 - x - y,
+    whichever is at most 1/2.  Then Omega is log[theta(a)/theta(b)]/2.
     """
 
     odd: bool
     sign: int
     """Sign of y."""
     growth: Value
-    """2K Z(|v|), what Pi grows by in a period."""
+    """2K Z(|v|), the growth of Pi per period."""
     size: Value
     """|y|."""
     room: Value
@@ -169,10 +177,10 @@ class RealHyperbolic(ThirdKind):
     slope: Value
     """d log S/da at |y|."""
     tilt: Value
-    """The slope and the steepness; they cancel for small y."""
+    """The sum of slope and steepness, which cancel for small y."""
     terms: int
     low: Value = 0.0
-    """What rounding took from |y|."""
+    """The part of |y| lost to rounding."""
 
     @classmethod
     def at(
@@ -196,13 +204,13 @@ class RealHyperbolic(ThirdKind):
         return cls(odd, sign, c * room + slope, size, room, c, slope, slope + c, terms)
 
     def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Omega = -c small (1 - 2 large) + log[S(a)/S(b)]/2, of the two sizes |x|, |y|."""
+        """Return -c small (1 - 2 large) + log[S(a)/S(b)]/2; small <= large are |x| and |y|."""
         small, room, apart = self._sorted(ar, x)
         main = -self.steepness * small * room
         return self.sign * ar.sign(x.rest) * (main + self._ratio(ar, small, room, apart))
 
     def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
-        """Return Pi, by its growth over the periods and what is left within one."""
+        """Return Pi, from its growth over whole periods and its value within one."""
         size, c = abs(x.rest), self.steepness
         small, room, apart = self._sorted(ar, x)
         if ar.either(c * self.size > 1):  # the multiples of c have cancelled
@@ -213,7 +221,7 @@ class RealHyperbolic(ThirdKind):
         return self.sign * (self.growth * x.turns + ar.sign(x.rest) * within)
 
     def rounded(self, **others: Any) -> Self:
-        """Return the parameter with its constants in doubles, of which fewer terms matter."""
+        """Return the parameter with its constants in doubles, of which fewer terms are needed."""
         return super().rounded(low=pair(self.size).low, terms=4, **others)
 
     def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value, Value]:
@@ -225,10 +233,10 @@ class RealHyperbolic(ThirdKind):
         return ar.where(less, size, self.size), ar.where(less, self.room, room), apart
 
     def _ratio(self, ar: FunctionArithmetic, small: Value, room: Value, a: Value) -> Value:
-        """Return log[S(a)/S(b)]/2 from the difference of the two, which keeps its digits.
+        """Return log[S(a)/S(b)]/2 from S(a) - S(b), which keeps its digits.
 
-        S is a sum of exp(-c i (i + 1 - 2a)) and their images exp(-c (i + 1)(i + 2a)); of the odd
-        function the signs alternate and the images are subtracted.
+        S is a sum of exp(-c i (i + 1 - 2a)) and their images exp(-c (i + 1)(i + 2a)).  For the odd
+        function, the signs alternate and the images are subtracted.
         """
         c = self.steepness
         apart = ar.where(ar.either(2 * small < room), 2 * small, room)
@@ -243,7 +251,7 @@ class RealHyperbolic(ThirdKind):
             difference = difference + sign * (
                 near * fall + (image if self.odd else -image) * image_fall
             )
-        bell = 4 * ar.exp(-c * (self.terms * self.terms))  # what both leave out, as in `at`
+        bell = 4 * ar.exp(-c * (self.terms * self.terms))  # truncation error, as in `at`
         quotient = widened_by(ar, difference, bell) / widened_by(ar, total, bell)
         if not self.odd:
             return ar.log1p(quotient) / 2
