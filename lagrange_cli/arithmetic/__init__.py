@@ -1,1 +1,1 @@
-"""The numbers that everything is computed in: scalars of many digits, arrays, pairs of doubles."""
+"""The numbers of all computations: scalars of many digits, arrays, and pairs of doubles."""

@@ -1,11 +1,11 @@
-"""Arrays of doubles: their arithmetics, a block of elements at a time, in the order of a parity.
+"""Arrays of doubles: their arithmetics, workspaces for blocks of elements, and order by parity.
 
-`ARRAYS` is what the functions of `elliptic` take for NumPy arrays; it says nothing of overflow and
-0/0, whatever the host's `numpy.errstate` is.
+The functions of `elliptic` take `ARRAYS` for NumPy arrays.  It is silent about overflow and 0/0,
+whatever the host's `numpy.errstate` is.
 
-The arrays of the steps of a computation stay in the cache and are used again and again: memory that
-is new costs more than most steps that write to it.  The system hands it out in pages, each of them
-cleared when it is first touched, and takes it back when an array is freed.
+The arrays of the steps of a computation stay in the cache and are reused.  New memory would cost
+more than most steps that write to it.  The system clears each page when it is first touched, and
+takes it back when an array is freed.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .types import Array
 
 
 class Arrays(Unenclosed):
-    """The arithmetic of float64 arrays, as far as both kinds of arrays share it."""
+    """The part of the arithmetic of float64 arrays that both kinds of arrays share."""
 
     is_array = True
     eps, magnitude = 2.0**-52, -15.65
@@ -44,7 +44,7 @@ class Arrays(Unenclosed):
 
     @staticmethod
     def working() -> AbstractContextManager[object]:
-        """Return a context manager in which NumPy says nothing of overflow and 0/0."""
+        """Return a context manager in which NumPy is silent about overflow and 0/0."""
         return np.errstate(all="ignore")
 
     @staticmethod
@@ -54,7 +54,7 @@ class Arrays(Unenclosed):
 
     @staticmethod
     def anywhere(condition: Any) -> bool:
-        """Return whether a condition holds for some element; NaN compares false, so loops end."""
+        """Return whether a condition holds for any element; NaN compares false, so loops end."""
         return bool(np.any(condition))
 
     @staticmethod
@@ -64,7 +64,7 @@ class Arrays(Unenclosed):
 
 
 class ArrayFunctions(Arrays):
-    """The arithmetic of float64 and complex128 arrays, with the functions of NumPy by our names."""
+    """The arithmetic of float64 and complex128 arrays, with NumPy's functions under our names."""
 
     inf: Any = np.inf
     exp = staticmethod(np.exp)
@@ -84,35 +84,35 @@ class ArrayFunctions(Arrays):
 
     @staticmethod
     def convert(value: Any) -> Any:
-        """Return the double nearest to an exact value, or an array of doubles as it is."""
+        """Return the double nearest to an exact value, or an array of doubles unchanged."""
         return value if isinstance(value, np.ndarray) else float(value)
 
     @staticmethod
     def mpc(real: Array, imag: Array) -> Any:
-        """Return the complex numbers with these parts."""
+        """Return complex numbers with the given parts."""
         return np.asarray(real) + 1j * np.asarray(imag)
 
 
 class Pairs(Arrays):
-    """The arithmetic of arrays of pairs of doubles, as far as it is needed."""
+    """The arithmetic of arrays of pairs of doubles, with the operations that are needed."""
 
     eps, magnitude = 2.0**-104, -31.31
     pi = DoubleDouble(np.array([PI.high]), np.array([PI.middle]))
 
     @staticmethod
     def convert(value: Any) -> Any:
-        """Return an exact value as a pair with one element, which goes with any array."""
+        """Return an exact value as a pair with one element, which broadcasts with any array."""
         exact = Fraction(value) if isinstance(value, float | int) else value
         return DoubleDouble(*(np.array([part]) for part in pair(exact)))
 
     @staticmethod
     def sqrt(x: Any) -> Any:
-        """Return the square roots; of a plain number, a double."""
+        """Return the square roots; of a plain number, as a double."""
         return x.sqrt() if isinstance(x, DoubleDouble) else np.sqrt(float(x))
 
     @staticmethod
     def atan2(y: Any, x: Any) -> Any:
-        """Return the angles of the points (x, y), as good as doubles are."""
+        """Return the angles of the points (x, y), to the accuracy of doubles."""
         return DoubleDouble(np.arctan2(y.high, x.high))
 
     where = staticmethod(DoubleDouble.choose)
@@ -122,7 +122,7 @@ ARRAYS, PAIRS = ArrayFunctions(), Pairs()
 
 
 def doubles_of(name: str, values: ArrayLike) -> Array:
-    """Return the argument `name` as an array of doubles, infinite if a number is beyond them.
+    """Return the argument `name` as an array of doubles, infinite where a number overflows.
 
     Raises LagtopError for anything but an array of real numbers, and for masked elements.
     """
@@ -142,21 +142,21 @@ def doubles_of(name: str, values: ArrayLike) -> Array:
 BLOCK = 16384
 """Elements of an array that are computed together."""
 ROWS = 16
-"""Arrays of a workspace."""
+"""Number of arrays in a workspace."""
 _IDLE: list[Array] = []
-"""Workspaces that nobody uses; taking one out and putting one in are safe in threads."""
+"""Workspaces that are not in use; `pop` and `append` are safe in threads."""
 
 
 def blocks(size: int) -> Iterator[slice]:
-    """Yield slices that cover an array of so many elements; one slice where it is empty."""
+    """Yield slices that cover an array of `size` elements; one slice if it is empty."""
     return (slice(start, start + BLOCK) for start in range(0, max(size, 1), BLOCK))
 
 
 @contextmanager
 def workspace(*shape: int) -> Iterator[Array]:
-    """Yield `ROWS` arrays of one shape, of at most a block of elements; their content is arbitrary.
+    """Yield `ROWS` arrays of one shape, of at most a block of elements, with arbitrary content.
 
-    None of them may be used after the `with`.
+    The arrays must not be used after the `with` block.
     """
     try:
         whole = _IDLE.pop()
@@ -169,13 +169,13 @@ def workspace(*shape: int) -> Iterator[Array]:
 
 
 Order = NDArray[np.intp] | list[slice]
-"""Where the elements are, one by one or in runs."""
+"""The places of elements, one by one or in runs."""
 _RUN = 250
-"""Elements in a row, on average, from which on it costs less to copy the runs as wholes."""
+"""Mean length of a run from which on it costs less to copy whole runs."""
 
 
 def order_by_parity(whole: Array) -> tuple[int, Order | None]:
-    """Return how many whole numbers are even, and their order; None if all have one parity."""
+    """Return the number of even whole numbers, and their order; None if all have one parity."""
     ends = np.flatnonzero(whole[1:] != whole[:-1]) + 1
     if ends.size * _RUN > whole.size:
         half = 0.5 * whole
@@ -190,14 +190,14 @@ def order_by_parity(whole: Array) -> tuple[int, Order | None]:
 
 
 def taken(values: Array, order: Order, out: Array) -> Array:
-    """Write values in the order."""
+    """Write values in the given order."""
     if isinstance(order, list):
         return np.concatenate([values[run] for run in order], out=out)
     return np.take(values, order, out=out, mode="clip")  # all are in range
 
 
 def placed(values: Array, order: Order, out: Array) -> Array:
-    """Write values that are in the order to their places."""
+    """Write ordered values back to their places."""
     if isinstance(order, list):
         ends = accumulate((run.stop - run.start for run in order), initial=0)
         for run, (start, stop) in zip(order, pairwise(ends), strict=True):

@@ -1,8 +1,9 @@
-"""A ball: a middle and a radius between which the exact value is proved to lie.
+"""A ball: a middle and a radius that provably enclose the exact value.
 
-Each operation adds to the radius what its own rounding can take.  A comparison that the balls leave
-open is `OPEN`: it raises TooFewDigitsError when a decision depends on it, and the caller takes more
-digits.  A ball of radius 0 is exact, and stays so through sums and products that are exact.
+Each operation adds a bound on its own rounding error to the radius.  A comparison that the balls do
+not settle is `OPEN`.  It raises TooFewDigitsError when a decision depends on it, and the caller
+repeats the computation with more digits.  A ball of radius 0 is exact, and stays exact through
+exact sums and products.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ ZERO, INFINITE = Decimal(0), Decimal("Infinity")
 SHORT = 6
 """Digits of a radius."""
 SMALLEST = Decimal("1e-300000000000000000")
-"""A size far above all that exponents of decimals cannot hold, of which products can be formed."""
+"""A size far above every value below the exponents of decimals; products of it can be formed."""
 
 
 def _rounded(rounding: str) -> decimal.Context:
@@ -38,11 +39,11 @@ add_up, multiply_up, fma_up, divide_up = UP.add, UP.multiply, UP.fma, UP.divide
 
 
 class TooFewDigitsError(Exception):
-    """A question that the digits at hand leave open."""
+    """A question that cannot be decided with the digits in use."""
 
 
 class TooSmallError(TooFewDigitsError):
-    """A number too close to 0 for the exponents of decimals, so that no digits decide it."""
+    """A number too close to 0 for the exponents of decimals: no number of digits decides it."""
 
 
 class UndefinedError(ArithmeticError):
@@ -50,7 +51,7 @@ class UndefinedError(ArithmeticError):
 
 
 class Open:
-    """The answer to a comparison that is neither proved nor disproved."""
+    """The result of a comparison that is neither proved nor disproved."""
 
     def __bool__(self) -> bool:
         raise TooFewDigitsError
@@ -60,7 +61,7 @@ OPEN = Open()
 
 
 def _sum_by(operation: str) -> Callable[[Ball, Ball | float], Ball]:
-    """Return the method that adds or subtracts: the radii of both add up."""
+    """Return the method that adds or subtracts; the radii of both balls add up."""
 
     def total(self: Ball, other: Ball | float) -> Ball:
         ar: Ring = self.ar
@@ -79,7 +80,8 @@ def _sum_by(operation: str) -> Callable[[Ball, Ball | float], Ball]:
 class Ball:
     """All numbers at most `radius` away from `middle`; comparisons are True, False or OPEN.
 
-    An infinite radius says nothing of a number, and NaN that it does not exist, as x/0.
+    An infinite radius means that nothing is known of the number; NaN, that it does not exist, as
+    x/0.
     """
 
     __slots__ = ("ar", "middle", "radius")
@@ -184,7 +186,7 @@ class Ball:
         return True if low >= 0 else False if high < 0 else OPEN
 
     def _less(self, other: Ball | float) -> tuple[Decimal, Decimal]:
-        """Return numbers below and above the difference from another ball."""
+        """Return lower and upper bounds on the difference from another ball."""
         if isinstance(other, Ball):
             term, radius = other.middle, add_up(self.radius, other.radius)
         else:
@@ -200,7 +202,7 @@ class Ball:
     def __float__(self) -> float:
         """Return the double nearest to every number in the ball.
 
-        Raises TooFewDigitsError if there is more than one.
+        Raises TooFewDigitsError if the numbers round to different doubles.
         """
         low, high = map(float, self.ends())
         if low != high:
@@ -214,21 +216,21 @@ class Ball:
 
     @property
     def greatest(self) -> Decimal:
-        """A number that all in the ball are at most in size, to six digits."""
+        """An upper bound on the size of all numbers in the ball, to six digits."""
         return add_up(self.middle.copy_abs(), self.radius)
 
     @property
     def least(self) -> Decimal:
-        """A number that all in the ball are at least in size, to six digits."""
+        """A lower bound on the size of all numbers in the ball, to six digits."""
         return max(DOWN.subtract(self.middle.copy_abs(), self.radius), ZERO)
 
     def enlarged(self, away: Decimal) -> Ball:
-        """Return the ball with a larger radius."""
+        """Return the ball with `away` added to its radius."""
         return Ball(self.ar, self.middle, add_up(self.radius, away))
 
     @property
     def is_sharp(self) -> bool:
-        """Whether the sign of the number and its size, to a factor of 2, are known."""
+        """Whether the sign of the number is known, and its size to a factor of 2."""
         return self.greatest <= multiply_up(2, self.least)
 
     def is_known_to(self, digits: int) -> bool:
@@ -236,7 +238,7 @@ class Ball:
         return self.radius <= DOWN.scaleb(self.least, -digits)
 
     def ends(self) -> tuple[Decimal, Decimal]:
-        """Return decimals below and above all of the ball.
+        """Return decimals below and above all numbers in the ball.
 
         Raises TooFewDigitsError for a ball without bounds.
         """
@@ -256,30 +258,30 @@ class Ring:
         self.multiply, self.divide = context.multiply, context.divide
         self._context, self._tight = context, own_context(digits, [*TRAPS, Inexact])
         self.unit = Decimal((0, (5,), -digits))
-        """Half a unit in the last digit, beside the largest number with this exponent."""
+        """Half a unit in the last digit, relative to the largest number with this exponent."""
         self.unbounded = self.inf = Ball(self, ZERO, INFINITE)
         self.nan = Ball(self, Decimal("NaN"), Decimal("NaN"))
 
     @cached_property
     def outwards(self) -> tuple[decimal.Context, decimal.Context]:
-        """Contexts that round down and up, with digits for both ends of a ball."""
+        """Contexts that round down and up, with enough digits for both ends of a ball."""
         floor, ceiling = (own_context(self.digits + SHORT, []) for _ in range(2))
         floor.rounding, ceiling.rounding = decimal.ROUND_FLOOR, decimal.ROUND_CEILING
         return floor, ceiling
 
     def exactly(self, operation: str, x: Decimal, y: Decimal | int) -> Ball:
-        """Return the result of an operation on exact numbers, exact if it has few enough digits."""
+        """Return an operation on exact numbers; the result is exact if it has few digits."""
         try:
             return Ball(self, getattr(self._tight, operation)(x, y), ZERO)
         except Inexact:
             return self.about(getattr(self._context, operation)(x, y))
-        except DecimalException:  # a division by 0
+        except DecimalException:  # division by 0
             return self.unbounded
 
     def about(self, middle: Decimal, units: int = 1) -> Ball:
-        """Return a ball about a number that was rounded, by so many units at most."""
+        """Return a ball around a rounded number, in error by at most `units` in the last digit."""
         return Ball(self, middle, multiply_up(middle.copy_abs(), multiply_up(units, self.unit)))
 
     def exact(self, value: Decimal | float) -> Ball:
-        """Return the ball of radius 0 about a decimal, which may have more digits."""
+        """Return the ball of radius 0 around a decimal, which may have more digits."""
         return Ball(self, Decimal(value), ZERO)

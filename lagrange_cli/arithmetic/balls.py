@@ -1,8 +1,8 @@
-"""The arithmetic of balls over decimals: roots, elementary functions and what iterations leave out.
+"""The arithmetic of balls over decimals: roots, elementary functions and truncation errors.
 
-A middle has the digits of its arithmetic, rounded to nearest; a radius has six, rounded up.
-`widened` adds to a radius what an iteration leaves out, by the bound that is proved beside the
-iteration.
+A middle has the digits of its arithmetic, rounded to nearest.  A radius has six digits, rounded up.
+`widened` adds the truncation error of an iteration to a radius, from the bound that is proved
+beside the iteration.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ from .decimals import Decimals, decimals, pi_to
 from .numbers import Scalars
 
 _LOWEST, _TINY = -23 * 10**17, Decimal("1e-310000000000000000")
-"""An exponent below which a power of e may leave the range of decimals, and half a bound of it."""
+"""Exponent below which a power of e may underflow in decimals, and half a bound on that power."""
 _MARGIN = 6
-"""Digits of elementary functions beyond those of the balls, besides the digits of that number."""
+"""Extra digits of elementary functions, besides the digits of the number of digits itself."""
 
 
 class Balls(Ring, Scalars):
     """The arithmetic of balls whose middles have `digits` digits.
 
-    Iterations stop where they leave out less than 10^-`stop`, by default the last digit.  Wherever
-    they stop, their ball holds the exact value: only its radius depends on it.
+    Iterations stop when their truncation error is below 10^-`stop`, by default the last digit.
+    Wherever they stop, the ball holds the exact value; only its radius depends on `stop`.
     """
 
     def __init__(self, digits: int, stop: int | None = None) -> None:
@@ -52,11 +52,11 @@ class Balls(Ring, Scalars):
 
     @property
     def middles(self) -> Decimals:
-        """The arithmetic of the middles alone."""
+        """The arithmetic of the middles, without radii."""
         return decimals(self.digits)
 
     def within(self, size: Decimal) -> Ball:
-        """Return the ball of all numbers up to a size."""
+        """Return the ball around 0 of all numbers up to a size."""
         return Ball(self, ZERO, size)
 
     @cached_property
@@ -65,14 +65,14 @@ class Balls(Ring, Scalars):
         return self.about(self._context.plus(pi_to(self.digits + 2)), 2)
 
     def convert(self, value: Ball | float | Fraction) -> Ball:
-        """Return a ball that holds an exact value, or a ball as it is."""
+        """Return a ball that holds an exact value, or a ball unchanged."""
         if isinstance(value, Ball):
             return value
         exact = Fraction(value)
         return self.exactly("divide", Decimal(exact.numerator), Decimal(exact.denominator))
 
     def sqrt(self, x: Ball | int) -> Ball:
-        """Return the square root of x >= 0; of a ball that reaches below 0, by its upper end."""
+        """Return the square root of x >= 0; for a ball that reaches below 0, from its upper end."""
         if isinstance(x, int):
             x = self.exact(x)
         middle, r = x.middle, x.radius
@@ -96,7 +96,7 @@ class Balls(Ring, Scalars):
             return self.about(self._context.sqrt(x))
 
     def _root_from_0(self, x: Ball) -> Ball:
-        """Return a ball about all roots from 0 to that of the upper end."""
+        """Return a ball that holds all roots from 0 to the root of the upper end."""
         upper = CEILING.add(x.middle, x.radius)
         if not 0 <= upper < INFINITE:
             return self.unbounded
@@ -105,11 +105,11 @@ class Balls(Ring, Scalars):
 
     @cached_property
     def plain(self) -> Decimals:
-        """Decimals whose elementary functions are right to `digits` digits (see `Decimals`)."""
+        """Decimals whose elementary functions are correct to `digits` digits (see `Decimals`)."""
         return decimals(self.digits + _MARGIN + len(str(self.digits)))
 
     def _value(self, function: Callable[..., Decimal], *at: Decimal) -> Ball:
-        """Return a function of exact numbers."""
+        """Return a function of exact numbers as a ball."""
         try:
             with self.plain.working():
                 value = function(*at)
@@ -126,12 +126,12 @@ class Balls(Ring, Scalars):
         return self._turned(x, 1)
 
     def _turned(self, x: Ball, quarters: int) -> Ball:
-        """Return the sine of x and so many quarter turns; its slope is 1 at most."""
+        """Return the sine of x plus a number of quarter turns; its slope is at most 1."""
         turns = 0
         if x.radius < 1:
             turns = self.plain.nint(self.divide(self.multiply(x.middle, 2), self.pi.middle))
             x = x - self.pi * turns / 2 if turns else x
-        if not x.radius < 1:  # or the turns are not known
+        if not x.radius < 1:  # the angle is not known to within a turn
             return self.within(Decimal(1))
         which = (quarters + turns) % 4
         function = self.plain.cos if which % 2 else self.plain.sin
@@ -191,7 +191,7 @@ class Balls(Ring, Scalars):
         return self._logarithm(self.plain.log1p, x, 1 + x)
 
     def _logarithm(self, function: Callable[[Decimal], Decimal], x: Ball, of: Ball) -> Ball:
-        """Return a function of x whose slope is 1 over the number that is `of` x."""
+        """Return a function of x whose slope is 1/`of`."""
         if not of.least > 0:
             return self.unbounded
         return self._value(function, x.middle).enlarged(divide_up(x.radius, of.least))
@@ -203,14 +203,14 @@ class Balls(Ring, Scalars):
         return self.log1p(2 * x / (1 - x)) / 2
 
     def asinh(self, x: Ball) -> Ball:
-        """Return the inverse hyperbolic sine of x, to so many digits behind the point."""
+        """Return the inverse hyperbolic sine of x, to a fixed number of digits after the point."""
         value = self._value(self.plain.asinh, x.middle)
         return value.enlarged(add_up(x.radius, self.unit))
 
     def atan2(self, y: Ball, x: Ball) -> Ball:
         """Return the angle of the point (x, y); all angles if it may lie on the cut or at 0.
 
-        Between two points the angle changes by (|x| |dy| + |y| |dx|)/(x^2 + y^2) at most.
+        Between two points the angle changes by at most (|x| |dy| + |y| |dx|)/(x^2 + y^2).
         """
         r, s = x.radius, y.radius
         if not (r or s):
@@ -225,9 +225,9 @@ class Balls(Ring, Scalars):
         return value.enlarged(divide_up(moved, square))
 
     def nint(self, x: Ball) -> int:
-        """Return an integer within 3/4 of all of x.
+        """Return an integer within 3/4 of all numbers in x.
 
-        Raises TooFewDigitsError for a ball that is wider than half a unit.
+        Raises TooFewDigitsError for a ball wider than half a unit.
         """
         if not x.radius <= Decimal("0.25"):
             raise TooFewDigitsError
@@ -235,14 +235,14 @@ class Balls(Ring, Scalars):
 
     @staticmethod
     def ceiling(x: Ball) -> int:
-        """Return the least integer that is at least x; TooFewDigitsError if x is about one."""
+        """Return the least integer >= x; raise TooFewDigitsError if x leaves it open."""
         low, high = (int(end.to_integral_value(decimal.ROUND_CEILING)) for end in x.ends())
         if low != high:
             raise TooFewDigitsError
         return low
 
     def where(self, condition: Truth, yes: Ball | float, no: Ball | float) -> Ball:
-        """Return one of two numbers, or a ball about both if the condition is open."""
+        """Return one of two numbers, or a ball that holds both if the condition is open."""
         both = [x if isinstance(x, Ball) else self.exact(x) for x in (yes, no)]
         if condition is not OPEN:
             return both[0] if condition else both[1]
@@ -255,7 +255,7 @@ class Balls(Ring, Scalars):
 
     @staticmethod
     def either(condition: Truth) -> bool:
-        """Return whether a condition is proved, where both answers lead to the right result."""
+        """Return whether a condition is proved, if both answers lead to the right result."""
         return condition is True
 
     def widened(
@@ -266,9 +266,9 @@ class Balls(Ring, Scalars):
         *,
         values_only: bool = False,
     ) -> Ball:
-        """Return a ball that holds all numbers away from x by at most a bound of some sizes.
+        """Return a ball that holds all numbers whose distance from x is within a bound.
 
-        A bound that comes out negative is one whose series diverges.
+        A negative bound means that its series diverges.
         """
         away = bound(*(self.exact(number.greatest) for number in small()))
         return x.enlarged(away.greatest) if (away >= 0) is True else self.unbounded
@@ -280,12 +280,12 @@ class Balls(Ring, Scalars):
 
     @staticmethod
     def sign(x: Ball) -> int:
-        """Return 1, 0 or -1 with the sign of x.  Raises TooFewDigitsError if it is open."""
+        """Return 1, 0 or -1 with the sign of x; raise TooFewDigitsError if the sign is open."""
         return 0 if not x else 1 if x > 0 else -1
 
     @staticmethod
     def re(x: Ball) -> Ball:
-        """Return the real part, the number itself."""
+        """Return the real part, x itself."""
         return x
 
     def im(self, x: Ball) -> Ball:
@@ -295,5 +295,5 @@ class Balls(Ring, Scalars):
 
 @lru_cache(maxsize=64)
 def balls(digits: int) -> Balls:
-    """Return the balls with so many digits, always the same object."""
+    """Return the arithmetic of balls with `digits` digits, always the same object."""
     return Balls(digits)

@@ -1,7 +1,7 @@
 """Decimals of any precision, from the standard library alone.
 
-A record computed in them and rounded once is right to the last bit, and nothing heavier than the
-`decimal` module (which `fractions` loads anyway) has to be imported for it.
+A record that is computed in decimals and rounded once is correct to the last bit.  It needs no
+import heavier than the `decimal` module, which `fractions` loads anyway.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ TRAPS: list[type[decimal.DecimalException]] = [
     decimal.Overflow,
     decimal.Underflow,
 ]
-"""Conditions that raise an exception: whatever leaves the exponents would lose its digits."""
+"""Conditions that raise an exception, because numbers beyond the exponents would lose digits."""
 _GUARD = 5
 
 
 def own_context(digits: int, traps: list[type[decimal.DecimalException]]) -> decimal.Context:
-    """Return a decimal context that owes nothing to the one of the host program."""
+    """Return a decimal context that does not depend on the context of the host program."""
     return decimal.Context(
         prec=digits,
         rounding=decimal.ROUND_HALF_EVEN,
@@ -40,11 +40,11 @@ def own_context(digits: int, traps: list[type[decimal.DecimalException]]) -> dec
 
 
 class Decimals(Scalars, Unenclosed):
-    """The arithmetic of decimals with so many digits; its exponents have no bounds in practice.
+    """The arithmetic of decimals with `digits` digits and practically unbounded exponents.
 
-    Every function adds numbers that cancel at most half of each other, so that its relative error
-    is below 10 units in the last digit for each term of its series (of sin and cos up to a quarter
-    of pi).  A series to N digits has fewer than N terms.
+    Every function adds numbers that cancel at most half of each other.  Its relative error is
+    therefore below 10 units in the last digit per term of its series.  For sin and cos this holds
+    up to a quarter of pi.  A series to N digits has fewer than N terms.
     """
 
     nan, inf = Decimal("NaN"), Decimal("Infinity")
@@ -123,7 +123,7 @@ class Decimals(Scalars, Unenclosed):
 
     @staticmethod
     def asinh(x: Decimal) -> Decimal:
-        """Return the inverse hyperbolic sine of x, to so many digits behind the point."""
+        """Return the inverse hyperbolic sine of x, to a fixed number of digits after the point."""
         logarithm = (abs(x) + (x * x + 1).sqrt()).ln()
         return logarithm if x >= 0 else -logarithm
 
@@ -146,7 +146,7 @@ class Decimals(Scalars, Unenclosed):
         return total
 
     def _alternating(self, term: Decimal, ratio: Decimal, n: int) -> Decimal:
-        """Return a sum of terms, each ratio/((n + 1)(n + 2)) times the one before."""
+        """Return a sum of terms, each ratio/((n + 1)(n + 2)) times the previous one."""
         total, least = term, self.eps * abs(term) / 200
         while abs(term) > least:
             term, n = term * ratio / ((n + 1) * (n + 2)), n + 2
@@ -156,13 +156,13 @@ class Decimals(Scalars, Unenclosed):
 
 @lru_cache(maxsize=64)
 def decimals(digits: int) -> Decimals:
-    """Return the decimals of so many digits, always the same object."""
+    """Return the arithmetic of decimals with `digits` digits, always the same object."""
     return Decimals(digits)
 
 
 @lru_cache(maxsize=64)
 def pi_to(digits: int) -> Decimal:
-    """Return pi to so many digits, beyond sixty by the arithmetic-geometric mean (Brent 1976)."""
+    """Return pi to `digits` digits, beyond sixty by the arithmetic-geometric mean (Brent 1976)."""
     with decimal.localcontext(Decimals(digits + _GUARD)._context):
         if digits + _GUARD <= 60:
             return +_PI

@@ -1,7 +1,7 @@
 """Arithmetic on unevaluated sums of two doubles, about 104 bits (Dekker 1971).
 
-A double times a constant held as two gives the whole periods that have passed and the rest of the
-time exactly, however far away it is.
+The product of a double and a constant held as two doubles gives the whole periods that have passed.
+It also gives the remaining time exactly, however large the time is.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def two_product(x: float | Array, y: float | Array) -> tuple[Array, Array]:
 
 
 def _halves(x: float | Array) -> tuple[Array, Array]:
-    """Return numbers as sums of new ones with 26 bits."""
+    """Return numbers as sums of two numbers with 26 bits."""
     bits = np.asarray(x, dtype=np.float64).view(np.int64)
     high: Array = ((bits + (1 << 26)) & -(1 << 27)).view(np.float64)
     return high, x - high
@@ -50,7 +50,7 @@ def reduce_phase(t: Array, rate: Pair) -> tuple[Array, Array]:
 
 
 def fraction_of_product(t: Array, rate: Triple) -> Array:
-    """Return t * rate less the nearest whole number, free of cancellation."""
+    """Return t * rate minus the nearest whole number, without cancellation."""
     total, lost = t * rate.low, np.zeros_like(t)
     for part in (rate.middle, rate.high):
         for term in two_product(t, part):
@@ -60,9 +60,10 @@ def fraction_of_product(t: Array, rate: Triple) -> Array:
 
 
 class Period(NamedTuple):
-    """A length of time to count with: the sum of three doubles, or of three arrays.
+    """The length of a period as the sum of three doubles, or of three arrays.
 
-    Whole numbers below 2^26 times the first two are exact, because these have 26 and 27 bits.
+    Products of the first two parts with whole numbers below 2^26 are exact, because the parts have
+    26 and 27 bits.
     """
 
     rate: float | Array
@@ -75,7 +76,7 @@ class Period(NamedTuple):
 
 
 def period_of(length: Pair, rate: float) -> Period:
-    """Return a period by its length and by rate = 1/length; it never ends if the rate is 0."""
+    """Return a period from its length and rate = 1/length; a rate of 0 means that it never ends."""
     long, low = (float(part) if math.isfinite(length.high) else 0.0 for part in length)
     mantissa, exponent = math.frexp(long)
     high = math.ldexp(math.trunc(mantissa * MANY), exponent - 26)
@@ -83,7 +84,7 @@ def period_of(length: Pair, rate: float) -> Period:
 
 
 def periods_of(length: Pair, rate: Array) -> Period:
-    """Return the periods of many tops; see `period_of`, which is quicker for one."""
+    """Return the periods of many tops; `period_of` is quicker for one."""
     long, low = (np.where(np.isfinite(length.high), part, 0.0)[()] for part in length)
     mantissa, exponent = np.frexp(long)
     high = np.ldexp(np.trunc(mantissa * MANY), exponent - 26)
@@ -100,8 +101,8 @@ def whole_periods(
 ) -> tuple[Array, Array, Array]:
     """Return the integer n nearest to t/period + offset, and t - n period as a difference.
 
-    The first part of the difference is exact, the second tiny.  All go to the three arrays of
-    `space`.  No |t| is greater than `farthest`, and no n than 2^51.
+    The first part of the difference is exact, and the second is tiny.  All results are in the three
+    arrays of `space`.  |t| must not exceed `farthest`, nor n exceed 2^51.
     """
     whole, rest, lost = space
     np.multiply(t, period.rate, out=whole)
@@ -118,14 +119,14 @@ def whole_periods(
 def _many_periods(
     t: Array, period: Period, whole: Array, offset: float | Array
 ) -> tuple[Array, Array, Array]:
-    """Return the same for numbers with more bits; for those with fewer, the same bit by bit."""
+    """Return the results of `whole_periods` for n with more than 26 bits; identical for fewer."""
     many = np.rint(whole / MANY) * MANY
     few, rest = whole - many, t
     for length in (period.high, period.middle):
         rest = rest - many * length
         rest = rest - few * length
     lost = whole * period.low
-    # the rounding of t/period may have taken one more or less than the nearest
+    # rounding t/period may have led to a neighbour of the nearest integer
     more = np.rint(((rest - lost) * period.rate + offset) * _LESS_THAN_1)
     rest = rest - more * period.high
     rest = rest - more * period.middle
@@ -149,8 +150,8 @@ def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
 class DoubleDouble:
     """The numbers high + low, where high is the double nearest to the sum.
 
-    Sums, products, quotients and square roots are good to a few units of 2^-104, of the larger part
-    in a sum.  `arrays.Pairs` is the arithmetic of these numbers.
+    Sums, products, quotients and square roots are good to a few units of 2^-104 (relative to the
+    larger term of a sum).  `arrays.Pairs` is the arithmetic of these numbers.
     """
 
     def __init__(self, high: Array, low: Array | None = None) -> None:
@@ -163,7 +164,7 @@ class DoubleDouble:
 
     @classmethod
     def stacked(cls, rows: Sequence[DoubleDouble]) -> DoubleDouble:
-        """Return arrays as the rows of one."""
+        """Return several arrays stacked as the rows of one."""
         return cls(np.stack([x.high for x in rows]), np.stack([x.low for x in rows]))
 
     @staticmethod
@@ -221,7 +222,7 @@ class DoubleDouble:
         return self._like(other) / self
 
     def _ordered(self, other: DoubleDouble | float, compare: Any, strictly: Any) -> Mask:
-        """Return a comparison of the larger parts or, where these are equal, of the others."""
+        """Return a comparison of the high parts or, if they are equal, of the low parts."""
         other = self._like(other)
         equal = self.high == other.high
         holds: Mask = strictly(self.high, other.high) | equal & compare(self.low, other.low)
@@ -247,7 +248,7 @@ class DoubleDouble:
     def choose(
         cls, condition: Mask, yes: DoubleDouble | float, no: DoubleDouble | float
     ) -> DoubleDouble:
-        """Return one of two numbers, element by element."""
+        """Choose between two numbers, element by element."""
         one, other = (
             x if isinstance(x, DoubleDouble) else cls(np.full(np.shape(condition), float(x)))
             for x in (yes, no)

@@ -1,8 +1,8 @@
-"""Dual numbers over balls or decimals: a value with its partial derivatives, by any formula.
+"""Dual numbers over balls or decimals: a value with its partial derivatives.
 
-With e_i e_j = 0 a number x + x_1 e_1 + ... + x_n e_n obeys the rules of differentiation, so that a
-formula written for any arithmetic gives its derivatives by n parameters at once.  Over balls the
-derivatives are enclosures.
+With e_i e_j = 0, a number x + x_1 e_1 + ... + x_n e_n obeys the rules of differentiation.  A
+formula written for any arithmetic then gives its derivatives by n parameters at once.  Over balls,
+the derivatives are enclosures.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from .decimals import Decimals
 from .numbers import Scalars
 
 Plain = Any
-"""A number of the arithmetic that duals are over."""
+"""A number of the arithmetic underneath."""
 
 
 class Dual:
-    """A number and its partial derivatives; a constant has None of them.
+    """A number and its partial derivatives, which are None for a constant.
 
-    A constant 0 is 0 whatever it is multiplied with: what is known to be 0 all around keeps its
-    meaning.  Comparisons look at the value alone.
+    A constant 0 times anything is 0, because a number that is 0 throughout a neighbourhood stays 0.
+    Comparisons use the value alone.
     """
 
     __slots__ = ("partials", "value")
@@ -67,7 +67,7 @@ class Dual:
         return Dual(-self.value, None if self.partials is None else [-x for x in self.partials])
 
     def __abs__(self) -> Dual:
-        """Return |x|; at 0 its derivatives are those of x, as if x were growing there."""
+        """Return |x|; at 0 its derivatives are the derivatives of x, as if x were increasing."""
         falls = self.value < 0
         if falls is not OPEN:
             return -self if falls else self
@@ -129,12 +129,12 @@ def is_zero(x: Plain) -> bool:
 
 
 def _chained(x: Dual, value: Plain, slope: Plain) -> Dual:
-    """Return a function of x by its value and its slope there."""
+    """Return a function of x from its value and its slope at x."""
     return Dual(value, None if x.partials is None else [slope * dx for dx in x.partials])
 
 
 def _function(name: str, slope: Callable[[Any, Plain], Plain]) -> Callable[[Duals, Dual], Dual]:
-    """Return the function of this name of dual numbers, by its slope."""
+    """Return the function `name` of dual numbers, with its slope."""
 
     def function(ar: Duals, x: Dual) -> Dual:
         return _chained(x, getattr(ar.plain, name)(x.value), slope(ar.plain, x.value))
@@ -143,10 +143,10 @@ def _function(name: str, slope: Callable[[Any, Plain], Plain]) -> Callable[[Dual
 
 
 class Duals(Scalars):
-    """The arithmetic of dual numbers over that of balls or decimals.
+    """The arithmetic of dual numbers over the arithmetic of balls or decimals.
 
-    If a root is taken of a 0 that is no constant its derivatives do not exist: they are NaN, and so
-    is whatever depends on them.
+    The root of a 0 that is not a constant has no derivatives.  They are NaN, and so are all
+    derivatives that depend on them.
     """
 
     def __init__(self, plain: Balls | Decimals) -> None:
@@ -206,7 +206,7 @@ class Duals(Scalars):
         *,
         values_only: bool = False,
     ) -> Dual:
-        """Return x and, over balls, what an iteration may have left out of it and its derivatives.
+        """Return x; over balls, add the truncation error of an iteration and its derivatives.
 
         Raises NotImplementedError over balls for a bound of `values_only`.
         """
@@ -215,13 +215,13 @@ class Duals(Scalars):
         if values_only:
             raise NotImplementedError("this bound does not hold for derivatives")
         away = bound(*(_sizes(self.plain, number) for number in small()))
-        if (away.value >= 0) is not True:  # the series of the bound diverges
+        if (away.value >= 0) is not True:  # the series behind the bound diverges
             unbounded = self.plain.unbounded
             return Dual(unbounded, None if x.partials is None else [unbounded for _ in x.partials])
         return _widened(x, away)
 
     def either(self, condition: Any) -> bool:
-        """Return a condition on which only the way to the result depends."""
+        """Return a condition that affects only the path to the result."""
         return bool(self.plain.either(condition))
 
     @staticmethod
@@ -236,13 +236,13 @@ class Duals(Scalars):
 
 
 def _sizes(ar: Balls, x: Dual) -> Dual:
-    """Return the greatest sizes of a number and of its derivatives."""
+    """Return upper bounds on the sizes of a number and of its derivatives."""
     partials = None if x.partials is None else [ar.exact(dx.greatest) for dx in x.partials]
     return Dual(ar.exact(x.value.greatest), partials)
 
 
 def _widened(x: Dual, away: Dual) -> Dual:
-    """Return a number with larger radii of its value and its derivatives."""
+    """Return a number with the radii of its value and derivatives enlarged."""
     value = x.value.enlarged(away.value.greatest)
     if away.partials is None:
         return Dual(value, x.partials)
@@ -252,7 +252,7 @@ def _widened(x: Dual, away: Dual) -> Dual:
 
 
 def independent(values: Iterable[Plain]) -> list[Dual]:
-    """Return numbers as parameters, each with the derivative 1 by itself and 0 by the others."""
+    """Return numbers as independent parameters: derivative 1 by themselves, 0 by the others."""
     values = list(values)
     return [
         Dual(x, [0 * y + int(i == j) for j, y in enumerate(values)]) for i, x in enumerate(values)

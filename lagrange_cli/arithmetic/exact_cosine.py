@@ -1,11 +1,13 @@
 """Signs and zeros of polynomials in the cosine of a given angle, decided exactly.
 
-The inputs of a scene are rational numbers, so most questions about its motion ("is the precession
-steady?", "does the axis meet the pole?") ask for the sign of a polynomial with rational
-coefficients at u = cos(theta0).  A sign that is not 0 shows itself in enough digits; a zero has to
-be proved.  The cosine of an angle of k/n turns is algebraic of known degree, and the polynomial is
-one of a root of unity.  The cosine of any other angle in
-radians is transcendental (Lindemann), so that only the zero polynomial vanishes.
+The inputs of a scene are rational numbers.  Most questions about its motion ("is the precession
+steady?", "does the axis meet the pole?") therefore ask for the sign of a polynomial with rational
+coefficients at u = cos(theta0).  Enough digits reveal a sign other than 0, but a zero needs a
+proof.
+
+The cosine of an angle of k/n turns is algebraic of known degree, and the polynomial becomes one of
+a root of unity.  The cosine of any other angle in radians is transcendental (Lindemann), so that
+only the zero polynomial vanishes.
 """
 
 from __future__ import annotations
@@ -27,15 +29,15 @@ if TYPE_CHECKING:
     from .protocol import Arithmetic
 
 _CERTAIN = 1e-12
-"""More than the rounding of a value whose coefficients have the sum 1 in size."""
+"""A bound above the rounding error of a value if the sizes of the coefficients add up to 1."""
 _SMALL = 1e-250
-"""Below this sum of coefficients some of them may have left the range of doubles."""
+"""Sum of the coefficients' sizes below which some may be out of the range of doubles."""
 
 
 class Polynomial:
-    """A polynomial with rational coefficients, the lowest power first.
+    """A polynomial with rational coefficients, lowest power first.
 
-    Sums and products are those with polynomials or rational numbers.
+    The other operand of a sum or product is a polynomial or a rational number.
     """
 
     __slots__ = ("coefficients",)
@@ -44,7 +46,7 @@ class Polynomial:
         self.coefficients = coefficients
 
     def __call__(self, x: Any, convert: Callable[[Fraction], Any] = Fraction) -> Any:
-        """Return the value at x, the coefficients being converted to numbers like it."""
+        """Return the value at x, with the coefficients converted to the type of x."""
         return polynomial([convert(Fraction(c)) for c in self.coefficients], x)
 
     def __add__(self, other: object) -> Polynomial:
@@ -80,7 +82,7 @@ def _terms(value: object) -> tuple[Fraction | int, ...]:
 
 
 class Tilt(Values, Over[R]):
-    """Sines and cosines of an angle from 0 to pi and of its half."""
+    """Sines and cosines of an angle from 0 to pi and of half the angle."""
 
     sin: R
     cos: R
@@ -93,14 +95,14 @@ class Tilt(Values, Over[R]):
 
 
 class Cosine(Values):
-    """The cosine of an angle from 0 to pi that is given exactly, in degrees or else in radians."""
+    """The cosine of an angle from 0 to pi that is given exactly, in degrees or in radians."""
 
     degrees: Fraction | None
     radians: Fraction | None
 
     @property
     def rational(self) -> Fraction | None:
-        """The value, where it is rational (Niven: at multiples of 60 and 90 degrees only)."""
+        """The value if it is rational (Niven: only at multiples of 60 and 90 degrees) or None."""
         if self.radians is not None:
             return Fraction(1) if self.radians == 0 else None
         known: dict[Fraction | int, int] = {0: 2, 60: 1, 90: 0, 120: -1, 180: -2}
@@ -108,11 +110,11 @@ class Cosine(Values):
         return None if twice is None else Fraction(twice, 2)
 
     def vanishes(self, P: Polynomial) -> bool:
-        """Return whether a polynomial is exactly 0 here."""
+        """Return whether a polynomial is exactly 0 at this cosine."""
         return self._clear_sign(P) is None and self._vanishes(P)
 
     def fraction(self, P: Polynomial) -> Fraction | None:
-        """Return a polynomial here where it is known as a fraction: 0, a constant, or of one."""
+        """Return the value of a polynomial if it is known to be a fraction, else None."""
         constant, *others = P.coefficients
         if not any(others):
             return Fraction(constant)
@@ -132,7 +134,7 @@ class Cosine(Values):
         return decided("a polynomial in cos(theta0)", decision)
 
     def _clear_sign(self, P: Polynomial) -> int | None:
-        """Return the sign where doubles are enough to see it."""
+        """Return the sign if doubles are sufficient to determine it, else None."""
         try:
             size = sum(abs(float(x)) for x in P.coefficients)
             value = P(math.cos(self._in_radians()), float)
@@ -153,7 +155,7 @@ class Cosine(Values):
         if self.degrees is None or len(coefficients) == 1:
             return False
         n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
-        # phi(n) >= sqrt(n/2): beyond, the degree of the cosine is too high
+        # phi(n) >= sqrt(n/2): for larger n, the degree of the cosine is too high
         return n <= 8 * degree * degree and _vanishes_at_root_of_unity(coefficients, n)
 
     def at(self, ar: Balls, P: Polynomial) -> Ball:
@@ -172,7 +174,7 @@ class Cosine(Values):
         return self.tilt(ar).cos if rational is None else ar.convert(rational)
 
     def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
-        """Return sines and cosines of the angle and its half with full *relative* accuracy.
+        """Return sines and cosines of the angle and of its half with full *relative* accuracy.
 
         They are computed from the distances to the nearer pole and to the horizontal.
         """
@@ -191,7 +193,7 @@ class Cosine(Values):
 
 
 def below_quarters(quarters: int, theta: Fraction, digits: int = 1) -> Fraction:
-    """Return so many quarter turns less an angle in radians, to so many significant digits."""
+    """Return quarter turns minus an angle in radians, to `digits` significant digits."""
     of_pi = digits + 20
     while True:
         gap = quarters * Fraction(pi_to(of_pi)) / 2 - theta
@@ -201,16 +203,16 @@ def below_quarters(quarters: int, theta: Fraction, digits: int = 1) -> Fraction:
 
 
 def _below_quarters(ar: Arithmetic[R], quarters: int, theta: Fraction) -> R:
-    """Return the same in an arithmetic, with full relative accuracy."""
+    """Return quarter turns minus an angle in an arithmetic, with full relative accuracy."""
     gap = ar.convert(below_quarters(quarters, theta, 2 - int(ar.magnitude)))
     return ar.widened(gap, lambda: (gap,), lambda gap: gap * ar.eps)
 
 
 def _vanishes_at_root_of_unity(coefficients: Sequence[Fraction], n: int) -> bool:
-    """Return whether P((z + 1/z)/2) is 0 where z is a primitive n-th root of unity.
+    """Return whether P((z + 1/z)/2) is 0 for a primitive n-th root of unity z.
 
-    Modulo z^n - 1 this is a number for each power of z.  The factors z^(n/p) - 1, p the primes that
-    divide n, vanish at all n-th roots of unity but the primitive ones.
+    Modulo z^n - 1, the value is one number for each power of z.  For the primes p that divide n,
+    the factors z^(n/p) - 1 vanish at all n-th roots of unity except the primitive ones.
     """
     cyclic = [Fraction(0)] * n
     for degree, coefficient in enumerate(coefficients):

@@ -1,6 +1,6 @@
-"""Numbers of any arithmetic: what formulas need of them, and the arithmetic of plain floats.
+"""The numbers that formulas take from any arithmetic, and the arithmetic of plain floats.
 
-What an arithmetic offers is said in `protocol`, which a record is computed without.
+The operations of an arithmetic are declared in `protocol`, which is not loaded to compute a record.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ T = TypeVar("T")
 
 
 def is_real(value: object) -> bool:
-    """Return whether a value is neither a truth value, a text, complex, masked, nor an array."""
+    """Return whether a value is a real number: no truth value, text, complex, masked or array."""
     dtype = getattr(value, "dtype", None)
     if dtype is None:
         return not isinstance(value, _NOT_REAL)
@@ -57,9 +57,9 @@ def is_real(value: object) -> bool:
 
 
 def unrounded(value: Any, nearest: float) -> Number:
-    """Return a finite real number as the double nearest to it, if it is that, or as a fraction.
+    """Return a finite real number as its nearest double if that is exact, else as a fraction.
 
-    A number of a kind that tells no ratio of integers is rounded.
+    Numbers of a type without a ratio of integers are rounded.
     """
     exact = index(value) if hasattr(value, "__index__") else value
     if exact == nearest or not hasattr(exact, "as_integer_ratio"):
@@ -68,12 +68,12 @@ def unrounded(value: Any, nearest: float) -> Number:
 
 
 def per_radian(*, radians: bool) -> float:
-    """Return how many of the unit of angles in use, radians or degrees, a radian is."""
+    """Return the size of one radian in the unit of angles in use, radians or degrees."""
     return 1.0 if radians else 180 / math.pi
 
 
 def unit_in_radians(*, radians: bool) -> float:
-    """Return how many radians the unit of angles in use, a radian or a degree, is."""
+    """Return the size in radians of the unit of angles in use, a radian or a degree."""
     return 1.0 if radians else math.pi / 180
 
 
@@ -83,7 +83,7 @@ def absolute(x: R) -> R:
 
 
 def power(x: R, exponent: int) -> R:
-    """Return x to a power of 1 at least, by squaring."""
+    """Return x to a power of at least 1, by squaring."""
     if exponent == 1:
         return x
     half = power(x, exponent // 2)
@@ -92,16 +92,16 @@ def power(x: R, exponent: int) -> R:
 
 @lru_cache(maxsize=256)
 def root_of_epsilon(ar: Any, over: int, degree: int) -> Any:
-    """Return (eps/over)^(1/degree): where a series with so many orders is exact.
+    """Return (eps/over)^(1/degree), below which a series up to order `degree` is exact.
 
-    Three digits are enough: it says when to stop, not what is true.
+    Three digits are enough, because the number decides when to stop and not whether a bound holds.
     """
     exponent, part = divmod((ar.magnitude - math.log10(over)) / degree, 1)
     return ar.convert(Fraction(10) ** int(exponent) * Fraction(10.0**part))
 
 
 def polynomial(coefficients: Sequence[Any], x: Any) -> Any:
-    """Return the value of a polynomial at a number or an array x, the lowest power first."""
+    """Return the value of a polynomial at a number or an array x, lowest power first."""
     constant, *others = coefficients
     if not others:
         return constant
@@ -114,9 +114,9 @@ def polynomial(coefficients: Sequence[Any], x: Any) -> Any:
 
 
 def in_arithmetic(function: F) -> F:
-    """Return a formula f(ar, ...) that is evaluated inside `ar.working()`.
+    """Return the formula f(ar, ...), evaluated inside `ar.working()`.
 
-    So nothing depends on the decimal context or the `numpy.errstate` of the caller.
+    The result then does not depend on the caller's decimal context or `numpy.errstate`.
     """
 
     @wraps(function)
@@ -128,7 +128,7 @@ def in_arithmetic(function: F) -> F:
 
 
 class Unenclosed:
-    """An arithmetic whose numbers have no radii, so that what iterations leave out is ignored."""
+    """An arithmetic whose numbers have no radii, so that truncation errors are ignored."""
 
     def widened(
         self,
@@ -138,11 +138,11 @@ class Unenclosed:
         *,
         values_only: bool = False,
     ) -> T:
-        """Return x: what an iteration leaves out is below the last digit."""
+        """Return x, because the truncation error of an iteration is below the last digit."""
         return x
 
     def either(self, condition: Any) -> Any:
-        """Return a condition on which only the way to the result depends."""
+        """Return a condition that affects only the path to the result."""
         return condition
 
     def fixed(self, x: T) -> T:
@@ -156,7 +156,7 @@ class Scalars:
     is_array = False
 
     def working(self) -> AbstractContextManager[object]:
-        """Return a context manager that has nothing to do: the numbers know their precision."""
+        """Return a context manager that does nothing, because the numbers know their precision."""
         return nullcontext()
 
     def where(self, condition: Any, yes: Any, no: Any) -> Any:
@@ -164,7 +164,7 @@ class Scalars:
         return yes if condition else no
 
     def anywhere(self, condition: Any) -> bool:
-        """Return whether a condition holds; that of balls may raise TooFewDigitsError."""
+        """Return whether a condition holds; a condition on balls may raise TooFewDigitsError."""
         return bool(condition)
 
     everywhere = anywhere

@@ -22,10 +22,10 @@ POINTS_AT_ONCE = 1 << 14
 MOST_POINTS = 10**9
 
 MAX_PERIODS = 2.0**50
-"""Beyond, neighbouring doubles lie so far apart that a time no longer names a phase."""
+"""Number of periods beyond which neighbouring doubles are too far apart to determine a phase."""
 
 MAX_TIME = 1e290
-"""Room for the exact product of a time and a rate."""
+"""Largest time: the product of a time and a rate can still be computed exactly."""
 
 _DIGITS_OF_LOG_POINTS = Context(
     prec=30, rounding=ROUND_HALF_EVEN, Emin=-9999, Emax=9999, capitals=1, clamp=0, traps=[]
@@ -33,21 +33,21 @@ _DIGITS_OF_LOG_POINTS = Context(
 
 
 class Points:
-    """Points on a line; the subclasses say where they lie."""
+    """Points on a line; subclasses define their places."""
 
     count: int
-    """The number of points; 0 where only the end of a file can tell."""
+    """The number of points; 0 if it is unknown until the end of a file."""
 
     def at(self, index: Index) -> Array:
         """Return the doubles nearest to the points with these indices."""
         raise NotImplementedError
 
     def decimals(self) -> Iterator[Fraction]:
-        """Yield every point exactly, or as the double that stands for it if it is no fraction."""
+        """Yield every point exactly, or as a double if it is not a fraction."""
         return (Fraction(x) for block in self.blocks() for x in block.tolist())
 
     def bounds(self) -> list[float]:
-        """Return the two outermost points, or nothing where they are not known yet."""
+        """Return the two outermost points, or an empty list if they are not known yet."""
         import numpy as np
 
         first, last = self.at(np.array([0, self.count - 1]))
@@ -69,7 +69,7 @@ class EvenPoints(Points):
     """The points start + i step for i from 0 to count - 1."""
 
     def __init__(self, start: Fraction, step: Fraction, count: int) -> None:
-        """Raise LagtopError where there would be more than 1e9 points."""
+        """Raise LagtopError for more than 1e9 points."""
         if count > MOST_POINTS:
             size = Context(prec=4, traps=[]).create_decimal(count)
             raise LagtopError(
@@ -88,8 +88,8 @@ class EvenPoints(Points):
     def at(self, index: Index) -> Array:
         """Return start + i step for every i of `index`, each rounded once.
 
-        Pairs of doubles give them to 2^-100 of the largest; where that leaves two doubles to choose
-        from, exact fractions decide.
+        Pairs of doubles give the points to 2^-100 of the largest one.  If that leaves two possible
+        doubles, exact fractions decide.
         """
         import numpy as np
 
@@ -118,7 +118,7 @@ class EvenPoints(Points):
 
 
 class LogPoints(Points):
-    """Points from one end to the other, neither of them 0, with equal ratios between neighbours."""
+    """Points with a constant ratio between neighbours; neither end is 0."""
 
     def __init__(self, first: Fraction, last: Fraction, count: int) -> None:
         self.first, self.last, self.count = first, last, count
@@ -172,7 +172,7 @@ class ListedPoints(Points):
 
 
 def check_reach(name: str, points: Points, limit: float) -> None:
-    """Raise LagtopError where a point is farther from 0 than the limit."""
+    """Raise LagtopError if a point is farther from 0 than the limit."""
     farthest = max(points.bounds(), key=abs)
     if abs(farthest) > limit:
         raise LagtopError(
@@ -189,7 +189,7 @@ class ExactComplex(NamedTuple):
     imag: Fraction = Fraction(0)
 
     def __str__(self) -> str:
-        """Return the number as it can be typed."""
+        """Return the number in a form that can be typed."""
         real, imag = f"{float(self.real)}", f"{float(self.imag):+}i"
         if not self.imag:
             return real
@@ -217,12 +217,12 @@ def parse_complex(text: str) -> ExactComplex:
 
 
 def looks_complex(text: str) -> bool:
-    """Return whether a text has a letter for the imaginary unit, right or wrong."""
+    """Return whether a text has a letter for the imaginary unit, valid or not."""
     return not set("ijIJ").isdisjoint(text)
 
 
 def _part_texts(text: str) -> tuple[str, str]:
-    """Return the texts of the real and of the imaginary part, as they stand."""
+    """Return the texts of the real and the imaginary part, unparsed."""
     if not text.endswith("i"):
         return text, "0"
     signs = [i for i, sign in enumerate(text) if sign in "+-" and text[i - 1 : i] not in {"e", "E"}]

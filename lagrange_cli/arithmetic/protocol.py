@@ -1,7 +1,7 @@
-"""What a formula may ask of the arithmetic that it is computed in, and of its numbers.
+"""The operations that formulas may use of an arithmetic and of its numbers.
 
-A formula is written once and takes the arithmetic as its first argument: decimals of any precision,
-arrays of doubles, arrays of pairs of doubles, or whatever else behaves like these.
+A formula is written once and takes the arithmetic as its first argument.  Examples are decimals of
+any precision, arrays of doubles, and arrays of pairs of doubles.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .numbers import R
 
 
 class Arithmetic(Protocol[R]):
-    """What the formulas of the record need."""
+    """The operations that the formulas of the record use."""
 
     def __hash__(self) -> int: ...
 
@@ -37,10 +37,10 @@ class Arithmetic(Protocol[R]):
 
     @property
     def nan(self) -> R:
-        """Not a number: what an array holds where a top has no number."""
+        """Not a number; it marks undefined elements of an array."""
 
     def working(self) -> AbstractContextManager[object]:
-        """Return a context manager that sets this precision, for the thread, in a computation."""
+        """Return a context manager that sets this precision for the thread during a computation."""
 
     def convert(self, value: float | Fraction, /) -> R:
         """Return the number nearest to an exact value."""
@@ -61,13 +61,13 @@ class Arithmetic(Protocol[R]):
         """Return one of two numbers, or choose element by element between two arrays."""
 
     def anywhere(self, condition: Any, /) -> bool:
-        """Return whether a condition holds at all, for some element of an array."""
+        """Return whether a condition holds, for an array whether it holds for any element."""
 
     def everywhere(self, condition: Any, /) -> bool:
         """Return whether a condition holds for every element of an array."""
 
     def either(self, condition: Any, /) -> Any:
-        """Return a condition that chooses between two right ways; balls may leave it open."""
+        """Return a condition that chooses between two valid methods; for balls it may be open."""
 
     def widened(
         self,
@@ -78,11 +78,11 @@ class Arithmetic(Protocol[R]):
         *,
         values_only: bool = False,
     ) -> R:
-        """Return x and, in an arithmetic of balls, all that an iteration may have left out.
+        """Return x and, in an arithmetic of balls, the truncation error of an iteration.
 
-        `bound`, at the sizes of the `small` numbers, bounds what is left out, and its derivatives
-        by them bound those of what is left out, unless it is one of `values_only`.  In any other
-        arithmetic this is x, and neither is computed.
+        `bound`, at the sizes of the `small` numbers, bounds the truncation error.  Unless
+        `values_only` is set, the derivatives of `bound` also bound the derivatives of the error.
+        Other arithmetics return x and compute neither.
         """
 
     def fixed(self, x: R, /) -> R:
@@ -90,7 +90,7 @@ class Arithmetic(Protocol[R]):
 
 
 class SeriesArithmetic(Arithmetic[R], Protocol[R]):
-    """What the theta series and the separatrix need besides."""
+    """Further operations, for the theta series and the separatrix."""
 
     def exp(self, x: R, /) -> R:
         """Return e to the power x."""
@@ -109,15 +109,15 @@ class SeriesArithmetic(Arithmetic[R], Protocol[R]):
 
 
 Value = Any
-"""A real or complex number, or an array of them, of a `FunctionArithmetic`: mpmath has no types."""
+"""A real or complex number, or an array of them, of a `FunctionArithmetic`; mpmath has no types."""
 
 
 FunctionArithmetic = Any
 """The arithmetic of Jacobi's, the theta and Omega functions: balls, arrays of doubles, or mpmath.
 
 It is a `SeriesArithmetic` with inf, expm1, log, log1p, tanh, sech, atanh, sign, re and im.  Its
-numbers may be complex and mix with floats, and mpmath has no types, so that it has none either.
+numbers may be complex and mix with floats.  It has no static type, because mpmath has none.
 """
 
 ComplexArithmetic = Any
-"""A `FunctionArithmetic` with conj, and with mpc, which makes a number of two parts."""
+"""A `FunctionArithmetic` with conj, and with mpc, which makes a number from two parts."""

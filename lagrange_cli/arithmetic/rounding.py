@@ -1,6 +1,6 @@
-"""Proved roundings: more digits, until both ends of an enclosure are rounded alike (Ziv 1991).
+"""Proved rounding: more digits, until both ends of an enclosure round alike (Ziv 1991).
 
-A number is rounded to a double, to digits, or to a sum of two or three doubles.
+A number is rounded to a double, to N digits, or to a sum of two or three doubles.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 S = TypeVar("S")
 
 FIRST_DIGITS, MOST_DIGITS = 32, 4_500
-"""Digits of the first enclosure of a double, and digits beyond which a question stays open."""
+"""Digits of the first enclosure of a double, and of the last before a question stays open."""
 _GUARD = 10
-"""Digits that an enclosure of N digits has besides."""
+"""Extra digits of an enclosure beyond the N digits requested."""
 _OUTWARDS, _SHORT = own_context(20, []), own_context(2, [])
 _OUTWARDS.rounding = _SHORT.rounding = ROUND_UP
 _A_HAIR_MORE = Decimal("1.000000000001")
@@ -40,18 +40,18 @@ class Settled(NamedTuple):
 
     @property
     def radius(self) -> NumberText:
-        """How far the exact value may be from the number, rounded up to two digits.
+        """Largest possible distance of the exact value from the number, rounded up to two digits.
 
-        It is rounded so far that the double which is read is no less.
+        It is rounded up so far that the double read from the text is not smaller.
         """
         away = max(_distance(end, self.value) for end in self.ends)
         return text_of(_SHORT.multiply(away, _A_HAIR_MORE), _SHORT.prec)
 
 
 def precisions(digits: int = 0, more: int = 0) -> Iterator[int]:
-    """Yield the digits of enclosures to try for a number of so many digits.
+    """Yield the digits of enclosures to try for a number of `digits` digits.
 
-    `more` are digits that are lost anyway, such as those of whole turns.
+    `more` is the number of digits that are lost in any case, for example to whole turns.
     """
     working = max(FIRST_DIGITS, digits + _GUARD) + more
     while working <= MOST_DIGITS + more:
@@ -60,7 +60,7 @@ def precisions(digits: int = 0, more: int = 0) -> Iterator[int]:
 
 
 def too_small(what: str) -> LagtopError:
-    """Return the error of a number that decimals cannot hold, whatever their digits."""
+    """Return the error for a number that decimals cannot hold with any number of digits."""
     return OutOfRangeError(
         f"{what} is below {SMALLEST:e} in size, too small for --digits: take a smaller argument"
     )
@@ -69,7 +69,7 @@ def too_small(what: str) -> LagtopError:
 def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int = 0) -> S:
     """Return the first result that some number of digits decides.
 
-    Raises LagtopError if none does.
+    Raises LagtopError if no number of digits does.
     """
     for working in precisions(digits, more):
         try:
@@ -78,7 +78,7 @@ def decided(what: str, compute: Callable[[int], S], digits: int = 0, more: int =
             raise too_small(what) from None
         except TooFewDigitsError:
             continue
-    raise LagtopError(f"{what} cannot be told from 0 or a tie with {MOST_DIGITS} digits")
+    raise LagtopError(f"{what} cannot be distinguished from 0 or a tie with {MOST_DIGITS} digits")
 
 
 def settled(
@@ -92,8 +92,8 @@ def settled(
 ) -> Settled | None:
     """Return the rounding of a number from enclosures with more and more digits; None for None.
 
-    If the first enclosure leaves the number open, `exactly` is asked once whether it is known as a
-    fraction.  Raises LagtopError if nothing decides.
+    If the first enclosure leaves the number open, `exactly` is asked once for its value as a
+    fraction. Raises LagtopError if nothing decides.
     """
     known: Fraction | None = None
     asked = False
@@ -115,8 +115,8 @@ def settled(
 def alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
     """Return the number to which both ends of a ball are rounded.
 
-    It is 0 only if the ball is.  Raises TooFewDigitsError if the ends are rounded differently, or
-    if they are too far apart to know the size of the number.
+    It is 0 only if the ball is exactly 0.  Raises TooFewDigitsError if the ends round differently,
+    or if they are too far apart to determine the size of the number.
     """
     low, high = ball.ends()
     if not ball.is_sharp:
@@ -128,9 +128,9 @@ def alike(ball: Ball, rounding: Callable[[DecimalOrFraction], Any]) -> Settled:
 
 
 def rounded(what: str, enclosure: Callable[[int], Ball]) -> float:
-    """Return the double nearest to a number, 0 also for one that is proved to be as small.
+    """Return the correctly rounded double; 0 also for a number proved to be too small.
 
-    A ball that is NaN is NaN.  Raises LagtopError if no precision decides.
+    A ball that is NaN gives NaN.  Raises LagtopError if no precision decides.
     """
 
     def nearest(digits: int) -> float:
@@ -141,9 +141,9 @@ def rounded(what: str, enclosure: Callable[[int], Ball]) -> float:
 
 
 def nearest_double(name: str) -> Callable[[DecimalOrFraction], float]:
-    """Return the rounding of a number to doubles.
+    """Return the function that rounds a number to a double.
 
-    It raises OutOfRangeError for a number that is beyond them, or smaller than all but 0.
+    It raises OutOfRangeError for a number beyond the doubles, or smaller than all doubles but 0.
     """
 
     def rounding(value: DecimalOrFraction) -> float:
@@ -162,12 +162,12 @@ def nearest_double(name: str) -> Callable[[DecimalOrFraction], float]:
 
 
 def rounding_of(name: str, digits: int | None) -> Callable[[DecimalOrFraction], Any]:
-    """Return the rounding of a number to doubles, or to so many significant digits."""
+    """Return the function that rounds a number to a double, or to `digits` significant digits."""
     return nearest_double(name) if digits is None else lambda value: text_of(value, digits)
 
 
 def text_of(value: DecimalOrFraction, digits: int) -> NumberText:
-    """Return a number with so many significant digits, in full if its size is usual."""
+    """Return a number with `digits` significant digits, in full if its size is ordinary."""
     context = own_context(digits, [])
     if isinstance(value, Fraction):
         rounded = context.divide(Decimal(value.numerator), Decimal(value.denominator))
@@ -205,7 +205,7 @@ class Pair(NamedTuple):
 
 
 class Triple(NamedTuple):
-    """A number to three times the precision."""
+    """A number to three times the precision of doubles."""
 
     high: float | Array
     middle: float | Array
@@ -215,7 +215,7 @@ class Triple(NamedTuple):
 def pair(value: Any) -> Pair:
     """Return a number of many digits, or a fraction, as two doubles.
 
-    Raises TooFewDigitsError for a ball that does not know them.
+    Raises TooFewDigitsError for a ball that is too wide.
     """
     high = float(value)
     return Pair(high, float(_less(value, high)))

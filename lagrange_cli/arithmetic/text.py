@@ -1,4 +1,4 @@
-"""Numbers read from text, exactly, and written as text: the same everywhere, as `orjson` writes."""
+"""Exact reading of numbers, and writing of numbers in one style, as `orjson` writes them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MOST_CHARACTERS = 2000
 
 
 class NumberText(str):
-    """A number written out, to be printed as it stands."""
+    """A number written out, to be printed unchanged."""
 
     __slots__ = ()
 
@@ -21,7 +21,7 @@ class NumberText(str):
 def value_text(value: Any) -> str:
     """Return the text of a number or a word, empty for None and NaN.
 
-    A subclass of str is a number that is written out already.
+    An instance of a subclass of str is a number that is written out already.
     """
     if value is None or value != value:  # noqa: PLR0124 - NaN
         return ""
@@ -29,12 +29,12 @@ def value_text(value: Any) -> str:
 
 
 def quoted(value: object) -> str:
-    """Return a value as Python writes it, for an error; of a long one `...` stands for the rest."""
+    """Return a value as Python writes it, for an error message; a long one is cut with `...`."""
     return repr(shortened(value)) if isinstance(value, str) else shortened(repr(value))
 
 
 def shortened(text: str, most: int = 80) -> str:
-    """Return a text with `...` for the rest of a long one."""
+    """Return a text, cut with `...` if it is long."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
@@ -48,7 +48,7 @@ def json_text(value: Any) -> str:
 def double_text(value: float) -> str:
     """Return the shortest text that reads back as the same double.
 
-    That is repr, but 1e-7 for 1e-07, and 0.00001 for 1e-05.
+    It is repr, except for 1e-7 in place of 1e-07, and 0.00001 in place of 1e-05.
     """
     text = repr(value)
     mantissa, small, exponent = text.partition("e-0")
@@ -63,7 +63,7 @@ def double_text(value: float) -> str:
 def parse_number(text: str) -> Fraction:
     """Return the exact value of a decimal such as `30`, `-1.5` or `2e-3`.
 
-    Raises LagtopError, with the remedy, for anything else and for what no double can hold.
+    Raises LagtopError, with the remedy, for anything else and for values that no double can hold.
     """
     text = text.strip()
     if len(text) > _MOST_CHARACTERS:
@@ -79,7 +79,7 @@ def parse_number(text: str) -> Fraction:
 
 
 def is_decimal(text: str) -> bool:
-    """Return whether a text is a decimal number, of any size."""
+    """Return whether a text is a decimal number of any size."""
     try:
         return set(text) <= _DECIMAL and not math.isnan(float(text))
     except ValueError:
@@ -97,7 +97,7 @@ def _remedy(text: str) -> str:
 
 
 def csv_text(value: Any) -> str:
-    """Return a cell, in quotes where it has to be; what is neither text nor number as JSON."""
+    """Return a CSV cell, in quotes if necessary; anything but text and numbers is JSON."""
     if type(value) is str:
         return f'"{value.replace(_QUOTE, _QUOTE * 2)}"' if set(value) & _SPECIAL else value
     if value is None or isinstance(value, float):

@@ -1,7 +1,7 @@
-"""Values with named fields, and classes over a type of numbers, made cheaply.
+"""Cheap classes: values with named fields, and generic classes over a type of numbers.
 
-A named tuple or a dataclass compiles methods of its own for every class, and `typing.Generic` keeps
-books on its parameters: with both of them `lagtop solve` would take 7 % more time.
+A named tuple or a dataclass compiles methods for every class, and `typing.Generic` records its
+parameters.  With both, `lagtop solve` would take 7 % more time.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 else:
 
     class Over:
-        """Stands for `typing.Generic` at run time, where nobody asks for the parameters."""
+        """A stand-in for `typing.Generic` at run time, when nobody asks for the parameters."""
 
         def __class_getitem__(cls, parameters: Any) -> type:
             """Return the class itself."""
@@ -28,7 +28,7 @@ _SET = object.__setattr__
 
 @dataclass_transform(frozen_default=True)
 class Values:
-    """Values that cannot be changed, one per annotated field of a class, in the order of these.
+    """Immutable values, one per annotated field of a class, in the order of the annotations.
 
     A field with a default may be left out.
     """
@@ -47,9 +47,10 @@ class Values:
             _SET(self, name, value)
 
     def _completed(self, values: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
-        """Return a value for each field, the default where none is given.
+        """Return a value for each field, with defaults for missing ones.
 
-        Raises TypeError for others than the fields, AttributeError where one has no default.
+        Raises TypeError for unknown fields, and AttributeError for a missing field without a
+        default.
         """
         given = dict(zip(self.fields, values, strict=False)) | named
         if len(given) < len(values) + len(named) or not given.keys() <= set(self.fields):
@@ -65,7 +66,7 @@ class Values:
         return {name: getattr(self, name) for name in self.fields}
 
     def replace(self, **changes: Any) -> Self:
-        """Return the values with some of them changed."""
+        """Return a copy with some values changed."""
         return type(self)(**(self.as_dict() | changes))
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
@@ -86,7 +87,7 @@ class Values:
 
 
 class Key(Values):
-    """How a number of a record is shown; the unit `angle` stands for degrees or radians."""
+    """The presentation of a number of a record; the unit `angle` stands for degrees or radians."""
 
     group: str
     symbol: str
@@ -94,4 +95,4 @@ class Key(Values):
     unit: str = ""
     equation: str = ""
     formula: str = ""
-    """The formula in names of keys, such as `2*m*g*s/A`; see `motion.formulas`."""
+    """The formula, written with names of keys, such as `2*m*g*s/A`; see `motion.formulas`."""
