@@ -13,10 +13,10 @@ from .app import Command, fail_for, write_report
 from .options import (
     COUNT,
     NUMBER,
-    Parsed,
     exclude,
     jobs_option,
     late,
+    names_type,
     output_options,
     plot_option,
     seed_option,
@@ -36,7 +36,6 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 """Variables that say how many threads the linear algebra of packages has."""
 SCENES, MOST_SCENES = 1, 100_000
 SEED = 1952
-_split = late("inputs.names", "split_names")
 
 
 def _methods() -> list[str]:
@@ -59,7 +58,7 @@ def _methods() -> list[str]:
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
 @click.option(
     "--methods",
-    type=Parsed("NAME,...", _split, _methods),
+    type=names_type(_methods),
     help="Methods, or groups such as engines.  [default: all but engines]",
 )
 @click.option(
@@ -138,7 +137,7 @@ def bench_command(
 @seed_option(default=str(SEED), show_default=True, help="Seed of the random scenes.")
 @click.option(
     "--strata",
-    type=Parsed("NAME,...", _split, late("bench.hard_scenes", "STRATA")),
+    type=names_type(late("bench.hard_scenes", "STRATA")),
     help="Only these kinds of scenes.  [default: all]",
 )
 @jobs_option

@@ -17,6 +17,7 @@ from .options import (
     NUMBER,
     Parsed,
     late,
+    names_type,
     output_options,
     plot_option,
     reading_options,
@@ -58,7 +59,7 @@ def _parse_step_sizes(text: str) -> list[float]:
 )
 @click.option(
     "--align",
-    type=Parsed("WORD,...", split_names, late("judge.alignment", "WORDS")),
+    type=names_type(late("judge.alignment", "WORDS"), "WORD,..."),
     help="First set axis=y, up=y, or take start, body, space or time from the first row.",
 )
 @click.option(

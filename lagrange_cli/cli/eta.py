@@ -9,16 +9,26 @@ import click
 
 from ..arithmetic.points import ExactComplex, parse_complex
 from ..errors import LagtopError
+from ..inputs.names import check_names
 from .app import Command
-from .jacobi import function_formats, rad_option, write_constants, write_functions
-from .options import MOST_TABLE_DIGITS, NUMBER, RANGE, Parsed, digits_option, exclude, late
+from .jacobi import function_formats, write_constants, write_functions
+from .options import (
+    MOST_TABLE_DIGITS,
+    NUMBER,
+    RANGE,
+    Parsed,
+    digits_option,
+    exclude,
+    late,
+    names_type,
+    rad_option,
+)
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
     from ..elliptic.eta import Quadrature
     from ..output.destination import Output
 
-_split = late("inputs.names", "split_names")
 _ETA = """
 delta | δ | upper end of the band | | (3.2.1)
 delta_star | δ* | lower end of the band | | (3.2.1)
@@ -78,7 +88,7 @@ def _parse_distance(text: str) -> ExactComplex:
 @click.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
 @click.option(
     "--columns",
-    type=Parsed("NAME,...", _split, late("elliptic.eta_table", "COLUMNS")),
+    type=names_type(late("elliptic.eta_table", "COLUMNS")),
     help="Columns beside tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
 )
 @rad_option
@@ -119,7 +129,6 @@ def eta_command(
         write_constants(record(quadrature, digits), "Roots", _ETA, out)
         return
     from ..elliptic.eta_table import COLUMNS, EtaTable
-    from ..inputs.names import check_names
 
     names = check_names("columns", columns or ["eta"], COLUMNS)
     write_functions(

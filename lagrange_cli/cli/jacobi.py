@@ -11,6 +11,7 @@ import click
 from ..arithmetic.points import ExactComplex, looks_complex, parse_complex
 from ..arithmetic.values import Key
 from ..errors import LagtopError
+from ..inputs.names import check_names
 from .app import Command, complain
 from .options import (
     COUNT,
@@ -20,8 +21,9 @@ from .options import (
     Parsed,
     digits_option,
     exclude,
-    late,
+    names_type,
     output_options,
+    rad_option,
 )
 from .progress import with_progress
 
@@ -91,7 +93,6 @@ def write_functions(table: TableOfFunctions, digits: int | None, out: Output) ->
 
 
 function_formats = output_options("table", "csv", "json", "ndjson", "markdown", "parquet", "npy")
-rad_option = click.option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
 
 
 @click.command(
@@ -118,7 +119,7 @@ rad_option = click.option("--rad", is_flag=True, help="Use radians for all angle
 @click.option(
     "--functions",
     "families",
-    type=Parsed("NAME,...", late("inputs.names", "split_names"), lambda: FAMILIES),
+    type=names_type(lambda: FAMILIES),
     help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
     "omega, pi (of u and --param, after Chrapan).  [default: am]",
 )
@@ -159,7 +160,6 @@ def jacobi_command(
     Complex results have columns that end in _re and _im.
     """
     from ..elliptic.modulus import ModulusInput
-    from ..inputs.names import check_names
 
     beyond = k is not None and (k.imag != 0 or not 0 <= k.real <= 1)
     real_k = None if k is None else k.real

@@ -95,16 +95,22 @@ def on_command_line(name: str) -> bool:
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
 
 
-_split = late("inputs.names", "split_names")
+def names_type(
+    names: Callable[[], Iterable[str]] | None = None, metavar: str = "NAME,..."
+) -> Parsed:
+    """Return the type of a list of names; `names` returns those that a shell offers."""
+    return Parsed(metavar, late("inputs.names", "split_names"), names)
+
+
 _all_keys = late("motion.record", "all_keys")
 FILE = Parsed("FILE", str)
 NUMBER = Parsed("X", parse_number)
 COUNT = Parsed("N", _parse_count)
 RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
-NAMES = Parsed("NAME,...", _split)
-KEY_NAMES = Parsed("KEY,...", _split, _all_keys)
+NAMES = names_type()
+KEY_NAMES = names_type(_all_keys, "KEY,...")
 KEY = Parsed("KEY", str, _all_keys)
-COLUMN_NAMES = Parsed("NAME,...", _split, late("motion.over_time.columns", "column_names"))
+COLUMN_NAMES = names_type(late("motion.over_time.columns", "column_names"))
 
 
 def digits_option(most: int) -> Callable[[F], F]:
@@ -119,6 +125,7 @@ def digits_option(most: int) -> Callable[[F], F]:
     return click.option("--digits", type=COUNT, callback=check, help=text)
 
 
+rad_option = click.option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
 certify_option = click.option(
     "--certify", is_flag=True, help="Print KEY_radius too, a proved bound of the error."
 )

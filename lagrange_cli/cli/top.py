@@ -12,7 +12,7 @@ import click
 from ..arithmetic.values import Values
 from ..errors import DataError, LagtopError
 from .app import complain
-from .options import F, Parsed, late
+from .options import F, Parsed, late, rad_option
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
@@ -110,8 +110,7 @@ def top_options(
             text = "si or cgs, if inputs have units.  [default: si]"
             choice = click.Choice(["si", "cgs"])
             decorated = click.option("--units", type=choice, metavar="SYSTEM", help=text)(decorated)
-        text = "Use radians for all angles, in and out."
-        decorated = click.option("--rad", is_flag=True, help=text)(decorated)
+        decorated = rad_option(decorated)
         for name in reversed(names):
             text = _help_of(DECLARED[name], shows_default=whole)
             flag = f"--{name.replace('_', '-')}"
