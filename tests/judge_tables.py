@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from lagrange_cli.inputs.trajectory_columns import QUANTITIES
 from lagrange_cli.judge.alignment import WORDS
-from lagrange_cli.judge.compare import VERDICTS
+from lagrange_cli.judge.compare import JUDGEMENTS
 from lagrange_cli.judge.judgement import JUDGEMENT_KEYS
 from lagrange_cli.judge.mistakes import MISTAKES
 
@@ -28,7 +28,7 @@ def keys_table() -> list[str]:
 
 def verdicts_table() -> list[str]:
     """Return the table of the verdicts."""
-    return _table("verdict", "when", ((f"`{word}`", text) for word, text in VERDICTS.items()))
+    return _table("verdict", "when", ((f"`{word}`", text) for word, text in JUDGEMENTS.items()))
 
 
 def alignments_table() -> list[str]:

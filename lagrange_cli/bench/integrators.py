@@ -39,7 +39,7 @@ STEPS_PER_SECOND = 100_000
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 
 
-class Problem(NamedTuple):
+class TopProblem(NamedTuple):
     """Constants and start of a top."""
 
     a: float
@@ -50,10 +50,10 @@ class Problem(NamedTuple):
     psi_rate: float
 
 
-def problem_of(top: Top) -> Problem:
+def problem_of(top: Top) -> TopProblem:
     """Return the problem of a top, in its own units."""
     tilt = top.tilt(DOUBLES)
-    return Problem(
+    return TopProblem(
         a=2 * float(top.m) * float(top.g) * float(top.s) / float(top.A),
         b=float(top.C) * float(top.r0) / float(top.A),
         r0=float(top.r0),
@@ -66,27 +66,27 @@ def problem_of(top: Top) -> Problem:
 class Form(NamedTuple):
     """Variables to integrate in: their start, their slope, and the angles from them."""
 
-    start: Callable[[Problem], Sequence[float]]
-    slope: Callable[[Problem, Any], Slope]
+    start: Callable[[TopProblem], Sequence[float]]
+    slope: Callable[[TopProblem, Any], Slope]
     """Right-hand side in an arithmetic with sin and cos: `math`, or heyoka's expressions."""
     angles: Callable[[Array], SampledAngles]
     """Angles from an array with a row for each variable."""
     whole_turns: bool
-    drift: Callable[[Problem, Array], tuple[float, float]] | None = None
+    drift: Callable[[TopProblem, Array], tuple[float, float]] | None = None
     """Greatest changes of energy and vertical momentum, over the sum of their terms."""
 
-    def integration(self, p: Problem, run: Callable[[Array], tuple[Array, Work]]) -> Integration:
+    def integration(self, p: TopProblem, run: Callable[[Array], tuple[Array, Work]]) -> Integration:
         """Return what computes the angles from a run."""
         return Integration(run, self.angles, partial(self.drift, p) if self.drift else None)
 
 
-def _euler_start(p: Problem) -> Sequence[float]:
+def _euler_start(p: TopProblem) -> Sequence[float]:
     if not math.sin(p.theta0):
         raise NotApplicableError("Euler angles are singular on the vertical")
     return p.theta0, p.theta_rate, 0.0, 0.0
 
 
-def _euler_slope(p: Problem, ar: Any) -> Slope:
+def _euler_slope(p: TopProblem, ar: Any) -> Slope:
     """Return the slope of theta, its rate, phi and psi, by the constant momenta of (4,7), (4,8)."""
     beta = p.psi_rate * math.sin(p.theta0) ** 2 + p.b * math.cos(p.theta0)
 
@@ -99,12 +99,12 @@ def _euler_slope(p: Problem, ar: Any) -> Slope:
     return slope
 
 
-def _quaternion_start(p: Problem) -> Sequence[float]:
+def _quaternion_start(p: TopProblem) -> Sequence[float]:
     q = p.psi_rate * math.sin(p.theta0)
     return p.theta_rate, q, math.cos(p.theta0 / 2), math.sin(p.theta0 / 2), 0.0, 0.0
 
 
-def _quaternion_slope(p: Problem, _: Any) -> Slope:
+def _quaternion_slope(p: TopProblem, _: Any) -> Slope:
     """Return the slope of p, q (body) and the quaternion (body to space): nothing is singular."""
     twist = p.r0 - p.b
 
@@ -122,7 +122,7 @@ def _quaternion_slope(p: Problem, _: Any) -> Slope:
     return slope
 
 
-def _quaternion_drift(p: Problem, rows: Array) -> tuple[float, float]:
+def _quaternion_drift(p: TopProblem, rows: Array) -> tuple[float, float]:
     """Return changes of energy and Lz, both over A, from p, q and the quaternion."""
     whole = np.column_stack([_quaternion_start(p), rows])
     x, y, e0, e1, e2, e3 = whole

@@ -88,7 +88,7 @@ def _parse_distance(text: str) -> ExactComplex:
 @click.option("--tau", type=RANGE, help="Times: a list 0,1,2 or a range [log:]start:stop:count.")
 @click.option(
     "--columns",
-    type=names_type(late("elliptic.eta_table", "COLUMNS")),
+    type=names_type(late("elliptic.eta_table", "ETA_COLUMNS")),
     help="Columns beside tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
 )
 @rad_option
@@ -128,9 +128,9 @@ def eta_command(
             raise LagtopError("--columns needs --tau")
         write_constants(record(quadrature, digits), "Roots", _ETA, out)
         return
-    from ..elliptic.eta_table import COLUMNS, EtaTable
+    from ..elliptic.eta_table import ETA_COLUMNS, EtaTable
 
-    names = check_names("columns", columns or ["eta"], COLUMNS)
+    names = check_names("columns", columns or ["eta"], ETA_COLUMNS)
     write_functions(
         EtaTable(tau, quadrature, names=names, angle="rad" if rad else "deg"), digits, out
     )

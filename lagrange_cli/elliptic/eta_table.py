@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 _CHAIN = ("h1", "theta", "xi_prime")
-COLUMNS = ("tau", "eta", "etadot", *_CHAIN)
+ETA_COLUMNS = ("tau", "eta", "etadot", *_CHAIN)
 """The columns; tau is always included."""
 
 
@@ -53,7 +53,7 @@ class EtaTable(RealTable):
         names: Collection[str] = ("eta",),
         angle: str = "deg",
     ) -> None:
-        """Take the inputs; `names` are some of COLUMNS, `angle` the unit of theta, deg or rad."""
+        """Take the inputs; `names` are some of ETA_COLUMNS, `angle` is the unit, deg or rad."""
         super().__init__(points)
         self.quadrature, self.names, self.angle = quadrature, names, angle
 
@@ -107,7 +107,7 @@ class EtaTable(RealTable):
             found = chain(ar, (turns, rest), c, band, self.angle)
             columns |= zip(_CHAIN, found, strict=True)
         angle = f"theta_{self.angle}"
-        chosen = {name: columns[name] for name in COLUMNS if name in {"tau", *self.names}}
+        chosen = {name: columns[name] for name in ETA_COLUMNS if name in {"tau", *self.names}}
         return {angle if name == "theta" else name: value for name, value in chosen.items()}
 
     def known(self, x: Fraction) -> dict[str, float]:

@@ -34,8 +34,8 @@ from ..inputs.top import Top
 from .model import STATE
 from .recording import Recording
 
-BODY = ("m", "s", "g", "C", "A", "A_cm")
-FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero", *BODY)
+BODY_QUANTITIES = ("m", "s", "g", "C", "A", "A_cm")
+FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero", *BODY_QUANTITIES)
 """The quantities that a recording depends on, the state first, and the known inputs of the body."""
 _START = ("theta0", "thetadot0", "psidot0")
 STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
@@ -165,7 +165,7 @@ def parameters_of(
     known: Mapping[str, float], stds: Mapping[str, float], recordings: Sequence[Recording]
 ) -> Parameters:
     """Return the parameters of a fit, from known inputs and the standard deviations of some."""
-    names: list[Name] = [(name, -1) for name in BODY if name in stds]
+    names: list[Name] = [(name, -1) for name in BODY_QUANTITIES if name in stds]
     if known_torque(known) is None:
         names.append(("a", -1))
     ratio_known = "C" in known and ("A" in known or _weighs(known))

@@ -16,7 +16,7 @@ from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .least_squares import FittedParameters, chi2_bounds, residual_of
 from .model import STATE, motion_angles
-from .parameters import BODY, FIT_QUANTITIES
+from .parameters import BODY_QUANTITIES, FIT_QUANTITIES
 from .recording import Recording
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
@@ -171,7 +171,7 @@ class Outcome:
         for name, value, deviation in self.found():
             scale = self.scale(name)
             yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
-        for name in [x for x in BODY if x in self.known and self.deviations.get(x, 0.0)]:
+        for name in [x for x in BODY_QUANTITIES if x in self.known and self.deviations.get(x, 0.0)]:
             yield name, self.known[name], self.deviations[name], "known, improved by the fit"
         for product, deviation in self.products():
             meaning = "" if len(product.powers) == 1 else "only this product is known"

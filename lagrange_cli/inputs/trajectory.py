@@ -20,7 +20,7 @@ from .names import ANGLES
 from .text_lines import UNDECIDED, Dialect
 from .trajectory_columns import (
     QUANTITIES,
-    Found,
+    FoundQuantity,
     expanded,
     named_twice,
     plain_name,
@@ -42,7 +42,7 @@ class Trajectory:
         self.name, self._table = shown_path(path), table
         self.description = table.description
         self.names = self._column_names(columns)
-        self.quantities: dict[str, Found] = quantities_in(self.names)
+        self.quantities: dict[str, FoundQuantity] = quantities_in(self.names)
         if "t" not in self.quantities or len(self.quantities) < 2:
             wanted = f"the time ({QUANTITIES['t'].shown}) and {', '.join([*QUANTITIES][1:])}"
             shown = shortened(", ".join(map(repr, self.names)), 120)
@@ -78,7 +78,7 @@ class Trajectory:
 
     def add(self, key: str, column: str) -> None:
         """Read one more column, as a quantity named `key`."""
-        self.quantities[key] = Found([self.names.index(column)], "", None)
+        self.quantities[key] = FoundQuantity([self.names.index(column)], "", None)
 
     def add_angle(self, key: str, column: str, unit: str | None) -> str | None:
         """Read one more column of angles, and return their unit."""
@@ -127,8 +127,8 @@ class Trajectory:
 
 
 def _in_known_units(
-    found: Mapping[str, Found], names: Sequence[str]
-) -> tuple[dict[str, Found], dict[str, Fraction]]:
+    found: Mapping[str, FoundQuantity], names: Sequence[str]
+) -> tuple[dict[str, FoundQuantity], dict[str, Fraction]]:
     """Return quantities in radians, degrees or no unit, and the factors that convert them.
 
     Times are then in seconds, and rates in radians per second.  Raises LagtopError for a unit that

@@ -43,7 +43,7 @@ class Quantity(NamedTuple):
         return len(self.spellings[0].names)
 
 
-class Found(NamedTuple):
+class FoundQuantity(NamedTuple):
     """A quantity that was found in a trajectory."""
 
     columns: Sequence[int]
@@ -166,18 +166,18 @@ _EXUDYN = {
 """The columns of an EXUDYN sensor file by the kind of output in its comments."""
 
 
-def quantities_in(names: Sequence[str]) -> dict[str, Found]:
+def quantities_in(names: Sequence[str]) -> dict[str, FoundQuantity]:
     """Return the quantities of some columns; a column belongs to the first quantity that fits."""
     words: dict[str, int] = {}
     for i, name in enumerate(names):
         words.setdefault(plain_name(name)[0], i)
-    found: dict[str, Found] = {}
+    found: dict[str, FoundQuantity] = {}
     for key, quantity in QUANTITIES.items():
         for spelling in quantity.spellings:
             if all(name in words for name in spelling.names):
                 columns = [words.pop(name) for name in spelling.names]
                 unit = plain_name(names[columns[0]])[1]
-                found[key] = Found(columns, spelling.says, unit)
+                found[key] = FoundQuantity(columns, spelling.says, unit)
                 break
     return found
 
@@ -193,7 +193,7 @@ def numeric_columns(names: Sequence[str]) -> list[int]:
     return [i for found in quantities_in(names).values() for i in found.columns]
 
 
-def named_twice(names: Sequence[str], found: Mapping[str, Found]) -> tuple[str, str] | None:
+def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tuple[str, str] | None:
     """Return two names of the same part of a quantity, or None."""
     for i in (i for quantity in found.values() for i in quantity.columns):
         for other in range(i + 1, len(names)):

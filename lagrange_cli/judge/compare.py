@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 FINE, DRIFTS, OFF, ANOTHER, LOST = "fine", "drifts", "off from the start", "another top", "lost"
-VERDICTS = {
+JUDGEMENTS = {
     FINE: "the error stays below the limit, 1e-3 rad or --max-error",
     DRIFTS: "it starts right, and the error grows beyond the limit",
     ANOTHER: "the error exceeds the limit and does not fall with the step, or a mistake causes it",

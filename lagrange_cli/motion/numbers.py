@@ -101,12 +101,12 @@ class Numbers:
                 return found
             u1 = self.fraction("u1", digits)
             return None if u1 is None else by_rational_u1(self.exact, u1)[name]
-        from .exact.rational_keys import known_fraction, rational_root  # start-up: for few tops
+        from .exact.rational_keys import known_fraction, rational_u  # start-up: for few tops
 
         known = known_fraction(self.exact, name, radians=radians)
         if known is not None or name not in {"u1", "u2", "u3"}:
             return known
-        return rational_root(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
+        return rational_u(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that holds a number, by its key; None if the motion has none.

@@ -32,7 +32,7 @@ from ..motion.over_time.theta_series import (
     hyperbolic_series,
 )
 from ..motion.regime import Regime
-from .start_arrays import EPS, FACTS, StartArrays
+from .start_arrays import FACTS, PAIR_EPS, StartArrays
 from .top_arrays import TopArrays, facts_at_rest
 
 _SMALL = 2.0**-56
@@ -91,7 +91,7 @@ def released_motions(tops: TopArrays) -> PairMotions:
         facts = facts.replace(sign_plus=sign, sign_minus=-sign)
         motion = Nutating(PAIRS, facts, state, gaps_from_rest(PAIRS, state))
         parts = np.maximum(state.a.high, state.b.high**2 / 2)
-        noise = EPS * (1 + parts / abs(state.sleep.high))  # the cancellation is in lambda - 1
+        noise = PAIR_EPS * (1 + parts / abs(state.sleep.high))  # the cancellation is in lambda - 1
         size = abs(tops.r0) + abs(motion.mean_precession_rate.high)
         return PairMotions(motion, None, noise, size, np.isfinite(noise))
 

@@ -24,7 +24,7 @@ from ..motion.regime import Facts, Regime
 from ..motion.spin_precession import mean_over
 from .top_arrays import TopArrays
 
-EPS = 2.0**-100
+PAIR_EPS = 2.0**-100
 """Relative error of a few operations on pairs."""
 _SETTLED = 2.0**-90
 """Relative error at which the largest root is settled."""
@@ -76,29 +76,29 @@ class StartArrays:
         momentum = start.momentum
         c0 = (start.sin * start.theta_rate) ** 2
         c1_parts = abs(2 * b * momentum) + a * start.sin**2 + abs(2 * start.cos * start.energy)
-        of_total = (EPS * c1_parts + 2 * error * (c1_parts + a * c0 / D)) / D
+        of_total = (PAIR_EPS * c1_parts + 2 * error * (c1_parts + a * c0 / D)) / D
         larger, smaller = np.maximum(x1, x2), np.minimum(x1, x2)
-        of_larger = of_total + larger * (error + EPS)
-        of_smaller = smaller * (error + EPS + of_larger / larger)
+        of_larger = of_total + larger * (error + PAIR_EPS)
+        of_smaller = smaller * (error + PAIR_EPS + of_larger / larger)
         of_x1 = np.where(x1 >= x2, of_larger, of_smaller)
         of_x2 = np.where(x1 >= x2, of_smaller, of_larger)
         of_D = error * D
         bounds = (
             (of_x1 + of_x2, gaps.u1_u2),
-            (EPS * above + of_x1, gaps.above_u1),
-            (EPS * above + of_x2, gaps.above_u2),
-            (EPS * below + of_x1, gaps.below_u1),
-            (EPS * below + of_x2, gaps.below_u2),
-            (of_D + EPS * D + a * of_x1, gaps.a_u3_u1),
-            (of_D + EPS * D, gaps.a_u3_above),
+            (PAIR_EPS * above + of_x1, gaps.above_u1),
+            (PAIR_EPS * above + of_x2, gaps.above_u2),
+            (PAIR_EPS * below + of_x1, gaps.below_u1),
+            (PAIR_EPS * below + of_x2, gaps.below_u2),
+            (of_D + PAIR_EPS * D + a * of_x1, gaps.a_u3_u1),
+            (of_D + PAIR_EPS * D, gaps.a_u3_above),
         )
         worst = reduce(np.maximum, (bound / gap for bound, gap in bounds))
-        self.noise: Array = worst + EPS
+        self.noise: Array = worst + PAIR_EPS
         self.small: Mask = (worst < _GOOD) & (reduce(np.minimum, (x for _, x in bounds)) > 0)
         self._momenta = abs(momentum) + abs(b) * x1, abs(momentum) + abs(b) * x2
         at_ends = (of_x1, gaps.momentum_u1), (of_x2, gaps.momentum_u2)
         for size, (of_x, value) in zip(self._momenta, at_ends, strict=True):
-            self.small &= EPS * size + abs(b) * of_x < _SURE * abs(value)
+            self.small &= PAIR_EPS * size + abs(b) * of_x < _SURE * abs(value)
 
     def trusted(self, keys: Collection[str]) -> Mask:
         """Return which tops can be trusted for some keys."""
@@ -176,7 +176,7 @@ class StartArrays:
         sure: Mask = self.noise * size < 8 * _GOOD * abs(precession)
         sure &= self.noise * (size + abs(rough.r0)) < 8 * _GOOD * abs(spin)
         parts = abs(rough.r0) + abs(rough.state.psi_rate)
-        sure &= EPS * parts < 8 * _GOOD * abs(at_start.high)
+        sure &= PAIR_EPS * parts < 8 * _GOOD * abs(at_start.high)
         return sure
 
 
@@ -214,7 +214,7 @@ def _largest_root(
         step = value.high / slope
         root = root - DoubleDouble(step)
         x, step = root.high, abs(step)
-        noise = EPS * (((x + size2) * x + size1) * x + size0)
+        noise = PAIR_EPS * (((x + size2) * x + size1) * x + size0)
         steep = 2.0**-49 * ((3 * x + 2 * size2) * x + size1)
         error = (noise + step * (steep + step * (3 * x + size2))) / abs(slope) / x
         if not (error > _SETTLED).any():

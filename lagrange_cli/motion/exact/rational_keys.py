@@ -111,9 +111,7 @@ def _starts_at(exact: Exact, side: int) -> bool:
     return facts.steady or (not exact.theta_rate and exact.cosine.sign(exact.fall) == -side)
 
 
-def rational_root(
-    exact: Exact, name: str, enclosure: Callable[[str], Ball | None]
-) -> Fraction | None:
+def rational_u(exact: Exact, name: str, enclosure: Callable[[str], Ball | None]) -> Fraction | None:
     """Return a root of the cubic (4,9) if it is a fraction, such as one midway between doubles.
 
     Only this root is in its enclosure, so that a fraction in there that is a root is this one.

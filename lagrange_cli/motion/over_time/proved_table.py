@@ -28,7 +28,7 @@ from .series_constants import Pose, pose_of
 if TYPE_CHECKING:
     from ...arithmetic.points import Points
 
-ROWS_AT_ONCE = 64
+_ROWS_AT_ONCE = 64
 """Rows that are handed on together."""
 _EXTRA = 16
 """Digits by which the precision grows with the number of turns: a precision serves many rows."""
@@ -190,7 +190,7 @@ class ProvedTable:
         waiting: Iterator[Number] = times.decimals()
         if self.digits is None:
             waiting = (float(time) for time in waiting)
-        while block := list(islice(waiting, ROWS_AT_ONCE)):
+        while block := list(islice(waiting, _ROWS_AT_ONCE)):
             yield [_texts(self.row(Fraction(time)), radii=radii) for time in block]
 
 
