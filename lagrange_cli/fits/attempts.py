@@ -40,8 +40,8 @@ class Attempt(NamedTuple):
     """Whether psi is counted the other way."""
     noise: Mapping[str, float]
     """Noise by channel, in radians, estimated by a fit of plain harmonics."""
-    rival: Array | None = None
-    """Another top that explains the recording as well, in the order of `FIT_QUANTITIES`."""
+    rival: Mapping[str, float] | None = None
+    """Another top that explains the recording as well: its quantities by name."""
 
     @property
     def recording(self) -> Recording:
@@ -233,7 +233,7 @@ def _told_apart(found: Sequence[Attempt]) -> Attempt:
     alike = [one for one in alike if not _is_fast(one)] or alike
     best = _least(alike)
     others = [one for one in alike if one.differs(best)]
-    return best._replace(rival=_least(others).solution.quantities(0)[0] if others else None)
+    return best._replace(rival=_least(others).solution.named(0) if others else None)
 
 
 def _is_fast(found: Attempt) -> bool:

@@ -17,7 +17,7 @@ from ..inputs.value import Value, as_value, parse_value
 from .attempts import best_attempt, sigma_of
 from .least_squares import LEAST_SIGMA, FittedParameters, Problem
 from .nutation import NoNutationError
-from .parameters import FIT_QUANTITIES, Parameters, known_inputs, parameters_of
+from .parameters import Parameters, known_inputs, parameters_of
 from .record import Fit, Outcome
 from .recording import Reading, Recording, Source, recording_of
 from .steady import SteadyOutcome, steady_fit
@@ -64,14 +64,10 @@ def _fitted(
     noise, recordings = [one.noise for one in alone], [one.recording for one in alone]
     problem, solution, rival = alone[0].problem, alone[0].solution, alone[0].rival
     if len(alone) > 1:
-        sigma, together = (
-            [*map(sigma_of, recordings, noise)],
-            parameters_of(known, stds, recordings),
-        )
+        sigma = [*map(sigma_of, recordings, noise)]
+        together = parameters_of(known, stds, recordings)
         problem, rival = Problem(recordings, sigma, together), None
-        starts = [one.solution.quantities(0)[0].tolist() for one in alone]
-        found = [dict(zip(FIT_QUANTITIES, start, strict=True)) for start in starts]
-        solution = problem.solve(joined(together, found))
+        solution = problem.solve(joined(together, [one.solution.named(0) for one in alone]))
     sigma_known = bool(recordings[0].sigma)
     if not sigma_known:
         problem, solution = reweighted(problem, solution)

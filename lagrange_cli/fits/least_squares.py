@@ -49,12 +49,13 @@ class FittedParameters(NamedTuple):
     """Parameters that the data do not determine."""
 
     def quantities(self, i: int) -> tuple[Array, Array]:
-        """Return what recording i depends on, in the order of `FIT_QUANTITIES`.
-
-        Their covariance follows.
-        """
+        """Return what recording i depends on, in the order of the labels, and its covariance."""
         found, slopes = self.parameters.quantities(self.values, i)
         return found, slopes @ self.covariance @ slopes.T
+
+    def named(self, i: int) -> dict[str, float]:
+        """Return what recording i depends on, by name."""
+        return dict(zip(self.parameters.labels, self.quantities(i)[0].tolist(), strict=True))
 
 
 class Problem:

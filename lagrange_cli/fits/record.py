@@ -16,7 +16,7 @@ from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .least_squares import FittedParameters, chi2_bounds, residual_of
 from .model import STATE, motion_angles
-from .parameters import BODY_QUANTITIES, FIT_QUANTITIES
+from .parameters import BODY_QUANTITIES
 from .recording import Recording
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
@@ -51,8 +51,8 @@ class Fit(NamedTuple):
     """Whether psi had to be counted the other way."""
     noise: Sequence[Mapping[str, float]]
     """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
-    rival: Array | None = None
-    """Another top that explains the only recording as well, as of `FittedParameters.quantities`."""
+    rival: Mapping[str, float] | None = None
+    """Another top that explains the only recording as well: its quantities by name."""
 
 
 class Outcome:
@@ -95,8 +95,7 @@ class Outcome:
         """Return the reasons why the numbers are none, if there are any."""
         solution, found = self.fit.solution, []
         if self.fit.rival is not None:
-            rival = dict(zip(FIT_QUANTITIES, self.fit.rival.tolist(), strict=True))
-            shown = ", ".join(f"{name} = {rival[name]:.6g}" for name in self.shown)
+            shown = ", ".join(f"{name} = {self.fit.rival[name]:.6g}" for name in self.shown)
             found.append(f"another top explains the recording as well: {shown}")
         if solution.unknown:
             found.append(f"the recording does not determine {' and '.join(solution.unknown)}")

@@ -20,7 +20,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.solve import solve
-from .attempts import Attempt, best_attempt, sigma_of
+from .attempts import best_attempt, sigma_of
 from .fit import joined, reweighted
 from .least_squares import Problem, chi2_bounds
 from .model import STATE, inputs_of
@@ -95,7 +95,7 @@ class WindowedFit(NamedTuple):
         for key, value in body.items():
             record[key], record[f"{key}_std"] = value, first.deviations[key]
         for product, std in first.products():
-            if not {"r0"} & product.powers.keys():
+            if "r0" not in product.powers:
                 record[product.name], record[f"{product.name}_std"] = product.value, std
         time, time_std = self.decay.time or (None, None)
         record |= {
@@ -161,13 +161,13 @@ def fit_windows(
         first = best_attempt(parts[0], known, stds, f"{where}, {parts[0].name}")
         if first.mirrored:
             parts = [part.mirrored for part in parts]
-        found = [_quantities(first)]
+        found = [first.solution.named(0)]
         for before, part in pairwise(parts):
             start = _led_to(found[-1], part.t_start - before.t_start)
             alone = parameters_of(known, stds, [part])
             problem = Problem([part], [sigma_of(part, first.noise)], alone)
             solution = problem.solve(joined(alone, [start]), _STEPS)
-            found.append(dict(zip(FIT_QUANTITIES, solution.quantities(0)[0], strict=True)))
+            found.append(solution.named(0))
         together = parameters_of(known, stds, parts)
         problem = Problem(parts, [sigma_of(part, first.noise) for part in parts], together)
         solution = problem.solve(joined(together, found))
@@ -180,10 +180,6 @@ def fit_windows(
     outcomes = [Outcome(fit, i, radians=radians) for i in range(count)]
     windows = [_window(x, sigma) for x, sigma in zip(outcomes, problem.sigma, strict=True)]
     return WindowedFit(windows, _decay(windows, fit))
-
-
-def _quantities(attempt: Attempt) -> dict[str, float]:
-    return dict(zip(FIT_QUANTITIES, attempt.solution.quantities(0)[0].tolist(), strict=True))
 
 
 def _led_to(values: Mapping[str, float], t: float) -> dict[str, float]:

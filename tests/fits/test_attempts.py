@@ -84,8 +84,7 @@ def test_a_fit_that_is_not_good_takes_no_sense_of_psi_for_a_fact(
 def test_a_recording_that_two_tops_explain_has_no_good_fit() -> None:
     t, angles = noisy(MISLED, 1.5, 60, 5)
     found = fit(t, **angles)
-    rival = np.zeros(len(FIT_QUANTITIES))
-    rival[FIT_QUANTITIES.index("b")] = 12.5
+    rival = dict.fromkeys(FIT_QUANTITIES, 0.0) | {"b": 12.5}
     other = Outcome(found.fit._replace(rival=rival), 0)
     assert (found.verdict, other.verdict) == ("good", FAILED)
     said = "another top explains the recording as well: a = 0, b = 12.5, r0 = 0"
