@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from ..arithmetic.text import csv_text, value_text
+from ..arithmetic.text import csv_text, json_text, value_text
 from ..arithmetic.values import Values
 from ..errors import CannotWriteError
 from .signals import ENDING, terminated_by
@@ -96,8 +96,9 @@ def _json_value(value: Any) -> str:
     if isinstance(value, Mapping):
         members = [f'"{key}":{_json_value(x)}' for key, x in value.items()]
         return f"{{{','.join(members)}}}"
-    if type(value) is str:  # our only strings are plain words
-        return f'"{value}"'
+    if type(value) is str:  # nearly all are plain words, for which orjson is not loaded
+        is_plain = value.isprintable() and not set(value) & {'"', "\\"}
+        return f'"{value}"' if is_plain else json_text(value)
     return value_text(value) or "null"
 
 

@@ -16,6 +16,7 @@ from conftest import ROOT, Lagtop, assert_one_line
 from pyarrow import parquet
 
 from lagrange_cli.arithmetic.text import csv_text
+from lagrange_cli.output.destination import Output
 from lagrange_cli.output.rows import csv_lines, json_objects
 
 NAMES = ["a", "text", 'b,"', "c", "more"]
@@ -207,3 +208,13 @@ def test_functions_as_files_of_numbers(lagtop: Lagtop, tmp_path: Path) -> None:
     for i, name in enumerate(rows[0]):
         expected = [float(row[i]) for row in rows[1:]]
         assert array[name].tolist() == frame[name] == expected
+
+
+@pytest.mark.parametrize("name", ['a "b"', "a\\b", "a\tb", "θ", ""])
+def test_a_record_in_json_holds_any_text(name: str, tmp_path: Path) -> None:
+    """A recording has the name that a cell of its file gives it."""
+    path = tmp_path / "record.json"
+    Output(str(path), "json").record({"name": name, "a": 1.5, "remark": None}, dict)
+    text = path.read_text(encoding="utf-8")
+    assert json.loads(text) == {"name": name, "a": 1.5, "remark": None}
+    assert text.encode() == orjson.dumps(json.loads(text)) + b"\n"
