@@ -1,11 +1,11 @@
-"""Pictures of motions: files, films, a page for the browser, and drawings on axes of your own.
+"""Pictures of motions: files, films, a page for the browser, and drawings on your own axes.
 
-The functions here draw one kind of picture each, on axes of your own, in your own style.  They take
-an `Axes` of matplotlib, or a sequence of as many as the kind has, and make a new figure if none is
-given.  `t_max` is the last time, `radians` the unit of angles, `dark` selects colours for dark
-paper.  They raise LagtopError for a time out of range, and if there is nothing to draw.
+Each function here draws one kind of picture on your own axes, in your own style.  Pass an `Axes` of
+matplotlib, or a sequence with as many axes as the kind has; by default a new figure is made.
+`t_max` is the last time, `radians` the unit of angles, `dark` selects colours for dark paper.  The
+functions raise LagtopError for a time out of range, and if there is nothing to draw.
 
-matplotlib and NumPy are imported when a function is called: this file is loaded by every command.
+matplotlib and NumPy are imported when a function is called, because every command loads this file.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ def draw_sphere(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) ->
 
 
 def draw_angles(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw tilt, spin and precession over time on three axes, and return these."""
+    """Draw tilt, spin and precession over time on three axes, and return the axes."""
     return _drawn("angles", motion, ax, **shown)
 
 
 def draw_remainders(motion: Motion, ax: Places = None, **shown: Unpack[OverTime]) -> list[Axes]:
-    """Draw the periodic parts of spin and precession on two axes, and return these."""
+    """Draw the periodic parts of spin and precession on two axes, and return the axes."""
     return _drawn("remainders", motion, ax, **shown)
 
 
@@ -67,7 +67,7 @@ def draw_map(
 ) -> list[Axes]:
     """Draw a key of the record over two inputs, and return the axes.
 
-    Ranges are texts such as `r0=5:120:80`.
+    `x` and `y` are ranges such as `r0=5:120:80`.
     """
     from .map import parse_input_range
 
@@ -76,7 +76,7 @@ def draw_map(
 
 
 def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any) -> list[Axes]:
-    """Draw a picture by the name of its kind, and return the axes.
+    """Draw the kind of picture with this name, and return the axes.
 
     The options are those of the function of the kind, such as `draw_sphere`.  Raises LagtopError
     for an unknown kind.
@@ -109,7 +109,7 @@ def _drawn(
     dark: bool = False,
     **wanted: Any,
 ) -> list[Axes]:
-    """Draw a kind of picture, and return the axes it is on: those given, or new ones."""
+    """Draw a kind of picture on the given axes, or on new ones, and return the axes."""
     from matplotlib.axes import Axes
 
     from ..errors import LagtopError

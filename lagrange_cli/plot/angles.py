@@ -18,11 +18,11 @@ from .kinds import Drawing, PlotRequest
 from .style import Look, points, short_text
 
 NOISE = 1e-13
-"""Size of a periodic part (radians) that is mostly rounding: it is drawn as a flat line."""
+"""Size of a periodic part (radians) that is mostly rounding error, and drawn as a flat line."""
 
 
 def angles_drawing(motion: Motion, request: PlotRequest) -> Drawing:
-    """Compute the angles; where the axis stays vertical there is no precession to draw."""
+    """Compute the angles; if the axis stays vertical, there is no precession to draw."""
     all_is_spin = motion.regime in (Regime.SLEEPING, Regime.HANGING)
     t_max = request.t_max or span(motion, 3)
     t, *angles = sampled_columns(motion, t_max, ["theta", "phi", "psi"]).values()
@@ -40,7 +40,7 @@ def angles_drawing(motion: Motion, request: PlotRequest) -> Drawing:
                 ax.fill_between(t, *ends, color=colour, alpha=0.3, linewidth=0)
             if rate is not None:
                 mean = _draw_mean(ax, t, angle, rate, request=request, look=look)
-                note = "; all is spin: there is no precession" * all_is_spin
+                note = "; spin only: there is no precession" * all_is_spin
                 ax.set_title(mean + note, fontsize="small", color=look.quiet)
         _finish_time_axes(axes, motion, t, request)
 
@@ -52,7 +52,7 @@ def angles_drawing(motion: Motion, request: PlotRequest) -> Drawing:
 def _draw_mean(
     ax: Axes, t: Array, angle: Array, rate: float, *, request: PlotRequest, look: Look
 ) -> str:
-    """Draw the mean rate of an angle as a line on its curve, and return both in words."""
+    """Draw the mean rate as a line on the curve; return the rate and the deviation in words."""
     mean: dict[str, Any] = {"lw": points(0.9), "ls": (0, (4, 3)), "zorder": 3}
     ax.plot(t, rate * t * request.per_radian, color=look.ink, **mean)
     apart = float(np.abs(angle - rate * t).max()) * request.per_radian
@@ -68,7 +68,7 @@ def remainders_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     Raises NothingToDrawError if the tilt has no period, so that both are 0 or undefined.
     """
     if tilt_period(motion) is None or motion.mean_precession_rate is None:
-        reason = "never comes back" if motion.regime is Regime.SEPARATRIX else "stays as it is"
+        reason = "never returns" if motion.regime is Regime.SEPARATRIX else "is constant"
         raise NothingToDrawError(f"no remainders: the tilt {reason} ({motion.regime.value})")
     t, *parts = sampled_columns(motion, request.t_max or span(motion, 2), ["dphi", "dpsi"]).values()
 
@@ -86,7 +86,7 @@ def remainders_drawing(motion: Motion, request: PlotRequest) -> Drawing:
 
 
 def _finish_time_axes(axes: Sequence[Axes], motion: Motion, t: Array, request: PlotRequest) -> None:
-    """Write the time below; mark nutation periods above and by thin lines through all panels."""
+    """Label the time axis, and mark nutation periods above it and by thin lines in all panels."""
     axes[-1].set_xlabel(request.time_label)
     axes[-1].locator_params(axis="x", nbins=6)  # small steps have long labels
     for ax in axes:

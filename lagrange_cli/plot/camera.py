@@ -1,4 +1,4 @@
-"""The camera that looks at the unit sphere, and the faces of the film's cone that it sees."""
+"""The camera that looks at the unit sphere, and the visible faces of the film's cone."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..arithmetic.types import Array, Mask
 from ..inputs.rotations import rotated
 
 HEIGHT, RADIUS, WEDGES = 0.62, 0.34, 24
-"""Height and radius (in radii of the sphere) and wedges of the cone that stands for the top."""
+"""Height and radius (in radii of the sphere) and number of wedges of the cone for the top."""
 
 
 class Camera(NamedTuple):
@@ -26,11 +26,11 @@ class Camera(NamedTuple):
     """Direction from the centre to the camera."""
 
     def project(self, points: Array) -> tuple[Array, Array]:
-        """Return x and y on the page of points of shape (n, 3)."""
+        """Return the page coordinates x and y of points of shape (n, 3)."""
         return points @ self.right, points @ self.up
 
     def faces(self, points: Array) -> Mask:
-        """Return whether points of the sphere, of shape (n, 3), lie on the near side."""
+        """Return whether points on the sphere, of shape (n, 3), are on the near side."""
         near: Mask = points @ self.toward >= 0.0
         return near
 
@@ -46,13 +46,13 @@ def camera_at(azimuth: float, elevation: float) -> Camera:
 
 
 def best_camera(path: Array) -> Camera:
-    """Return the camera that a path faces most, with its start in sight.
+    """Return the camera that sees most of a path, including its start.
 
     It is above the horizon unless the path hangs well below it.
     """
 
     def shown(camera: Camera) -> float:
-        """Return how well the path is seen."""
+        """Return a measure of how well a camera sees the path."""
         turned = (path @ camera.toward).mean()
         faces = camera.faces(path).mean() + 0.5 * turned + camera.faces(path[:1])[0]
         return float(faces + 0.2 * (camera.toward[2] > 0))
@@ -61,10 +61,10 @@ def best_camera(path: Array) -> Camera:
 
 
 def side_camera(path: Array) -> Camera:
-    """Return the camera that sees a top on this path from the side, and its lid a little."""
+    """Return the camera that sees a top on this path from the side, and its lid slightly."""
 
     def shown(camera: Camera) -> float:
-        """Return the mean length of the axis on the page, and how often the lid is in sight."""
+        """Return a score: the mean length of the axis, and how often the lid is visible."""
         facing = path @ camera.toward
         length = np.sqrt(np.maximum(1.0 - facing**2, 0.0))
         return float(length.mean() + 0.3 * (facing > 0).mean() + 0.1 * (facing[0] > 0))
@@ -73,7 +73,7 @@ def side_camera(path: Array) -> Camera:
 
 
 def _chosen(path: Array, elevation: float, shown: Callable[[Camera], float]) -> Camera:
-    """Return the best camera of all azimuths, above or below; near the start if several are."""
+    """Return the best camera of all azimuths, above or below; if tied, near the start."""
     start = math.atan2(path[0, 1], path[0, 0])
     cameras = [
         camera_at(start + math.radians(azimuth), math.radians(height))
@@ -84,7 +84,7 @@ def _chosen(path: Array, elevation: float, shown: Callable[[Camera], float]) -> 
 
 
 def runs(near: Mask) -> Iterator[tuple[slice, bool]]:
-    """Yield the pieces of a curve on the near side and behind; neighbours share a point."""
+    """Yield the pieces of a curve on the near and the far side; neighbours share a point."""
     ends = np.flatnonzero(near[1:] != near[:-1]) + 1
     bounds = [0, *ends.tolist(), near.size]
     for first, last in pairwise(bounds):
@@ -92,7 +92,7 @@ def runs(near: Mask) -> Iterator[tuple[slice, bool]]:
 
 
 def on_one_side(camera: Camera, curve: Array, near: bool) -> Array:
-    """Return x and y on the page, shape (2, n), of a curve, NaN where it is on the other side."""
+    """Return page coordinates of a curve, shape (2, n), with NaN on the other side."""
     shown = np.full((2, len(curve)), np.nan)
     for part, is_near in runs(camera.faces(curve)):
         if is_near is near:
@@ -101,14 +101,14 @@ def on_one_side(camera: Camera, curve: Array, near: bool) -> Array:
 
 
 class Cone(NamedTuple):
-    """The cone that stands for the top, on the page: the triangles in sight, the lid last."""
+    """The cone that stands for the top, on the page: its visible triangles, the lid last."""
 
     corners: Array
     """x and y of the corners of each triangle, shape (n, 3, 2)."""
     inks: NDArray[np.int_]
-    """0 for the light triangles, else 1 on the side and 2 on the lid, shape (n).
+    """0 for the light triangles, 1 for others on the side and 2 for others on the lid, shape (n).
 
-    Every other sixth of a turn is light, so that one sees the spin.
+    Every other sixth of a turn is light, so that the spin is visible.
     """
     rim: tuple[Array, Array]
     axle: tuple[Array, Array]
@@ -117,7 +117,7 @@ class Cone(NamedTuple):
 
 
 def cone_at(quaternion: Array, camera: Camera) -> Cone:
-    """Return a cone that stands on its tip, turned from body to space by a quaternion."""
+    """Return a cone that stands on its tip, rotated from body to space by a quaternion."""
     around = 2 * math.pi / WEDGES * np.arange(WEDGES + 1)
     spokes = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
     z = np.array([0.0, 0.0, 1.0])

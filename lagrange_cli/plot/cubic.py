@@ -18,17 +18,17 @@ from .kinds import Drawing, PlotRequest
 from .style import Look, number_from_left_to_right, number_text, points
 
 NEAR = 1.5
-"""The third root is shown where it is within so many widths of the band above it."""
+"""Greatest distance of the third root above the band, in widths of the band, to be shown."""
 NARROWEST = 1e-9
-"""The least width of a window, in cosines: in a narrower one doubles would be seen as steps."""
+"""Least width of a window, in cosines; in a narrower one the doubles would show as steps."""
 TOUCHING = 0.09
-"""Part of the window within which the names of two roots would touch."""
+"""Share of the window within which the names of two roots would touch."""
 POLES = {1: "upright", -1: "hanging"}
-"""What the top is at the ends of the range of a cosine."""
+"""State of the top at each end of the range of a cosine."""
 
 
 class Cubic(NamedTuple):
-    """f(u) of (4,9) about its roots."""
+    """Samples of f(u), (4,9), around its roots."""
 
     u: Array
     f: Array
@@ -39,11 +39,11 @@ class Cubic(NamedTuple):
 
     @property
     def u3_in_view(self) -> float | None:
-        """The third root where it is within the window, else None."""
+        """The third root if it is inside the window, else None."""
         return self.u3 if self.u3 is not None and self.u3 <= self.u[-1] else None
 
     def heights(self) -> tuple[float, float]:
-        """Return the range of f(u) to show: the hump over the band, and what is about as deep."""
+        """Return the range of f(u) to show: the hump over the band, and about the same depth."""
         hump = float(self.f[self._within(self.u1)].max(initial=0.0))
         most = float(np.abs(self.f).max())
         if hump <= 1e-3 * most:  # none that could be seen
@@ -52,13 +52,13 @@ class Cubic(NamedTuple):
         return -min(max(1.3 * depth, 0.6 * hump), 1.4 * hump), 1.3 * hump
 
     def _within(self, last: float) -> NDArray[np.bool_]:
-        """Return which samples are between the lowest root and another."""
+        """Return a mask of the samples between the lowest root and `last`."""
         inside: NDArray[np.bool_] = (self.u >= self.u2) & (self.u <= last)
         return inside
 
 
 def cubic_curve(motion: Motion) -> Cubic:
-    """Return f(u), from its product form, over a window about the band, and u3 if it is near."""
+    """Return f(u), from its product form, over a window around the band, and u3 if it is near."""
     assert motion.u1 is not None
     assert motion.u2 is not None
     u1, u2, u3 = float(motion.u1), float(motion.u2), motion.u3
@@ -104,7 +104,7 @@ def _draw_curve(axes: Axes, cubic: Cubic, look: Look) -> None:
 
 
 def _draw_poles(axes: Axes, cubic: Cubic, look: Look) -> None:
-    """Draw a line at each pole in sight, with its name above the picture."""
+    """Draw a line at each visible pole, with its name above the picture."""
     for pole, name in POLES.items():
         if cubic.u[0] <= pole <= cubic.u[-1]:
             axes.axvline(pole, color=look.quiet, lw=points(1.0), ls=(0, (4, 3)), zorder=0.5)
@@ -120,7 +120,7 @@ def _draw_poles(axes: Axes, cubic: Cubic, look: Look) -> None:
 
 
 def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:
-    """Draw the roots, named where the curve leaves room; their values stand below the picture."""
+    """Draw the roots, with names where the curve is out of the way and values below the picture."""
     known = {"u₁": cubic.u1, "u₂": cubic.u2}
     if cubic.u1 == cubic.u2:
         known = {"u₁ = u₂": cubic.u1}
@@ -144,10 +144,10 @@ def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:
 def _named(
     roots: Mapping[str, float], window: float
 ) -> Iterator[tuple[str, float, tuple[bool, bool]]]:
-    """Yield each name, its root, and whether it stands to the right of it and above the axis.
+    """Yield each name, its root, and whether it goes to the right and above the axis.
 
-    f(u) rises through u2 and u3 and falls through u1, so that the upper left of u2, the lower left
-    of u1 and the lower right of u3 are free.  Names that would touch are written together.
+    f(u) rises through u2 and u3 and falls through u1.  The upper left of u2, the lower left of u1
+    and the lower right of u3 are therefore free.  Names that would touch are joined.
     """
     free = {"u₁": (False, False), "u₂": (False, True), "u₃": (True, False)}
     together = {"u₁", "u₃"} <= set(roots) and roots["u₃"] - roots["u₁"] < TOUCHING * window

@@ -1,8 +1,8 @@
-"""The facts and the times from which pictures of a motion are drawn: nothing here draws.
+"""The facts and sample times from which pictures of a motion are drawn; nothing is drawn here.
 
-Curves are sampled evenly in the amplitude am(w), w counted from the lowest point, and not in time,
-so that cusps and fast passes are smooth; the turning points themselves are among the samples.
-Only this file asks how a motion is solved.  Equation numbers are Chrapan's.
+Curves are sampled evenly in the amplitude am(w), with w counted from the lowest point, and not in
+time.  Cusps and fast passes are therefore smooth, and the turning points are among the samples.
+Only this file depends on how a motion is solved.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from ..motion.regime import Regime
 from ..motion.solve import Motion
 
 PHASES = 48
-"""Samples per half period, before `refined` adds where a curve is steep."""
+"""Samples per half period, before `refined` adds more where a curve is steep."""
 
 _LONGEST = 0.02
-"""The longest step on a curve, as a part of its range."""
+"""The longest step on a curve, as a share of its range."""
 _STRAIGHT, _VISIBLE = math.cos(math.radians(10)), 5e-4
-"""Where `refined` lets a polygon pass for a curve: its corners, and its steps over the range."""
+"""Limits within which `refined` accepts a polygon as a curve: corners, and steps over the range."""
 
 MOST_PERIODS = 1000
-"""Most nutation periods in one picture: more of them are a blot and not a curve."""
+"""Most nutation periods in one picture; more would be a blot and not a curve."""
 
 
 def axis_at(motion: Motion, t: Array) -> Array:
@@ -41,9 +41,9 @@ def axis_at(motion: Motion, t: Array) -> Array:
 
 
 def tilt_period(motion: Motion) -> float | None:
-    """Return the period of the tilt, or None for a tilt that stays or never comes back.
+    """Return the period of the tilt, or None for a tilt that is constant or never returns.
 
-    The record of a steady precession also has a period: that of a small nutation about it.
+    A steady precession also has a period in its record: the period of a small nutation about it.
     """
     same = motion.regime is Regime.TORQUE_FREE and motion.theta_min_deg == motion.theta_max_deg
     return None if same or motion.regime is Regime.STEADY else motion.T_nutation
@@ -52,7 +52,7 @@ def tilt_period(motion: Motion) -> float | None:
 def periods_since_highest(motion: Motion) -> float:
     """Return the nutation periods from a highest point of the axis to t = 0, in [-1/2, 1/2].
 
-    The sign is that of the tilt rate at the start.  The tilt must have a period.
+    The sign is the sign of the tilt rate at the start.  The tilt must have a period.
     """
     kind: Any = motion.middle()
     with kind.ar.working():
@@ -76,15 +76,15 @@ def separatrix_swing(motion: Motion) -> SeparatrixSwing:
 
 
 def swings_in_a_plane(motion: Motion) -> bool:
-    """Return whether the top is a plane pendulum, whose axis comes back along the same arc."""
+    """Return whether the top is a plane pendulum, whose axis returns along the same arc."""
     top = motion.top
     return not top.r0 and (not top.psidot0 or top.inputs()["theta0_deg"] in (0, 180))
 
 
 def motion_in_words(motion: Motion) -> str:
-    """Return how a top moves, in a few words: its path, and its regime where that says more.
+    """Return a few words on a motion: its path, or its regime if that is more informative.
 
-    Upright tops and hanging ones are stable or unstable.
+    Upright and hanging tops are called stable or unstable.
     """
     regime, remark = motion.regime, motion.remark or ""
     if regime in (Regime.SLEEPING, Regime.HANGING):
@@ -97,10 +97,10 @@ def motion_in_words(motion: Motion) -> str:
 
 
 def span(motion: Motion, periods: float) -> float:
-    """Return the time of so many nutation periods.
+    """Return the duration of a number of nutation periods.
 
-    On the separatrix it is the time of the swing; for a tilt that stays, one turn of the precession
-    or of the spin.
+    On the separatrix it is the time of the swing.  For a constant tilt it is one turn of the
+    precession or of the spin.
     """
     if motion.regime is Regime.SEPARATRIX:
         swing = separatrix_swing(motion)
@@ -111,7 +111,7 @@ def span(motion: Motion, periods: float) -> float:
 
 
 def turn_span(motion: Motion) -> float:
-    """Return the time of one turn of the precession, within 3 and 40 nutation periods."""
+    """Return the time of one turn of the precession, limited to 3 to 40 nutation periods."""
     nutation, turn = tilt_period(motion), motion.T_precession
     if not nutation:
         return span(motion, 1)
@@ -119,10 +119,10 @@ def turn_span(motion: Motion) -> float:
 
 
 def sphere_span(motion: Motion) -> float:
-    """Return the time of a path on the globe: about one turn of the precession.
+    """Return the time of a path on the globe, about one turn of the precession.
 
-    A top that swings in a plane comes back along the same arc, and a fast one hardly precesses
-    in a nutation: they are shown for one and three nutation periods.
+    A top that swings in a plane returns along the same arc, so it is shown for one nutation period.
+    A fast top hardly precesses during a nutation, so it is shown for three.
     """
     nutation, turn = tilt_period(motion), turn_span(motion)
     if nutation and swings_in_a_plane(motion):
@@ -135,7 +135,7 @@ def sphere_span(motion: Motion) -> float:
 def checked_span(motion: Motion, t_max: Number | None) -> float | None:
     """Return the last time as a double.
 
-    Raises LagtopError where it is not above 0 or a curve over it would be a blot.
+    Raises LagtopError unless it is above 0 and the curve up to it is legible.
     """
     if t_max is None:
         return None
@@ -162,7 +162,7 @@ def highest_times(motion: Motion, t_max: float) -> Array:
 def sampled_columns(motion: Motion, t_max: float, names: Sequence[str]) -> dict[str, Array]:
     """Return columns of `lagtop table` from 0 to t_max, in radians, by their headings.
 
-    The times, under `t`, are those at which the columns make a smooth curve.
+    The times, under `t`, are chosen so that the columns make a smooth curve.
     """
 
     def curve(t: Array) -> Array:
@@ -172,9 +172,9 @@ def sampled_columns(motion: Motion, t_max: float, names: Sequence[str]) -> dict[
 
 
 def phase_times(motion: Motion, t_max: float) -> Array:
-    """Return times from 0 to t_max, turning points included.
+    """Return times from 0 to t_max, including the turning points.
 
-    They are even in am(w) where the tilt swings, and even in time where it stays.
+    They are even in am(w) if the tilt swings, and even in time if it is constant.
     """
     if motion.regime is Regime.SEPARATRIX:
         return _separatrix_times(motion, t_max)
@@ -203,7 +203,7 @@ def _half_period(k_prime: float) -> Array:
 
 
 def _separatrix_times(motion: Motion, t_max: float) -> Array:
-    """Return times even in the amplitude, which is the Gudermannian of w on the separatrix."""
+    """Return times that are even in the amplitude, the Gudermannian of w on the separatrix."""
     amplitude = np.linspace(-1.0, 1.0, 8 * PHASES + 1)[1:-1] * math.pi / 2
     swing = separatrix_swing(motion)
     return _between(np.arcsinh(np.tan(amplitude)) / swing.speed + swing.lowest, t_max)
@@ -215,11 +215,11 @@ def _between(t: Array, t_max: float) -> Array:
 
 
 def refined(t: Array, curve: Callable[[Array], Array]) -> Array:
-    """Return the times and more between them where a curve is steep or sharp.
+    """Return the times, with more of them where a curve is steep or sharp.
 
-    `curve` gives one row of coordinates per time.  A step is halved where it exceeds 2 % of
-    the curve's range, or turns by more than 10 degrees and can be seen.  It stops at
-    eight times the points, because a jump or rounding noise would refine for ever.
+    `curve` gives one row of coordinates per time.  A step is halved if it exceeds 2 % of the
+    curve's range, or turns by more than 10 degrees and is visible.  Refinement stops at eight times
+    the points, because a jump or rounding noise would refine for ever.
     """
     enough = 8 * t.size
     while t.size < enough:

@@ -1,6 +1,6 @@
-"""The way of a figure into a file that carries what it shows: fonts, texts and metadata.
+"""Conversion of a figure to a file that describes itself: fonts, texts and metadata.
 
-Text stays text in SVG, and PDF embeds TrueType outlines (Type 42), which journals ask for.
+Text remains text in SVG, and PDF embeds TrueType outlines (Type 42), as journals require.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 REPORT_KINDS = (".svg", ".png")
-"""The kinds of file that the picture of a report may have."""
+"""File types of the pictures of reports."""
 
 _FONTS = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "lagtop"}
 
 
 class About(NamedTuple):
-    """What a picture shows, in words: the metadata of its file."""
+    """A description of a picture in words, for the metadata of its file."""
 
     title: str
     text: str
-    """The scene, in a sentence for those who cannot see the picture."""
+    """The scene in a sentence, for readers who cannot see the picture."""
     command: str = ""
     """The command line that draws the picture."""
 
     def fields(self, fmt: str) -> dict[str, str | None]:
-        """Return the metadata of a kind of file, without the day and the version."""
+        """Return the metadata for a file type, without date and version."""
         if fmt == "svg":
             whole = f"{self.text}\n{self.command}".strip()
             return {"Title": self.title, "Description": whole, "Creator": "lagtop", "Date": None}
@@ -54,9 +54,9 @@ class About(NamedTuple):
 
 
 def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
-    """Return the figure as `png`, `svg` or `pdf`: the same bytes for the same figure.
+    """Return the figure as `png`, `svg` or `pdf`; the same figure gives the same bytes.
 
-    It is printed by the canvas of its format: `savefig` would draw it twice.
+    The canvas of each format prints it, because `savefig` would draw it twice.
     """
     import matplotlib
     from matplotlib.backend_bases import get_registered_canvas_class
@@ -72,16 +72,16 @@ def figure_bytes(figure: Figure, fmt: str, dpi: float, about: About) -> bytes:
 
 
 def _described(svg: bytes, about: About) -> bytes:
-    """Return the SVG with the description that screen readers look for, after its title."""
+    """Return the SVG with a description for screen readers after its title."""
     end = b"</title>"
     return svg.replace(end, end + f"\n <desc>{escape(about.text)}</desc>".encode(), 1)
 
 
 def check_plot(path: str | None, output: str) -> None:
-    """Raise LagtopError for a kind of file that is not drawn, or that is the report itself.
+    """Raise LagtopError for an unsupported file type, or for the file of the report itself.
 
-    Raises LagtopError where matplotlib is missing, too, and CannotWriteError where there is no such
-    directory.
+    Raises UnavailableError if matplotlib is missing, and CannotWriteError if the directory does not
+    exist.
     """
     if path is None:
         return
@@ -95,7 +95,7 @@ def check_plot(path: str | None, output: str) -> None:
 
 
 def require_matplotlib() -> None:
-    """Raise UnavailableError, with the remedy, where matplotlib is missing."""
+    """Raise UnavailableError, with the remedy, if matplotlib is missing."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:

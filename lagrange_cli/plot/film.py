@@ -1,4 +1,4 @@
-"""The film of the spinning top: a cone on its pivot, and behind it the trace of its axis."""
+"""The film of the spinning top: a cone on its pivot, in front of the trace of its axis."""
 
 from __future__ import annotations
 
@@ -30,50 +30,53 @@ from .sphere import axis_path
 from .style import points, scale, styled
 
 COLOURS = 64
-"""Colours of a GIF; they are chosen for the frame at its middle, which has all."""
+"""Number of colours of a GIF; they are chosen for its middle frame, which contains them all."""
 
 
 class SmallGifWriter(PillowWriter):
-    """A writer of GIFs whose frames share their colours, which makes them a fifth as large."""
+    """A writer of GIFs whose frames share one palette, which makes the file five times smaller."""
 
     fig: Any
     _frames: list[Any]
     colours: Image.Image
-    """A frame with the colours of all."""
+    """A frame with the colours of all frames."""
 
     def grab_frame(self, **_: Any) -> None:
-        """Keep a frame, a byte per pixel."""
+        """Store a frame, one byte per pixel."""
         frame = self.fig.frame(self.dpi)
         self._frames.append(frame.quantize(palette=self.colours, dither=0))
 
 
 WRITERS = {".gif": SmallGifWriter, ".mp4": FFMpegWriter}
-"""What writes each kind of file, by the ending of its name."""
+"""The writer for each file type, by the extension of the file name."""
 
 FRAMES_PER_SECOND, SECONDS = 25, 6.0
-"""How fast a film is (a GIF counts hundredths of a second), and how long by default."""
+"""Frames per second (a GIF counts hundredths of a second), and the default duration."""
 MOST_FRAMES = 3000
 ALIASED = math.pi / 3
-"""The lid repeats after 120 degrees: faster than half of it per frame, its spin cannot be seen."""
+"""Greatest visible spin per frame: half of the 120 degrees after which the lid repeats."""
 FOOT = 0.16
-"""Height below the globe, in its radii, for the line that tells how time is shown."""
+"""Distance below the globe, in its radii, of the line that states the time scale."""
 BACKGROUND, BEHIND, BODY, FAR, RIM, NEAR, BEFORE = 2.0, 2.1, 2.2, 2.3, 2.5, 3.0, 4.0
-"""Layers: the globe as far as the top hides it, the axle on its far side, the top, the trace on the
-far side, the rim, the trace on the near side, and the axle there."""
+"""Drawing layers, from back to front.
+
+They are the part of the globe that the top hides, the axle on its far side and the top.  In front
+are the far part of the trace, the rim, the near part of the trace and the axle on the near side.
+"""
 USUAL_SIZE = 4.8, 5.0
 """Width and height in inches."""
 
 
 class Pace(NamedTuple):
-    """How a film runs."""
+    """The time scale of a film."""
 
     frames: int
     t_max: float
-    """Time of the motion that the whole film shows."""
+    """Time of the motion shown in the whole film."""
 
     @property
     def speed(self) -> float:
-        """Time of the motion that one second of the film shows."""
+        """Time of the motion shown per second of film."""
         return self.t_max * FRAMES_PER_SECOND / self.frames
 
 
@@ -84,13 +87,13 @@ def film_pace(
     duration: float | None = None,
     speed: float | None = None,
 ) -> Pace:
-    """Return how a film runs that lasts `duration` seconds and shows `speed` of time in each.
+    """Return the pace of a film of `duration` seconds that shows `speed` units of time per second.
 
-    Raises LagtopError for t_max, duration and speed together, for a number out of its range, and
-    for so much time that the path would be a blot.
+    Raises LagtopError if t_max, duration and speed are all given, and for a number out of its
+    range. It also refuses a time so long that the path would be a blot.
     """
     if t_max and duration and speed:
-        raise LagtopError("speed must be left out where t_max and duration are given", "speed")
+        raise LagtopError("speed must be omitted if t_max and duration are given", "speed")
     if speed is not None and not speed > 0:
         raise LagtopError(f"speed must be > 0, got {speed:g}", "speed")
     if duration is None:
@@ -105,7 +108,7 @@ def film_pace(
 
 
 def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
-    """Return the time that a film shows.  Raises LagtopError where its path would be a blot."""
+    """Return the time that a film shows; raise LagtopError if its path would be a blot."""
     nutation = tilt_period(motion)
     if nutation and speed * duration > MOST_PERIODS * nutation:
         most = f"{MOST_PERIODS * nutation / duration:.6g} ({MOST_PERIODS} nutation periods)"
@@ -114,10 +117,10 @@ def _checked_speed(motion: Motion, speed: float, duration: float) -> float:
 
 
 def check_film(page: Page, name: str, dpi: float) -> None:
-    """Raise LagtopError where a film cannot be made.
+    """Raise LagtopError if a film cannot be made.
 
-    The reasons are a name that ends neither in .gif nor in .mp4, an .mp4 without ffmpeg (it is an
-    UnavailableError), and pixels per inch that do not suit the size.
+    The name must end in .gif or .mp4, and the pixels per inch must suit the size.  An .mp4 without
+    ffmpeg raises UnavailableError.
     """
     suffix = Path(name).suffix.lower()
     if suffix not in WRITERS:
@@ -131,7 +134,10 @@ def check_film(page: Page, name: str, dpi: float) -> None:
 
 
 def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress = silent) -> bytes:
-    """Return the film as a GIF or an MP4, as `name` ends.  Raises LagtopError as `check_film`."""
+    """Return the film as a GIF or an MP4, by the ending of `name`.
+
+    Raises LagtopError as `check_film` does.
+    """
     check_film(page, name, dpi)
     suffix = Path(name).suffix.lower()
     writer = WRITERS[suffix](fps=FRAMES_PER_SECOND)
@@ -149,21 +155,21 @@ def film_bytes(page: Page, name: str, dpi: float, pace: Pace, progress: Progress
 
 
 def film_span(motion: Motion) -> float:
-    """Return the time of a turn of the precession, at most six nutations: more would flicker."""
+    """Return the time of one turn of the precession, at most six nutations: more would flicker."""
     return min(turn_span(motion), span(motion, 6))
 
 
 class Frames(Figure):
-    """A figure whose frames are drawn between a background and a foreground that stand still."""
+    """A figure whose frames are drawn between a fixed background and a fixed foreground."""
 
     moving: Sequence[Artist]
     """The artists of each frame, from the back to the front."""
     front: Sequence[Artist]
-    """The artists that stand still before them."""
+    """The fixed artists in front of the moving ones."""
     _still: Any = None
 
     def frame(self, dpi: float) -> Image.Image:
-        """Return the pixels of a frame; what stands still is drawn for the first one."""
+        """Return the pixels of a frame; the fixed parts are drawn for the first frame only."""
         if self._still is None:
             self._still = self._drawn_once(dpi)
         canvas, background, (place, foreground) = self._still
@@ -192,7 +198,7 @@ class Frames(Figure):
         return canvas, background, (place, foreground.crop(place))
 
     def savefig(self, file: Any, *, dpi: Any, **_: Any) -> None:  # type: ignore[override]
-        """Write the pixels of a frame, which is all that a writer of films asks for."""
+        """Write the pixels of a frame; writers of films use nothing else."""
         file.write(self.frame(dpi).convert("RGBA").tobytes())
 
 
@@ -235,7 +241,7 @@ class Film:
         self.figure.front = [x for x in others if x.get_zorder() > BACKGROUND]
 
     def show(self, i: int) -> None:
-        """Bring the figure to frame i."""
+        """Set the moving parts to frame i."""
         top = cone_at(self.attitude[i], self.camera)
         self.body.set(verts=top.corners, facecolors=self.inks[top.inks])
         self.rim.set_data(*top.rim)

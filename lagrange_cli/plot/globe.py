@@ -15,20 +15,17 @@ from .kinds import PlotRequest
 from .style import Look, points, short_text
 
 TIP, NAME = 1.24, 0.1
-"""Length of the axes of space in radii of the globe, and the distance of their names from there."""
+"""Length of the axes of space in radii of the globe, and distance of their names from the tips."""
 SAME_PLACE = 0.13
-"""Distance at which the names of two axes would touch: they are then written together."""
+"""Distance at which the names of two axes would touch, so that they are joined."""
 INSEPARABLE = math.radians(0.8)
-"""Two circles of nearer tilts than this are one line on the globe."""
+"""Difference of tilt below which two circles are one line on the globe."""
 
 
 def draw_globe(
     axes: Axes, camera: Camera, limits: tuple[float, float], request: PlotRequest, look: Look
 ) -> None:
-    """Draw outline, equator, axes of space and limiting circles; far sides dashed and paler.
-
-    `limits` are the least and the greatest tilt (radians).
-    """
+    """Draw outline, equator, axes of space and limiting circles, far sides dashed and paler."""
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.add_artist(Circle((0, 0), 1, facecolor=look.faint, edgecolor="none", alpha=0.55, zorder=0))
@@ -51,7 +48,7 @@ def _tilt_text(tilt: float, radians: bool) -> str:
 
 
 def _draw_limit(axes: Axes, camera: Camera, tilt: float, colour: str, label: str) -> None:
-    """Draw the circle of a limiting tilt, or a dot where that circle is a pole."""
+    """Draw the circle of a limiting tilt, or a dot if the circle is a pole."""
     if math.sin(tilt) > 1e-3:
         _draw_circle(axes, camera, tilt, color=colour, lw=points(1.2))
         axes.plot([], [], color=colour, lw=points(1.2), label=label)
@@ -64,7 +61,7 @@ def _draw_limit(axes: Axes, camera: Camera, tilt: float, colour: str, label: str
 
 
 def _draw_circle(axes: Axes, camera: Camera, tilt: float, **line: Any) -> None:
-    """Draw the circle of a tilt, its far side dashed and paler."""
+    """Draw the circle of a tilt, with its far side dashed and paler."""
     circle = _parallel(tilt)
     x, y = camera.project(circle)
     for part, near in runs(camera.faces(circle)):
@@ -82,7 +79,7 @@ def _parallel(tilt: float) -> Array:
 
 
 def _draw_frame(axes: Axes, camera: Camera, look: Look) -> None:
-    """Draw the axes of space from the sphere outwards, behind it dashed, and their names."""
+    """Draw the axes of space from the sphere outwards, dashed behind it, and their names."""
     names: dict[tuple[float, float], str] = {}
     in_front = {name for name, side in zip("xyz", camera.toward, strict=True) if side >= 0}
     for name, direction in zip("xyz", np.eye(3), strict=True):
@@ -110,5 +107,5 @@ def _draw_frame(axes: Axes, camera: Camera, look: Look) -> None:
 
 
 def _room(names: Array) -> tuple[float, float]:
-    """Return the ends of an axis of the page that shows the globe and the names about it."""
+    """Return the limits of an axis of the page that shows the globe and the names around it."""
     return min(-1.06, float(names.min()) - 0.1), max(1.06, float(names.max()) + 0.1)

@@ -1,7 +1,7 @@
-"""The kinds of picture: one row per kind, from which the command, its help and the page are made.
+"""The kinds of picture: a table from which the command, its help and the page are generated.
 
 Each kind has a function `NAME_drawing(motion, request)` in a file of this subpackage.  It computes
-the picture, and returns it ready to be drawn on axes, those of a page as well as those of a user.
+the picture and returns a drawing for the axes of a page or of a user.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ MAP_KEY = "mean_precession_rate"
 
 
 class PlotRequest(NamedTuple):
-    """What a picture of a motion should show."""
+    """The options of a picture of a motion."""
 
     t_max: float | None = None
-    """Last time of the pictures over time; by default each picture takes what suits it."""
+    """Last time of the pictures over time; by default each picture chooses its own."""
     radians: bool = False
-    """Whether angles are shown in radians and not in degrees."""
+    """Whether angles are in radians instead of degrees."""
     key: str = MAP_KEY
     """Key of the record that a map shows."""
     x: InputRange | None = None
@@ -44,28 +44,28 @@ class PlotRequest(NamedTuple):
     y: InputRange | None = None
     """Vertical axis of a map; by default the tilt."""
     system: System | None = None
-    """The units of the inputs, if these have units."""
+    """The units of the inputs, if they have units."""
     camera: tuple[float, float] | None = None
-    """Azimuth and elevation (radians) of the camera; by default where it sees most of a path."""
+    """Azimuth and elevation (radians) of the camera; by default it sees most of the path."""
     limits: tuple[float, float] | None = None
-    """Ends of the colours of a map; by default all but the outermost values are within."""
+    """Ends of the colour scale of a map; by default all values but the outermost are within."""
     progress: Progress = silent
-    """Shows the progress of a map."""
+    """Reports the progress of a map."""
     stds: AngleStds | None = None
     """Uncertainties of the angles, drawn as bands."""
     uncertain: FirstOrder | None = None
     """Uncertainties of the numbers beside several pictures."""
 
     def unit(self, unit: str) -> str:
-        """Return a unit such as `rad/time` with the names of the units of the inputs."""
+        """Return a unit such as `rad/time` in the names of the units of the inputs."""
         return self.system.named(unit) if self.system else unit
 
     def in_words(self, remark: str) -> str:
-        """Return a remark on the motion with the names of the units of the inputs."""
+        """Return a remark on the motion in the names of the units of the inputs."""
         return self.system.in_words(remark) if self.system else remark
 
     def label(self, text: str) -> str:
-        """Return a label whose unit stands between brackets, in the units of the inputs."""
+        """Return a label with the unit in brackets converted to the units of the inputs."""
         return re.sub(r"\((.*?)\)", lambda inside: f"({self.unit(inside[1])})", text)
 
     @property
@@ -80,7 +80,7 @@ class PlotRequest(NamedTuple):
 
     @property
     def angle_unit(self) -> str:
-        """The name of the unit of angles, as it stands on an axis."""
+        """The name of the unit of angles, as on an axis."""
         return "rad" if self.radians else "deg"
 
     @property
@@ -89,7 +89,7 @@ class PlotRequest(NamedTuple):
         return per_radian(radians=self.radians)
 
     def options(self) -> list[str]:
-        """Return what differs from the defaults, as options of the command."""
+        """Return the settings that differ from the defaults, as options of the command."""
         given = {
             "--t-max": self.t_max and repr(self.t_max),
             "--key": self.key if self.key != MAP_KEY else None,
@@ -104,13 +104,13 @@ class PlotRequest(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """A picture of a motion: computed, but not drawn yet."""
+    """A computed picture of a motion that has not been drawn yet."""
 
     title: str
     draw: Callable[[Sequence[Axes], Look], None]
-    """Draws everything but the title on axes, one below the other."""
+    """Draws everything but the title on a list of axes, one below the other."""
     heights: tuple[float, ...] = (1.0,)
-    """Heights of the axes of a page, in any unit."""
+    """Relative heights of the axes of a page."""
 
 
 class PictureKind(NamedTuple):
@@ -120,18 +120,18 @@ class PictureKind(NamedTuple):
     help: str
     """One line for the help of the command."""
     size: tuple[float, float]
-    """Width and height (inches) of a page with this picture alone."""
+    """Width and height (inches) of a page that holds only this picture."""
     on_sheet: bool = False
     """Whether the picture is on the sheet, which the command draws by default."""
     axes: int = 1
-    """Number of axes of a user that the picture takes; several share the time."""
+    """Number of axes that a user passes; several share the time axis."""
     file: str = ""
-    """File that computes the picture; by default the one of its name."""
+    """File that computes the picture; by default the file with the name of the kind."""
 
     def drawing(self, motion: Motion, request: PlotRequest) -> Drawing:
-        """Compute the picture; its file, and with it matplotlib, is loaded only now.
+        """Compute the picture; its file, and with it matplotlib, is loaded here.
 
-        Raises LagtopError for a bad request, and NothingToDrawError.
+        Raises LagtopError for an invalid request, and NothingToDrawError.
         """
         file = import_module(f".{self.file or self.name}", __package__)
         drawing: Drawing = getattr(file, f"{self.name}_drawing")(motion, request)
@@ -151,7 +151,7 @@ KINDS = {kind.name: kind for kind in _ROWS}
 """The kinds by name, in the order of the help."""
 
 SHEET = "all"
-"""The name that stands for all kinds on the sheet."""
+"""The name of the sheet, which holds several kinds."""
 
 ON_THE_SHEET = tuple(kind.name for kind in _ROWS if kind.on_sheet)
 """The names of the kinds on the sheet."""

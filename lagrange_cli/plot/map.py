@@ -33,20 +33,20 @@ MOST_CELLS = 1_000_000
 DEFAULT_COUNTS = 128, 90
 
 MOST_VALUES = 2000
-"""Most values of an input along one axis."""
+"""Greatest number of values of an input along one axis."""
 
 OUTERMOST = 1.0
-"""Percentage of the values on either side that does not stretch the range of the colours."""
+"""Percentage of the values at either end that does not extend the colour scale."""
 
 
 class InputRange(NamedTuple):
-    """An input of the top and the values it takes along one axis of a map."""
+    """An input of the top and its values along one axis of a map."""
 
     name: str
     values: Array
     """Increasing values; a tilt in degrees."""
     logarithmic: bool = False
-    """Whether the values grow by equal factors and not by equal steps."""
+    """Whether the values grow by equal factors instead of equal steps."""
 
     def text(self) -> str:
         """Return the range as it is written on the command line."""
@@ -56,10 +56,10 @@ class InputRange(NamedTuple):
 
 
 def parse_input_range(name: str, text: str) -> InputRange:
-    """Return the range that a text such as `r0=10:100:40` or `r0=log:1:100:40` stands for.
+    """Parse a range such as `r0=10:100:40` or `r0=log:1:100:40`.
 
-    `name` is the argument that an error names.  Raises LagtopError where the input is unknown, and
-    where it is no range of 2 to 2000 increasing values.
+    `name` is the argument to name in errors.  Raises LagtopError for an unknown input, and unless
+    the range has 2 to 2000 increasing values.
     """
     known, _, grid = text.partition("=")
     if known not in NINE:
@@ -86,13 +86,13 @@ class KeyMap(NamedTuple):
     x: InputRange
     y: InputRange
     values: Array
-    """values[i, j] belongs to y[i] and x[j]; not a number where the motion has none."""
+    """values[i, j] belongs to y[i] and x[j]; NaN if the motion has none."""
     sleeping: Array
-    """C |r0| / sqrt(4Amgs), 1 on the sleeping threshold; infinite without torque."""
+    """C |r0| / sqrt(4Amgs), 1 at the sleeping threshold; infinite without torque."""
 
 
 def default_ranges(top: Top, *, radians: bool = False) -> tuple[InputRange, InputRange]:
-    """Return spins up to twice the sleeping threshold or beyond the top's own, and tilts."""
+    """Return spins up to twice the sleeping threshold or beyond the top's own spin, and tilts."""
     columns, rows = DEFAULT_COUNTS
     threshold = math.sqrt(float(4 * top.A * top.m * top.g * top.s)) / float(top.C)
     most = max(2 * threshold, 1.25 * abs(float(top.r0))) or 1.0
@@ -110,15 +110,15 @@ def key_map(
     *,
     radians: bool = False,
 ) -> KeyMap:
-    """Return the key over the grid, the other inputs as in the motion.
+    """Return the key over the grid, with the other inputs of the motion.
 
-    Raises LagtopError for a key that is no number, for one input on both axes, for too many cells,
-    and where a top of the grid cannot be.
+    Raises LagtopError for a key that is not a number, for the same input on both axes, and for too
+    many cells.  It also refuses a grid that contains an impossible top.
     """
     names = [*NUMBER_KEYS, *requested_keys()]
     check_names("key", [key], [unit_name(name, radians=radians) for name in names])
     if x.name == y.name:
-        raise LagtopError(f"x must be another input than y, got {x.name} twice", "x")
+        raise LagtopError(f"x must differ from y, got {x.name} for both", "x")
     cells = x.values.size * y.values.size
     if cells > MOST_CELLS:
         raise LagtopError(f"x must have at most 1e6 cells together with y, got {cells}", "x")
@@ -127,7 +127,7 @@ def key_map(
     keys = list(dict.fromkeys([key, "a", "b", "error"]))
 
     def part(y_values: Array) -> Array:
-        """Return the key, a and b at each top of some rows, or raise LagtopError."""
+        """Return the key, a and b for each top of some rows; raise LagtopError on failure."""
         over = {x_input: x.values, y_input: y_values[:, None]}
         records = sweep(keys=keys, radians=radians, **motion.top.inputs(radians=radians) | over)
         for error in filter(None, records["error"].ravel().tolist()):
@@ -152,7 +152,7 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     unit = request.unit_of(key)
 
     def draw(axes: Sequence[Axes], look: Look) -> None:
-        """Draw cells, contours, the sleeping threshold and the scene."""
+        """Draw cells, contours, the sleeping threshold and the marker of the scene."""
         ax = axes[0]
         ax.set(xlabel=_label(x.name, request), ylabel=_label(y.name, request))
         ax.set(xscale="log" if x.logarithmic else "linear")
@@ -174,7 +174,7 @@ def _title(key: Key, unit: str) -> str:
 
 
 def colour_limits(values: Array) -> tuple[float, float]:
-    """Return the ends of the colours: all values but the outermost ones, which may be peaks."""
+    """Return the ends of the colour scale: all values but the outermost, which may be peaks."""
     known = values[np.isfinite(values)]
     if not known.size:
         return 0.0, 1.0
@@ -187,7 +187,7 @@ def colour_limits(values: Array) -> tuple[float, float]:
 def _draw_cells(
     axes: Axes, chart: KeyMap, limits: tuple[float, float] | None, look: Look
 ) -> Colorbar:
-    """Draw the values as coloured cells, with the bar that explains the colours."""
+    """Draw the values as coloured cells, with a colour bar."""
     axes.set_facecolor(look.faint)  # if the key is undefined
     if not np.isfinite(chart.values).all():
         axes.fill([], [], color=look.faint, label="undefined here")
@@ -214,7 +214,7 @@ def _draw_cells(
 
 
 def _draw_contours(axes: Axes, chart: KeyMap, bar: Colorbar, look: Look) -> None:
-    """Draw lines of equal value at the numbers of the bar, light on dark and dark on light."""
+    """Draw contours at the numbers of the colour bar, light on dark and dark on light."""
     known = chart.values[np.isfinite(chart.values)]
     if not known.size:
         return
@@ -234,9 +234,9 @@ def _draw_contours(axes: Axes, chart: KeyMap, bar: Colorbar, look: Look) -> None
 
 
 def jumps(values: Array, spread: float) -> Mask:
-    """Return where a value is beside a jump, which contours would follow as a saw.
+    """Return a mask of values beside a jump, where contours would be jagged.
 
-    A jump is a quarter of the values' spread, and far greater than the usual step.
+    A jump is at least a quarter of the spread of the values, and far greater than the usual step.
     """
     beside = np.zeros(values.shape, np.bool_)
     for grid, marks in ((values, beside), (values.T, beside.T)):
@@ -248,7 +248,7 @@ def jumps(values: Array, spread: float) -> Mask:
 
 
 def _draw_threshold(axes: Axes, chart: KeyMap, look: Look) -> None:
-    """Draw the line at which an upright top begins to be stable, if it crosses the map."""
+    """Draw the line at which an upright top becomes stable, if it crosses the map."""
     if not chart.sleeping.min() < 1.0 < chart.sleeping.max():
         return
     how: dict[str, Any] = {"colors": look.ink, "linewidths": points(1.6)}
@@ -267,7 +267,7 @@ def _label(name: str, request: PlotRequest) -> str:
 
 
 def _edges(axis: InputRange) -> Array:
-    """Return the borders of the cells, half way between their values."""
+    """Return the borders of the cells, halfway between their values."""
     values = np.log(axis.values) if axis.logarithmic else axis.values
     middle = (values[1:] + values[:-1]) / 2
     ends = [values[0] - (middle[0] - values[0])], [values[-1] + (values[-1] - middle[-1])]
@@ -276,7 +276,7 @@ def _edges(axis: InputRange) -> Array:
 
 
 def _mark_own(axes: Axes, motion: Motion, chart: KeyMap, radians: bool, look: Look) -> None:
-    """Mark the scene itself where it is on the map."""
+    """Mark the scene itself if it is on the map."""
     inputs = {
         name.partition("_")[0]: value for name, value in motion.top.inputs(radians=radians).items()
     }

@@ -1,4 +1,4 @@
-"""A page of pictures: the panels, the numbers of the scene beside them, and the file it becomes."""
+"""A page of pictures: panels, the numbers of the scene beside them, and the output file."""
 
 from __future__ import annotations
 
@@ -20,39 +20,42 @@ from .kinds import KINDS, PlotRequest
 from .style import DARK, POINTS, Look, head, number_text, styled
 
 NUMBERS_WIDTH, PANEL = 3.7, (5.8, 5.0)
-"""Width of the column of numbers, and width and height of one panel among several (inches)."""
+"""Width of the column of numbers; width and height of one of several panels (inches)."""
 
 ALONE = 0.7
-"""Power of its size by which the letters of a single picture shrink: readable at 3.5 inches."""
+"""Exponent by which letters of a single picture shrink with its size; legible at 3.5 inches."""
 
 REMARK_WIDTH = 52
-"""Letters in a line of the remark, below the numbers."""
+"""Characters per line of the remark below the numbers."""
 
 LEAST_DPI, MOST_DPI = 20.0, 1000.0
 """Least and greatest pixels per inch of any picture."""
 MOST_PIXELS = 5e7
-"""Most pixels of a picture."""
+"""Greatest number of pixels of a picture."""
 LEAST_LETTERS = 1.0
-"""Least height of ordinary letters in pixels: FreeType draws none whose height rounds to 0, and the
-smallest letters on a page, exponents among them, are about 0.55 of the ordinary ones."""
+"""Least height of ordinary letters in pixels.
+
+FreeType draws no letter whose height rounds to 0.  The smallest letters on a page, such as
+exponents, are about 0.55 of the ordinary height.
+"""
 
 
 class Page(NamedTuple):
-    """The pictures to be drawn on one page, and how."""
+    """The pictures to draw on one page, and their options."""
 
     motion: Motion
     kinds: Sequence[str]
     request: PlotRequest
     look: Look
     size: tuple[float, float] | None = None
-    """Width and height in inches; by default as the kinds need."""
+    """Width and height in inches; by default chosen for the kinds."""
 
     def inches(self) -> tuple[float, float]:
         """Return width and height."""
         return self.size or self.usual_inches()
 
     def lettering(self) -> float:
-        """Return the size of the letters: 1, and less on a page that is smaller than usual."""
+        """Return the relative size of the letters: 1, or less on a page smaller than usual."""
         pairs = zip(self.inches(), self.usual_inches(), strict=True)
         size = min(1.0, *(length / usual for length, usual in pairs))
         return size**ALONE if len(self.kinds) == 1 else size
@@ -70,7 +73,7 @@ class Page(NamedTuple):
         return math.ceil(len(self.kinds) / columns), columns
 
     def about(self) -> About:
-        """Return what the page shows, in words, and the command that draws it."""
+        """Return a description of the page in words, and the command that draws it."""
         motion, request = self.motion, self.request
         inputs = motion.top.inputs(radians=request.radians)
         listed = ", ".join(f"{name} = {value!r}" for name, value in inputs.items())
@@ -92,16 +95,17 @@ class Page(NamedTuple):
         return f"lagtop plot {' '.join(words)} -o picture.svg"
 
     def check_dpi(self, dpi: float, fmt: str) -> None:
-        """Raise LagtopError where the pixels per inch do not suit the page.
+        """Raise LagtopError unless the pixels per inch suit the page.
 
-        Letters of a PNG need a height of one pixel at least; SVG and PDF have no pixels there.
+        Letters of a PNG need a height of at least one pixel.  The letters of SVG and PDF have no
+        pixels.
         """
         least = 72.0 * LEAST_LETTERS / (POINTS * self.lettering()) if fmt == "png" else LEAST_DPI
         check_pixels(dpi, self.inches(), least)
 
 
 def check_pixels(dpi: float, inches: tuple[float, float], least: float = LEAST_DPI) -> None:
-    """Raise LagtopError where a picture would have too few or too many pixels per inch.
+    """Raise LagtopError for a picture with too few or too many pixels per inch.
 
     `least` is the number that its letters need.
     """
@@ -114,9 +118,9 @@ def check_pixels(dpi: float, inches: tuple[float, float], least: float = LEAST_D
 
 
 def draw_page(figure: Figure, page: Page) -> None:
-    """Draw the kinds as panels; where there are several, with the scene's numbers beside them.
+    """Draw the kinds as panels; several panels have the scene's numbers beside them.
 
-    Raises NothingToDrawError where a single kind has nothing to draw.
+    Raises NothingToDrawError if a single kind has nothing to draw.
     """
     if len(page.kinds) == 1:
         _draw(page.kinds[0], figure.subfigures(1, 1, squeeze=False)[0, 0], page)
@@ -134,7 +138,7 @@ def draw_page(figure: Figure, page: Page) -> None:
 
 
 def _draw(name: str, panel: SubFigure, page: Page) -> None:
-    """Draw a kind of picture on axes of a panel, with its title above and its legend below."""
+    """Draw a kind of picture on axes of a panel, with the title above and the legend below."""
     kind = KINDS[name]
     drawing = kind.drawing(page.motion, page.request)
     rows, together = len(drawing.heights), kind.axes > 1
@@ -149,7 +153,7 @@ def _draw(name: str, panel: SubFigure, page: Page) -> None:
 
 
 def _write_numbers(panel: SubFigure, page: Page) -> None:
-    """Write the record: a line for each key, with its symbol and its unit, and the remark."""
+    """Write the record, one line per key with symbol and unit, and the remark."""
     radians = page.request.radians
     record = page.motion.record(radians=radians)
     stds = stds_of(record, page.request.uncertain) if page.request.uncertain else {}
@@ -177,10 +181,10 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
 
 
 def page_bytes(page: Page, fmt: str, dpi: float) -> bytes:
-    """Return the page as `png`, `svg` or `pdf`: the same bytes for the same picture.
+    """Return the page as `png`, `svg` or `pdf`; the same picture gives the same bytes.
 
-    Raises LagtopError where the pixels per inch do not suit the page, and NothingToDrawError where
-    there is nothing to draw.
+    Raises LagtopError if the pixels per inch do not suit the page, and NothingToDrawError if there
+    is nothing to draw.
     """
     page.check_dpi(dpi, fmt)
     with styled(page.look, page.lettering()):
@@ -191,7 +195,7 @@ def page_bytes(page: Page, fmt: str, dpi: float) -> bytes:
 
 
 def _settle_layout(figure: Figure) -> None:
-    """Lay out now, and round: the solver's last digits depend on the addresses of its variables."""
+    """Compute the layout and round it: the solver's last digits depend on memory addresses."""
     engine = figure.get_layout_engine()
     assert engine is not None
     engine.execute(figure)
@@ -207,9 +211,9 @@ def _settle_layout(figure: Figure) -> None:
 
 
 def _write_powers(figure: Figure) -> bool:
-    """Write factors of all numbers of an axis as powers of ten and not as 1e5; return if any is.
+    """Write common factors of an axis as powers of ten, not as 1e5; return whether any exists.
 
-    Other axes do without mathtext, which takes twice the time of all the rest of a picture.
+    Other axes do without mathtext, which takes twice the time of the rest of a picture.
     """
     formatters: list[Any] = [
         axis.get_major_formatter() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)
@@ -221,7 +225,7 @@ def _write_powers(figure: Figure) -> bool:
 
 
 def _fit_titles(part: Figure | SubFigure) -> bool:
-    """Make titles smaller that are wider than their panel; return if any is."""
+    """Reduce the letters of titles that are wider than their panel; return whether any was."""
     changed = [_fit_titles(panel) for panel in part.subfigs]
     for title in part.texts:
         while (
@@ -242,14 +246,14 @@ def _round_boxes(figure: FigureBase) -> None:
 def show_page(page: Page) -> None:
     """Open the page in a window and wait until it is closed.
 
-    Raises LagtopError where there is no display.
+    Raises LagtopError if there is no display.
     """
     from matplotlib import pyplot
 
     with styled(page.look, page.lettering()):
         try:
             figure = pyplot.figure(figsize=page.inches(), layout="constrained")
-        except ImportError as error:  # from a toolkit that was asked for by MPLBACKEND
+        except ImportError as error:  # from the toolkit that MPLBACKEND names
             raise LagtopError(f"show cannot open a window: {error}", "show") from None
         if pyplot.get_backend().lower() == "agg":
             raise LagtopError("show needs a display and a window toolkit (or write a file)", "show")

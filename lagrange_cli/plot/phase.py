@@ -19,13 +19,13 @@ from .kinds import Drawing, PlotRequest
 from .style import Look, mark_start, number_from_left_to_right, points
 
 SEPARATRIX = (
-    "separatrix: the way of a top that starts upright with this spin\n"
-    "(other starts may cross it: they have another momentum about the vertical)"
+    "separatrix: the path of a top that starts upright with this spin\n"
+    "(other starts may cross it, as their momentum about the vertical differs)"
 )
 
 
 class PhasePortrait(NamedTuple):
-    """Tilt and its rate over a nutation, and on the separatrix of the same body and spin."""
+    """Tilt and tilt rate over a nutation, and on the separatrix of the same body and spin."""
 
     theta: Array
     rate: Array
@@ -33,7 +33,7 @@ class PhasePortrait(NamedTuple):
     separatrix: tuple[Array, Array] | None
     """Upper half, from the upright position down; None above the sleeping threshold."""
     why: str
-    """What the separatrix is, or why there is none, in words."""
+    """The meaning of the separatrix, or the reason why there is none, in words."""
 
 
 def phase_portrait(motion: Motion) -> PhasePortrait:
@@ -43,16 +43,17 @@ def phase_portrait(motion: Motion) -> PhasePortrait:
     a, b = float(motion.a), float(motion.b)
     if not b * b < 2 * a:
         reason = "without torque" if a == 0 else f"as C²r₀² = {b * b / (2 * a):.3g} · 4Amgs"
-        why = f"no separatrix: upright it is stable with this spin, {reason}"
+        why = f"no separatrix: the upright top is stable with this spin, {reason}"
         return PhasePortrait(theta, rate, start, None, why)
     return PhasePortrait(theta, rate, start, separatrix_orbit(a, b), SEPARATRIX)
 
 
 def separatrix_orbit(a: float, b: float) -> tuple[Array, Array]:
-    """Return tilt and rate on the orbit that leaves the upright position and comes back to it.
+    """Return tilt and rate on the orbit that leaves the upright position and returns to it.
 
-    It needs b^2 < 2a.  With alpha = a and beta = b, (4,9) becomes
-    theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2).
+    The orbit exists for b^2 < 2a.  With alpha = a and beta = b, (4,9) becomes
+
+        theta'^2 = 2 a sin^2(theta/2) - b^2 tan^2(theta/2).
     """
     lowest = math.acos(b * b / a - 1)
     theta = lowest * np.sin(np.linspace(0.0, math.pi / 2, 4 * PHASES + 1))

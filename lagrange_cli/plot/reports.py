@@ -1,4 +1,4 @@
-"""The pictures of reports: errors of trajectories that were compared, and the data of a fit."""
+"""The pictures of reports: errors of compared trajectories, and the data of a fit."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MARKS = "os^Dv<>pP*X"
 def _report(
     path: str, size: tuple[float, float], about: About, draw: Callable[[Figure], None]
 ) -> bytes:
-    """Return a picture of this size (inches) in the format of the name of its file."""
+    """Return a picture of a size (inches) in the format given by its file name."""
     from matplotlib.figure import Figure
 
     with styled(LIGHT, 0.9):
@@ -45,10 +45,10 @@ class ErrorCurve(NamedTuple):
     """Errors in radians at the times t; NaN where the trajectory is lost."""
     step: float | None = None
     compared: float | None = None
-    """Error that goes with the step."""
+    """Error used in the convergence plot."""
 
     def positive(self) -> Array:
-        """Return the errors that a logarithm has; where it has none, as at the start, a gap."""
+        """Return the errors with gaps (NaN) where they have no logarithm, as at the start."""
         import numpy as np
 
         errors: Array = np.where(self.error > 0, self.error, np.nan)
@@ -56,21 +56,21 @@ class ErrorCurve(NamedTuple):
 
     @property
     def has_step(self) -> bool:
-        """Whether there is an error over a step that logarithms have."""
+        """Whether there is a positive error at a positive step, as a logarithmic plot needs."""
         return bool(self.step and self.compared and math.isfinite(self.compared))
 
 
 def draw_errors(curves: Sequence[ErrorCurve], limit: float, path: str) -> bytes:
-    """Return the picture in the format of the name of its file."""
+    """Return the picture of errors in the format given by its file name."""
     size = 10 if any(curve.has_step for curve in curves) else 7.5, 4.6
     about = About("lagtop compare: error over time", f"Errors of {_names(curves)} in radians.")
     return _report(path, size, about, lambda figure: draw_error_panels(figure, curves, limit))
 
 
 def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float) -> None:
-    """Draw a line over time for each trajectory, darker for the first ones, and the limit.
+    """Draw a line over time for each trajectory, the first ones darker, and the limit.
 
-    Beside it, where there are steps, is the error of each over its step.
+    If the trajectories have steps, a second panel shows the error of each over its step.
     """
     stepped = [curve for curve in curves if curve.has_step]
     over_time, *over_step = figure.subplots(1, 2 if stepped else 1, squeeze=False)[0]
@@ -90,7 +90,7 @@ def draw_error_panels(figure: Figure, curves: Sequence[ErrorCurve], limit: float
 def _draw_convergence(
     axes: Axes, curves: Sequence[ErrorCurve], colors: Mapping[str, Array]
 ) -> None:
-    """Draw error over step, with the slopes of the orders 1, 2 and 4 from the coarsest."""
+    """Draw error over step, with the slopes of orders 1, 2 and 4 from the coarsest step."""
     points = {curve.name: (curve.step or 0.0, curve.compared or 0.0) for curve in curves}
     for i, (name, point) in enumerate(points.items()):
         axes.plot(*point, _MARKS[i % len(_MARKS)], color=colors[name], ms=7)
@@ -117,26 +117,26 @@ class FittedCurve(NamedTuple):
     """One channel of a recording and the fitted motion, in the unit of the labels."""
 
     name: str
-    """`theta`, `phi` or `psi`, after the name of the recording and a colon if there are several."""
+    """`theta`, `phi` or `psi`; with several recordings, after the name of one and a colon."""
     t: Array
     data: Array
-    """Measured values; NaN where one is missing."""
+    """Measured values; NaN if missing."""
     fine_t: Array
     curve: Array
     """The motion at the fine times."""
     residual: Array
-    """Data less motion at the times t."""
+    """Residuals (data minus motion) at the times t."""
 
 
 def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
-    """Return the picture in the format of the name of its file."""
+    """Return the picture of a fit in the format given by its file name."""
     size = 7.5, 1.0 + 3.0 * len(curves)
     about = About("lagtop fit", f"Data, fitted motion and residuals: {_names(curves)}")
     return _report(path, size, about, lambda figure: draw_fit_panels(figure, curves, unit))
 
 
 def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) -> None:
-    """Draw two panels for each channel: data on the curve, and below it the residuals."""
+    """Draw two panels for each channel: the data with the curve, and the residuals below."""
     panels = figure.subplots(
         2 * len(curves), 1, squeeze=False, sharex=True, height_ratios=[3, 1] * len(curves)
     )[:, 0]

@@ -28,19 +28,19 @@ from .kinds import Drawing, PlotRequest
 from .style import Look, mark_start, points, scale
 
 NARROW = math.radians(6.0)
-"""A band of tilts that a circle on the globe hides: it is shown magnified as well."""
+"""Range of tilts (radians) so narrow that a circle on the globe hides it: it is also magnified."""
 
 PERIODS_MAGNIFIED = 3
-"""Nutation periods of a narrow path that are shown magnified."""
+"""Number of nutation periods of a narrow path in the magnified view."""
 
 PIECES = 160
-"""Steps of the colour along a path."""
+"""Number of colour steps along a path."""
 
 ARROWS = 0.1, 0.28, 0.46, 0.64, 0.82
-"""Parts of the length of a path at which an arrowhead shows which way it is run."""
+"""Places of the arrowheads that show the direction of a path, as shares of its length."""
 
 USUAL_PERIODS = 6
-"""Nutation periods up to which a path has its full width: more of them are drawn finer."""
+"""Nutation periods up to which a path has its full width; longer paths have finer lines."""
 
 
 class AxisPath(NamedTuple):
@@ -54,13 +54,13 @@ class AxisPath(NamedTuple):
     greatest: float
     """Greatest tilt (radians), a circle that the path touches."""
     path: str | None
-    """`cusped`, `looping`, `wavy`, or None where the tilt does not swing."""
+    """`cusped`, `looping`, `wavy`, or None if the tilt does not swing."""
     highest: Array
-    """The axis where it is highest, shape (m, 3): the cusps of a cusped path."""
+    """The axis at its highest points, shape (m, 3); the cusps of a cusped path."""
 
     @property
     def moves(self) -> bool:
-        """Whether the axis goes anywhere."""
+        """Whether the axis moves at all."""
         return bool(np.ptp(self.axis, axis=0).max() > 1e-12)
 
 
@@ -76,12 +76,12 @@ def axis_path(motion: Motion, t_max: float) -> AxisPath:
 
 
 def sphere_drawing(motion: Motion, request: PlotRequest) -> Drawing:
-    """Compute the path; a narrow one has two axes on a page, where a piece of it is magnified."""
+    """Compute the path; on a page, a narrow path has a second axes with a magnified piece."""
     path = axis_path(motion, request.t_max or sphere_span(motion))
     narrow = 0 < path.greatest - path.least < NARROW
 
     def draw(axes: Sequence[Axes], look: Look) -> None:
-        """Draw the globe with the path on it, and the bar that explains its colours."""
+        """Draw the globe with the path on it, and the colour bar."""
         camera = camera_at(*request.camera) if request.camera else best_camera(path.axis)
         draw_globe(axes[0], camera, (path.least, path.greatest), request, look)
         lines = _draw_path(axes[0], camera, path, motion, look)
@@ -108,7 +108,7 @@ def _draw_path(
 ) -> LineCollection:
     """Draw the path, coloured by time, paler on the far side, with its start and direction.
 
-    Returns the lines to which a bar of colours belongs.
+    Returns the lines that the colour bar explains.
     """
     x, y = camera.project(path.axis)
     near = camera.faces(path.axis)
@@ -125,7 +125,7 @@ def _draw_path(
 
 
 def _fineness(motion: Motion, path: AxisPath) -> float:
-    """Return the width of a path over the usual one: a long one must not become a blot."""
+    """Return the relative line width of a path; long paths are finer to stay legible."""
     T = tilt_period(motion)
     return max(0.35, math.sqrt(min(1.0, USUAL_PERIODS * T / path.t[-1]))) if T else 1.0
 
@@ -156,7 +156,7 @@ def _pieces(t: Array, places: Array, near: Mask, side: bool) -> tuple[list[Array
 
 
 def _draw_direction(axes: Axes, camera: Camera, path: AxisPath, motion: Motion, look: Look) -> None:
-    """Draw arrowheads along the near side of a path; beside a tiny one, an arc that it follows."""
+    """Draw arrowheads along the near side of a path; for a tiny path, an arc beside it."""
     course = path.axis
     shown = np.stack(camera.project(course), axis=1)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown, axis=0), axis=1))])
@@ -180,7 +180,7 @@ def _draw_direction(axes: Axes, camera: Camera, path: AxisPath, motion: Motion, 
 
 
 def _arrowhead(axes: Axes, first: object, last: object, colour: object) -> None:
-    """Draw the head of an arrow at the last of two points."""
+    """Draw an arrowhead at the second of two points."""
     how = {"arrowstyle": "-|>,head_length=0.5,head_width=0.28", "mutation_scale": points(13)}
     how |= {"color": colour, "linewidth": 0, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", last, first, arrowprops=how, zorder=5)  # type: ignore[arg-type]
@@ -191,7 +191,7 @@ def _draw_magnified(
 ) -> None:
     """Draw some nutations unrolled, coloured as on the globe.
 
-    A degree of precession is as long as it is on the sphere.
+    A degree of precession has the same length as on the sphere.
     """
     until = min(span(motion, PERIODS_MAGNIFIED), float(path.t[-1]))
     t, psi, theta = sampled_columns(motion, until, ["psi", "theta"]).values()

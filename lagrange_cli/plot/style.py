@@ -1,9 +1,9 @@
 """The look of pictures, light and dark: one style for all of them.
 
-Tilt is blue, spin orange, precession green, in every picture and on the page.  The colours follow
-Okabe and Ito's; on white they are darker, so that letters have a contrast of 4.5 too.  Time
-and keys are coloured by viridis, whose lightness grows evenly, cut where it would fade into the
-background.  A test simulates the three kinds of colour blindness.
+Tilt is blue, spin orange and precession green, in every picture and on the page.  The colours
+follow Okabe and Ito; on white they are darker, so that letters also have a contrast of 4.5.
+Viridis colours time and keys, because its lightness increases evenly.  It is cut where it would
+fade into the background.  A test simulates three kinds of colour blindness.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ POINTS = 11.0
 """Size of ordinary letters on a page of the usual size."""
 
 FONTS = ["DejaVu Sans", "Verdana", "Arial"]
-"""The first comes with matplotlib, and has Greek; the others are for readers of an SVG."""
+"""The first font comes with matplotlib and has Greek; the others are for readers of an SVG."""
 
 
 class Look(NamedTuple):
@@ -32,7 +32,7 @@ class Look(NamedTuple):
     paper: str
     ink: str
     quiet: str
-    """Colour of what helps to read the rest: circles, axes, mean rates."""
+    """Colour of auxiliary elements: circles, axes, mean rates."""
     faint: str
     """Colour of areas."""
     lines: tuple[str, str, str]
@@ -56,7 +56,7 @@ def chosen_look(dark: bool) -> Look:
 
 @contextmanager
 def styled(look: Look, size: float = 1.0) -> Iterator[None]:
-    """Set our settings and nobody else's, whatever the user's own matplotlibrc says."""
+    """Apply our settings only, whatever the user's own matplotlibrc contains."""
     from matplotlib import rc_context, rcParams, rcParamsDefault
 
     usual = {key: value for key, value in rcParamsDefault.items() if key != "backend"}
@@ -66,7 +66,7 @@ def styled(look: Look, size: float = 1.0) -> Iterator[None]:
 
 
 def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
-    """Return the style sheet as matplotlib's settings; `size` scales letters, lines and gaps."""
+    """Return the style sheet as matplotlib settings; `size` scales letters, lines and gaps."""
     return {
         "axes.axisbelow": True,
         "axes.edgecolor": look.quiet,
@@ -108,7 +108,7 @@ def settings(look: Look, size: float = 1.0) -> dict[str, Any]:
 
 
 def points(length: float) -> float:
-    """Return a length in points on the page that is being drawn, where letters may be small."""
+    """Convert a length to points on the page being drawn, whose letters may be small."""
     import matplotlib
 
     return length * float(matplotlib.rcParams["font.size"]) / POINTS
@@ -126,9 +126,9 @@ def head(panel: FigureBase, title: str) -> None:
 
 
 def number_from_left_to_right(axes: Axes) -> None:
-    """Write as many numbers along the horizontal axis as there is room for: few, if they are long.
+    """Label the horizontal axis with as many numbers as fit; few, if they are long.
 
-    They are written in full, because an offset at the corner of a picture is overlooked.
+    The numbers are written in full, because readers overlook an offset at the corner of a picture.
     """
     low, high = axes.get_xlim()
     decimals = max(0.0, -math.log10((high - low) / 5)) if low < high else 0.0
@@ -138,7 +138,7 @@ def number_from_left_to_right(axes: Axes) -> None:
 
 
 def number_text(value: float) -> str:
-    """Return a number to seven digits; one that they do not tell from 1 or -1 by its distance."""
+    """Return a number to seven digits; if that rounds it to 1 or -1, by its distance from there."""
     shown = f"{value:.7g}"
     if shown in {"1", "-1"} and abs(value) != 1:
         beyond = abs(value) - 1
@@ -152,7 +152,7 @@ def short_text(value: float) -> str:
 
 
 def scale(look: Look) -> Colormap:
-    """Return the colours that stand for the size of a quantity."""
+    """Return the colour scale for the size of a quantity."""
     import numpy as np
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap
@@ -161,7 +161,7 @@ def scale(look: Look) -> Colormap:
 
 
 def mark_start(axes: Axes, x: float, y: float, look: Look, label: str = "start") -> None:
-    """Draw a ring at one point."""
+    """Draw a ring with a label at one point."""
     ring: dict[str, Any] = {
         "ms": points(7),
         "mfc": look.paper,

@@ -48,7 +48,7 @@ REFUSED = [
     ("-o x.png --t-max 0", "--t-max must be > 0, got 0"),
     ("-o x.png --t-max 1e6", "--t-max must be at most 1000 nutation periods = 429.25"),
     ("-o no/where.png cubic", "cannot write no/where.png: No such file", 74),
-    ("remainders --theta0 0 -o x.png", "no remainders: the tilt stays as it is (sleeping)"),
+    ("remainders --theta0 0 -o x.png", "no remainders: the tilt is constant (sleeping)"),
     ("map --key colour -o x.png", "--key must be among"),
     ("map --x r0=1:2 -o x.png", "--x must be a range [log:]start:stop:count, got '1:2'"),
     ("map --x q=1:2:3 -o x.png", "--x must begin with one of m A C s g r0"),
@@ -56,7 +56,7 @@ REFUSED = [
     ("map --x r0=1:2:1 -o x.png", "--x must have a count of 2 or more between"),
     ("map --x r0=1:2:3000 -o x.png", "--x must have a count in [2, 2000], got 3000"),
     ("map --x r0=1:z:9 -o x.png", "--x must be a finite decimal number, got 'z'"),
-    ("map --x theta0=1:2:3 -o x.png", "--x must be another input than y, got theta0 twice"),
+    ("map --x theta0=1:2:3 -o x.png", "--x must differ from y, got theta0 for both"),
     ("-o x.png sphere --camera 30", "--camera must be AZIMUTH,ELEVATION in [-360, 360] and [-90"),
     ("-o x.png sphere --camera 30,95", "[-90, 90] deg, got '30,95'"),
     ("-o x.png sphere --camera 30,nan", "[-90, 90] deg, got '30,nan'"),
@@ -67,7 +67,7 @@ REFUSED = [
     ("--animate x.gif --duration 0", "--duration must be in [0.08, 120] seconds"),
     ("--animate x.gif --speed 0", "--speed must be > 0, got 0"),
     ("--animate x.gif --speed 1e3", "--speed must be at most 71.5417 (1000 nutation periods)"),
-    ("--animate x.gif --speed 1 --duration 1 --t-max 1", "--speed must be left out where"),
+    ("--animate x.gif --speed 1 --duration 1 --t-max 1", "--speed must be omitted if"),
     ("--animate x.avi", "--animate must be a file that ends in .gif or .mp4, got 'x.avi'"),
 ]
 """Options, the message, and the exit code if it is not 2."""

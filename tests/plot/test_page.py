@@ -87,7 +87,7 @@ def test_a_picture_that_is_missing_says_why(name: str) -> None:
     panel = drawn(scene, ["cubic", "remainders"]).subfigs[1].subfigs[1]
     texts = [text.get_text() for text in panel.texts if "remainders" in text.get_text()]
     missing = tilt_period(scene) is None
-    assert texts == ["no remainders: the tilt stays as it is (sleeping)"] * missing
+    assert texts == ["no remainders: the tilt is constant (sleeping)"] * missing
     if missing:
         with pytest.raises(NothingToDrawError, match=re.escape(texts[0])):
             drawn(scene, ["remainders"])

@@ -77,9 +77,7 @@ def test_the_angles_are_drawn_as_they_are(radians: bool) -> None:
 def test_a_vertical_top_has_no_precession_to_draw() -> None:
     figure = drawn(regime_motion("sleeping"), ["angles"])
     assert len(figure.axes) == 2
-    assert (
-        figure.axes[1].get_title("left") == "mean 50 rad/time; all is spin: there is no precession"
-    )
+    assert figure.axes[1].get_title("left") == "mean 50 rad/time; spin only: there is no precession"
 
 
 @pytest.mark.parametrize("scene", [(50.0, 30.0), (-50.0, 30.0), (20.0, 120.0)])
@@ -119,7 +117,7 @@ def test_remainders_need_a_period(name: str) -> None:
         assert np.ptp(sampled_columns(scene, span(scene, 1), ["dphi"])["dphi"]) < 2 * math.pi
         return
     with pytest.raises(
-        NothingToDrawError, match=r"^no remainders: the tilt (stays as it is|never comes back) \("
+        NothingToDrawError, match=r"^no remainders: the tilt (is constant|never returns) \("
     ):
         KINDS["remainders"].drawing(scene, PlotRequest(t_max=1.0))
 
@@ -184,7 +182,7 @@ def test_the_orbit_in_the_phase_plane_keeps_the_energy(path: Path) -> None:
     assert portrait.rate[1] > 0  # released from rest it falls
     stable = (scene.b**2) / (2 * scene.a) >= 1
     assert (portrait.separatrix is None) == stable
-    assert portrait.why.startswith("no separatrix: upright it is stable") == stable
+    assert portrait.why.startswith("no separatrix: the upright top is stable") == stable
     u, top = np.cos(portrait.theta), scene.top
     around = float(top.psidot0) * math.sin(portrait.start[0]) ** 2
     beta = around + scene.b * u[0]

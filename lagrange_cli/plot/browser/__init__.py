@@ -19,15 +19,15 @@ _IMPORT = re.compile(r'^import (\{[^}]*\}) from "([^"]+)";$', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:function|class|const) (\w+))", re.MULTILINE)
 
 _TRACES = {LIGHT: "#472d7b", DARK: "#dde318"}
-"""The colour of the path of the axis on each paper: an end of viridis, unlike those of angles."""
+"""Colour of the path of the axis on each paper: an end of viridis, unlike the colours of angles."""
 
 
 def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
-    """Return the page for the browser: the top in space, its curves and its record, to be turned.
+    """Return the interactive page for the browser: the top in space, its curves and its record.
 
-    `unit` names mass, len and time in the units of the inputs; without it these may be any that
-    are consistent.  The inputs are rounded to doubles, as sliders need them.  Raises LagtopError
-    for inputs that are beyond what the page computes with.
+    `unit` names mass, len and time in the units of the inputs; the default is any consistent units.
+    The inputs are rounded to doubles, because sliders need them.  Raises LagtopError for inputs out
+    of the range of the page.
     """
     check_type("motion", motion, Motion)
     parts = {
@@ -53,14 +53,14 @@ def _colours(look: Look) -> str:
 
 
 def _filled(text: str, parts: dict[str, str]) -> str:
-    """Return a text with its {{names}} filled in."""
+    """Return a text with its {{names}} replaced."""
     return re.sub(r"\{\{(\w+)\}\}", lambda name: parts[name[1]], text)
 
 
 def open_page(page: Document, path: str | None) -> None:
-    """Open a page that was written to a file, else one of a new file, in the user's browser.
+    """Open a page in the user's browser, from the file at `path` or from a new temporary file.
 
-    Raises LagtopError where there is no browser.
+    Raises LagtopError if no browser is found.
     """
     if path is None:
         path = str(Path(tempfile.mkdtemp(prefix="lagtop-")) / "top.html")
@@ -70,10 +70,10 @@ def open_page(page: Document, path: str | None) -> None:
 
 
 def joined_script(data: str) -> str:
-    """Return the page's main module and all that it imports, each before who needs it, as a script.
+    """Return the page's main module and all its imports as one script, each import first.
 
-    Each becomes a function that is called once, so that its own names stay its own.  The module
-    `data.js` is JSON, `data`.
+    Each module becomes a function that is called once, so that its names stay local.  The module
+    `data.js` is the JSON `data`.
     """
     scripts = {"data.js": f'modules["data.js"] = {data};'}
     _collect("page/main.js", scripts)
@@ -93,7 +93,7 @@ def _collect(name: str, scripts: dict[str, str]) -> None:
 
 
 def _taken(name: str, names: str, other: str) -> str:
-    """Return the line that takes names from a module that stands before."""
+    """Return the line that takes names from a module earlier in the script."""
     return f'const {names} = modules["{_resolved(name, other)}"];'
 
 

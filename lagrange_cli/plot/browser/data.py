@@ -1,6 +1,6 @@
-"""The data of the page that its scripts receive as JSON: inputs, keys, words, examples, limits.
+"""The data that the scripts of the page receive as JSON: inputs, keys, words, examples, limits.
 
-The scripts of the page repeat none of them.
+The scripts repeat none of them.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from ...motion.record import KEYS
 from ...motion.solve import Motion, solve
 
 SMALLEST, LARGEST = 1e-30, 1e30
-"""Sizes of inputs that the page computes with: others would leave the range of doubles."""
+"""Limits of the sizes of inputs; other sizes would leave the range of doubles."""
 LEAST_TILT = 9e-13
-"""Least tilt (degrees) from the vertical, so that the double next to 180 - 1e-12 is allowed."""
+"""Least tilt (degrees) from the vertical; it allows the double next to 180 - 1e-12."""
 
 PageScene = dict[str, float]
 
@@ -26,14 +26,14 @@ LEVEL = UNIT | {"theta0_deg": 90.0}
 GYROSCOPE = {"m": 0.35, "A": 8.5e-4, "C": 4e-4, "s": 0.03, "g": 9.81, "r0": 1256.6370614359172}
 
 EXAMPLES: dict[str, PageScene] = {
-    "Cusps: let go at rest (Chrapan 1952)": EXAMPLE,
+    "Cusps: released at rest (Chrapan 1952)": EXAMPLE,
     "Loops: started against its precession": EXAMPLE | {"psidot0": -4.0},
     "Waves: started along its precession": EXAMPLE | {"psidot0": 4.0},
     "Steady precession": LEVEL | {"psidot0": 1.0},
     "Fast gyroscope": EXAMPLE | GYROSCOPE | {"theta0_deg": 60.0},
     "Slow top: falls nearly to the bottom": EXAMPLE | {"r0": 5.0, "theta0_deg": 20.0},
     "Sleeping": EXAMPLE | {"r0": 60.0, "theta0_deg": 0.0},
-    "Too slow to sleep: waits, and falls": EXAMPLE | {"theta0_deg": 1e-3},
+    "Too slow to sleep: waits, then falls": EXAMPLE | {"theta0_deg": 1e-3},
     "Separatrix: rises for ever": LEVEL | {"A": 2.0, "r0": 0.0, "thetadot0": -1.0},
     "Hanging and swinging": EXAMPLE | {"r0": 10.0, "theta0_deg": 150.0},
     "Hanging straight down": EXAMPLE | {"r0": 10.0, "theta0_deg": 180.0},
@@ -41,7 +41,7 @@ EXAMPLES: dict[str, PageScene] = {
     "Plane pendulum": EXAMPLE | {"r0": 0.0, "theta0_deg": 120.0},
     "Without torque": EXAMPLE | {"g": 0.0, "psidot0": 8.0},
 }
-"""Scenes to begin with."""
+"""Scenes offered as examples."""
 
 DESCRIPTIONS = {
     "sleeping, stable": (
@@ -51,48 +51,52 @@ DESCRIPTIONS = {
         "Sleeping, unstable: The top stands upright, but any push fells it: λ = b²/2a = {lambda} "
         "is less than 1."
     ),
-    "hanging": "Hanging: The axis hangs straight down and turns about itself, whatever the spin.",
+    "hanging": "Hanging: The axis hangs straight down, which is stable whatever the spin.",
     "torque-free, steady": (
-        "Without torque: Nothing pulls at the top: its axis stands still, or goes round evenly."
+        "Without torque: No torque acts on the top: its axis is fixed or precesses at a constant "
+        "rate."
     ),
     "torque-free": (
-        "Without torque: Nothing pulls at the top: its axis goes round a tilted circle at a "
+        "Without torque: No torque acts on the top: its axis moves along a tilted circle at a "
         "constant rate."
     ),
     "separatrix": (
-        "Separatrix: The axis rises to the vertical, slower and slower, and never arrives."
+        "Separatrix: The axis rises towards the vertical more and more slowly and never reaches it."
     ),
     "steady precession": (
-        "Steady precession: The tilt does not change, and the axis goes round evenly."
+        "Steady precession: The tilt is constant, and the axis precesses at a constant rate."
     ),
     "no spin, plane": (
-        "Plane pendulum: Without spin the top is a pendulum, here one that swings in a plane."
+        "Plane pendulum: Without spin the top is a pendulum. Here it swings in a plane."
     ),
-    "no spin": "Spherical pendulum: Without spin the top is a pendulum, here one that goes round.",
+    "no spin": (
+        "Spherical pendulum: Without spin the top is a pendulum. Here it circles the vertical."
+    ),
     "regular, fast": (
-        "Pseudo-regular precession: Let go at rest, and so fast that the tilt nutates by "
-        "{nutation}° only. λ = b²/2a = {lambda}."
+        "Pseudo-regular precession: Released at rest, with a spin so fast that the tilt nutates "
+        "by only {nutation}°. λ = b²/2a = {lambda}."
     ),
     "regular, cusped": (
-        "Regular motion with cusps: At its highest points the axis stands still for a moment, and"
-        " falls again: cusps. λ = b²/2a = {lambda}."
+        "Regular motion with cusps: At its highest points the axis stops for a moment and falls "
+        "again, which makes cusps. λ = b²/2a = {lambda}."
     ),
     "regular, looping": (
-        "Regular motion with loops: Near its highest points the precession runs backwards: the "
-        "axis draws loops. λ = b²/2a = {lambda}."
+        "Regular motion with loops: Near its highest points the axis precesses backwards and "
+        "draws loops. λ = b²/2a = {lambda}."
     ),
     "regular, wavy": (
-        "Regular motion in waves: The precession never turns back: the axis draws waves. λ = "
-        "b²/2a = {lambda}."
+        "Regular motion in waves: The precession never reverses, and the axis draws waves. "
+        "λ = b²/2a = {lambda}."
     ),
 }
-"""A title and one or two sentences for each kind of motion, with a colon between."""
+"""A title and one or two sentences for each kind of motion, separated by a colon."""
 
 
 def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
-    """Return the data of the page of a motion as JSON that may stand in a script.
+    """Return the data of the page of a motion as JSON that is safe inside a script.
 
-    `unit` names mass, len and time in the units of the inputs.  Raises LagtopError as `page_scene`.
+    `unit` names mass, len and time in the units of the inputs.  Raises LagtopError as `page_scene`
+    does.
     """
     data = {
         "SCENE": page_scene(motion),
@@ -107,9 +111,9 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
 
 
 def page_scene(motion: Motion) -> PageScene:
-    """Return the inputs of the page as doubles, the tilt in degrees.
+    """Return the inputs of the page as doubles, with the tilt in degrees.
 
-    Raises LagtopError for inputs that are beyond what the page computes with.
+    Raises LagtopError for inputs out of the range of the page.
     """
     scene = {name: float(value) for name, value in motion.top.inputs().items()}
     tilt = scene[_key(TILT)]
@@ -130,7 +134,7 @@ def _key(name: str) -> str:
 
 
 def _input(declared: Input) -> dict[str, str]:
-    """Return symbol, name and unit of an input, and whether it may be 0 or negative."""
+    """Return symbol, name, unit and allowed sign of an input."""
     signs = {"positive": "positive", "0 or more": "not negative"}
     sign = next((sign for bound, sign in signs.items() if declared.bound.startswith(bound)), "any")
     return {
