@@ -32,7 +32,7 @@ SECONDS = 60.0
 _HAIR = 1e-9
 TIMES = 8
 """Times in each span; errors are the greatest up to its end."""
-NAMES = (
+PEERS = (
     *("lagtop", "scipy.special", "DOP853-quaternion"),
     *("Radau-quaternion", "Taylor-quaternion", "RK4-quaternion"),
 )
@@ -116,7 +116,7 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
     exact = [[reference.at(t) for t in (grid * period).tolist()] for grid in grids]
     every = np.concatenate(grids)
     bounds = [*zip(every.tolist(), _conditions(top, every * period), strict=True)]
-    for name in NAMES:
+    for name in PEERS:
         method = known[name]
         points: list[tuple[float, float]] = []
         sample, remark = None, None

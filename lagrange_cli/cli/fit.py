@@ -13,8 +13,8 @@ from ..errors import LagtopError
 from ..inputs.names import split_names
 from .app import Command, complain, fail_for, write_report
 from .options import (
+    ANY_NAMES,
     FILE,
-    NAMES,
     Parsed,
     exclude,
     extension,
@@ -72,7 +72,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
 )
 @click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] RECORDING")
 @top_options(UNCERTAIN, scene=False, units=False, whole=False)
-@click.option("--fix", type=NAMES, help="Inputs of the scene that are known, such as m,g.")
+@click.option("--fix", type=ANY_NAMES, help="Inputs of the scene that are known, such as m,g.")
 @click.option(
     "--sigma",
     type=Parsed("SIGMA", _parse_sigma),

@@ -107,7 +107,7 @@ FILE = Parsed("FILE", str)
 NUMBER = Parsed("X", parse_number)
 COUNT = Parsed("N", _parse_count)
 RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
-NAMES = names_type()
+ANY_NAMES = names_type()
 KEY_NAMES = names_type(_all_keys, "KEY,...")
 KEY = Parsed("KEY", str, _all_keys)
 COLUMN_NAMES = names_type(late("motion.over_time.columns", "column_names"))
@@ -273,7 +273,7 @@ def reading_options(quaternion: str | None) -> Callable[[F], F]:
         return click.option(
             "--columns",
             "names",
-            type=NAMES,
+            type=ANY_NAMES,
             help="Names of all columns; axis, quaternion and matrix stand for all of their "
             "parts, _ skips a column.",
         )(command)

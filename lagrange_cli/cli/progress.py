@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.progress import Part, one
+from ..output.progress import Item, one
 from ..output.terminal import Screen
 
 if TYPE_CHECKING:
@@ -25,11 +25,11 @@ DELAY = 1.0
 
 
 def with_progress(
-    parts: Iterable[Part],
+    parts: Iterable[Item],
     label: str,
     total: int | None = None,
-    size: Callable[[Part], int] = one,
-) -> Iterator[Part]:
+    size: Callable[[Item], int] = one,
+) -> Iterator[Item]:
     """Yield the parts as they come, and show how much is done; see `output.progress.Progress`."""
     if not sys.stderr.isatty():
         yield from parts

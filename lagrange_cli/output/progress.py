@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol, TypeVar
 
-Part = TypeVar("Part")
+Item = TypeVar("Item")
 
 
 def one(_: Any) -> int:
@@ -18,11 +18,11 @@ class Progress(Protocol):
 
     def __call__(
         self,
-        parts: Iterable[Part],
+        parts: Iterable[Item],
         label: str,
         total: int | None = None,
-        size: Callable[[Part], int] = one,
-    ) -> Iterator[Part]:
+        size: Callable[[Item], int] = one,
+    ) -> Iterator[Item]:
         """Yield the parts as they come.
 
         `size` gives the items of a part, and `total` the items of all parts.  Without a total it is
@@ -31,10 +31,10 @@ class Progress(Protocol):
 
 
 def silent(
-    parts: Iterable[Part],
+    parts: Iterable[Item],
     label: str,
     total: int | None = None,
-    size: Callable[[Part], int] = one,
-) -> Iterator[Part]:
+    size: Callable[[Item], int] = one,
+) -> Iterator[Item]:
     """Yield the parts and show nothing."""
     return iter(parts)
