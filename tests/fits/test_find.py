@@ -190,7 +190,7 @@ def test_a_tilt_may_be_in_radians(tilt: Any) -> None:
 
 
 def test_inputs_that_were_not_given_are_said_where_find_is_called() -> None:
-    with pytest.warns(MixedBodyWarning, match="A, C, s and g are those") as said:
+    with pytest.warns(MixedBodyWarning, match="A, C, s and g default to the worked") as said:
         find(["T_nutation=0.45"], m=1600, r0="10:60", scan=20)
     assert [x.filename for x in said] == [__file__]
 
