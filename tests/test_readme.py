@@ -98,7 +98,7 @@ def test_python_session(path: Path) -> None:
 
 def requested_table() -> list[str]:
     """Return the keys on request as a table in Markdown."""
-    lines = ["| key | | what | equation |", "|---|---|---|---|"]
+    lines = ["| key | symbol | meaning | equation |", "|---|---|---|---|"]
     for name, key in requested_keys().items():
         lines.append(f"| `{name}` | {key.symbol} | {key.meaning} | {key.equation} |")
     return lines

@@ -1,1 +1,1 @@
-"""One top: its regime, its record, its angles and its columns over time."""
+"""The motion of one top: its regime, its record, its angles and its columns over time."""

@@ -1,4 +1,4 @@
-"""The gaps of a top that does not start at rest: the roots of the cubic (4,9), counted from there.
+"""The gaps of a top that does not start at rest: the roots of the cubic (4,9) as distances.
 
 Equation numbers are Chrapan's.
 """
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 FindRoot = Callable[..., R]
-"""A function of an arithmetic, c2, c1, c0 and a number above: see `gaps_from_start`."""
+"""A function of an arithmetic, c2, c1, c0 and an upper bound; see `gaps_from_start`."""
 
 
 def gaps_from_start(
     ar: Arithmetic[R], start: State[R], facts: Facts, find_root: FindRoot[R] | None = None
 ) -> Gaps[R]:
-    """Return the gaps of any start: the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0 in x = u - u0.
+    """Return the gaps of any start.
 
-    D = a (u3 - u0) is its largest root times a; the other two solve a quadratic equation whose
-    discriminant is a sum of positive terms.  A gap that is exactly 0 is put in as 0.  `find_root`
-    gives the largest root of x^3 + c2 x^2 + c1 x + c0 from c2, c1, c0 and a number above it; by
-    default that is `largest_root`.
+    In x = u - u0 the cubic (4,9) is a x^3 + c2 x^2 + c1 x + c0.  Its largest root times a is D = a
+    (u3 - u0).  The other two roots solve a quadratic equation whose discriminant is a sum of
+    positive terms.  A gap that is exactly 0 is set to 0.  `find_root` (default: `largest_root`)
+    returns the largest root of x^3 + c2 x^2 + c1 x + c0 from c2, c1, c0 and an upper bound.
     """
     a, b, u0, above, below = start.a, start.b, start.cos, start.above, start.below
     zero = 0 * u0
@@ -75,7 +75,7 @@ def gaps_from_start(
 
 
 def cubic(start: State[R]) -> tuple[R, R, R]:
-    """Return c0, c1, c2 of the cubic (4,9) in x = u - u0, which is a x^3 + c2 x^2 + c1 x + c0."""
+    """Return c0, c1, c2 of the cubic (4,9), a x^3 + c2 x^2 + c1 x + c0 in x = u - u0."""
     a, b, u0, energy = start.a, start.b, start.cos, start.energy
     along = start.sin * start.theta_rate
     c1 = 2 * b * start.momentum - a * start.sin * start.sin - 2 * u0 * energy
@@ -84,19 +84,19 @@ def cubic(start: State[R]) -> tuple[R, R, R]:
 
 def two_roots(ar: Arithmetic[R], total: R, product: R) -> tuple[R, R]:
     """Return the roots x1 >= 0 >= x2 of x^2 - total x + product, for product <= 0."""
-    upward = ar.either(total >= 0)  # next to 0 nothing cancels in either
+    upward = ar.either(total >= 0)  # next to 0 no digits cancel in either
     larger = (ar.where(upward, total, -total) + ar.sqrt(total * total - 4 * product)) / 2
     smaller = -product / larger
     return ar.where(upward, larger, smaller), -ar.where(upward, smaller, larger)
 
 
 def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
-    """Return a ball that holds the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
+    """Return a ball with the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
     Some root is within 3 |f/f'| of any point p, because f'/f is the sum of 1/(p - root).  If f' and
-    f'' are positive in this ball X around p, they are so beyond it: X holds the largest root alone.
-    Newton's step p - f(p)/f'(X) then holds it too, by the mean value theorem.  Raises
-    TooFewDigitsError if these digits do not prove it.
+    f'' are positive in this ball X around p, they are positive above it too: X contains the largest
+    root and no other.  By the mean value theorem, Newton's step p - f(p)/f'(X) then contains the
+    root too.  Raises TooFewDigitsError if the working digits do not prove it.
     """
 
     def cubic(x: Ball) -> Ball:
@@ -116,10 +116,10 @@ def largest_root(ar: Balls, c2: Ball, c1: Ball, c0: Ball, above: Ball) -> Ball:
 def near_largest_root(
     ar: Decimals, c2: Decimal, c1: Decimal, c0: Decimal, above: Decimal
 ) -> Decimal:
-    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, all of them real.
+    """Return a point next to the largest root of x^3 + c2 x^2 + c1 x + c0, whose roots are real.
 
-    Laguerre's method falls to it from a point above, three times as many digits at each step, but
-    for a double root.
+    Laguerre's method descends to the root from a point above.  Each step triples the number of
+    correct digits, except at a double root.
     """
     with ar.working():
         x, least = above, 1000 * ar.eps

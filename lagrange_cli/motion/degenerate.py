@@ -20,7 +20,7 @@ class Constant(SpinPrecession[R]):
 
     @quantity
     def T_nutation(self) -> Any:
-        """The period (5,1) of a small nutation; None where nothing moves."""
+        """The period (5,1) of a small nutation; None if nothing moves."""
         moves = self.argument_rate > 0
         if not self.ar.anywhere(moves):
             return None
@@ -38,7 +38,7 @@ class Constant(SpinPrecession[R]):
 
     @quantity
     def mean_spin_rate(self) -> R:
-        """The spin rate (4,8), which is constant; on the vertical all rotation counts as spin."""
+        """The constant spin rate (4,8); on the vertical all rotation counts as spin."""
         return self.r0 if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
     @quantity
@@ -53,11 +53,11 @@ class Constant(SpinPrecession[R]):
 
 
 class Steady(Constant[R]):
-    """A steady precession, or a top without torque that turns about an axis of its own."""
+    """A steady precession, or a torque-free top that rotates about a fixed axis."""
 
 
 class Vertical(Constant[R]):
-    """An upright or hanging top: of phi and psi only the sum or the difference has a meaning."""
+    """An upright or hanging top: only phi + psi or phi - psi is defined."""
 
     lacks = Constant.lacks | set(
         "u3 k k_prime modular_angle_deg nome K K_prime E T_nutation "
@@ -65,12 +65,12 @@ class Vertical(Constant[R]):
     )
 
     def remark(self, *, radians: bool = False) -> str | None:
-        """Return which angles have a meaning, and whether the motion is stable."""
+        """Return a line on the defined combination of angles and on stability."""
         return vertical_remark(self.facts.regime, bool(self.facts.stable))
 
 
 def vertical_remark(regime: Regime, stable: bool) -> str:
-    """Return what there is to say of an upright or hanging top."""
+    """Return the remark on an upright or hanging top."""
     if regime is Regime.HANGING:
         return "only phi - psi is defined; stable"
     word, sign = ("stable", ">=") if stable else ("unstable", "<")
@@ -86,7 +86,7 @@ class Separatrix(SpinPrecession[R]):
     )
 
     def remark(self, *, radians: bool = False) -> str | None:
-        """Return what becomes of the top."""
+        """Return a line on the motion at late times."""
         return "rises to the vertical in infinite time"
 
     @quantity

@@ -1,9 +1,9 @@
 """The meaning and the formula of every key and column, for `lagtop explain`.
 
-A formula is written once, where its key or column is declared, in names of keys: `2*m*g*s/A`.  Here
-it is shown in the symbols of the paper, and with the numbers of a motion.  Angles are named without
-a unit, `P where P = ...` defines an abbreviation, and `left = right` is an equation that the key
-fulfils.
+A formula is declared once, with its key or column, in names of keys: `2*m*g*s/A`.  This module
+prints it in the symbols of the paper, and with the numbers of a motion.  Angles are named without a
+unit, `P where P = ...` defines an abbreviation, and `left = right` is an equation that the key
+satisfies.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ _WORDS = {
     "momentum_constant": "β",
     "t1": "t₁",
 }
-"""How functions and constants of formulas are shown."""
+"""The printed forms of functions and constants."""
 
 
 class Explained(NamedTuple):
-    """A key or a column: what it is called, and where it comes from."""
+    """A key or a column: its name, its meaning and its formula."""
 
     name: str
     kind: str
@@ -48,19 +48,19 @@ class Explained(NamedTuple):
     formula: str
     """The formula in symbols."""
     text: str
-    """The formula as it is declared."""
+    """The formula as declared."""
     numbers: str = ""
     """The formula with the numbers of a motion."""
     value: Any = None
 
 
 def explained_names() -> list[str]:
-    """Return the names of all keys and columns; a name of both is there once."""
+    """Return the names of all keys and columns, without duplicates."""
     return list(dict.fromkeys([*all_keys(), *COLUMNS]))
 
 
 def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[Explained]:
-    """Return all keys and columns, with the names of units of a system."""
+    """Return all keys and columns; `named` gives the names of units of a system."""
     keys = shown_keys(radians=radians, named=named, requested=True)
     of_record = {unit_name(name, radians=radians) for name in KEYS}
     symbols = {_bare(name): key.symbol for name, key in keys.items() if key.symbol}
@@ -84,7 +84,7 @@ def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[
 
 
 def column_formula(column: Column) -> str:
-    """Return the formula of a column; of a group, an equation for each part."""
+    """Return the formula of a column, or one equation per part for a group."""
     if len(column.parts) == 1:
         return column.parts[0].formula
     return ", ".join(f"{part.heading} = {part.formula}" for part in column.parts)
@@ -97,7 +97,7 @@ def explanations(
     radians: bool = False,
     named: Callable[[str], str] = str,
 ) -> list[Explained]:
-    """Return some keys and columns, with the numbers of a motion.
+    """Return some keys and columns, with formulas that show the numbers of a motion.
 
     Raises LagtopError for an unknown name.
     """
@@ -126,7 +126,7 @@ def _bare(name: str) -> str:
 
 
 def _shown(formula: str, words: Mapping[str, str], times: str = " ") -> str:
-    """Return a formula with words for its names and a sign for `*`; (-1) for a negative number."""
+    """Return a formula with `words` for its names, `times` for `*`, and parentheses around (-1)."""
 
     def word(match: re.Match[str]) -> str:
         text = words.get(match[0], match[0])

@@ -1,9 +1,9 @@
 """The cubic behind the nutation (section 4): its roots u2 <= u1 <= 1 <= u3, as distances.
 
-With u = u0 + x, counted from the start u0 = cos(theta0), every later formula needs only the gaps
-between the roots, the poles and the start.  Gaps to the far root carry the factor a, so that they
-stay finite without torque.  Equation numbers in parentheses are Chrapan's; what is without number
-continues him to starts that are not at rest.
+Let u = u0 + x, where u0 = cos(theta0) is the start.  Every later formula needs only the gaps
+between the roots, the poles and the start.  Gaps to the far root have the factor a, so that they
+stay finite without torque.  Equation numbers in parentheses are Chrapan's; formulas without a
+number extend his to starts that are not at rest.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ class State(Values, Over[R]):
     sleep: R
     """b^2/2 - a."""
     spin_drift: R
-    """r0 - b/2 = r0 (1 - C/2A), the spin rate less what the nutation does to it (6,1)."""
+    """r0 - b/2 = r0 (1 - C/2A), the spin rate without the effect of the nutation (6,1)."""
     pole_drift: R
-    """r0 - b, the spin rate less what both poles do to it."""
+    """r0 - b, the spin rate without the contributions of both poles."""
     sin: R
     cos: R
     sin_half: R
@@ -45,13 +45,13 @@ class State(Values, Over[R]):
 
     @property
     def energy(self) -> R:
-        """theta'^2 + psi'^2 sin^2(theta0), of which alpha - a u0 consists (4,4)."""
+        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4)."""
         around = self.psi_rate * self.sin
         return self.theta_rate * self.theta_rate + around * around
 
     @property
     def momentum(self) -> R:
-        """psi' sin^2(theta0), which is beta - b u0 (4,5)."""
+        """psi' sin^2(theta0) = beta - b u0 (4,5)."""
         return self.psi_rate * self.sin * self.sin
 
 
@@ -86,7 +86,7 @@ class Gaps(Values, Over[R]):
 
 
 def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
-    """Return constants and start of one top in an arithmetic."""
+    """Return the constants and the start of one top in an arithmetic."""
     a, b, r0 = exact.a, exact.b, exact.r0
     tilt, u = exact.cosine.tilt(ar), exact.cosine.rational
     psi_rate = exact.psi_rate
@@ -121,11 +121,11 @@ def state(ar: Arithmetic[R], exact: Exact) -> State[R]:
 
 
 def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
-    """Return the gaps after release from rest, (4,11)-(4,18) times a; nothing cancels.
+    """Return the gaps after release from rest, (4,11)-(4,18) times a; no digits cancel.
 
-    With S, Q = sin^2, cos^2 of theta0/2 and b^2 = 2 a lambda:  a (u3 - u1) (u1 - u2) = 4 a S Q,
-    a (u3 - 1) (1 - u2) = 2 b^2 S,  a (u3 + 1) (1 + u2) = 2 b^2 Q; in each pair the larger factor is
-    a sum of positive terms and the smaller one the quotient.
+    Let S, Q = sin^2, cos^2 of theta0/2 and b^2 = 2 a lambda.  Then `a (u3 - u1) (u1 - u2) = 4 a S
+    Q`, `a (u3 - 1) (1 - u2) = 2 b^2 S` and `a (u3 + 1) (1 + u2) = 2 b^2 Q`.  In each pair the
+    larger factor is a sum of positive terms, and the smaller factor is the quotient.
     """
     a, b, sleep, above, below = start.a, start.b, start.sleep, start.above, start.below
     zero = 0 * start.cos
@@ -161,7 +161,7 @@ def gaps_from_rest(ar: Arithmetic[R], start: State[R]) -> Gaps[R]:
 
 
 def zero_gaps(facts: Facts) -> set[str]:
-    """Return the names of the gaps that are exactly 0, but for a release from rest."""
+    """Return the names of the gaps that are exactly 0, except after release from rest."""
     touches = facts.regime == "separatrix"
     upright = touches or facts.upper_root == 1
     zeros = {
@@ -179,6 +179,6 @@ def zero_gaps(facts: Facts) -> set[str]:
 
 
 def are_told_apart(facts: Facts, gaps: Gaps[Any]) -> bool:
-    """Return whether every gap that is not exactly 0 has come out positive."""
+    """Return whether every gap that is not exactly 0 is proved positive."""
     positive = {"u1_u2", "above_u1", "below_u2", "a_u3_u1", "a_u3_above"} - zero_gaps(facts)
     return facts.steady or all(getattr(gaps, name) > 0 for name in positive)

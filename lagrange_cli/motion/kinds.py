@@ -1,6 +1,6 @@
-"""The kinds of motion, each with the numbers of its record under their keys.
+"""The kinds of motion, each with the numbers of its record by key.
 
-`kind_of` is the only place that chooses.  `lacks` names the keys that a kind does not have.
+Only `kind_of` selects a kind.  `lacks` names the keys that a kind does not have.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ Kind: TypeAlias = "Nutating[R] | Steady[R] | Vertical[R] | Separatrix[R]"
 
 
 class Nutating(SpinPrecession[R]):
-    """A top whose tilt goes to and fro between u1 and u2."""
+    """A top whose tilt oscillates between u1 and u2."""
 
     def remark(self, *, radians: bool = False) -> str | None:
-        """Return a line on a fast top, with its nutation in degrees or `radians`.
+        """Return a line on a fast top, with its nutation in degrees or `radians`; else None.
 
         Raises TooFewDigitsError if the ends of an enclosure would be printed differently.
         """
@@ -45,12 +45,12 @@ class Nutating(SpinPrecession[R]):
 
     @property
     def fast_numbers(self) -> tuple[R, R, R, R]:
-        """What is said of a fast top, see `fast_remark`; angles in radians."""
+        """The numbers in the remark on a fast top, see `fast_remark`; angles in radians."""
         return self.nodding, self.T_nutation, self.elementary_rate, self.excess
 
     @quantity
     def nodding(self) -> R:
-        """The greatest nutation theta_max - theta_min in radians, without a difference."""
+        """The amplitude theta_max - theta_min in radians, computed without a subtraction."""
         ar, gaps = self.ar, self.gaps
         across = ar.sqrt(gaps.above_u2 * gaps.below_u1) + ar.sqrt(gaps.below_u2 * gaps.above_u1)
         along = ar.sqrt(gaps.below_u1 * gaps.below_u2) + ar.sqrt(gaps.above_u1 * gaps.above_u2)
@@ -58,38 +58,39 @@ class Nutating(SpinPrecession[R]):
 
     @quantity
     def elementary_rate(self) -> R:
-        """The rate mgs/(C r0) = a/2b of the precession by the elementary theory of fast tops."""
+        """The precession rate mgs/(C r0) = a/2b of the elementary theory of fast tops."""
         return self.state.a / (2 * self.state.b)
 
     @quantity
     def excess(self) -> R:
-        """How far the mean precession (7,3) exceeds the elementary rate, relative to that."""
+        """The relative excess of the mean precession rate (7,3) over the elementary rate."""
         return self.mean_precession_rate / self.elementary_rate - 1
 
 
 def fast_remark(
     nodding: Real, period: Real, elementary: Real, excess: Real, *, radians: bool
 ) -> str:
-    """Return what a pseudo-regular precession is in numbers.
+    """Return the remark on a pseudo-regular precession.
 
-    `nodding` is the greatest nutation in degrees or radians, `excess` how far the mean precession
-    exceeds the elementary rate, relative to that.
+    `nodding` is the amplitude theta_max - theta_min in degrees or radians, `excess` the relative
+    excess of the mean precession rate over the elementary rate.
     """
     parts = round(Fraction(excess) * 10**6)
     where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
     return (
-        f"pseudo-regular precession: nods by {_figures(nodding)} {'rad' if radians else 'deg'} in "
-        f"{_figures(period)} time; its mean is {where} mgs/(C r0) = {_figures(elementary)} rad/time"
+        f"pseudo-regular precession: nutates by {_figures(nodding)} {'rad' if radians else 'deg'} "
+        f"in {_figures(period)} time; its mean is {where} mgs/(C r0) = {_figures(elementary)} "
+        "rad/time"
     )
 
 
 def _figures(x: Real) -> str:
-    """Return three significant digits, written as those of a double."""
+    """Return a number as text with three significant digits."""
     return f"{float(f'{x:.3g}'):.3g}"
 
 
 def kind_of(facts: Facts) -> type[Kind[Any]]:
-    """Return the class of the motion that some facts describe."""
+    """Return the class of the motion with these facts."""
     vertical = facts.regime in {Regime.SLEEPING, Regime.HANGING}
     if not (vertical or facts.steady or facts.regime is Regime.SEPARATRIX):
         return Nutating

@@ -1,4 +1,4 @@
-"""What a notebook shows of a motion: its record as a table, and documents in a frame."""
+"""Display in notebooks: the record of a motion as a table, and documents in a frame."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .record import KEYS
 
 
 class Document(str):
-    """A document of HTML, a text; a notebook shows it in a frame."""
+    """An HTML document as text, which a notebook shows in a frame."""
 
     __slots__ = ()
 
@@ -26,7 +26,7 @@ class Document(str):
 
 
 def record_html(record: Mapping[str, Any]) -> str:
-    """Return the record of a motion as a table of HTML: symbol, meaning, value and unit."""
+    """Return the record of a motion as an HTML table: symbol, meaning, value and unit."""
     rows = "".join(
         f'<tr title="{name}"><td>{KEYS[name].symbol}</td><td style="text-align: left">'
         f"{escape(KEYS[name].meaning or name)}</td><td>{escape(str(value))}</td>"

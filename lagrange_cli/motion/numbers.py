@@ -1,4 +1,4 @@
-"""What is computed of one motion: enclosures of its numbers in any precision, and its sampler."""
+"""The numbers of one motion: enclosures in any precision, and the sampler of its angles."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 S = TypeVar("S")
 
 SAMPLER_DIGITS = 40
-"""Digits of the gaps behind a sampler: 2^50 periods take 16 of them, and a double 16 more."""
+"""Digits of the gaps of a sampler: 2^50 periods use 16 of them, and a double 16 more."""
 
 
 def gaps_of(ar: Any, facts: Facts, start: State[R], find_root: Any = None) -> Gaps[R]:
@@ -36,9 +36,9 @@ def gaps_of(ar: Any, facts: Facts, start: State[R], find_root: Any = None) -> Ga
 
 
 class Numbers:
-    """The motion of one top: each number is computed once, in balls of as many digits as it takes.
+    """The motion of one top; each number is computed once, in balls of sufficient precision.
 
-    Numbers are attributes, by the keys of the record; see `Motion`.
+    Numbers are attributes named by the keys of the record; see `Motion`.
     """
 
     def __init__(self, scene: Exact) -> None:
@@ -51,7 +51,7 @@ class Numbers:
 
     @property
     def top(self) -> Top:
-        """The top, and its start."""
+        """The top with its initial state."""
         return self.exact.top
 
     @property
@@ -60,7 +60,7 @@ class Numbers:
         return self.exact.facts.regime
 
     def __getattr__(self, name: str) -> Any:
-        """Return a number by its key, a float, or None where the motion has none."""
+        """Return a number by its key: a float, or None if the motion has no such number."""
         if number_key(name) is None:
             raise AttributeError(f"a motion has no {name!r}")
         found = self.number(name)
@@ -69,9 +69,9 @@ class Numbers:
     def number(
         self, name: str, digits: int | None = None, *, radians: bool = False
     ) -> Settled | None:
-        """Return the double nearest to a number, or so many digits of it; None if it has none.
+        """Return a number correctly rounded to a double or to `digits`; None if it does not exist.
 
-        Raises LagtopError if no precision tells it from 0 or a tie.
+        Raises LagtopError if no precision distinguishes it from 0 or from a tie.
         """
         in_radians = radians and name.endswith("_deg")
         is_usual = digits is None and not in_radians
@@ -89,7 +89,7 @@ class Numbers:
         return found
 
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
-        """Return a number if it is known as a fraction; a root, if it may be midway in `digits`."""
+        """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
         if name not in NUMBER_KEYS:
             from .paper.requested import (  # start-up: not for a record
                 by_rational_u1,
@@ -109,9 +109,9 @@ class Numbers:
         return rational_u(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
-        """Return a ball that holds a number, by its key; None if the motion has none.
+        """Return a ball that contains a number, by key; None if the motion has no such number.
 
-        Angles are in degrees or `radians`.  Raises TooFewDigitsError if these digits leave open
+        Angles are in degrees or `radians`.  Raises TooFewDigitsError if the digits do not decide
         which formula holds.
         """
         if name in self.kind_class.lacks:
@@ -129,7 +129,7 @@ class Numbers:
         return value * kind.degree if radians and value is not None else value
 
     def _on_request(self, name: str, digits: int) -> Any:
-        """Return what has a key on request, in balls of so many digits."""
+        """Return the object that computes a key on request, in balls of `digits` digits."""
         from .paper.requested import TEXTBOOK, Textbook, WorkedExample  # start-up
 
         if digits not in self._requested:
@@ -141,16 +141,16 @@ class Numbers:
         return self._requested[digits][name in TEXTBOOK]
 
     def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
-        """Return an answer of the motion, at the first precision that decides it.
+        """Return the result of `ask` at the first precision that decides it.
 
-        Raises LagtopError if none does.
+        Raises LagtopError if no precision does.
         """
         return decided(what, lambda digits: ask(self.kind(digits)))
 
     def kind(self, digits: int) -> Kind[Ball]:
-        """Return the motion in balls of so many digits.
+        """Return the motion in balls of `digits` digits.
 
-        Raises TooFewDigitsError if these do not tell the roots apart.
+        Raises TooFewDigitsError if they do not separate the roots.
         """
         if digits not in self._kinds:
             ar, facts = balls(digits), self.exact.facts
@@ -162,14 +162,14 @@ class Numbers:
         return self._kinds[digits]
 
     def middle(self, digits: int = SAMPLER_DIGITS) -> Kind[Decimal]:
-        """Return the motion in decimals, from a start and gaps that are proved to so many digits.
+        """Return the motion in decimals, from a start and gaps proved to `digits` digits.
 
-        Nothing cancels in the constants of its series, which need no balls.
+        The constants of its series need no balls, because no digits cancel in them.
         """
 
         def sharp(working: int) -> Kind[Ball]:
             kind = self.kind(working)
-            constant = kind.facts.steady  # none of the gaps is used
+            constant = kind.facts.steady  # no gap is used
             if not (constant or all(gap.is_known_to(digits) for gap in kind.gaps)):
                 raise TooFewDigitsError
             return kind
@@ -178,7 +178,7 @@ class Numbers:
         return middle
 
     def sampler(self) -> Sampler:
-        """Return the series behind `angles`, made once."""
+        """Return the series used by `angles`, computed once."""
         from .over_time.theta_sampler import sampler_of  # start-up: loads NumPy
 
         if self._sampler is None:
@@ -187,6 +187,6 @@ class Numbers:
 
 
 def middle_of(kind: Any) -> Any:
-    """Return a motion in decimals, from the middles of the balls of its start and its gaps."""
+    """Return a motion in decimals, from the midpoints of the balls of its start and its gaps."""
     middles = (type(x)(*(number.middle for number in x)) for x in (kind.state, kind.gaps))
     return type(kind)(kind.ar.middles, kind.facts, *middles)

@@ -1,4 +1,4 @@
-"""Sections 4 and 5 after the roots: moduli, complete integrals, the period and the tilts.
+"""Sections 4 and 5 of the paper: moduli, complete integrals, the period and the tilts.
 
 Equation numbers in parentheses are Chrapan's.
 """
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Nutation(Over[R]):
-    """The numbers of sections 4 and 5 of a motion, under their keys; None where it has none."""
+    """The numbers of sections 4 and 5 by key; None if the motion has no such number."""
 
     def __init__(self, ar: Arithmetic[R], facts: Facts, state: State[R], gaps: Gaps[R]) -> None:
         self.ar, self.facts, self.state, self.gaps = ar, facts, state, gaps
@@ -61,7 +61,7 @@ class Nutation(Over[R]):
         formula="(energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2",
     )
     def u2(self) -> R:
-        """The lower turning point (4,11), counted from the nearer pole."""
+        """The lower turning point (4,11), computed from its distance to the nearer pole."""
         below, above = self.gaps.below_u2, self.gaps.above_u2
         return self.ar.where(self.ar.either(above < below), 1 - above, below - 1)
 
@@ -74,12 +74,12 @@ class Nutation(Over[R]):
         formula="(energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2",
     )
     def u3(self) -> R | None:
-        """The third root (4,11); None without torque, where it is infinite."""
+        """The third root (4,11); None without torque, as it is then infinite."""
         return None if self.facts.free else (self.a + self.gaps.a_u3_above) / self.a
 
     @quantity
     def m(self) -> R:
-        """The parameter k^2 (4,19); 0 where the tilt does not change."""
+        """The parameter k^2 (4,19); 0 if the tilt does not change."""
         return 0 * self.a if self.facts.steady else self.a * self.gaps.u1_u2 / self.gaps.a_u3_u2
 
     @key("Moduli and integrals", "k", "modulus", "", "(4,19)", formula="sqrt((u1 - u2)/(u3 - u2))")
@@ -96,7 +96,7 @@ class Nutation(Over[R]):
         formula="sqrt((u3 - u1)/(u3 - u2))",
     )
     def k_prime(self) -> R:
-        """The complement (4,21), from its own numerator."""
+        """The complementary modulus (4,21), from its own numerator."""
         if self.facts.steady:
             return 0 * self.a + 1
         return self.ar.sqrt(self.gaps.a_u3_u1 / self.gaps.a_u3_u2)
@@ -125,16 +125,16 @@ class Nutation(Over[R]):
         formula="ellint_F(pi/2, k_prime)",
     )
     def K_prime(self) -> R | None:
-        """The quarter period of the complement; None where k = 0."""
+        """The quarter period of the complementary modulus; None if k = 0."""
         if self.facts.free or self.facts.steady:
             return None
         return complete_k(self.ar, self.k)
 
     @key("Moduli and integrals", "E", "second kind, k", "", "(7,3)", formula="ellint_E(pi/2, k)")
     def E(self) -> R:
-        """The complete integral of the second kind, by Legendre's relation where k > 0.
+        """The complete integral of the second kind, by Legendre's relation if k > 0.
 
-        E = pi/2K' + K (K' - E')/K' is a sum of positive terms that are exact at k = 1.
+        E = pi/2K' + K (K' - E')/K' is a sum of positive terms, which are exact at k = 1.
         """
         if self.K_prime is None:
             return complete_e(self.ar, self.k_prime)
@@ -160,7 +160,7 @@ class Nutation(Over[R]):
         formula="u1 - (u1 - u2)*k_prime/(1 + k_prime)",
     )
     def u_quarter(self) -> R | None:
-        """u(T/4) after a start at u1 (5,2), written from u1 downwards: a large u3 does no harm."""
+        """u(T/4) after a start at u1 (5,2), as a difference from u1: a large u3 costs no digits."""
         value = self.u1 - self.gaps.u1_u2 * (self.k_prime / (1 + self.k_prime))
         starts_at_u1 = abs(self.gaps.u1_u) <= 0
         if not self.ar.anywhere(starts_at_u1):
@@ -189,7 +189,7 @@ class Nutation(Over[R]):
         formula="atan(sqrt((u3 - u2)/(1 + u2)))",
     )
     def amplitude_deg(self) -> R | None:
-        """The amplitude of alpha (7,2) in degrees, by its tangent; after release from rest."""
+        """The amplitude of alpha (7,2) in degrees, from its tangent, after release from rest."""
         if not self.facts.at_rest:
             return None
         sine, cosine = self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(self.a * self.gaps.below_u2)
@@ -204,14 +204,14 @@ class Nutation(Over[R]):
         formula="ellint_F(amplitude, k_prime)",
     )
     def alpha(self) -> R | None:
-        """The parameter alpha = F(amplitude, k') (1,6) after release from rest."""
+        """The parameter alpha = F(amplitude, k') (1,6), after release from rest only."""
         return self.eta_minus if self.facts.at_rest else None
 
     @quantity
     def eta_minus(self) -> R:
         """The distance of Y from its zero at the top, as an integral F with modulus k'.
 
-        sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
+        It is given by sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)).
         """
         gaps, ar = self.gaps, self.ar
         scale = gaps.a_u3_u1 * gaps.above_u2

@@ -1,4 +1,4 @@
-"""A quantity of a motion: a formula that is evaluated when it is asked for, and only once."""
+"""Lazy quantities of a motion: formulas that are evaluated on first use, and only once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class quantity(Over[V]):
         self.name = name
 
     def __get__(self, motion: Any, owner: type | None = None) -> V:
-        """Return the value, from now on an attribute of the object."""
+        """Return the value and store it as an attribute of the object."""
         with motion.ar.working():
             value = self.formula(motion)
         vars(motion)[self.name] = value
@@ -37,7 +37,7 @@ def key(
     *,
     formula: str = "",
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
-    """Make a method a quantity that is a key of the record; see `Key` for what is shown."""
+    """Make a method a quantity that is a key of the record; see `Key` for the arguments."""
     shown = Key(group, symbol, meaning, unit, equation, formula)
 
     def decorate(formula: Callable[[Any], V]) -> quantity[V]:
@@ -57,5 +57,5 @@ def keys_of(owner: type) -> dict[str, Key]:
 
 
 def unit_name(name: str, *, radians: bool) -> str:
-    """Return the name of a key in the unit of angles in use: its `_deg` becomes `_rad`."""
+    """Return the name of a key in degrees or `radians`: `_deg` becomes `_rad`."""
     return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name

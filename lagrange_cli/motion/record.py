@@ -1,4 +1,4 @@
-"""The keys of a record, in their order: each is declared where its formula stands."""
+"""The keys of a record, in their order; each is declared with its formula."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ _NUMBERS = dict(
 )
 
 NUMBER_KEYS = list(_NUMBERS)
-"""The numbers of a record, in its order: `regime` precedes, `path` and `remark` follow them."""
+"""The numbers of a record, in order; `regime` precedes them, `path` and `remark` follow."""
 TEXT_KEYS = ("regime", "path", "remark")
-"""The keys of a record that hold words."""
+"""The keys of a record whose values are words."""
 KEYS = (
     _INPUTS
     | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
     | _NUMBERS
     | {"remark": Key("Remark", "", "")}
 )
-"""How each key is shown, by name; the groups of a table come in this order."""
+"""The declaration of each key by name, in the order of the groups of a table."""
 
 
 def number_key(name: str) -> Key | None:
-    """Return how a number is declared, of the record or on request; None where it is no number."""
+    """Return the declaration of a number of the record or on request; None for other names."""
     return _NUMBERS.get(name) or requested_keys().get(name)
 
 
 def requested_keys() -> dict[str, Key]:
-    """Return the numbers that a motion has on request only, and how they are shown."""
+    """Return the keys on request and their declarations."""
     from .paper.requested import REQUESTED  # start-up: not for a record
 
     return REQUESTED
@@ -67,7 +67,7 @@ def record_keys(*, radians: bool = False) -> list[str]:
 def shown_keys(
     *, radians: bool = False, named: Callable[[str], str] = str, requested: bool = False
 ) -> dict[str, Key]:
-    """Return how each key is shown, by its name in a record; `named` gives the names of units."""
+    """Return the declaration of each key by name in a record; `named` gives the names of units."""
     angle = "rad" if radians else "deg"
     return {
         unit_name(name, radians=radians): key.replace(

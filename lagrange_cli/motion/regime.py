@@ -1,7 +1,7 @@
-"""What kind of motion a scene describes, decided once and exactly, in fractions.
+"""Determine the kind of motion of a scene once, exactly, in fractions.
 
-Every degenerate motion is a polynomial in u = cos(theta0), with rational coefficients, that
-vanishes.  Nothing later compares a computed gap with a threshold.  Equation numbers are Chrapan's.
+In each degenerate motion a polynomial in u = cos(theta0) with rational coefficients vanishes.  No
+later code compares a computed gap with a threshold.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from ..errors import LagtopError, check_type
 from ..inputs.top import Top
 
 B = TypeVar("B", bound=Any)
-"""A truth, or an array of truths."""
+"""A bool, or an array of bools."""
 
 
 class Regime(StrEnum):
-    """Kind of motion; each compares equal to its text."""
+    """Kind of motion; each member compares equal to its text."""
 
     REGULAR = "regular"
     STEADY = "steady precession"
@@ -33,15 +33,15 @@ class Regime(StrEnum):
 
 
 FAST = 50
-"""Least b^2/a of a pseudo-regular precession, where (C r0)^2 is 100 A m g s.
+"""Least b^2/a of a pseudo-regular precession, that is, (C r0)^2 = 100 A m g s.
 
-From there on the axis nods by at most 1.15 degrees, and the mean precession is within 1.03 % of
-the elementary rate, at any tilt.
+Above it, at any tilt, the axis nutates by at most 1.15 degrees.  The mean precession rate is then
+within 1.03 % of the elementary rate.
 """
 
 
 class Facts(Values):
-    """What is decided before anything is computed; each a truth, or an array of truths."""
+    """Properties of a motion that are decided before any computation: bools, or arrays of bools."""
 
     regime: Regime
     """The regime, the same for a whole array."""
@@ -54,19 +54,19 @@ class Facts(Values):
     spins: bool
     """r0 is not 0."""
     pole: int = 0
-    """1 where the axis starts upright, -1 where it hangs, else 0."""
+    """1 if the axis starts upright, -1 if it hangs, else 0."""
     upper_root: int = 0
-    """Which root of the cubic is exactly 1: 1, 3, or 0 where none is."""
+    """The number of the root of the cubic that is exactly 1: 1, 3, or 0 for none."""
     over_bottom: bool = False
     """u2 is exactly -1."""
     cusp: bool = False
-    """The precession stands still at u1."""
+    """The precession stops at u1."""
     drifts: bool = False
-    """beta = b u3: the mean spin is the drift r0 - b/2 alone."""
+    """beta = b u3: the mean spin rate is the drift r0 - b/2 alone."""
     sign_plus: Any = 1
-    """Sign of beta + b; 1 where it is 0, the limit being the same from both sides."""
+    """Sign of beta + b; 1 if it is 0, as the limit is the same from both sides."""
     sign_minus: Any = 1
-    """Sign of beta - b; 1 where it is 0."""
+    """Sign of beta - b; 1 if it is 0."""
     stable: Any = True
     """b^2 >= 2a: an upright top stays upright."""
     fast: bool = False
@@ -74,12 +74,12 @@ class Facts(Values):
 
     @property
     def falls(self) -> bool:
-        """The top starts at rest and nutates, so that nothing cancels in its gaps."""
+        """The top starts at rest and nutates, so that no digits cancel in its gaps."""
         return self.at_rest and not (self.steady or self.regime is Regime.SEPARATRIX)
 
     @property
     def over_top(self) -> bool:
-        """The axis comes to the upper pole or, on the separatrix, tends to it: beta = b."""
+        """The axis reaches the upper pole or, on the separatrix, tends to it: beta = b."""
         return bool(self.upper_root) or self.regime is Regime.SEPARATRIX
 
     @property
@@ -89,7 +89,7 @@ class Facts(Values):
 
 
 class Exact(Values):
-    """A scene in exact arithmetic: constants of (4,4), (4,5), the start, and the facts."""
+    """A scene in exact arithmetic: the constants of (4,4) and (4,5), the start, and the facts."""
 
     top: Top
     a: Fraction
@@ -99,33 +99,33 @@ class Exact(Values):
     r0: Fraction
     theta_rate: Fraction
     psi_rate: Any
-    """A fraction; None for a rate of steady precession that is irrational."""
+    """The precession rate as a fraction; None for an irrational rate of steady precession."""
     cosine: Cosine
     facts: Facts
 
     @property
     def energy(self) -> Polynomial:
-        """theta'^2 + psi'^2 sin^2(theta0) by u0; alpha less a u0 (4,4)."""
+        """theta'^2 + psi'^2 sin^2(theta0) = alpha - a u0 (4,4), as a polynomial in u0."""
         return self.momentum * Polynomial(self.psi_rate) + self.theta_rate**2
 
     @property
     def momentum(self) -> Polynomial:
-        """psi' sin^2(theta0) by u0; beta less b u0 (4,5)."""
+        """psi' sin^2(theta0) = beta - b u0 (4,5), as a polynomial in u0."""
         return Polynomial(self.psi_rate, 0, -self.psi_rate)
 
     @property
     def alpha(self) -> Polynomial:
-        """The constant alpha (4,4) by u0."""
+        """The constant alpha (4,4), as a polynomial in u0."""
         return self.energy + self.a * U
 
     @property
     def beta(self) -> Polynomial:
-        """The constant beta (4,5) by u0."""
+        """The constant beta (4,5), as a polynomial in u0."""
         return self.momentum + self.b * U
 
     @property
     def fall(self) -> Polynomial:
-        """u'' over sin^2(theta0) by u0, for a start without nutation rate."""
+        """u''/sin^2(theta0) as a polynomial in u0, for a start without nutation rate."""
         return _fall(self.a, self.b, self.psi_rate)
 
 
@@ -136,7 +136,7 @@ def _fall(a: Fraction, b: Fraction, psi_rate: Fraction) -> Polynomial:
 def exact(top: Top) -> Exact:
     """Return a top in fractions, with the facts of its motion.
 
-    Raises LagtopError for a start that describes no motion: precession on the vertical.
+    Raises LagtopError for an impossible start: precession on the vertical.
     """
     check_type("top", top, Top)
     m, A, C, s, g, r0, theta_rate = (
@@ -161,7 +161,7 @@ def exact(top: Top) -> Exact:
 
 
 def _exact_steady(top: Top, r0: Fraction) -> Exact:
-    """Return a top in steady precession, whose rate is the root of a quadratic equation."""
+    """Return a top in steady precession, whose rate is a root of a quadratic equation."""
     from ..inputs.steady_rate import rates_of  # start-up: for few tops
 
     rates = rates_of(top)
@@ -178,13 +178,13 @@ def _exact_steady(top: Top, r0: Fraction) -> Exact:
 def _facts(
     pole: int, a: Fraction, b: Fraction, rates: tuple[Fraction, Fraction], cosine: Cosine
 ) -> Facts:
-    """Return the facts, each from the sign of a polynomial in u = cos(theta0)."""
+    """Determine the facts, each from the sign of a polynomial in u = cos(theta0)."""
     theta_rate, psi_rate = rates
     at_rest, vertical = not theta_rate and not psi_rate, bool(pole) and not theta_rate
     # beta - b = (1 - u) (psi' (1 + u) - b) and beta + b = (1 + u) (psi' (1 - u) + b) (4,5)
     minus = 0 if pole == 1 else cosine.sign(Polynomial(psi_rate - b, psi_rate))
     plus = 0 if pole == -1 else cosine.sign(Polynomial(psi_rate + b, -psi_rate))
-    # where beta = b, 1 is a root, and alpha - a = theta'^2 - (1 - u) (a - psi' b) says which
+    # if beta = b, 1 is a root, and alpha - a = theta'^2 - (1 - u) (a - psi' b) says which
     slope = a - psi_rate * b
     over = 0 if minus else cosine.sign(Polynomial(theta_rate * theta_rate - slope, slope))
     steady = not theta_rate and (vertical or cosine.vanishes(_fall(a, b, psi_rate)))
@@ -228,9 +228,9 @@ def _facts(
 def regimes(
     *, upright: B, hanging: B, free: B, separatrix: B, steady: B, no_spin: B
 ) -> Iterator[tuple[Regime, B]]:
-    """Yield each regime with its condition; of those that hold only the first stays true.
+    """Yield each regime with its condition; only the first true condition stays true.
 
-    The conditions are truths, or masks of an array of tops.
+    The conditions are bools, or masks of an array of tops.
     """
     none: B = upright ^ upright
     left = none ^ True

@@ -1,4 +1,4 @@
-"""`solve(top)`: the motion of one top, whose numbers are computed when they are asked for."""
+"""`solve(top)`: the motion of one top, whose numbers are computed on first use."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ if TYPE_CHECKING:
 
 
 def solve(top: Top) -> Motion:
-    """Return the motion of a top.  Raises LagtopError for a start that describes no motion."""
+    """Return the motion of a top.  Raises LagtopError for an impossible start."""
     return Motion(exact(top))
 
 
 class Motion(Numbers):
     """The motion of one top: the numbers of its record as attributes, and its angles over time.
 
-    Each number is the double nearest to its exact value, proved by an enclosure when it is first
-    asked for; one that the regime does not have is None.  Their names are those of `lagtop solve`:
-    a, b, u1, u2, u3, k, T_nutation, mean_precession_rate ...; `record` gives all of them.
+    Each number is correctly rounded, as proved by an enclosure on first use.  It is None if the
+    regime has no such number.  The attributes are named like the keys of `lagtop solve`: a, b, u1,
+    u2, u3, k, T_nutation, mean_precession_rate ... `record` returns all of them.
     """
 
     @property
     def path(self) -> str | None:
-        """Path of the figure axis: `cusped`, `looping` or `wavy`; None where it has none."""
+        """Path of the figure axis: `cusped`, `looping` or `wavy`; None if there is no such path."""
         return self.decide("path", lambda kind: kind.path)
 
     @property
     def remark(self) -> str | None:
-        """One line on what is special about the motion, or None."""
+        """One line on special properties of the motion, or None."""
         return self.remark_in()
 
     def remark_in(self, *, radians: bool = False) -> str | None:
@@ -60,7 +60,7 @@ class Motion(Numbers):
         return [*methods, "top", "regime", *NUMBER_KEYS, *requested_keys()]
 
     def __getattr__(self, name: str) -> Any:
-        """Return a number by its key, a float, or None if the motion has none."""
+        """Return a number by its key: a float, or None if the motion has no such number."""
         try:
             return super().__getattr__(name)
         except AttributeError:
@@ -73,14 +73,14 @@ class Motion(Numbers):
             ) from None
 
     def __eq__(self, other: object) -> bool:
-        """Return whether the other is the motion of the same top."""
+        """Return whether `other` is the motion of the same top."""
         return isinstance(other, Motion) and other.top == self.top
 
     def __hash__(self) -> int:
         return hash(self.top)
 
     def __reduce__(self) -> tuple[Callable[[Top], Motion], tuple[Top]]:
-        """Return how copies and pickles are made: from the top."""
+        """Return the constructor and the top, for copies and pickles."""
         return solve, (self.top,)
 
     def numbers(self) -> dict[str, float | None]:
@@ -96,13 +96,13 @@ class Motion(Numbers):
         radians: bool = False,
         keys: Collection[str] | None = None,
     ) -> dict[str, Any]:
-        """Return inputs and results by key, in the order of the paper; `radians` for all angles.
+        """Return inputs and results by key, in the order of the paper, in degrees or `radians`.
 
-        Numbers are doubles or, with `digits`, texts of so many significant digits; inputs then
-        count as decimals.  `radii` adds KEY_radius: the greatest distance of the exact value from
-        the number under KEY.  A number beyond the range of doubles is None, and an
-        OutOfRangeWarning names it.  `keys` asks for some of them only; of these it raises
-        OutOfRangeError.  Raises LagtopError if no precision tells a number from 0.
+        Numbers are doubles or, with `digits`, texts with that number of significant digits; inputs
+        are then taken as decimals.  `radii` adds KEY_radius, a bound of the distance from the
+        number under KEY to its exact value.  A number beyond the range of doubles is None, and an
+        OutOfRangeWarning names it.  `keys` selects some keys; such a number then raises
+        OutOfRangeError.  Raises LagtopError if no precision distinguishes a number from 0.
         """
         record, beyond = record_in_range(
             self, digits=digits, radii=radii, radians=radians, keys=keys
@@ -123,9 +123,9 @@ class Motion(Numbers):
         return record_html(self.record())
 
     def view(self) -> Document:
-        """Return a page on which the top turns, for a notebook or, with `save`, for a browser.
+        """Return an animated page of the top, for a notebook or, with `save`, for a browser.
 
-        Raises LagtopError for inputs that are beyond what the page computes with.
+        Raises LagtopError for inputs beyond the range of the page's arithmetic.
         """
         from .. import view  # the face of the package: pictures are drawn by a subpackage above
 
@@ -134,15 +134,15 @@ class Motion(Numbers):
     def angles(self, t: ArrayLike, *, wrap: bool = False) -> Angles:
         """Return tilt, spin and precession (radians) at the times t, in the shape of t.
 
-        Spin and precession are unwrapped and 0 at t = 0; `wrap` brings them to (-pi, pi].
-        Raises LagtopError for a time that is not finite or beyond 2^50 nutation periods.
+        Spin and precession are unwrapped and 0 at t = 0; `wrap` reduces them to (-pi, pi].  Raises
+        LagtopError for a time that is not finite or is beyond 2^50 nutation periods.
         """
         return self.sampler().angles(t, wrap=wrap)
 
     def axis(self, t: ArrayLike) -> Array:
-        """Return the unit vector along the figure axis in space, in the shape of t and 3.
+        """Return the unit vector along the figure axis in space, of shape (*t.shape, 3).
 
-        Raises LagtopError for a time out of reach, as `angles` does.
+        Raises LagtopError for a time out of range, as `angles` does.
         """
         import numpy as np
 
@@ -153,7 +153,7 @@ class Motion(Numbers):
         """Return the rotations from body to space at a time, or at a list of n times.
 
         The result is a SciPy `Rotation`, single or a stack of n.  Raises LagtopError for a time out
-        of reach, and for times of more than one dimension.
+        of range, and for times with more than one dimension.
         """
         import numpy as np
         from scipy.spatial.transform import Rotation  # start-up: heavy
@@ -170,8 +170,8 @@ class Motion(Numbers):
     def plot(self, kind: str = "sphere", ax: Any = None, **options: Any) -> list[Axes]:
         """Draw a picture of the motion: sphere, angles, remainders, cubic, phase or map.
 
-        `ax` is an `Axes` of matplotlib, or a list of them if the kind has several; without it a new
-        figure is made.  The options are those of `lagrange_cli.plot.draw_sphere` and its siblings.
+        `ax` is an `Axes` of matplotlib, or a list of them if the kind has several; by default a new
+        figure is made.  `options` are passed to `lagrange_cli.plot.draw_sphere` or its siblings.
         Returns the axes.  Raises LagtopError for an unknown kind, or if there is nothing to draw.
         """
         from .. import draw  # the face of the package: pictures are drawn by a subpackage above
@@ -189,7 +189,7 @@ class Motion(Numbers):
         """Return columns of `lagtop table` by name, each a float64 array in the shape of t.
 
         Angles are in radians; `axis` and `quaternion` expand into axis_x ... quaternion_z, which
-        may also be named singly.  Raises LagtopError for an unknown column or a time out of reach.
+        may also be named singly.  Raises LagtopError for an unknown column or a time out of range.
         """
         from .over_time.table import table
 
@@ -235,7 +235,7 @@ def record_in_range(
 
 
 def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
-    """Return the inputs as they are printed; a word is None."""
+    """Return the inputs as they are printed; None for a word."""
 
     def shown(name: str, value: Any) -> Settled | None:
         rounding = rounding_of(name, digits)

@@ -1,6 +1,6 @@
-"""Sections 6 and 7, spin and precession: mean rates, rates at the start and half a period later.
+"""Sections 6 and 7 of the paper: mean rates of spin and precession, rates at 0 and T/2.
 
-Both rates are partial fractions about the two poles: with psi' = (beta - b u)/(1 - u^2) (4,7),
+Both rates are split into partial fractions at the poles.  By psi' = (beta - b u)/(1 - u^2) (4,7),
 
     south = (beta - b u)/(2 (1 + u)),   north = (beta - b u)/(2 (1 - u)),
     psi' = south + north,               phi' = r0 + south - north.
@@ -28,17 +28,17 @@ _POLES = (
 )
 """The means of (beta - b)/(1 - u) and (beta + b)/(1 + u), times K."""
 _HALF = "U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
-"""The cosine of the tilt half a period after the start."""
+"""Definition of the cosine of the tilt half a period after the start."""
 
 
 class SpinPrecession(Nutation[R]):
-    """The numbers of sections 6 and 7 of a motion, under their keys; None where it has none."""
+    """The numbers of sections 6 and 7 by key; None if the motion has no such number."""
 
     lacks: frozenset[str] = frozenset()
     """The keys that a kind of motion does not have."""
 
     def remark(self, *, radians: bool = False) -> str | None:
-        """Return a line on what is special, with angles in degrees or `radians`, or None."""
+        """Return a line on special properties, with angles in degrees or `radians`, or None."""
         return None
 
     @quantity
@@ -48,7 +48,7 @@ class SpinPrecession(Nutation[R]):
 
     @quantity
     def _south(self) -> R:
-        """The mean of (beta + b)/(2 (1 + u)), half a turn per period where the axis hangs once."""
+        """The mean of (beta + b)/(2 (1 + u)); half a turn per period over the lower pole."""
         gaps = self.gaps
         if self.facts.free or self.facts.over_bottom:
             half_turn: R = self.facts.sign_plus * self.half_turn_rate
@@ -57,7 +57,7 @@ class SpinPrecession(Nutation[R]):
 
     @quantity
     def _north(self) -> R:
-        """The mean of (beta - b)/(2 (1 - u)), half a turn per period where the axis stands once."""
+        """The mean of (beta - b)/(2 (1 - u)); half a turn per period over the upper pole."""
         gaps = self.gaps
         if self.facts.free or self.facts.upper_root == 1:
             half_turn: R = self.facts.sign_minus * self.half_turn_rate
@@ -92,9 +92,10 @@ class SpinPrecession(Nutation[R]):
         formula=f"r0 - b - (P - Q)/(2*K) where {_POLES}",
     )
     def mean_spin_rate(self) -> R:
-        """The mean spin rate: after release from rest (6,3), a drift and a turn per nutation.
+        """The mean spin rate; after release from rest (6,3), a drift plus one turn per nutation.
 
-        Where beta = b u3 the integral (6,1) holds with u3 for u1, and its arccot comes back.
+        If beta = b u3, the integral (6,1) holds with u3 in place of u1, and its arccot returns to
+        its initial value.
         """
         if self.facts.at_rest:
             half_turn = self.half_turn_rate
@@ -121,7 +122,7 @@ class SpinPrecession(Nutation[R]):
 
     @key("Periods", "Tφ", "mean spin period", "time", "§8", formula="2*pi/abs(mean_spin_rate)")
     def T_spin(self) -> R | None:
-        """One turn at the mean spin rate (section 8)."""
+        """The time of one turn at the mean spin rate (section 8)."""
         return turn_time(self.ar, self.mean_spin_rate)
 
     @key(
@@ -133,7 +134,7 @@ class SpinPrecession(Nutation[R]):
         formula="2*pi/abs(mean_precession_rate)",
     )
     def T_precession(self) -> R | None:
-        """One turn at the mean precession rate (section 8)."""
+        """The time of one turn at the mean precession rate (section 8)."""
         return turn_time(self.ar, self.mean_precession_rate)
 
     @key(
@@ -157,7 +158,7 @@ class SpinPrecession(Nutation[R]):
         formula=f"r0 - U*precession_rate_half where {_HALF}",
     )
     def spin_rate_half(self) -> R | None:
-        """The spin rate (4,8) half a period after the start; None over a pole."""
+        """The spin rate (4,8) half a period after the start; None on a pole."""
         if self.precession_rate_half is None:
             return None
         below, above = self._half
@@ -177,7 +178,7 @@ class SpinPrecession(Nutation[R]):
         formula=f"(momentum_constant - b*U)/(1 - U**2) where {_HALF}",
     )
     def precession_rate_half(self) -> R | None:
-        """The precession rate (4,7) half a period after the start; None over a pole."""
+        """The precession rate (4,7) half a period after the start; None on a pole."""
         if self._half_over_pole:
             return None
         momentum = self.gaps.momentum_u2 - self.b * self._half_above_u2
@@ -185,14 +186,14 @@ class SpinPrecession(Nutation[R]):
 
     @property
     def _half_over_pole(self) -> bool:
-        """Whether the axis is on a pole half a period after the start: it was at u1 or u2."""
+        """Whether the axis is on a pole half a period after a start at u1 or u2."""
         below = self.facts.over_bottom and self.ar.everywhere(self.gaps.u1_u <= 0)
         above = self.facts.upper_root == 1 and self.ar.everywhere(self.gaps.u_u2 <= 0)
         return below or above
 
     @quantity
     def _half_above_u2(self) -> R:
-        """How far the cosine of the tilt is above u2 half a period after the start."""
+        """The height of the cosine of the tilt above u2 half a period after the start."""
         return self.gaps.u1_u * (self.gaps.a_u3_u2 / self.gaps.a_u3_u)
 
     @quantity
@@ -205,7 +206,7 @@ class SpinPrecession(Nutation[R]):
 
     @quantity
     def path(self) -> str | None:
-        """Path of the axis by where the precession stands still: at u1, within, or nowhere."""
+        """Path of the axis: `cusped` or `looping` if the precession stops up to u1, else `wavy`."""
         facts, gaps = self.facts, self.gaps
         if facts.plane or facts.steady:
             return None
@@ -215,9 +216,10 @@ class SpinPrecession(Nutation[R]):
 
 
 def mean_over(ar: Arithmetic[R], k_prime: R, distances: Sequence[R], values: Sequence[R]) -> R:
-    """Return half the mean of a quotient of numbers linear in u, by their values at u1 and u2.
+    """Return half the mean of a quotient of linear functions of u, from their values at u1 and u2.
 
-    The denominator is the distance from a pole; `values` are those of the numerator.
+    `distances` are the values of the denominator, the distance from a pole, and `values` those of
+    the numerator.
     """
     mc, from_u1 = k_prime * k_prime, distances[0]
     p = distances[1] * mc / from_u1
@@ -225,7 +227,7 @@ def mean_over(ar: Arithmetic[R], k_prime: R, distances: Sequence[R], values: Seq
 
 
 def turn_time(ar: Arithmetic[R], rate: R) -> R | None:
-    """Return 2 pi over a mean rate; None, or NaN in an array, where it is 0."""
+    """Return 2 pi over a mean rate; None, or NaN in an array, if the rate is 0."""
     stands = abs(rate) <= 0
     if ar.everywhere(stands):
         return None

@@ -1,4 +1,4 @@
-"""One sentence on a motion, in plain words, from the numbers of its record."""
+"""A one-sentence summary of a motion, from the numbers of its record."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST_DIGITS = 17
 
 
 def summary(record: Mapping[str, Any], named: Callable[[str], str] = str) -> str:
-    """Return the sentence for a whole record; `named` gives the names of units of a system."""
+    """Return the summary of a whole record; `named` gives the names of units of a system."""
     unit = "rad" if "theta_min_rad" in record else "deg"
     time = " time units" if named("time") == "time" else f" {named('time')}"
     rate = " rad per time unit" if named("time") == "time" else f" rad/{named('time')}"
@@ -55,6 +55,6 @@ def _figures(x: float, digits: int = 4) -> str:
 
 
 def _apart(low: float, high: float) -> tuple[str, str]:
-    """Return two numbers with four digits, or with as many as tell them apart."""
+    """Return two numbers with four digits, or with as many as distinguish them."""
     texts = ((_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1))
     return next(((a, b) for a, b in texts if a != b), (_figures(low), _figures(high)))

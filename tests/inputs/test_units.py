@@ -204,7 +204,7 @@ def test_remarks_name_units_wherever_they_stand(lagtop: Lagtop) -> None:
 def test_remarks_in_files_name_units(command: str, lagtop: Lagtop) -> None:
     body = "--m 350g --A 8.5e-4kg*m^2 --C 4e-4kg*m^2 --s 3cm --g 1g_0 --keys remark --format json"
     [row] = json.loads(lagtop(*command.split(), *body.split()).stdout)
-    assert row["remark"].startswith("pseudo-regular precession: nods by 0.0199 deg in 0.0106 s;")
+    assert row["remark"].startswith("pseudo-regular precession: nutates by 0.0199 deg in 0.0106 s;")
     assert row["remark"].endswith(" rad/s")
 
 

@@ -197,5 +197,5 @@ def test_the_form_of_a_motion_has_the_digits_asked_for() -> None:
 
 @pytest.mark.parametrize("inputs", [{"r0": 0}, {"theta0_deg": 0}, {"psidot0": 1}, {"g": 0}])
 def test_other_motions_have_no_imaginary_form(inputs: dict[str, float]) -> None:
-    with pytest.raises(LagtopError, match=r"^the imaginary form must be of a top that spins and"):
+    with pytest.raises(LagtopError, match=r"^for the imaginary form the top must spin and"):
         imaginary_form(solve(Top(**inputs)))

@@ -92,7 +92,7 @@ def test_what_has_a_kink_says_so() -> None:
     found = sensitivities(top, ["theta_max_deg", "T_nutation"])
     assert math.isnan(found.derivatives["theta_max_deg"]["r0"])
     assert found.reasons == {
-        "theta_max_deg": "theta_max_deg has a kink: next to a steady precession the axis nods"
+        "theta_max_deg": "theta_max_deg has a kink: next to a steady precession the axis nutates"
     }
     behind, ahead = Slopes(top).of_key("r0", "theta_max_deg") or (0, 0)
     assert abs(behind - ahead) > 1

@@ -239,8 +239,8 @@ def test_pseudo_regular_precession_in_numbers(sign: int, tilt: float) -> None:
         assert abs(parts) < 10_300
         assert 0 < nods < 1.15
         assert solve(Top(**unit, r0=sign * r0)).remark == (
-            f"pseudo-regular precession: nods by {float(nods):.3g} deg in {period:.3g} time; its "
-            f"mean is {where} mgs/(C r0) = {float(rate):.3g} rad/time"
+            f"pseudo-regular precession: nutates by {float(nods):.3g} deg in {period:.3g} time; "
+            f"its mean is {where} mgs/(C r0) = {float(rate):.3g} rad/time"
         )
 
 

@@ -1,1 +1,1 @@
-"""Keys and columns that are known as fractions."""
+"""Keys and columns whose values are known as fractions."""

@@ -1,9 +1,9 @@
-"""Rates half a period after a start with rates that are exactly 0, decided in fractions.
+"""Decide in fractions which rates at T/2 are exactly 0, after a start that is not at rest.
 
 Half a period on, sn^2 becomes cn^2/dn^2, so that u(T/2) = (u3 (u1 + u2) - u1 u2 - u0 u3)/(u3 - u0).
-With x = u3 and the sums and products of the roots of (4,9) this is N(x)/M(x), and a rate (4,7),
-(4,8) is 0 where a polynomial P(x) is.  The number of roots of the cubic at which it is 0 follows
-from the greatest common divisor of both polynomials, and enclosures exclude the other roots.
+By the sums and products of the roots of (4,9) this is N(x)/M(x) with x = u3.  A rate (4,7), (4,8)
+is 0 if a polynomial P(x) is 0.  The greatest common divisor of P and the cubic gives the number of
+common roots, and enclosures exclude the other roots.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..regime import Exact
 HALF_RATES = ("spin_rate_half", "precession_rate_half")
 
 InU3 = Polynomial
-"""A polynomial in u3, with polynomials in cos(theta0) as coefficients."""
+"""A polynomial in u3 whose coefficients are polynomials in cos(theta0)."""
 
 
 @lru_cache(maxsize=8)
@@ -49,7 +49,7 @@ def _in_u3(*coefficients: Any) -> InU3:
 def _is_zero_at_u3(exact: Exact, P: InU3, cubic: InU3) -> bool:
     """Return whether P is exactly 0 at the greatest root of a cubic.
 
-    Balls come first: they are cheap, and nearly always prove that it is not.
+    Balls are tried first: they are cheap, and nearly always prove that P is not 0.
     """
     if not _zeros_possible(exact, P, cubic, FIRST_DIGITS)[0]:
         return False
@@ -81,9 +81,9 @@ def _zeros_possible(exact: Exact, P: InU3, cubic: InU3, digits: int) -> list[boo
 
 
 def _shared_roots(exact: Exact, *polynomials: InU3) -> int:
-    """Return how many roots two polynomials share: the degree of their greatest common divisor.
+    """Return the number of common roots: the degree of the greatest common divisor.
 
-    Euclid's algorithm finds it without a division of coefficients.
+    Euclid's algorithm finds the divisor without dividing coefficients.
     """
     p, q = (_trimmed(exact, list(x.coefficients)) for x in polynomials)
     while q:
@@ -96,7 +96,7 @@ def _shared_roots(exact: Exact, *polynomials: InU3) -> int:
 
 
 def _trimmed(exact: Exact, coefficients: list[Any]) -> list[Any]:
-    """Return coefficients without leading ones that are 0."""
+    """Return coefficients without leading zeros."""
     while coefficients and exact.cosine.vanishes(coefficients[-1]):
         coefficients.pop()
     return coefficients

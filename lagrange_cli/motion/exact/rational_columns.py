@@ -1,7 +1,7 @@
-"""Columns of `lagtop table` whose value is rational: there ties are possible, and exact zeros.
+"""Columns of `lagtop table` with rational values, which may be ties or exact zeros.
 
-Such are the constants of the motion, all that stands still in a steady motion, the start, and what
-is 0 or constant at all times for some tops, such as a sphere or a disc.
+Rational values occur at the start, in the constants of the motion and in steady motions.  For some
+tops, such as a sphere or a disc, further columns are 0 or constant at all times.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ _MEANS = {"phi_rate": "mean_spin_rate", "psi_rate": "mean_precession_rate"}
 def known_column(
     exact: Exact, method: str, t: Fraction, *, radians: bool = False, wrap: bool = False
 ) -> Fraction | None:
-    """Return a column at a time, by its method of `sample.Sample`, where it is known as a fraction.
+    """Return a column at a time if it is known as a fraction, else None.
 
-    Angles are in degrees or `radians`.
+    `method` is its method of `table.Sample`.  Angles are in degrees or `radians`.
     """
     if method == "r":
         return exact.r0
@@ -54,10 +54,10 @@ def _of_some_tops(exact: Exact, method: str) -> Fraction | None:
         return Fraction(0) if _stands(exact, 1 if method == "quaternion_z" else -1) else None
     if method not in {"p", "q"}:
         return None
-    if facts.free and exact.r0 == exact.b:  # the angular velocity stays where it is in the body
+    if facts.free and exact.r0 == exact.b:  # the angular velocity is constant in the body
         return _at_start(exact, method, radians=False)
-    # A disc, C = 2A, has p'' = -(r0^2 - a u/2) p, and q'' likewise: what starts at 0 with the
-    # derivative 0 stays 0.  Without spin that is so for any top.
+    # A disc, C = 2A, has p'' = -(r0^2 - a u/2) p, and q'' likewise: a rate that starts at 0
+    # with the derivative 0 stays 0.  Without spin this holds for any top.
     balanced = not exact.theta_rate and 2 * exact.r0 * psi == exact.a
     at_rest = not psi and not exact.r0 * exact.theta_rate
     zero = exact.b == 2 * exact.r0 and (balanced if method == "p" else at_rest)
@@ -74,7 +74,7 @@ def _stands(exact: Exact, sign: int) -> bool:
 
 
 def _of_a_great_circle(exact: Exact, method: str, t: Fraction, *, radians: bool) -> Fraction | None:
-    """Return a column of an axis that goes round through both poles, evenly."""
+    """Return a column of an axis that moves uniformly round a great circle through both poles."""
     rate = exact.theta_rate
     tilt = Fraction(0) if exact.facts.pole > 0 else exact.cosine.radians
     if not t or tilt is None:
@@ -125,7 +125,7 @@ def _at_start(exact: Exact, method: str, *, radians: bool) -> Fraction | None:
 
 
 def _sine(cosine: Cosine) -> Fraction | None:
-    """Return the sine of the tilt where it is rational."""
+    """Return the sine of the tilt if it is rational, else None."""
     if cosine.degrees is None:
         return Fraction(0) if cosine.radians == 0 else None
     return Cosine(abs(90 - cosine.degrees), None).rational

@@ -1,8 +1,8 @@
-"""Keys whose value is rational: rounded from the fraction, where no computing could decide.
+"""Keys with rational values, rounded from the fraction if enclosures cannot decide.
 
-A computed number that comes out as 0 may only be too small for its digits, and one that lies
-midway between two doubles has no nearest one at any precision.  What is exactly 0, and what may be
-such a tie, is told here from the inputs.
+A computed 0 may be a number too small for the digits.  An enclosure of a number midway between two
+doubles cannot be rounded at any precision.  This module decides from the inputs which keys are
+exactly 0, or may be such a tie.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from ..regime import Exact
 from .half_rates import HALF_RATES, vanishing_half_rates
 
 _RATE_OF = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
-"""The mean rates that periods are made of."""
+"""The mean rate of each period."""
 
 
 def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fraction | None:
-    """Return a number of the record of a motion if it is known as a fraction.
+    """Return a number of the record of a motion if it is known as a fraction, else None.
 
-    `radians` is for an angle, in radians instead of degrees.
+    An angle is in degrees or `radians`.
     """
     keys = rational_keys(exact)
     if name in HALF_RATES and name not in keys:
@@ -43,9 +43,9 @@ def is_endless(exact: Exact, name: str) -> bool:
 
 @lru_cache(maxsize=8)
 def rational_keys(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys of a record that are known as fractions, zeros above all.
+    """Return the keys of a record that are known as fractions, mostly zeros.
 
-    Zeros of the rates at T/2 after a start with rates take longer: `half_rates` tells them.
+    `half_rates` decides the zeros of the rates at T/2 after a start with rates, which takes longer.
     """
     keys = {"a": exact.a, "b": exact.b}
     facts = exact.facts
@@ -55,7 +55,7 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
         rates = dict.fromkeys(("mean_spin_rate", "spin_rate_start"), exact.r0 - exact.b)
         return keys | (rates if facts.free else {})
     spin = exact.cosine.fraction(exact.r0 - (0 if facts.pole else exact.psi_rate) * U)
-    if facts.steady or not facts.pole:  # on the vertical neither rate has a meaning of its own
+    if facts.steady or not facts.pole:  # on the vertical neither rate is defined
         keys["precession_rate_start"] = exact.psi_rate
         keys |= {} if spin is None else {"spin_rate_start": spin}
     if facts.steady:
@@ -72,9 +72,9 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
 
 
 def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
-    """Return what follows from a start on a turning point: its tilt and, for some, its cosine.
+    """Return the keys that follow from a start on a turning point: its tilt and perhaps its cosine.
 
-    Without torque and spin the axis goes round a great circle, and the other turning point is
+    Without torque and spin the axis moves round a great circle, and the other turning point is
     opposite.
     """
     facts, cosine, tilt = exact.facts, exact.cosine.rational, exact.cosine.degrees
@@ -112,9 +112,9 @@ def _starts_at(exact: Exact, side: int) -> bool:
 
 
 def rational_u(exact: Exact, name: str, enclosure: Callable[[str], Ball | None]) -> Fraction | None:
-    """Return a root of the cubic (4,9) if it is a fraction, such as one midway between doubles.
+    """Return a root of the cubic (4,9) if it is a fraction, such as a tie between doubles.
 
-    Only this root is in its enclosure, so that a fraction in there that is a root is this one.
+    The enclosure contains only this root, so that any fraction in it that is a root is this one.
     """
     if exact.psi_rate is None:
         return None
@@ -141,13 +141,13 @@ def _simplest(low: Fraction, high: Fraction) -> Fraction:
 
 
 def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
-    """Return u1 = 0 or u2 = 0 where f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0."""
+    """Return u1 = 0 or u2 = 0 if f(0) = alpha - beta^2 (4,9) is 0, and u(T/4) = 0 if it holds."""
     keys: dict[str, Fraction] = {}
     if exact.cosine.vanishes(exact.alpha - exact.beta * exact.beta):
         sign = exact.cosine.sign(U)
         if sign:
             keys["u2" if sign > 0 else "u1"] = Fraction(0)
-        else:  # the start is horizontal, and on one of the two
+        else:  # the start is horizontal, and at u1 or u2
             keys["u1" if starts_at_u1(exact) else "u2"] = Fraction(0)
     if starts_at_u1(exact) and _quarter_is_level(exact):
         keys["u_quarter"] = Fraction(0)
@@ -157,8 +157,9 @@ def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:
 def _quarter_is_level(exact: Exact) -> bool:
     """Return whether u(T/4) = 0 (5,2), for a start at u1 = u0.
 
-    Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3; with x2 + x3 = -c2/a, x2 x3 = c1/a its square
-    is a polynomial in u0.  Without torque u(T/4) is the mean of u1 and u2, and goes as beta b.
+    Then k' = -u1/u2, which is u0 (u3 - u2) = -u2 u3.  By x2 + x3 = -c2/a and x2 x3 = c1/a, its
+    square is a polynomial in u0.  Without torque u(T/4) is the mean of u1 and u2, which is
+    proportional to beta b.
     """
     a, b, energy, momentum = exact.a, exact.b, exact.energy, exact.momentum
     if exact.facts.free:
@@ -173,11 +174,11 @@ def _quarter_is_level(exact: Exact) -> bool:
 
 
 def _half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are known."""
+    """Return the rates at T/2 that are known as fractions."""
     facts = exact.facts
     below = facts.over_bottom and starts_at_u1(exact)
     above = facts.upper_root == 1 and starts_at_u2(exact)
-    if below or above:  # on a pole, where no rate has a meaning
+    if below or above:  # on a pole, where no rate is defined
         return {}
     if facts.plane:
         return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
@@ -189,7 +190,7 @@ def _half_rates(exact: Exact) -> dict[str, Fraction]:
 
 
 def _half_rates_after_rest(exact: Exact) -> dict[str, Fraction]:
-    """Return psi'(T/2) = a/b (4,7), and phi'(T/2) = r0 - (a/b) u2 where it is 0."""
+    """Return psi'(T/2) = a/b (4,7), and phi'(T/2) = r0 - (a/b) u2 if it is 0."""
     a, b = exact.a, exact.b
     keys = {"precession_rate_half": a / b}
     level = exact.r0 * b / a  # the u2 at which phi' is 0
@@ -203,8 +204,8 @@ def _half_rates_after_rest(exact: Exact) -> dict[str, Fraction]:
 def _free_half_rates(exact: Exact) -> dict[str, Fraction]:
     """Return the rates at T/2 that are 0 without torque, where u(T/2) = u1 + u2 - u0.
 
-    The roots of (4,9) have the sum 2 beta b/D with D = energy + b^2; the rates vanish where
-    beta - b u and r0 (1 - u^2) - u (beta - b u) do, at u = u(T/2).
+    The roots of (4,9) have the sum 2 beta b/D with D = energy + b^2.  The precession rate vanishes
+    if beta - b u = 0 at u = u(T/2).  The spin rate vanishes if r0 (1 - u^2) - u (beta - b u) = 0.
     """
     b = exact.b
     beta, D = exact.beta, exact.energy + b * b

@@ -1,1 +1,1 @@
-"""The motion over time: angles and columns at given times."""
+"""Motion over time: angles and columns at given times."""

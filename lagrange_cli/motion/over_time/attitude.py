@@ -1,7 +1,7 @@
-"""The attitude at a block of times: spin and precession are a mean growth and periodic parts.
+"""The attitude at a block of times: spin and precession as mean rates times t plus periodic parts.
 
-The periodic parts are those of the arguments of X and Y (see `samplers`), which are small but where
-the axis passes next to a pole.  So little is lost where they are added up.
+The periodic parts of arg X and arg Y (see `samplers`) are small, except next to a pole.  Their sums
+and differences therefore lose little accuracy.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class Times(NamedTuple):
     farthest: float
     """Bound of |t|."""
     space: Array
-    """Four arrays for the steps of a computation."""
+    """Four work arrays."""
 
 
 class Growth(NamedTuple):
-    """How an angle grows from 0 at t = 0; the constants are of one top, or columns for many."""
+    """Growth of an angle from 0 at t = 0; constants of one top, or columns for many."""
 
     start: Pair | None
     """The periodic part at t = 0; None if it is 0."""
@@ -48,10 +48,10 @@ class Growth(NamedTuple):
     turn: Period
     """The time of one turn at that rate."""
     turns: Triple
-    """The rate in turns, to three doubles: the fraction of a turn is right at any time."""
+    """The rate in turns as three doubles: the fraction of a turn is accurate at any time."""
 
     def since_start(self, periodic: Array, at: Times) -> Array:
-        """Subtract from a periodic part that at t = 0, in place."""
+        """Subtract from a periodic part its value at t = 0, in place."""
         if self.start is not None:
             periodic -= self.start.high
             periodic -= self.start.low
@@ -68,9 +68,9 @@ class Growth(NamedTuple):
         return angle
 
     def wrapped(self, periodic: Array, at: Times) -> Array:
-        """Return the same in (-pi, pi], as exact far away as near.
+        """Return the angle in (-pi, pi], as accurate at late times as at early ones.
 
-        As many turns are taken off the time as leave the sum of both parts in that interval.
+        Whole turns are subtracted from the time until the sum of both parts is in this interval.
         """
         angle = self.since_start(periodic, at)
         turns = np.multiply(angle, 0.5 / PI.high, out=at.space[3])
@@ -78,7 +78,7 @@ class Growth(NamedTuple):
         angle += grown
         angle += lost
         outside = np.abs(angle, out=lost) >= np.pi
-        if outside.any():  # by what the rounding of many turns has taken
+        if outside.any():  # because the turns were rounded
             rest = angle[outside]
             rest[rest > np.pi] -= 2.0 * PI.high
             rest[rest <= -np.pi] += 2.0 * PI.high
@@ -86,7 +86,7 @@ class Growth(NamedTuple):
         return angle
 
     def within_a_quarter(self, periodic: Array, at: Times) -> tuple[Array, Array]:
-        """Return the angle less half turns, in [-pi/2, pi/2], and (-1)^n for n of them."""
+        """Return the angle minus n half turns, in [-pi/2, pi/2], and (-1)^n."""
         grown, lost = self._within_a_turn(at)
         angle, more = two_sum(self.since_start(periodic, at), grown)
         halves = np.rint(angle / PI.high)
@@ -94,12 +94,12 @@ class Growth(NamedTuple):
         return angle, 1.0 - 2.0 * (halves % 2.0)
 
     def _within_a_turn(self, at: Times, more: float | Array = 0.0) -> tuple[Array, Array]:
-        """Return the mean growth as a sum, less as many turns as leave it next to -`more` turns."""
+        """Return the mean rate times t in two parts, reduced by turns to about -`more` turns."""
         whole, grown, lost = whole_periods(at.t, self.turn, 0.0, at.space[:3], more)
         lost *= -self.rate.high
         lost += grown * self.rate.low
         grown *= self.rate.high
-        if at.farthest > self.turn.reach:  # the fraction of a turn is known for any number of them
+        if at.farthest > self.turn.reach:  # the fraction of a turn stays accurate
             far, turns = np.abs(whole) >= MANY, fraction_of_product(at.t, self.turns)
             turns -= np.rint(turns + more)
             product, error = two_product(turns, 2.0 * PI.high)
@@ -109,12 +109,12 @@ class Growth(NamedTuple):
 
 
 class Growths(NamedTuple):
-    """Mean growth of spin and precession."""
+    """The growths of spin and of precession."""
 
     phi: Growth
     psi: Growth
     halves: Callable[[], tuple[Growth, Growth]] | None = None
-    """Returns those of arg X and arg Y, their half sum and difference: few columns need them."""
+    """Returns the growths of arg X and arg Y, which few columns need."""
 
 
 def growths(
@@ -122,8 +122,8 @@ def growths(
 ) -> Growths:
     """Return the growths of the angles from the mean rates of spin and precession.
 
-    `starts` are the periodic parts of arg X and arg Y at t = 0.  Spin and precession come in by
-    themselves: if one is much the larger, sums and differences lose the other.
+    `starts` are the periodic parts of arg X and arg Y at t = 0.  The rates of spin and precession
+    are separate arguments, because sums and differences lose a much smaller rate.
     """
     (phi, psi), (x, y) = rates, starts
 
@@ -143,7 +143,7 @@ def growths(
 
 
 class Spinor(NamedTuple):
-    """X and Y up to a common positive factor; None is not asked for."""
+    """X and Y up to a common positive factor; parts that are not requested are None."""
 
     tilt: Array | None = None
     x2: Array | None = None
@@ -151,7 +151,7 @@ class Spinor(NamedTuple):
     y2: Array | None = None
     """|Y|^2."""
     arg_x: Array | None = None
-    """The periodic part of arg X: less its mean growth."""
+    """The periodic part of arg X, that is, without its mean rate times t."""
     arg_y: Array | None = None
     rate: Array | None = None
     """2 (|X|^2 + |Y|^2) |X| |Y| times the nutation rate."""
@@ -177,15 +177,15 @@ class Attitude(NamedTuple):
         return self._grown(self.growths.psi, np.add(*self._args(), out=out), wrap)
 
     def phi_remainder(self) -> Array:
-        """Return the spin less its mean growth (6,4)."""
+        """Return the spin minus its mean rate times t (6,4)."""
         return self.growths.phi.since_start(np.subtract(*self._args()), self.times)
 
     def psi_remainder(self) -> Array:
-        """Return the precession less its mean growth (7,4)."""
+        """Return the precession minus its mean rate times t (7,4)."""
         return self.growths.psi.since_start(np.add(*self._args()), self.times)
 
     def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """Return arg X and arg Y, each less half turns, and the sign that these give X or Y."""
+        """Return arg X and arg Y, each reduced by half turns, with the signs of X and Y."""
         x, y = (arg.copy() for arg in self._args())
         assert self.growths.halves is not None
         of_x, of_y = self.growths.halves()
@@ -199,6 +199,6 @@ class Attitude(NamedTuple):
 
 
 def needed(part: Array | None) -> Array:
-    """Return a part of X and Y that was asked for."""
+    """Return a part of X and Y, which must have been requested."""
     assert part is not None, "a column needs more than its entry says"
     return part

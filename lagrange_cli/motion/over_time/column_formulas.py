@@ -1,12 +1,12 @@
 """The formulas of the columns of `lagtop table`: rates, attitude and conserved quantities.
 
-Each is computed from the attitude
+Each column is computed from the attitude
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
-up to a common positive factor: with N = |X|^2 + |Y|^2, 1 + u = 2 |X|^2/N and 1 - u = 2 |Y|^2/N keep
-their digits next to the poles.  `sample` has them at arrays of times, `proved_table` in balls at
-one time.  Equation numbers are Chrapan's.
+up to a common positive factor.  With N = |X|^2 + |Y|^2, both 1 + u = 2 |X|^2/N and 1 - u = 2
+|Y|^2/N keep their digits next to the poles.  `table` evaluates the formulas at arrays of times,
+`proved_table` in balls at one time.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class ColumnConstants(Values, Over[R]):
-    """The constants of a top on which its columns depend."""
+    """The constants of a top used in its columns."""
 
     half_A: R
     """A/2."""
@@ -36,7 +36,7 @@ class ColumnConstants(Values, Over[R]):
     """mgs."""
     r0: R
     drift: R
-    """r0 - b, or r0 on the vertical, where the next two are 0."""
+    """r0 - b, or r0 on the vertical, where `plus` and `minus` are 0."""
     plus: R
     """(beta + b)/2."""
     minus: R
@@ -67,9 +67,9 @@ def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
 
 
 class ColumnFormulas(Over[R]):
-    """A motion at one time or at some; a quantity is computed once, when it is asked for.
+    """A motion at one or several times; each quantity is computed once, on first use.
 
-    A column is the method that `columns` names.
+    `columns` names the method of each column.
     """
 
     ar: Arithmetic[R]
@@ -106,7 +106,7 @@ class ColumnFormulas(Over[R]):
 
     @abstractmethod
     def over(self, value: R, divisor: R) -> R:
-        """Return a quotient, and 0 for 0/0: over a pole there is no momentum about it."""
+        """Return a quotient, and 0 for 0/0: on a pole the momentum about it is 0."""
 
     def theta(self) -> R:
         """Return the tilt."""
@@ -211,9 +211,9 @@ class ColumnFormulas(Over[R]):
         return self.across * cos - self.theta_rate * sin
 
     def moment(self) -> R:
-        """Return mgs sin(theta), the moment s k' x (-mg k) of section 4 a, which has no other part.
+        """Return mgs sin(theta), the only component of the moment s k' x (-mg k) of section 4 a.
 
-        The line of nodes lies at psi in the horizontal plane.
+        The moment acts about the line of nodes, at psi in the horizontal plane.
         """
         return self.constants.torque * self.sine
 

@@ -1,4 +1,4 @@
-"""The columns of `lagtop table` by name: their headings, and the formula of `sample` for each."""
+"""The columns of `lagtop table` by name: their headings, and the method that computes each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...inputs.names import ANGLES, check_names
 
 
 class Needs(NamedTuple):
-    """What is needed of X and Y (see `samplers`), which is computed only then."""
+    """The parts of X and Y (see `samplers`) that columns need; no others are computed."""
 
     tilt: bool = False
     moduli: bool = False
@@ -18,7 +18,7 @@ class Needs(NamedTuple):
     rate: bool = False
 
     def __or__(self, other: Needs) -> Needs:
-        """Return what either needs."""
+        """Return the parts that either needs."""
         return Needs(*(one or another for one, another in zip(self, other, strict=True)))
 
 
@@ -31,16 +31,16 @@ class ScalarColumn(NamedTuple):
     """One column."""
 
     heading: str
-    """A `*` stands for the unit of angles."""
+    """The heading; `*` is replaced by the unit of angles."""
     method: str
-    """The method of `sample.Sample` that computes it."""
+    """The method of `table.Sample` that computes the column."""
     needs: Needs
     unit: str = ""
-    """A unit such as `rad/time`, where it is none of angles."""
+    """A unit such as `rad/time`, unless the column is an angle."""
     symbol: str = ""
     equation: str = ""
     formula: str = ""
-    """The formula in names of columns and keys, as at the keys; t counts from a passage of u1."""
+    """The formula in names of columns and keys; t counts from a passage of u1."""
 
 
 class Column(NamedTuple):
@@ -190,7 +190,7 @@ COLUMNS: dict[str, Column] = {
         ],
     ),
     "energy": _one(
-        "energy; constant but for rounding",
+        "energy; constant except for rounding",
         SWING,
         "energy",
         "energy",
@@ -200,7 +200,7 @@ COLUMNS: dict[str, Column] = {
         formula="(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
     ),
     "Lz": _one(
-        "vertical angular momentum; constant but for rounding",
+        "vertical angular momentum; constant except for rounding",
         MODULI,
         "vertical_momentum",
         "Lz",
@@ -228,14 +228,14 @@ def name_of(part: ScalarColumn) -> str:
 
 
 def column_names() -> list[str]:
-    """Return the names of all columns, of groups first."""
+    """Return the names of all columns, groups first."""
     return [*COLUMNS, *_SINGLE]
 
 
 def chosen_columns(names: Sequence[str]) -> list[ScalarColumn]:
     """Return the columns of some names, groups expanded.
 
-    Raises LagtopError for a name that is unknown or comes twice.
+    Raises LagtopError for an unknown or repeated name.
     """
     check_names("columns", names, column_names())
     chosen = [
@@ -249,11 +249,11 @@ def chosen_columns(names: Sequence[str]) -> list[ScalarColumn]:
 
 
 def needs_of(chosen: Sequence[ScalarColumn]) -> Needs:
-    """Return what some columns need together."""
+    """Return the parts that some columns need together."""
     return reduce(Needs.__or__, (part.needs for part in chosen), NOTHING)
 
 
 def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
-    """Return the header of some columns.  Raises LagtopError for an unknown one."""
+    """Return the headings of some columns.  Raises LagtopError for an unknown one."""
     unit = "rad" if radians else "deg"
     return [column.heading.replace("*", unit) for column in chosen_columns(columns)]

@@ -1,7 +1,7 @@
-"""Columns of one motion over time in balls, each rounded where both ends of its ball are alike.
+"""Columns of one motion over time in balls, rounded if both ends of a ball agree.
 
-The attitude is that of `series_constants` in balls.  `theta_series` proves what its series leave
-out, so that whole turns are proved too.  Equation numbers are Chrapan's.
+The attitude is computed by `series_constants` in balls.  `theta_series` bounds the truncation error
+of its series, so that whole turns are proved too.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from ...arithmetic.points import Points
 
 _ROWS_AT_ONCE = 64
-"""Rows that are handed on together."""
+"""Rows that are returned together."""
 _EXTRA = 16
-"""Digits by which the precision grows with the number of turns: a precision serves many rows."""
+"""Step in digits by which the precision grows with time, so that one precision serves many rows."""
 
 
 class BallSample(ColumnFormulas[Ball]):
@@ -56,13 +56,13 @@ class BallSample(ColumnFormulas[Ball]):
     def wrapped(self, angle: Ball) -> Ball:
         """Return an angle in (-pi, pi]."""
         ar: Balls = self.t.ar
-        if self.kind.facts.plane:  # half turns, where both ends belong to pi
+        if self.kind.facts.plane:  # half turns: both ends belong to pi
             return ar.pi * (ar.nint(angle / ar.pi) % 2)
         return angle - 2 * ar.pi * ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))
 
     @cached_property
     def growths(self) -> tuple[Ball, Ball]:
-        """Growth of spin and precession by their mean rates, on the separatrix in infinite time."""
+        """The mean rates times t of spin and precession, or their limits on the separatrix."""
         kind = self.kind
         if isinstance(kind, Separatrix):
             return kind.state.spin_drift * self.t, kind.b / 2 * self.t
@@ -87,7 +87,7 @@ class BallSample(ColumnFormulas[Ball]):
 
     @cached_property
     def theta_rate(self) -> Ball:
-        """theta', which has the sign of `tilting`."""
+        """The nutation rate theta', with the sign of `tilting`."""
         if not self.tilting:
             return 0 * self.t
         speed = self.ar.sqrt(self.theta_square)
@@ -95,7 +95,7 @@ class BallSample(ColumnFormulas[Ball]):
 
 
 class ProvedTable:
-    """Columns of a motion over time, as doubles or with so many significant digits."""
+    """Columns of a motion over time, as doubles or with `digits` significant digits."""
 
     def __init__(
         self,
@@ -118,17 +118,17 @@ class ProvedTable:
         self._constants: dict[int, ColumnConstants[Ball]] = {}
 
     def row(self, time: Fraction) -> list[Settled]:
-        """Return the numbers of the columns at a time, which is exact.
+        """Return the numbers of the columns at an exact time.
 
-        Raises LagtopError if no precision tells one from 0 or a tie.
+        Raises LagtopError if no precision distinguishes one from 0 or from a tie.
         """
         sample = cache(lambda digits: self.sample(time, digits))
         return [self._number(part, time, sample) for part in self.chosen]
 
     def sample(self, time: Fraction, digits: int) -> BallSample:
-        """Return the motion at a time in balls of so many digits.
+        """Return the motion at a time in balls of `digits` digits.
 
-        Raises TooFewDigitsError if these do not tell the roots or the half periods apart.
+        Raises TooFewDigitsError if they do not separate the roots or the half periods.
         """
         kind = self.motion.kind(digits)
         if digits not in self._constants:
@@ -146,7 +146,7 @@ class ProvedTable:
     def _number(
         self, part: ScalarColumn, time: Fraction, sample: Callable[[int], BallSample]
     ) -> Settled:
-        """Return a column at a time, at which `sample` gives the motion in so many digits."""
+        """Return a column at a time; `sample` returns the motion there in a number of digits."""
         what = f"{name_of(part)} at t = {float(time)}"
         rounding = rounding_of(what, self.digits)
         if part.method == "times":
@@ -164,7 +164,7 @@ class ProvedTable:
         return number
 
     def _enclosure(self, part: ScalarColumn, sample: BallSample) -> Ball:
-        """Return a ball that holds a column, angles in the unit in use."""
+        """Return a ball that contains a column, with angles in the unit in use."""
         value: Ball = getattr(sample, part.method)()
         if self.wrap and part.method in {"phi", "psi"}:
             value = sample.wrapped(value)
@@ -172,7 +172,7 @@ class ProvedTable:
         return value * 180 / sample.t.ar.pi if in_degrees else value
 
     def _digits_of(self, time: Fraction) -> int:
-        """Return about how many digits whole turns take."""
+        """Return the approximate number of digits of the whole turns."""
         turns = len(str(int(abs(time) * self._speed)))
         return turns // _EXTRA * _EXTRA
 
@@ -181,7 +181,7 @@ class ProvedTable:
     ) -> tuple[list[str], Iterator[list[list[NumberText]]]]:
         """Return the header and lists of rows; with `radii` a KEY_radius follows for each KEY.
 
-        Times are the doubles that `lagtop table` computes at or, if digits are asked for, decimals.
+        Times are the doubles used by `lagtop table` or, if digits are requested, decimals.
         """
         header = [*self.header, *(f"{name}_radius" for name in self.header if radii)]
         return header, self._lists(times, radii=radii)

@@ -1,13 +1,13 @@
 """Tilt, spin and precession at arrays of times: about one ulp at any time.
 
-The attitude is a pair of complex numbers (Klein's Cayley-Klein parameters; the Pi functions of
-Chrapan's sections 3 and 4 are their logarithms), each a theta function times a uniform rotation:
+The attitude is a pair of complex numbers, the Cayley-Klein parameters.  Each is a theta function
+times a uniform rotation, and the Pi functions of Chrapan's sections 3 and 4 are their logarithms:
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
-One arctangent each gives the tilt and the half sum and half difference of the other two angles.
-All constants are those of the motion in many digits, rounded once.  `theta_sampler` has the angles
-of a top that nutates.
+One arctangent each gives the tilt, and the half sum and half difference of the other two angles.
+All constants are computed in many digits and rounded once.  `theta_sampler` computes the angles of
+a nutating top.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Angles(NamedTuple):
 
 
 class Sampler:
-    """The constants of one motion that its angles need, ready to be evaluated."""
+    """The angles of one motion as functions of time, with precomputed constants."""
 
     tilt: float
     """The tilt at t = 0."""
@@ -63,16 +63,16 @@ class Sampler:
         return Angles(*(angle.reshape(times.shape) for angle in angles))
 
     def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
-        """Return what is needed of the attitude at a block of times, none beyond `farthest`.
+        """Return the needed parts of the attitude at a block of times, none beyond `farthest`.
 
-        It may be kept in a `workspace`.
+        The result may share memory with `space`.
         """
         raise NotImplementedError
 
     def check(self, t: ArrayLike, name: str = "t") -> float:
         """Return the greatest |t|.
 
-        Raises LagtopError, by the `name` of the argument, where a time names no phase.
+        Raises LagtopError, with the `name` of the argument, if a time is not finite or too large.
         """
         return check_times(doubles_of("t", t), self.max_time, name)
 
@@ -88,7 +88,7 @@ class ConstantSampler(Sampler):
     max_time: float
 
     def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
-        """Return the attitude at a block of times: there is no phase."""
+        """Return the attitude at a block of times; there is no phase."""
         tilt, x2, y2 = (np.full_like(t, x) for x in (self.tilt, self.x**2, self.y**2))
         zero = np.zeros_like(t)
         spinor = Spinor(tilt, x2, y2, zero, zero, zero)
@@ -97,7 +97,7 @@ class ConstantSampler(Sampler):
 
 @dataclass(frozen=True)
 class SeparatrixSampler(Sampler):
-    """The one swing from the upright position down and up again, k = 1 and T infinite."""
+    """The single swing from the upright position down and up again: k = 1, T infinite."""
 
     tilt: float
     speed: float

@@ -1,6 +1,6 @@
-"""From a kind of motion to the constants of its series, and to its attitude as a function of time.
+"""The constants of the series of a motion, and its attitude as a function of time.
 
-All of it is in the arithmetic of the motion.
+Both are computed in the arithmetic of the motion.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from .theta_series import Component, Frame, Series, SquaredRatio, ThetaConstants
 def theta_constants(
     motion: Nutating[R], offset: R, rises: int = 1, *, rates: bool = False
 ) -> ThetaConstants:
-    """Return what the theta series need to know of a nutating top.
+    """Return the constants of the theta series of a nutating top.
 
-    (1 + u2)/(1 + u1) and (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2)) are sn^2 of the parameters of X and
-    Y, with modulus k'; their complements are (u1 - u2)/(1 + u1) and
-    (u3 - 1)(u1 - u2)/((u3 - u1)(1 - u2)).
+    The parameter of X, with modulus k', has `sn^2 = (1 + u2)/(1 + u1)` and `cn^2 = (u1 - u2)/(1 +
+    u1)`.  The parameter of Y has `sn^2 = (1 - u1)(u3 - u2)/((u3 - u1)(1 - u2))` and `cn^2 = (u3 -
+    1)(u1 - u2)/((u3 - u1)(1 - u2))`.
     """
     ar, gaps, facts = motion.ar, motion.gaps, motion.facts
     with ar.working():
@@ -51,9 +51,9 @@ def theta_constants(
 def periods_since_top(motion: Nutating[R]) -> R:
     """Return w/2K for the argument w of (4,22)-(4,24) at t = 0, with the sign of theta'.
 
-    sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2)) and, counted from u2, sn^2 = (u - u2)/(u1 - u2).
-    As a (u1 - u) (u - u2) (u3 - u) is the square of sin(theta) theta', both are written with that:
-    it is smooth at the turning points, and 0 there.
+    Here `sn^2 w = (u1 - u)(u3 - u2)/((u3 - u)(u1 - u2))` and, counted from u2, `sn^2 = (u - u2)/(u1
+    - u2)`. Both are expressed by sin(theta) theta', the square root of a (u1 - u) (u - u2) (u3 -
+    u). It is smooth at the turning points, and 0 there.
     """
     ar, gaps, state = motion.ar, motion.gaps, motion.state
     m, k_prime, swing = motion.m, motion.k_prime, state.sin * state.theta_rate
@@ -67,7 +67,7 @@ def periods_since_top(motion: Nutating[R]) -> R:
 
 
 def direction(motion: Nutating[R] | Separatrix[R]) -> int:
-    """Return the sign of the nutation rate at t = 0, and 1 where it is 0."""
+    """Return the sign of the nutation rate at t = 0, or 1 if the rate is 0."""
     return -1 if motion.state.theta_rate < 0 else 1
 
 
@@ -76,8 +76,8 @@ def evaluate(
 ) -> tuple[Value, Value, Value, Value]:
     """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
-    On the upper pole, where Y = 0, its argument is that just after where the tilt `rises`, else
-    that just before; on the lower pole, where X = 0, the other way round.
+    On the upper pole Y = 0.  Its argument is then the limit from later times if the tilt `rises`,
+    else from earlier times.  On the lower pole, where X = 0, the limits are exchanged.
     """
     z = phase * series.scale
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
@@ -92,7 +92,7 @@ def evaluate(
 
 
 class SeparatrixConstants(NamedTuple, Generic[R]):
-    """The separatrix by its lowest point."""
+    """The constants of a motion on the separatrix, about its lowest point."""
 
     offset: R
     """The argument h at t = 0."""
@@ -107,7 +107,7 @@ class SeparatrixConstants(NamedTuple, Generic[R]):
 
 
 def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
-    """Return the separatrix by its lowest point."""
+    """Return the constants of a motion on the separatrix, about its lowest point."""
     ar: Any = motion.ar
     gaps, falls = motion.gaps, direction(motion)
     sign = -1 if motion.b < 0 else 1
@@ -127,11 +127,11 @@ class Pose(NamedTuple, Generic[R]):
     y: R
     """sin(theta/2), up to that factor."""
     phi: R
-    """Spin, counted on from 0 at t = 0."""
+    """Spin, unwrapped from 0 at t = 0."""
     psi: R
-    """Precession, counted on from 0 at t = 0."""
+    """Precession, unwrapped from 0 at t = 0."""
     tilting: R
-    """A number that has the sign of the nutation rate."""
+    """A number with the sign of the nutation rate."""
 
 
 def pose_of(motion: Kind[R]) -> Callable[[R], Pose[R]]:
@@ -174,10 +174,10 @@ def nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
 
 
 def _terms(ar: Any, c: ThetaConstants) -> int:
-    """Return how many terms of the series matter.
+    """Return the number of terms of the series that are needed.
 
-    The nome is exp(-pi r), where r is the larger of K'/K and K/K'; the last term has at least the
-    digits' logarithm over that of the nome in its exponent.
+    The nome is exp(-pi r), where r is the larger of K'/K and K/K'. The exponent of the last term is
+    at least the logarithm of the precision over the logarithm of the nome.
     """
     if c.quarter_prime is None:  # a nome of 0
         return 2
@@ -187,13 +187,13 @@ def _terms(ar: Any, c: ThetaConstants) -> int:
 
 
 def _half_turns(ar: Any, angle: R) -> R:
-    """Return the nearest number of half turns: in a plane an angle only leaps, at the poles."""
+    """Return the nearest multiple of half turns: in a plane an angle changes only at the poles."""
     turned: R = ar.pi * ar.nint(angle / ar.pi)
     return turned
 
 
 def constant_pose(motion: Constant[R]) -> Callable[[R], Pose[R]]:
-    """Return the attitude of a constant tilt and constant rates."""
+    """Return the attitude for a constant tilt and constant rates."""
     state = motion.state
 
     def pose(t: R) -> Pose[R]:

@@ -73,7 +73,7 @@ class Sample(ColumnFormulas[Array]):
 
     @cached_property
     def theta_rate(self) -> Array:
-        """(5,3), with its sign; on a pole by the energy (4,2), with the sign of the start."""
+        """The nutation rate (5,3); on a pole by the energy (4,2), with the sign of the start."""
         product = 2.0 * self.norm * self.x * self.y
         rate = needed(self.attitude.spinor.rate)
         speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
@@ -82,22 +82,22 @@ class Sample(ColumnFormulas[Array]):
 
     @cached_property
     def within(self) -> Array:
-        """The spin, without whole turns."""
+        """The spin, up to whole turns."""
         return self.attitude.phi(wrap=True)
 
     @cached_property
     def around(self) -> Array:
-        """The precession, without whole turns; the line of nodes lies along x at psi = 0."""
+        """The precession, up to whole turns; the line of nodes lies along x at psi = 0."""
         return self.attitude.psi(wrap=True)
 
     @cached_property
     def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """(psi + phi)/2 and (psi - phi)/2, each less half turns, and the sign of X or Y for it."""
+        """(psi + phi)/2 and (psi - phi)/2, reduced by half turns, with the signs of X and Y."""
         return self.attitude.quarters()
 
     @cached_property
     def args(self) -> tuple[Array, Array]:
-        """(psi + phi)/2 and (psi - phi)/2, each less half turns."""
+        """(psi + phi)/2 and (psi - phi)/2, reduced by half turns."""
         (arg_x, _), (arg_y, _) = self.quarters
         return arg_x, arg_y
 
@@ -109,16 +109,16 @@ class Sample(ColumnFormulas[Array]):
         return sign_x * x, sign_y * y
 
     def over(self, value: Array, divisor: Array) -> Array:
-        """Return the quotient, and 0 where both vanish."""
+        """Return the quotient, and 0 for 0/0."""
         return np.divide(value, divisor, out=np.zeros_like(divisor), where=divisor != 0.0)
 
 
 def samples(
     motion: Numbers, t: Array, chosen: Sequence[ScalarColumn], *, wrap: bool
 ) -> Iterator[tuple[slice, Sample]]:
-    """Yield the motion at the times t, a block at a time, with what some columns need.
+    """Yield the motion at the times t, block by block, with the parts that some columns need.
 
-    A sample is used up when the next one is asked for.
+    The next sample overwrites the one before.
     """
     sampler, needs, kind = motion.sampler(), needs_of(chosen), motion.middle()
     constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
@@ -142,13 +142,13 @@ def rows(
 ) -> tuple[list[str], Iterator[Array]]:
     """Return the header and blocks of rows; angles in degrees or radians, wrapped or not.
 
-    `stds` gives the uncertainties of the three angles at some times, shape (3, times); those of
-    the angles among the columns are the last columns.  Raises LagtopError for an unknown column
-    and, before the first block, for a time out of reach.
+    `stds` returns the uncertainties of the three angles at some times, shape (3, times).  They
+    follow as last columns for each angle among the columns.  Raises LagtopError for an unknown
+    column and, before the first block, for a time out of range.
     """
     chosen, header = chosen_columns(columns), headings(columns, radians=radians)
     ends = ("t_min", "t_max") if isinstance(times, EvenPoints) else ("t", "t")
-    for name, end in zip(ends, times.bounds(), strict=False):  # none where times are read later
+    for name, end in zip(ends, times.bounds(), strict=False):  # empty if times are read later
         motion.sampler().check(end, name)
     angles = [i for i, name in enumerate(ANGLES) if stds is not None and name in columns]
     names = [f"{heading}_std" for i in angles for heading in headings([ANGLES[i]], radians=radians)]
@@ -195,7 +195,7 @@ def table(
 def _start(
     motion: Numbers, columns: Sequence[str], *, radians: bool, wrap: bool
 ) -> Callable[[], list[float]]:
-    """Return what gives the columns at t = 0 as the nearest doubles, computed once, if at all."""
+    """Return a function for the correctly rounded columns at t = 0, computed at most once."""
 
     @cache
     def row() -> list[float]:

@@ -1,10 +1,10 @@
 """The angles of a nutating top at arrays of times, by its theta series in doubles.
 
-Of the half-period representations `theta_series` takes the ones whose zeros are the passes over the
-poles: there real and imaginary part vanish each by itself, and nothing cancels.
+The zeros of the representations used in `theta_series` are the passages over the poles.  The real
+and the imaginary part vanish there separately, so that no digits cancel.
 
-A time is first reduced, exactly, to whole steps and a phase; then a few multiplications per sample
-evaluate the polynomials, however far the time.
+A time is first reduced, exactly, to whole steps and a phase.  A few multiplications per sample then
+evaluate the polynomials, at any time.
 """
 
 from __future__ import annotations
@@ -40,22 +40,22 @@ from .theta_series import (
 )
 
 _GREATEST = 340.0
-"""The square of its hyperbolic sine leaves room for what is multiplied with it."""
+"""Greatest argument: the square of its hyperbolic sine does not overflow in later products."""
 _LEAST = 5e-324
-"""An argument of the functions that is next to 0, but not 0."""
+"""The smallest argument of the functions that is not 0."""
 _NEGLIGIBLE = Decimal(2) ** -60
 _SIZE = 2**16
-"""The largest coefficient of a frame, or half of it."""
+"""The size to which the largest coefficient of a frame is scaled, within a factor of 2."""
 ARGUMENTS = ("arg_x", "arg_y")
 
 
 @dataclass(frozen=True)
 class ThetaSampler(Sampler):
-    """A nutating top, by its theta series."""
+    """Sampler of a nutating top, by its theta series."""
 
     tilt: float
     step: Period
-    """Half a period of the nutation."""
+    """Half the period of the nutation."""
     offset: float
     """The phase at t = 0, in steps."""
     max_time: float
@@ -67,14 +67,14 @@ class ThetaSampler(Sampler):
     """Argument at t = 0."""
     hyperbolic: bool
     frames: Sequence[Frame]
-    """About the turning points of the even and of the odd steps."""
+    """The series about the turning points of the even and of the odd steps."""
     slopes: Sequence[float]
-    """What the mean growth of arg X and arg Y has more than these, per unit of the argument."""
+    """Slopes per unit of the argument that are added to arg X and arg Y to make them periodic."""
     growths: Growths
 
     @cached_property
     def over_a_pole(self) -> bool:
-        """Whether the axis passes over a pole: the real part of X or Y is 0 all about it."""
+        """Whether the axis passes over a pole: a first real coefficient of X or Y is then 0."""
         return not all(part.real[0] for frame in self.frames for part in frame[:2])
 
     def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
@@ -88,7 +88,7 @@ class ThetaSampler(Sampler):
         argument *= self.speed
         if self.first:
             argument += self.first
-        elif self.over_a_pole:  # on a pole at t = 0, and on one side of it however soon after
+        elif self.over_a_pole:  # on a pole at t = 0, and beside it at any other time
             np.copyto(argument, np.copysign(_LEAST, t), where=(argument == 0.0) & (t != 0.0))
         even, order = order_by_parity(step)
         if order is not None:
@@ -102,9 +102,9 @@ class ThetaSampler(Sampler):
     def _evaluated(
         self, argument: Array, even: int, needs: Needs, space: Array
     ) -> dict[str, Array]:
-        """Return the parts of a spinor that are needed.
+        """Return the needed parts of a spinor.
 
-        The first arguments, as many as are `even`, are about the first turning point.
+        The first `even` arguments belong to the first turning point, the others to the second.
         """
         functions, parts = space[:3], space[3:7]
         found: dict[str, Array] = {}
@@ -136,14 +136,14 @@ class ThetaSampler(Sampler):
         return found
 
     def _write_functions(self, x: Array, functions: Array) -> None:
-        """Write S, C and s of the series; in circular ones tan, 1/cos^2 and sin^2.
+        """Write S, C and s of hyperbolic series, or tan, 1/cos^2 and sin^2 of circular ones.
 
         All parts of circular series have the factor cos x, which is divided out.
         """
         S, C, s = functions
         if not self.hyperbolic:
             np.tan(x, out=S)
-        elif self.scale > 2 * _GREATEST:  # beyond, the tilt is below 1e-140
+        elif self.scale > 2 * _GREATEST:  # beyond it the tilt is below 1e-140
             np.sinh(np.clip(x, -_GREATEST, _GREATEST, out=S), out=S)
         else:
             np.sinh(x, out=S)
@@ -166,10 +166,10 @@ class ThetaSampler(Sampler):
 
 
 def _settle_on_the_pole(arguments: Array, part: Component, x: Array) -> None:
-    """Write the argument of X or Y where real and imaginary part are 0, or too small for doubles.
+    """Write the argument of X or Y if both parts are 0, or too small for doubles.
 
-    It is 0 on the pole, and next to it a quarter turn to the side of x, because the real part goes
-    with s = S^2 and the imaginary part with S.
+    The argument is 0 on the pole.  Next to the pole it is a quarter turn with the sign of x.  The
+    real part is there proportional to s = S^2, the imaginary part to S.
     """
     vanish = np.isnan(arguments)
     arguments[vanish] = np.sign(part.imag[0]) * np.sign(x[vanish]) * (np.pi / 2)
@@ -183,7 +183,7 @@ def arguments_of(parts: Array, out: Array) -> Array:
 
 
 def unwound(arguments: Array, slopes: Sequence[Any], argument: Array, spare: Array) -> Array:
-    """Return the periodic parts of arg X and arg Y, in place: less their mean growth."""
+    """Add the slopes to arg X and arg Y in place, and return them: their periodic parts."""
     for i, slope in enumerate(slopes):
         arguments[i] += np.multiply(argument, slope, out=spare)
     return arguments
@@ -197,7 +197,7 @@ def moduli_of(parts: Array) -> Array:
 
 
 def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> None:
-    """Write the value of two coefficients at least, the lowest power first."""
+    """Write the value of a polynomial with at least two coefficients, the lowest power first."""
     np.multiply(x, coefficients[-1], out=value)
     for coefficient in coefficients[-2:0:-1]:
         value += coefficient
@@ -206,7 +206,7 @@ def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> 
 
 
 class SeriesFromStart(NamedTuple):
-    """The theta series of a motion, counted from the turning point that is nearest to its start."""
+    """The theta series of a motion, counted from the turning point nearest to its start."""
 
     series: Series
     frames: list[Frame]
@@ -214,13 +214,13 @@ class SeriesFromStart(NamedTuple):
     first_is_upper: bool
     """Whether that turning point is u1."""
     offset: Value
-    """Steps, each of them half a period, from there to the start: at most 1/2 either way."""
+    """Steps of half a period from that turning point to the start, from -1/2 to 1/2."""
     starts: tuple[Value, Value]
     """The arguments of X and Y at the start."""
 
 
 def series_from_start(ar: Any, c: ThetaConstants) -> SeriesFromStart:
-    """Return the series that some constants have, counted from next to the start."""
+    """Return the series of some constants, counted from the turning point nearest to the start."""
     series = theta_series(ar, c)
     nearest = ar.nint(c.offset * 2)
     offset = c.offset * 2 - nearest
@@ -230,7 +230,7 @@ def series_from_start(ar: Any, c: ThetaConstants) -> SeriesFromStart:
 
 
 def greatest_argument(ar: Any, series: Series) -> Any:
-    """Return what s, sin^2 or sinh^2, is at most where a step ends, half of `scale` from 0."""
+    """Return the greatest s, sin^2 or sinh^2: at the end of a step, half of `scale` from 0."""
     return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
 
 
@@ -271,9 +271,9 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
 
 
 def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
-    """Return the frame in doubles, without the coefficients that are too small to matter."""
+    """Return the frame in doubles, without negligible coefficients."""
     greatest = greatest_argument(ar, series)
-    # X and Y may have any size in common: one that keeps the smallest and the largest in doubles
+    # X and Y may have any common factor: it keeps the smallest and largest coefficient in range
     parts = (frame.x.real, frame.x.imag, frame.y.real, frame.y.imag)
     size = ar.convert(2) ** math.frexp(float(max(abs(part[0]) for part in parts)))[1] / _SIZE
 
@@ -288,7 +288,7 @@ def _rounded(ar: Any, frame: Frame, series: Series) -> Frame:
 
 
 def count_needed(sizes: Sequence[Decimal], greatest: Decimal, negligible: Decimal) -> int:
-    """Return how many coefficients, two at least, matter beside the first to an argument."""
+    """Return the number of coefficients, at least two, that are needed up to an argument."""
     count = len(sizes)
     while count > 2 and sizes[count - 1] * greatest ** (count - 1) <= negligible * sizes[0]:
         count -= 1

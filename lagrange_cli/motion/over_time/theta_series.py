@@ -1,15 +1,15 @@
 """The theta series of the attitude as polynomials: coefficients in many digits, then doubles.
 
-X = cos(theta/2) exp(i (psi + phi)/2) goes as theta2(x - i s+ y+) and
-Y = sin(theta/2) exp(i (psi - phi)/2) as theta1(x - i s- y-), with x = pi t/T counted from a passage
-of u1.  While K <= K' the series run in the nome q; beyond, Jacobi's imaginary transformation gives
-series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so four terms are enough for
-doubles.  The phase is counted from the nearer of u1 and u2: no argument is ever near the end of
-its branch, and none can leap there.
+X = `cos(theta/2) exp(i (psi + phi)/2)` is proportional to theta2(x - i s+ y+), and Y =
+`sin(theta/2) exp(i (psi - phi)/2)` to theta1(x - i s- y-).  Here x = pi t/T is counted from a
+passage of u1.  If K <= K', the series use the nome q.  Otherwise Jacobi's imaginary transformation
+gives series in q' = exp(-pi K/K').  The nome in use is at most exp(-pi), so that four terms are
+enough for doubles.  The phase is counted from the nearer of u1 and u2.  Arguments therefore stay
+away from the end of their branch and cannot jump.
 
-S is sin x or sinh x, C is cos x or cosh x, and s is S^2.  A cos 2nx is a polynomial in s,
-cos(2n+1)x is C times one, sin(2n+1)x is S times one, and sin 2nx is S C times one; one recurrence
-gives all four families, and the hyperbolic ones are the same with -s.
+S is sin x or sinh x, C is cos x or cosh x, and s is S^2.  The functions cos 2nx, cos(2n+1)x,
+sin(2n+1)x and sin 2nx are 1, C, S and S C times a polynomial in s.  One recurrence gives all four
+families.  The hyperbolic families are the same with -s.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from ...arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
 
 Coefficients = list[Any]
-"""Coefficients in s, the lowest power first."""
+"""Coefficients of a polynomial in s, the lowest power first."""
 
 Family = tuple[tuple[int, ...], tuple[int, ...]]
-"""The first two of a family of polynomials in s, which give the others."""
+"""The first two of a family of polynomials in s, which determine the others."""
 COS_ODD, SIN_ODD = ((1,), (1, -4)), ((1,), (3, -4))
 COS_EVEN, SIN_EVEN = ((1,), (1, -2)), ((0,), (2,))
 
 TERMS = 4
-"""Enough for doubles."""
+"""Terms of the series that are enough for doubles."""
 
 
 class Component(NamedTuple):
     """X or Y about one turning point.
 
-    Real and imaginary part are C P(s) and S Q(s), or P(s) and S C Q(s) where `even`.
+    The real and imaginary parts are C P(s) and S Q(s), or P(s) and S C Q(s) if `even`.
     """
 
     real: Coefficients
@@ -44,7 +44,7 @@ class Component(NamedTuple):
 
 
 Components = tuple[Component, Component]
-"""theta2 and theta1 for one of X, Y."""
+"""The series theta2 and theta1 of X or Y."""
 
 
 class Frame(NamedTuple):
@@ -56,20 +56,20 @@ class Frame(NamedTuple):
 
 
 class SquaredRatio(NamedTuple):
-    """A number eta from 0 to K', by sn^2(eta, k') and cn^2(eta, k') with any common factor."""
+    """A number eta from 0 to K', as sn^2(eta, k') and cn^2(eta, k') up to a common factor."""
 
     s2: Value
     c2: Value
 
 
 class ThetaConstants(NamedTuple):
-    """What the series need to know of a nutating top."""
+    """The constants of a nutating top in its series."""
 
     period: Value
     quarter: Value
     """K."""
     quarter_prime: Value
-    """K'; None where it is infinite (no torque)."""
+    """K'; None without torque, as it is then infinite."""
     m: Value
     """k^2."""
     k: Value
@@ -81,26 +81,26 @@ class ThetaConstants(NamedTuple):
     x_size: Value
     """|X| at u1, which is cos(theta_min/2)."""
     y_size: Value
-    """|Y| at u2, sin(theta_max/2), times sqrt(k') as theta3(x)/theta3(0) shrinks on the way."""
+    """|Y| at u2, sin(theta_max/2), times sqrt(k'), the ratio of theta3 at u2 and at u1."""
     sign_plus: Value
     sign_minus: Value
     offset: Value
     """Periods since the nearest passage of u1, at t = 0."""
     rises: int
-    """Sign of the nutation rate at t = 0; +1 where it is 0."""
+    """Sign of the nutation rate at t = 0; +1 if the rate is 0."""
     nutation: Value
-    """-du/dt near a passage of u1 is `nutation` times the phase x; None where it is not needed."""
+    """-du/dt over the phase x near a passage of u1; None if it is not needed."""
 
 
 class Series(NamedTuple):
-    """The series about u1 and about u2, in the caller's digits; a step is half a period."""
+    """The series about u1 and about u2, in the caller's precision; a step is half a period."""
 
     hyperbolic: bool
     frames: list[Frame]
     scale: Value
     """Argument of the functions per step of the phase."""
     spin_slope: Value
-    """What the spin has over its mean growth per step; the series winds by as much less."""
+    """Slope per step that is added to the spin of the series to make it periodic."""
     precession_slope: Value
 
 
@@ -111,7 +111,7 @@ def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERM
 
 
 def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
-    """Return the series in q, which wind by +-pi over a period."""
+    """Return the series in q, whose arguments change by +-pi over a period."""
     weights = _weights(ar, nome(ar, m=c.m, k_prime=c.k_prime), 2, terms)
     plus, minus = (
         hyperbolic_cosine_and_sine(ar, m=c.m, k_prime=c.k_prime, s2=place.s2, c2=place.c2)
@@ -179,12 +179,13 @@ def _circular_components(
 def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Value]:
     """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2.
 
-    What the series leave out, of N terms in a nome q <= 1/20, is added to the first two weights,
-    which multiply constants: |y| <= log(1/q)/2 in circular series, and |z| <= 3 log(1/q)/8 in
-    hyperbolic ones, as no phase is beyond 3/4.  |sin jx| <= j |sin x|, sinh jx <= j e^((j-1) x)
-    sinh x and cosh jx <= e^((j-1) x) cosh x for x >= 0, so that a term, over the constant that the
-    weight multiplies, is at most 2 (2n+1)^2 q^(n(n-1)); from n = 1 on each of these is less than
-    half of the one before, and all from n = N are at most 4 (2N+1)^2 times the last weight.
+    The truncation error of N terms in a nome q <= 1/20 is added to the first two weights, which
+    multiply constants.  In circular series |y| <= log(1/q)/2.  In hyperbolic series |z| <= 3
+    log(1/q)/8, because no phase exceeds 3/4.  For x >= 0, `|sin jx| <= j |sin x|`, `sinh jx <= j
+    e^((j-1) x) sinh x` and `cosh jx <= e^((j-1) x) cosh x`.  A term over the constant that its
+    weight multiplies is therefore at most 2 (2n+1)^2 q^(n(n-1)).  From n = 1 on, each bound is less
+    than half of the one before.  The sum of all terms from n = N on is thus at most 4 (2N+1)^2
+    times the last weight.
     """
     weights, power = [0 * q + 1], q if first == 1 else q * q
     for _ in range(terms - 1):
@@ -224,7 +225,7 @@ def _hyperbolic_components(
 
 
 def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients:
-    """Return theta1(2x) over S C, so scaled that it goes as nutation * x at first."""
+    """Return theta1(2x) over S C, scaled such that theta1(2x) begins with nutation * x."""
     if nutation is None:
         return []
     terms = [0 * nutation] * (2 * len(weights))
@@ -236,7 +237,7 @@ def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients
 def summed(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Coefficients:
     """Return a weighted sum of the polynomials of a family, times a unit.
 
-    The curvature is 1 for sines and cosines, -1 for hyperbolic ones.
+    The curvature is 1 for circular functions, -1 for hyperbolic ones.
     """
     total: Coefficients = [0 * unit] * len(weights)
     for weight, coefficients in zip(weights, _polynomials(family, len(weights)), strict=True):
@@ -258,21 +259,21 @@ def _polynomials(family: Family, count: int) -> list[list[int]]:
 
 
 def alternated(terms: list[Value]) -> list[Value]:
-    """Return terms with every second sign changed, the first one kept."""
+    """Return terms with every second sign changed, starting with the second."""
     return [-term if n % 2 else term for n, term in enumerate(terms)]
 
 
 def doubled(cos: Value, sin: Value, curvature: int) -> tuple[Value, Value]:
-    """Return cosine and sine of twice an angle, or the hyperbolic ones for a curvature of -1."""
+    """Return cosine and sine of twice an angle; hyperbolic functions for a curvature of -1."""
     return 1 - 2 * curvature * sin * sin, 2 * sin * cos
 
 
 def multiples(
     first: tuple[Value, Value], step: tuple[Value, Value], curvature: int, count: int
 ) -> tuple[list[Value], list[Value]]:
-    """Return cosines and sines of first, first + step, first + 2 step ..., by those of both.
+    """Return cosines and sines of first, first + step, first + 2 step ..., from those of both.
 
-    A factor that all the sines, or all the cosines, have in common keeps its digits.
+    A common factor of all sines, or of all cosines, keeps its digits.
     """
     cosines, sines = [first[0]], [first[1]]
     for _ in range(count - 1):

@@ -1,4 +1,4 @@
-"""Times of a table: what is asked for, the grid that suits a motion, times that name a phase."""
+"""Times of a table: requests, grids for a motion, and the check that times are in range."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DEFAULT_ROWS = 101
 
 
 class TableRequest(NamedTuple):
-    """What to tabulate of every top."""
+    """The times and columns to tabulate for every top."""
 
     times: Callable[[Any], Points]
     """Returns the times for a motion."""
@@ -26,7 +26,7 @@ class TableRequest(NamedTuple):
     radians: bool
     wrap: bool
     rows_per_top: int | None
-    """Their number, where the options tell it."""
+    """The number of times, if it is known from the options."""
     same: bool
     """Whether all tops have the same times."""
 
@@ -53,8 +53,8 @@ def grid(
 ) -> EvenPoints:
     """Return n times from t_min to t_max, or as many steps dt as fit, counted exactly.
 
-    By default one nutation period (or a unit of time where there is none) from 0, 101 times.
-    Raises LagtopError for an interval, a number or a step that makes no grid of 1 to 1e9 rows.
+    The default is 101 times over one nutation period from 0, or over a unit of time if the motion
+    has no period.  Raises LagtopError unless the interval, n and dt give a grid of 1 to 1e9 rows.
     """
     t_min = Fraction(0) if t_min is None else t_min
     t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
@@ -78,8 +78,8 @@ def grid(
 def check_times(times: Array, most: float, name: str = "t") -> float:
     """Return the greatest |t|.
 
-    Raises LagtopError, by the `name` of the argument, if a time is not finite or beyond the last
-    that names a phase.
+    Raises LagtopError, with the `name` of the argument, if a time is not finite, or so large that
+    its phase is lost.
     """
     if not times.size:
         return 0.0

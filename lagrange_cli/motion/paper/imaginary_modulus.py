@@ -1,10 +1,11 @@
-"""Section 4 g to l: the motion by functions of the imaginary modulus kappa, before it is made real.
+"""Section 4 g to l: the motion by functions of the imaginary modulus kappa.
 
-With xi = sn(eta, kappa) the cosine is u1 - (u1 - u2) xi^2, and spin and precession are functions
-Pi01 of two parameters alpha1 and alpha2.  The text evaluates none of this; here each function of
-kappa = i k_bar is computed by the text's own transformations to the modulus k = k_bar k', as
-sn(v, kappa) = k' sd(v/k', k), (3,4) and (3,5).  All numbers are those of an mpmath context;
-equation numbers are Chrapan's, and sigma is the sign of r0, which he takes to be positive.
+With xi = sn(eta, kappa) the cosine is u1 - (u1 - u2) xi^2.  Spin and precession are functions Pi01
+of two parameters alpha1 and alpha2.  The paper does not evaluate these functions.  This module
+computes each function of kappa = i k_bar by the paper's own transformations to the modulus k =
+k_bar k'. Examples are sn(v, kappa) = k' sd(v/k', k), (3,4) and (3,5).  All numbers belong to an
+mpmath context.  Equation numbers are Chrapan's. sigma is the sign of r0, which he takes as
+positive.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class SnCnDn(NamedTuple):
-    """The functions sn, cn, dn at one place, or their squares."""
+    """The functions sn, cn, dn at one argument, or their squares."""
 
     sn: Any
     cn: Any
@@ -31,7 +32,7 @@ class SnCnDn(NamedTuple):
 
 
 class ImaginaryForm:
-    """The motion of a top released from rest, by the imaginary modulus of section 4 g."""
+    """The motion of a top released from rest, with the imaginary modulus of section 4 g."""
 
     def __init__(self, ar: ManyDigits, *, a: Any, r0: Any, u1: Any, u2: Any, u3: Any) -> None:
         """Take a context, a of (4,4), the spin rate and the roots of (4,9)."""
@@ -101,7 +102,7 @@ class ImaginaryForm:
     def at_parameters(self) -> tuple[SnCnDn, SnCnDn]:
         """The functions sn, cn, dn at alpha1 and at alpha2, from the roots (4 i).
 
-        The text gives the squares and takes positive roots; of alpha2 = alpha1 + iK', sn and dn
+        The paper gives the squares and takes positive roots.  At alpha2 = alpha1 + iK', sn and dn
         are negative.
         """
         first, second = (
@@ -112,8 +113,8 @@ class ImaginaryForm:
     def pi01(self, t: Any) -> tuple[Any, Any]:
         """Return Pi01(eta, alpha1, kappa) and Pi01(eta, alpha2, kappa) at a time.
 
-        By (3,4), and (3,3) with (3,5): modulo i pi they are continuous in t and their sum is 0
-        at t = 0.
+        The functions follow from (3,4), and (3,3) with (3,5).  Modulo i pi they are continuous in
+        t, and their sum is 0 at t = 0.
         """
         w, parameter = self.eta(t) / self.modulus.k_prime, self.ar.mpc(0, self.alpha)
         first, second = (
@@ -133,13 +134,13 @@ class ImaginaryForm:
 
 
 def imaginary_form(motion: Motion, digits: int = 30) -> ImaginaryForm:
-    """Return the imaginary form of a motion, in numbers of so many digits and a few more.
+    """Return the imaginary form of a motion, in numbers with a few more than `digits` digits.
 
-    Raises LagtopError for a top that does not spin, nutate and start from rest.
+    Raises LagtopError unless the top spins and nutates after release from rest.
     """
     if motion.roots_sum is None or not motion.top.r0:
         raise LagtopError(
-            "the imaginary form must be of a top that spins and nutates after release from rest, "
+            "for the imaginary form the top must spin and nutate after release from rest, "
             f"got {motion.top}"
         )
     ar = ManyDigits(digits + 10)

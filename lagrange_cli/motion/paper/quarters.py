@@ -1,12 +1,11 @@
 """Sections 4 to 7 on request: constants of the motion, angles after half a period, and quarters.
 
-The constants of the motion and of its cubic (4 d, 4 e) exist for any start; the start of the text
-is at rest, where c1 = mgs u1, c2 = C r0 u1 and D = b^4 - 4 a b^2 u1 + 4 a^2.
-
-Only a top that nutates has angles and mean rates of parts of a period.  Quarters are counted from a
-passage of u1: the first and the last are next to u1, the other two next to u2, and by symmetry the
-two of a kind have the same mean rates, but for the sign of the nutation.
-Equation numbers in parentheses are Chrapan's.
+The constants of the motion and of its cubic (4 d, 4 e) exist for any start.  The paper starts at
+rest.  Then `c1 = mgs u1`, `c2 = C r0 u1` and `D = b^4 - 4 a b^2 u1 + 4 a^2`.  Only a nutating top
+has angles and mean rates of parts of a period.  Quarters are counted from a passage of u1: the
+first and the last are next to u1, the other two next to u2.  By symmetry, both quarters of a pair
+have the same mean rates, except for the sign of the nutation.  Equation numbers in parentheses are
+Chrapan's.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ rate_key = partial(key, "Mean rates of the quarters", unit="rad/time")
 
 
 class EnergyMomentum(Generic[R]):
-    """Constants of one motion, from its kind; None where the motion has none."""
+    """Constants of one motion, from its kind; None if the motion has no such constant."""
 
     def __init__(self, kind: Kind[R], exact: Exact) -> None:
         self.kind, self.exact, self.ar = kind, exact, kind.ar
@@ -60,7 +59,7 @@ class EnergyMomentum(Generic[R]):
         "α (4,4)", "energy constant over A/2", "1/time²", "(4,4)", formula="2*energy_without_spin/A"
     )
     def energy_constant(self) -> R:
-        """The constant alpha = 2 c1/A (4,4), which is not the parameter alpha of (1,6)."""
+        """The constant alpha = 2 c1/A (4,4), distinct from the parameter alpha of (1,6)."""
         return self.state.energy + self.state.a * self.state.cos
 
     @constant_key("β (4,5)", "momentum over A", "1/time", "(4,5)", formula="Lz/A")
@@ -72,56 +71,56 @@ class EnergyMomentum(Generic[R]):
         "D", "discriminant, (a (u3 - u2))²", "1/time⁴", "(4,10)", formula="(a*(u3 - u2))**2"
     )
     def discriminant(self) -> R:
-        """The discriminant of f(u)/(u1 - u) (4,10), at least (b^2 - 2a)^2 after rest."""
+        """The discriminant of f(u)/(u1 - u) (4,10); at least (b^2 - 2a)^2 after rest."""
         return self.gaps.a_u3_u2 * self.gaps.a_u3_u2
 
     @constant_key(
         "f(1)", "u'² of (4,9) upright", "1/time²", "(4,9)", formula="-(momentum_constant - b)**2"
     )
     def f_upright(self) -> R:
-        """The cubic (4,9) at u = 1, -(beta - b)^2: negative, or 0 where 1 is a root."""
+        """The cubic (4,9) at u = 1, -(beta - b)^2: negative, or 0 if 1 is a root."""
         return 0 - self.gaps.beta_minus_b * self.gaps.beta_minus_b
 
     @constant_key(
         "f(-1)", "u'² of (4,9) hanging", "1/time²", "(4,9)", formula="-(momentum_constant + b)**2"
     )
     def f_hanging(self) -> R:
-        """The cubic (4,9) at u = -1, -(beta + b)^2: negative, or 0 where -1 is a root."""
+        """The cubic (4,9) at u = -1, -(beta + b)^2: negative, or 0 if -1 is a root."""
         return 0 - self.gaps.beta_plus_b * self.gaps.beta_plus_b
 
     @constant_key(
         "f'(u1)", "slope of (4,9) at u1", "1/time²", "(4,9)", formula="-a*(u1 - u2)*(u3 - u1)"
     )
     def f_slope_u1(self) -> R:
-        """The slope of (4,9) at u1, -a (u1 - u2)(u3 - u1): after rest -a sin^2 theta0."""
+        """The slope of (4,9) at u1, -a (u1 - u2)(u3 - u1); -a sin^2 theta0 after rest."""
         return 0 - self.gaps.a_u3_u1 * self.gaps.u1_u2
 
     @constant_key("a u2 u3", "has the sign of u2", "1/time²", "(4,12)", formula="a*u2*u3")
     def u2_criterion(self) -> R | None:
-        """The number a u2 u3, after rest b^2 u1 - a (4,12); None where there is no u3."""
+        """The number a u2 u3, which is b^2 u1 - a (4,12) after rest; None without a u3."""
         if "u3" in self.kind.lacks:
             return None
         return self.kind.u2 * (self.state.a + self.gaps.a_u3_above)
 
 
 class Turned(NamedTuple, Generic[R]):
-    """Angles in radians by which spin and precession have grown."""
+    """The increments of spin and precession in radians."""
 
     phi: R
     psi: R
 
 
 class Quarters(EnergyMomentum[R]):
-    """Angles and mean rates of parts of a period; None where there is no period, or on a pole."""
+    """Angles and mean rates of parts of a period; None without a period, or on a pole."""
 
     @quantity
     def nutating(self) -> Nutating[R] | None:
-        """The kind, if it nutates."""
+        """The motion if it nutates, else None."""
         return self.kind if isinstance(self.kind, Nutating) else None
 
     @quantity
     def over_half(self) -> Turned[R] | None:
-        """The growth in half a period; half of the mean growth from a turning point."""
+        """The increments in half a period; from a turning point, the mean rates times T/2."""
         kind = self.nutating
         if kind is None or kind.precession_rate_half is None:
             return None
@@ -136,7 +135,7 @@ class Quarters(EnergyMomentum[R]):
 
     @quantity
     def over_quarter(self) -> Turned[R] | None:
-        """The growth in the quarter that follows a passage of u1; None over a pole."""
+        """The increments in the quarter after a passage of u1; None over a pole."""
         kind = self.nutating
         if kind is None or self.facts.over_bottom or self.facts.upper_root == 1:
             return None

@@ -1,8 +1,8 @@
 """Keys on request: numbers of a motion that are not part of its record.
 
-They are declared like those of the record, where their formulas stand: sections 4 to 7 in
-`quarters`, section 8 in `worked_example`, and elementary theory in `textbook`.  None of these is
-imported before one of their keys is asked for.
+Each key is declared with its formula, like the keys of the record.  `quarters` has those of
+sections 4 to 7, `worked_example` those of section 8, and `textbook` those of elementary theory.
+These modules are imported only when one of their keys is requested.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from .worked_example import WorkedExample
 __all__ = ["REQUESTED", "TEXTBOOK", "Textbook", "WorkedExample", "requested_fractions"]
 
 REQUESTED = keys_of(WorkedExample) | TEXTBOOK
-"""The keys and how they are shown."""
+"""The keys on request and their declarations."""
 
 
 def requested_fractions(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys on request that are known as fractions."""
+    """Return the keys on request whose values are known as fractions."""
     known = rational_keys(exact)
     keys = {"spin_share": 1 - Fraction(exact.top.C) / (2 * Fraction(exact.top.A))}
     keys |= _constants(exact) | textbook_fractions(exact)
@@ -36,7 +36,7 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
             keys[f"{angle}_period_deg"] = Fraction(0)
         if known.get(rate) == 0 and even:
             keys[f"{angle}_half_deg"] = Fraction(0)
-        if exact.facts.plane:  # whole half turns: what does not show itself is 0
+        if exact.facts.plane:  # a multiple of half turns: 0 if enclosures cannot decide
             keys[f"{angle}_half_deg"] = Fraction(0)
     if exact.facts.at_rest and exact.a:
         total = exact.b * exact.b / exact.a
@@ -47,7 +47,7 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
 
 
 def by_rational_u1(exact: Exact, u1: Fraction) -> dict[str, Fraction | None]:
-    """Return the keys that are polynomials of the root u1 (4,9), for a u1 that is a fraction.
+    """Return the keys that are polynomials in the root u1 (4,9), for a u1 that is a fraction.
 
     The cubic is a u^3 - (alpha + b^2) u^2 + (2 beta b - a) u + alpha - beta^2.
     """
@@ -61,7 +61,7 @@ def by_rational_u1(exact: Exact, u1: Fraction) -> dict[str, Fraction | None]:
 
 
 def _constants(exact: Exact) -> dict[str, Fraction]:
-    """Return what is rational of the constants of section 4."""
+    """Return the constants of section 4 that are rational."""
     steady = exact.facts.steady
     keys = {"f_slope_u1": Fraction(0)} if steady or exact.facts.regime == "separatrix" else {}
     if exact.psi_rate is None:

@@ -1,7 +1,7 @@
-"""The elementary theory of the top on request: stability, steady precession, fast tops.
+"""Keys on request of the elementary theory: stability, steady precession, fast tops.
 
-With a = 2mgs/A (4,4) and b = C r0/A (4,5) all of it depends on a, b, the tilt and A/C alone, so
-that it needs no solution of the motion.
+The keys depend only on a = 2mgs/A (4,4), b = C r0/A (4,5), the tilt and A/C. They need no solution
+of the motion.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ rate_key = partial(elementary_key, unit="rad/time")
 
 
 class Textbook(Over[R]):
-    """Numbers of the elementary theory of any start; None where there is no such number."""
+    """Numbers of the elementary theory for any start; None if a number does not exist."""
 
     def __init__(self, ar: Arithmetic[R], exact: Exact, start: State[R]) -> None:
         self.ar, self.exact, self.steady = ar, exact, SteadyRates(exact.a, exact.b, exact.cosine)
@@ -66,7 +66,7 @@ class Textbook(Over[R]):
         formula="m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
     )
     def steady_rate_fast(self) -> R | None:
-        """The root of larger size; None at 90 degrees, where it is infinite."""
+        """The root of larger size of this equation; None at 90 degrees, where it is infinite."""
         return self._steady(FAST)
 
     def _steady(self, word: str) -> R | None:
@@ -83,7 +83,7 @@ class Textbook(Over[R]):
     def r0_steady_min(self) -> R:
         """The least total spin rate 2 sqrt(A mgs cos(theta))/C of a steady precession at the tilt.
 
-        It is 0 from 90 degrees on.
+        The rate is 0 from 90 degrees on.
         """
         if self.exact.cosine.sign(U) < 0:
             return 0 * self.a
@@ -105,12 +105,12 @@ class Textbook(Over[R]):
 
 
 TEXTBOOK = keys_of(Textbook)
-"""The keys of this module and how they are shown."""
+"""The keys of this module and their declarations."""
 
 
 STEADY_KEYS = frozenset({"steady_rate_slow", "steady_rate_fast"})
 WITH_RATIO = frozenset({"r0_sleeping", "r0_steady_min"})
-"""The keys that A/C is a factor of."""
+"""The keys that have the factor A/C."""
 
 
 def ratio_of(exact: Exact) -> Fraction:
@@ -119,7 +119,7 @@ def ratio_of(exact: Exact) -> Fraction:
 
 
 def textbook_fractions(exact: Exact) -> dict[str, Fraction]:
-    """Return the keys of this module that are known as fractions."""
+    """Return the keys of this module whose values are known as fractions."""
     a, b, u, ratio = exact.a, exact.b, exact.cosine.rational, ratio_of(exact)
     steady, side = SteadyRates(a, b, exact.cosine), exact.cosine.sign(U)
     sleeping = rational_root(2 * a)

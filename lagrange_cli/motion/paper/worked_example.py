@@ -1,7 +1,7 @@
-"""Section 8: the steps by which the worked example is computed, for any release from rest.
+"""Section 8: the steps of the worked example, for any release from rest.
 
-Each step is a number of the record or one of those on request, under the symbol and the equation
-of the text; `CHAIN` has them in its order.
+Each step is a key of the record or a key on request, with the symbol and the equation of the paper.
+`CHAIN` lists the steps in the order of the paper.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ step_key = partial(key, "Steps of section 8")
 
 
 class WorkedExample(Quarters[R]):
-    """Steps of section 8; None where a top is not released from rest or does not nutate."""
+    """Steps of section 8; None unless the top nutates after release from rest."""
 
     @quantity
     def follows(self) -> bool:
-        """Whether the equations of the text hold: release from rest to a nutation."""
+        """Whether the equations of the paper hold: the top nutates after release from rest."""
         return self.nutating is not None and self.facts.at_rest
 
     @key(
@@ -33,7 +33,7 @@ class WorkedExample(Quarters[R]):
         formula="1 - C/(2*A)",
     )
     def spin_share(self) -> R:
-        """The share 1 - C/2A of the spin that grows steadily (6,1)."""
+        """The share 1 - C/2A of the uniform part of the spin (6,1)."""
         top = self.exact.top
         return self.ar.convert(1 - Fraction(top.C) / (2 * Fraction(top.A)))
 
@@ -143,9 +143,9 @@ CHAIN = {
         *("T_spin", "T_precession"),
     ],
 }
-"""Keys by the steps of section 8, in its order."""
+"""Keys by step of section 8, in the order of the paper."""
 
 
 def derivation_keys(*, radians: bool = False) -> list[str]:
-    """Return the keys of the steps of section 8, in its order."""
+    """Return the keys of the steps of section 8, in the order of the paper."""
     return [unit_name(name, radians=radians) for names in CHAIN.values() for name in names]

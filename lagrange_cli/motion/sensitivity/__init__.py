@@ -1,1 +1,1 @@
-"""Derivatives of the numbers and angles by the inputs, and uncertainties."""
+"""Derivatives of numbers and angles with respect to the inputs, and uncertainties."""

@@ -1,11 +1,11 @@
 """Exact derivatives of the angles over time by the inputs of a top.
 
-They are those of the closed form, not of neighbouring motions, and grow with time where rates
-differ.  Next to a steady precession they are small nutations; over a pole, along the vertical and
-on the separatrix some do not exist, or are not computed: these are NaN.
+The closed form is differentiated, not neighbouring motions.  Derivatives grow with time if rates
+depend on the input.  Next to a steady precession they are small nutations.  Over a pole, on the
+vertical and on the separatrix some derivatives do not exist or are not computed: these are NaN.
 
-Next to the separatrix and to the poles the parts of a derivative by series may cancel.  How much
-they lose is known from their sizes, and what loses too much is computed in many digits.
+Next to the separatrix and to the poles the parts of a derivative may cancel.  Their sizes bound the
+loss of digits, and a derivative that loses too many is computed in high precision.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ from .steady_neighbours import SteadyDerivatives
 from .uncertainty import by_given
 
 _DIGITS = 48
-"""Digits of the constants of series, if nothing is small."""
+"""Digits of the constants of the series, if no number is small."""
 _LOST = 1e-15
-"""The error of a derivative by series over the sizes of its parts: the worst seen is 2e-16."""
+"""Bound of the error of a derivative over the sizes of its parts; the worst seen is 2e-16."""
 
 _IN_THE_PLANE = [PARAMETERS.index(name) for name in ("a", "tilt", "theta_rate")]
-"""Along these a motion in a plane stays in it."""
+"""The parameters along which a motion in a plane stays in it."""
 
 _FEW_DIGITS = 1e-6
-"""Tolerance of an uncertainty, which has few digits while a table may have many rows."""
+"""Tolerance of an uncertainty: few digits suffice, and a table may have many rows."""
 
 
 class AngleSensitivities(NamedTuple):
@@ -58,7 +58,7 @@ class AngleSensitivities(NamedTuple):
     """Names of the inputs, in the order of the last axis."""
     angles: Angles
     theta: Array
-    """Derivatives of the tilt: one more axis than the times, for the inputs."""
+    """Derivatives of the tilt; the last axis runs over the inputs."""
     phi: Array
     psi: Array
 
@@ -68,11 +68,11 @@ def angle_sensitivities(
 ) -> AngleSensitivities:
     """Return the angles of a top at the times t, and their derivatives by inputs (default: all).
 
-    Angles are in radians, unwrapped; a derivative by `theta0_deg` is per degree.  Each derivative
-    is within 1e-12 times the condition number of the angle, which is 1 rad and how far it moves by
-    all inputs, each by its size; times where this takes many digits take some milliseconds each.
-    Derivatives that do not exist are NaN.  Raises LagtopError for an unknown input or a time out of
-    reach.
+    Angles are in radians, unwrapped; a derivative by `theta0_deg` is per degree.  The error of a
+    derivative is at most 1e-12 times the condition number of the angle.  This is 1 rad plus the sum
+    of each input times its derivative, in size.  Times that need high precision take some
+    milliseconds each.  Derivatives that do not exist are NaN. Raises LagtopError for an unknown
+    input or a time out of range.
     """
     scene = exact(top)
     chain = by_inputs(scene)
@@ -96,7 +96,7 @@ def angle_sensitivities(
 
 
 def _chained_arrays(partials: Array, by: dict[str, Fraction]) -> Array:
-    """Return the derivatives by an input from those by the parameters that hang on it."""
+    """Return the derivatives by an input, from those by the parameters that depend on it."""
     total = np.zeros_like(partials[:, 0])
     for i, name in enumerate(PARAMETERS):
         if name in by:
@@ -107,8 +107,8 @@ def _chained_arrays(partials: Array, by: dict[str, Fraction]) -> Array:
 def sharp_partials(scene: Exact) -> Partials:
     """Return the derivatives of the gaps of a top with as many digits as its series need.
 
-    These are two for each order of magnitude by which something is small.  Raises LagtopError if no
-    precision tells the roots apart.
+    Each order of magnitude by which a number is small takes two more digits.  Raises LagtopError if
+    no precision separates the roots.
     """
 
     def sharp(digits: int) -> Partials:
@@ -121,7 +121,7 @@ def sharp_partials(scene: Exact) -> Partials:
 
 
 class Model(Protocol):
-    """Some motions next to a top."""
+    """A family of motions next to a top."""
 
     max_time: float
 
@@ -133,9 +133,9 @@ class AngleDerivatives:
     """The angles of one top over time and their derivatives by `PARAMETERS`."""
 
     def __init__(self, scene: Exact, tolerance: float = 1e-12) -> None:
-        """Take a scene, and how far derivatives may be off, over the condition number of an angle.
+        """Take a scene, and the tolerance of derivatives over the condition number of an angle.
 
-        Where the parts of one cancel beyond that, it takes some milliseconds per time.
+        If the parts of a derivative cancel beyond the tolerance, each time takes some milliseconds.
         """
         partials = sharp_partials(scene)
         near, facts = partials.near, scene.facts
@@ -155,9 +155,9 @@ class AngleDerivatives:
                 self.models.append((TorqueDerivatives(partials), [PARAMETERS.index("a")]))
         self.max_time = self.models[0][0].max_time
         self.known = {i for _, rows in self.models for i in rows}
-        """The places of the parameters by which the angles have derivatives."""
+        """The indices of the parameters with respect to which the angles have derivatives."""
         self.reason = partials.reason("an angle")
-        """Why they have none by the others, if there are others."""
+        """The reason why derivatives by the other parameters do not exist."""
 
     def at(self, t: Array) -> tuple[Array, Array]:
         """Return angles (3, times) and their derivatives (3, parameters, times)."""
@@ -181,7 +181,7 @@ class NutationDerivatives:
     ) -> None:
         """Take a motion, its tilt in the unit in use, and the parameters along which it is smooth.
 
-        The tolerance is that of a derivative over the condition number of its angle.
+        The tolerance of a derivative is relative to the condition number of its angle.
         """
         self.motion, self.rows, self.tolerance = motion, rows, tolerance
         self.series = SeriesDerivatives(motion, motion)
@@ -195,8 +195,8 @@ class NutationDerivatives:
     def at(self, t: Array) -> tuple[Array, Array]:
         """Return angles (3, times) and their derivatives (3, parameters, times).
 
-        In a plane spin and precession leap and are else constant: along the parameters that leave
-        the motion there their derivatives are 0, along the others they come from the series.
+        In a plane spin and precession are constant except for jumps.  Their derivatives are 0 along
+        the parameters that keep the motion in the plane.  The series give the other derivatives.
         """
         angles, derivatives, parts = self.series.at(t)
         smooth = 3
@@ -208,7 +208,7 @@ class NutationDerivatives:
         return angles, derivatives
 
     def _doubtful(self, derivatives: Array, parts: Array) -> Array:
-        """Return at which times a derivative may be beyond the tolerance."""
+        """Return a mask of the times at which a derivative may miss the tolerance."""
         sizes = self.sizes[self.rows, None]
         condition = 1.0 + (abs(derivatives[:, self.rows]) * sizes).sum(axis=1)
         error = _LOST * (parts[:, self.rows] * sizes).max(axis=1)
@@ -219,7 +219,7 @@ class NutationDerivatives:
         return nutating_pose(self.motion)
 
     def _in_digits(self, t: Array) -> Array:
-        """Return the derivatives in dual numbers, which takes some milliseconds per time."""
+        """Return the derivatives by dual numbers, which take some milliseconds per time."""
         found = np.zeros((3, len(PARAMETERS), t.size))
         ar = self.motion.ar
         with ar.working():
@@ -232,7 +232,7 @@ class NutationDerivatives:
 
 
 class TorqueDerivatives:
-    """Angles of a torque-free motion, of whose derivatives the one by a is right."""
+    """Angles of a torque-free motion; of their derivatives only the one by a is correct."""
 
     def __init__(self, partials: Partials) -> None:
         motion, means = middle_of(partials.generic), middle_of(partials.generic_means)
@@ -245,38 +245,38 @@ class TorqueDerivatives:
 
 
 class Spinning:
-    """Motions of which only the spin by r0 alone is told: the others part from them at once."""
+    """Motions from which neighbours depart at once; only the spin has a derivative, by r0."""
 
     def __init__(self, scene: Exact) -> None:
         self.sampler = Numbers(scene).sampler()
         self.max_time = self.sampler.max_time
 
     def at(self, t: Array) -> tuple[Array, Array]:
-        """Return angles, and their derivatives: the spin grows with r0, and nothing else does."""
+        """Return angles and their derivatives: only the derivative of the spin by r0 is not 0."""
         derivatives = np.zeros((3, len(PARAMETERS), t.size))
         derivatives[1, PARAMETERS.index("r0")] = t
         return np.array(self.sampler.angles(t)), derivatives
 
 
 class AngleStds:
-    """Uncertainties of tilt, spin and precession of a top, whose inputs are not correlated."""
+    """Uncertainties of tilt, spin and precession of a top with uncorrelated inputs."""
 
     def __init__(self, scene: Exact, stds: Mapping[str, float], given: Collection[str]) -> None:
-        """Take the uncertainties of the inputs as they were given, and the names of all inputs."""
+        """Take the uncertainties of the inputs as given, and the names of all given inputs."""
         self.neighbours, solved = AngleDerivatives(scene, _FEW_DIGITS), by_inputs(scene)
         inputs = by_given(DOUBLES, scene.top, given)
         self.moved = np.zeros((len(stds), len(PARAMETERS)))
-        """How far one uncertainty moves each parameter."""
+        """The change of each parameter by one standard uncertainty of each input."""
         for row, (name, std) in zip(self.moved, stds.items(), strict=True):
             for one, slope in inputs[name].items():
                 for i, by in enumerate(PARAMETERS):
                     row[i] += std * slope * float(solved[one].get(by, 0))
         used = set(np.flatnonzero(self.moved.any(axis=0)).tolist())
         self.reason = None if used <= self.neighbours.known else self.neighbours.reason
-        """Why there are no uncertainties after the start, where there are none."""
+        """The reason why uncertainties do not exist after the start, or None."""
 
     def at(self, t: Array) -> Array:
-        """Return the uncertainties in radians, of shape (3, times); NaN where there is none."""
+        """Return the uncertainties in radians, of shape (3, times); NaN if they do not exist."""
         with ARRAYS.working():
             _, derivatives = self.neighbours.at(t)
             square = np.zeros((len(ANGLES), t.size))

@@ -1,8 +1,8 @@
-"""The tops next to a top: its start and its gaps as dual numbers, with their partial derivatives.
+"""The neighbourhood of a top: its start and its gaps as dual numbers.
 
-The formulas know a top by six parameters: a, b, r0, the tilt and the two rates at the start.  What
-is exactly so at the top itself, such as u1 = u2, need not be so next to it; `Neighbourhood` says
-along which parameters it is not.  Equation numbers are Chrapan's.
+The formulas depend on six parameters: a, b, r0, the tilt and the two rates at the start.  An exact
+property of the top, such as u1 = u2, need not hold next to it.  `Neighbourhood` names the
+parameters along which it fails.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -21,32 +21,32 @@ from ..paper.textbook import STEADY_KEYS, WITH_RATIO, Textbook
 from ..regime import Exact, Facts, Regime
 
 PARAMETERS = ("a", "b", "r0", "tilt", "theta_rate", "psi_rate")
-"""What the partial derivatives are by; the tilt in degrees or radians, as it was given."""
+"""The variables of the partial derivatives; the tilt is in degrees or radians, as given."""
 
 
 _USUAL = 8
-"""Orders of magnitude that the digits of a neighbourhood have to spare."""
+"""Spare digits of a neighbourhood: orders of magnitude by which numbers may be small."""
 
 
 class Neighbourhood(Values):
-    """A top and those next to it, in dual numbers by `PARAMETERS`."""
+    """A top and its neighbours, in dual numbers by `PARAMETERS`."""
 
     ar: Duals
     facts: Facts
-    """What holds at the top, but for the release from rest: formulas for any start are in use."""
+    """Facts of the top with at_rest = False: the formulas for an arbitrary start are used."""
     state: State[Dual]
     """The start; without torque a is a constant 0."""
     gaps: Gaps[Dual]
     moved: State[Dual]
-    """The start, where a may leave 0, too."""
+    """The start, with a variable even if it is 0."""
     broken: frozenset[str]
     """The parameters along which the degenerate facts of the top do not hold."""
 
 
 def neighbourhood(exact: Exact, digits: int) -> Neighbourhood:
-    """Return the dual numbers of a top over balls of so many digits.
+    """Return the dual numbers of a top over balls of `digits` digits.
 
-    Raises TooFewDigitsError if these do not tell the roots apart.
+    Raises TooFewDigitsError if they do not separate the roots.
     """
     facts = exact.facts.replace(at_rest=False, cusp=False, drifts=False)
     ar = Duals(balls(digits))
@@ -59,9 +59,9 @@ def neighbourhood(exact: Exact, digits: int) -> Neighbourhood:
 
 
 def smallness(near: Neighbourhood) -> int:
-    """Return by how many orders of magnitude k^2, a gap or a rate is smaller than is usual.
+    """Return the orders of magnitude by which k^2, a gap or a rate is smaller than usual.
 
-    Gaps are those of the cosines, rates are compared with the fastest one; what is 0 is not small.
+    Gaps are distances of cosines, rates are relative to the fastest rate, and zeros do not count.
     """
     start, gaps = near.moved, near.gaps
     rates = [near.ar.plain.sqrt(start.a.value).least]
@@ -76,7 +76,7 @@ def smallness(near: Neighbourhood) -> int:
 def broken_by(exact: Exact) -> Iterable[str]:
     """Yield the parameters along which a degenerate fact of the top does not hold.
 
-    If the precession rate follows the other inputs, the motion stays steady along these.
+    If the precession rate is a function of the other inputs, the motion stays steady along them.
     """
     facts = exact.facts
     if exact.top.steady_word:
@@ -107,7 +107,7 @@ def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
     a, b, r0, tilt, theta_rate, psi_rate = independent(parameters)
 
     def turned(value: Ball, slope: Ball) -> Dual:
-        """Return a function of the tilt by its value and slope."""
+        """Return a function of the tilt from its value and slope."""
         return Dual(value) + tilt * Dual(slope * arc)
 
     cos = turned(plain.cos, -plain.sin)
@@ -136,7 +136,7 @@ def dual_state(ar: Duals, exact: Exact) -> State[Dual]:
 
 
 def generic_gaps(near: Neighbourhood) -> Gaps[Dual]:
-    """Return the gaps by the formulas of tops with nothing special, with the values of this top."""
+    """Return the gaps by the formulas of generic tops, with the values of this top."""
     facts = near.facts.replace(over_bottom=False, upper_root=0)
     with near.ar.working():
         gaps = gaps_from_start(near.ar, near.moved, facts, dual_root)
@@ -151,16 +151,17 @@ def dual_root(ar: Duals, c2: Dual, c1: Dual, c0: Dual, above: Dual) -> Dual:
 
 
 def moving_root(c3: Dual, c2: Dual, c1: Dual, c0: Dual, x: Ball) -> Dual:
-    """Return a simple root of a cubic whose value is known, by the implicit function theorem."""
+    """Return a simple root of a cubic, from its known value, by the implicit function theorem."""
     cubic = ((c3 * Dual(x) + c2) * Dual(x) + c1) * Dual(x) + c0
     slope = (3 * c3.value * x + 2 * c2.value) * x + c1.value
     return Dual(x, [-partial / slope for partial in cubic.partials or ()])
 
 
 def textbook_partials(exact: Exact, key: str, digits: int) -> dict[str, Ball] | None:
-    """Return the derivatives of a key of elementary theory, by a, b, the tilt and A/C.
+    """Return the derivatives of a key of elementary theory by a, b, the tilt and A/C.
 
-    They are NaN next to a root that is 0, where the key has a kink or grows without bound.
+    Derivatives are NaN if a square root in the formula is 0: the key then has a kink or an infinite
+    slope.
     """
     ar = Duals(balls(digits))
     book = Textbook(ar, exact, dual_state(ar, exact))
@@ -176,9 +177,9 @@ def textbook_partials(exact: Exact, key: str, digits: int) -> dict[str, Ball] | 
 
 
 def by_inputs(exact: Exact) -> dict[str, dict[str, Fraction]]:
-    """Return the derivatives of a = 2mgs/A, b = C r0/A, A/C and the start by each input, but for 0.
+    """Return the derivatives of a = 2mgs/A, b = C r0/A, A/C and the start by each input, without 0.
 
-    Only keys of elementary theory depend on A/C, which is none of `PARAMETERS`.
+    Only keys of elementary theory depend on A/C, which is not among `PARAMETERS`.
     """
     top = exact.top
     m, A, C, s, g = (Fraction(x) for x in (top.m, top.A, top.C, top.s, top.g))

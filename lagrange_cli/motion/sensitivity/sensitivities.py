@@ -1,8 +1,8 @@
-"""Exact derivatives of the record: how each number answers to a small change of each input.
+"""Exact derivatives of the numbers of the record with respect to the inputs.
 
-The formulas of the record are evaluated in dual numbers.  Where a motion is degenerate a number may
-have a kink or leap; then it has no derivative along some inputs, and `Sensitivities.reasons` says
-why.  Equation numbers are Chrapan's.
+The formulas of the record are evaluated in dual numbers.  In a degenerate motion a number may have
+a kink or a jump.  It then has no derivative along some inputs, and `Sensitivities.reasons` gives
+the reason.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
@@ -46,24 +46,24 @@ DIFFERENTIABLE = [*NUMBER_KEYS, *TEXTBOOK]
 
 
 class Sensitivities(Values):
-    """Derivatives of the numbers of a record by the inputs; NaN where there is none."""
+    """Derivatives of the numbers of a record by the inputs; NaN if one does not exist."""
 
     top: Top
     inputs: tuple[str, ...]
-    """The nine inputs; the tilt is in degrees or radians, as it was given."""
+    """The nine inputs; the tilt is in degrees or radians, as given."""
     derivatives: dict[str, dict[str, float]]
-    """By key and input, in the units of both; keys that the motion does not have are left out."""
+    """Derivatives by key and input, in the units of both, without keys that the motion lacks."""
     reasons: dict[str, str]
-    """Why a key has no derivative by some input, one sentence for each such key."""
+    """The reason why a key has no derivative by some input, in one sentence, by key."""
 
 
 def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivities:
     """Return the derivatives of all numbers of the record of a top by all inputs, or of some keys.
 
-    Those of elementary theory have derivatives too, if they are named.  Each derivative is the
-    nearest double, proved by an enclosure.  Angles are in degrees, by `theta0_rad` too.  Next to a
-    steady precession, over a pole or on the separatrix some numbers have a kink or leap: their
-    derivatives are NaN.  Raises LagtopError for an unknown key.
+    Keys of elementary theory have derivatives if they are named.  Each derivative is correctly
+    rounded, as proved by an enclosure.  Angles are in degrees, also in derivatives by `theta0_rad`.
+    In steady precession, over a pole or on the separatrix some numbers have a kink or a jump: their
+    derivatives are NaN. Raises LagtopError for an unknown key.
     """
     chosen = check_names("keys", list(NUMBER_KEYS if keys is None else keys), DIFFERENTIABLE)
     slopes = Slopes(exact(top))
@@ -85,9 +85,9 @@ class Slopes:
         self._partials: dict[int, Partials] = {}
 
     def at(self, digits: int) -> Partials:
-        """Return the derivatives by the parameters of the neighbourhood, with so many digits.
+        """Return the derivatives by the parameters of the neighbourhood, with `digits` digits.
 
-        Raises TooFewDigitsError if these do not tell the roots apart.
+        Raises TooFewDigitsError if they do not separate the roots.
         """
         if digits not in self._partials:
             self._partials[digits] = Partials(self.exact, digits)
@@ -98,16 +98,16 @@ class Slopes:
         return decided(key, lambda digits: self._by_parameters(key, digits)) is not None
 
     def _by_parameters(self, key: str, digits: int) -> dict[str, Ball] | None:
-        """Return the derivatives of a key by the parameters that it may depend on."""
+        """Return the derivatives of a key by the parameters on which it may depend."""
         if key in TEXTBOOK:
             return textbook_partials(self.exact, key, digits)
         partials = self.at(digits).of(key)
         return None if partials is None else dict(zip(PARAMETERS, partials, strict=True))
 
     def enclosure(self, key: str, by: Mapping[str, Ball | int], digits: int) -> Ball:
-        """Return a ball that holds the sum of derivatives by inputs, each with its weight.
+        """Return a ball that contains the sum of derivatives by inputs, each with its weight.
 
-        It is NaN where one of them does not exist, or where the motion has no such key.
+        The ball is NaN if one of them does not exist, or if the motion has no such key.
         """
         partials, ar = self._by_parameters(key, digits), balls(digits)
         if partials is None:
@@ -120,13 +120,13 @@ class Slopes:
         return total
 
     def derivative(self, key: str, name: str) -> float:
-        """Return the derivative of a key by an input, rounded to a double; NaN for none."""
+        """Return the correctly rounded derivative of a key by an input; NaN if there is none."""
         return rounded(f"a derivative of {key}", lambda x: self.enclosure(key, {name: 1}, x))
 
     def reason(self, key: str) -> str:
         """Return why a key has no derivative along some parameters."""
         if key in TEXTBOOK:
-            return f"{key} grows without bound, or has a kink, next to a root that is 0"
+            return f"{key} has an infinite slope or a kink, because a square root in it is 0"
         return decided(key, lambda digits: self.at(digits).reason(key))
 
 
@@ -134,20 +134,20 @@ class Partials:
     """Derivatives of the numbers of one motion by the parameters of its neighbourhood, in balls."""
 
     def __init__(self, scene: Exact, digits: int) -> None:
-        """Raise TooFewDigitsError if so many digits do not tell the roots apart."""
+        """Raise TooFewDigitsError if `digits` digits do not separate the roots."""
         self.exact, self.near = scene, neighbourhood(scene, digits)
         self._none = [self.near.ar.plain.convert(0)] * len(PARAMETERS)
         self._nan = self.near.ar.plain.nan
 
     def of(self, key: str) -> list[Ball] | None:
-        """Return the derivatives of a key by `PARAMETERS`, or None where the motion has no such."""
+        """Return the derivatives of a key by `PARAMETERS`, or None if the motion lacks the key."""
         kind = self._at_rest if key in _AFTER_REST else self.here
         if key in kind.lacks or is_endless(self.exact, key):
             return None
         value: Dual | None = getattr(kind, key)
         if value is None:
             return None
-        if key == "a":  # without torque it is a constant of the motion, but not of its neighbours
+        if key == "a":  # constant without torque, but not in the neighbours
             return list(self.near.moved.a.partials or ())
         beside = self._beside(key) if self.near.broken else []
         partials = []
@@ -164,17 +164,17 @@ class Partials:
         """Return why a key has no derivative along some parameters."""
         facts = self.exact.facts
         if facts.regime is Regime.SEPARATRIX:
-            return "next to the separatrix the nutation has a period, which leaps to infinity"
+            return "the period of the nutation is finite next to the separatrix and infinite on it"
         if facts.pole and facts.steady:
-            return "next to the vertical the tilt and both rates have a meaning of their own"
+            return "next to the vertical, unlike on it, the tilt and both rates are independent"
         if facts.steady:
-            return f"{key} has a kink: next to a steady precession the axis nods"
+            return f"{key} has a kink: next to a steady precession the axis nutates"
         if self._leaves(key):
-            return f"{key} is there after such a start only"
-        return f"{key} has a kink or leaps where the axis passes over a pole"
+            return f"{key} does not exist for neighbouring starts"
+        return f"{key} has a kink or a jump because the axis passes over a pole"
 
     def _leaves(self, key: str) -> frozenset[str]:
-        """Return the parameters along which a key is there at the top itself only."""
+        """Return the parameters along which a key exists only at the top itself."""
         if key in _AFTER_REST:
             return frozenset({"theta_rate", "psi_rate"})
         leaves = key == "u_quarter" and not self.exact.facts.pole
@@ -196,13 +196,13 @@ class Partials:
 
     @cached_property
     def generic(self) -> Any:
-        """The motions next to one that is free or passes over a pole."""
+        """The motions next to a torque-free one, or next to one that passes over a pole."""
         gaps = generic_gaps(self.near)
         return self._kind(self.near.moved, gaps, over_bottom=False, upper_root=0)
 
     @cached_property
     def generic_means(self) -> Any:
-        """Motions whose means are formed as if there were a torque."""
+        """Motions whose mean rates use the formulas for tops with torque."""
         generic = self.generic
         return self._kind(generic.state, generic.gaps, over_bottom=False, upper_root=0, free=False)
 
@@ -220,7 +220,7 @@ class Partials:
         kind = self._kind_beside(key)
         try:
             value: Dual | None = None if kind is None else getattr(kind, key)
-        except UndefinedError:  # the formula divides by 0
+        except UndefinedError:  # the formula divides by zero
             value = None
         if value is None or value.value.is_nan:
             return [self._nan] * len(PARAMETERS)
@@ -242,9 +242,9 @@ class Partials:
 
 
 class NearSteady(Steady[Dual]):
-    """Tops next to a steady precession, whose gaps are those of the mean (u1 + u2)/2.
+    """Tops next to a steady precession, whose gaps are measured from the mean (u1 + u2)/2.
 
-    To first order in the nutation the period and the mean rates are those at the mean.
+    To first order in the nutation, the period and the mean rates take their values at the mean.
     """
 
     @quantity
@@ -259,9 +259,9 @@ class NearSteady(Steady[Dual]):
 
 
 def mean_gaps(near: Neighbourhood) -> Gaps[Dual]:
-    """Return the gaps next to a steady precession, with (u1 + u2)/2 in the place of u1 and of u2.
+    """Return the gaps next to a steady precession, with (u1 + u2)/2 in place of u1 and of u2.
 
-    There c0 and c1 vanish, so that D = a (u3 - u0) = -c2 - a (x1 + x2) and x1 + x2 = c1/D.
+    In steady precession c0 = c1 = 0.  Hence D = a (u3 - u0) = -c2 - a (x1 + x2) and x1 + x2 = c1/D.
     """
     momentum, (_, c1, c2) = near.moved.momentum, cubic(near.moved)
     x = c1 / -c2 / 2
@@ -282,7 +282,7 @@ def mean_gaps(near: Neighbourhood) -> Gaps[Dual]:
 
 
 def lowest_gaps(near: Neighbourhood) -> Gaps[Dual]:
-    """Return the gaps next to the separatrix; only those of the simple root u2 are right."""
+    """Return the gaps next to the separatrix; only the gaps of the simple root u2 are correct."""
     c0, c1, c2 = cubic(near.moved)
     root = moving_root(near.moved.a, c2, c1, c0, -near.gaps.u_u2.value)
     below, above = near.moved.below + root, near.moved.above - root

@@ -1,8 +1,9 @@
 """The theta series of a nutating top and its derivatives by the parameters of its neighbourhood.
 
-X and Y about a turning point are polynomials in s, s = sin^2 z or sinh^2 z, with factors S and C
-(see `theta_series`).  Their coefficients, and what z = scale (2t/T + offset) is made of, are dual
-numbers; here they are rows of doubles, the value first and below it the derivatives.
+X and Y about a turning point are polynomials in s = sin^2 z or sinh^2 z, with factors S and C (see
+`theta_series`).  Their coefficients, and the constants of z = scale (2t/T + offset), are computed
+as dual numbers.  This module stores them as rows of doubles, the value first and the derivatives
+below it.
 """
 
 from __future__ import annotations
@@ -37,26 +38,26 @@ _NEGLIGIBLE = Decimal(2) ** -100
 
 
 class Rows(NamedTuple):
-    """Derivatives in rows, and the sizes of the parts that they are sums of."""
+    """Derivatives in rows, and the sizes of the summands of each."""
 
     slopes: Array
     sizes: Array
 
     @classmethod
     def of(cls, slopes: Array) -> Rows:
-        """Return derivatives that are no sums."""
+        """Return derivatives with a single summand."""
         return cls(slopes, abs(slopes))
 
     def __add__(self, other: Any) -> Rows:
         return Rows(self.slopes + other.slopes, self.sizes + other.sizes)
 
     def times(self, factor: Any, size: Array | None = None) -> Rows:
-        """Return the product with a factor, which may be a sum of parts of some `size`."""
+        """Return the product with a factor, whose summands may have a total `size`."""
         return Rows(self.slopes * factor, self.sizes * (abs(factor) if size is None else size))
 
 
 class Polynomials(NamedTuple):
-    """X or Y about one turning point, its coefficients in rows: value and derivatives."""
+    """X or Y about one turning point; coefficients are rows of value and derivatives."""
 
     real: Array
     imag: Array
@@ -76,7 +77,7 @@ class SeriesDerivatives:
     """Angles of a nutating top over time, and their derivatives by `PARAMETERS`."""
 
     def __init__(self, motion: Nutating[Dual], means: Nutating[Dual]) -> None:
-        """Take the constants from a motion, the mean rates from `means`."""
+        """Take the constants from a motion, and the mean rates from `means`."""
         ar: Any = motion.ar
         with ar.working():
             constants = theta_constants(
@@ -109,8 +110,8 @@ class SeriesDerivatives:
     def at(self, t: Array) -> tuple[Array, Array, Array]:
         """Return tilt, spin and precession at times, and their derivatives by the parameters.
 
-        Last come the sums of the sizes of the parts of each derivative: it is wrong by some eps of
-        these.  The shapes are (3, times) and, of the others, (3, parameters, times).
+        The last array has the sum of the sizes of the summands of each derivative; its error is a
+        few eps of the sum.  The shapes are (3, times), and (3, parameters, times) for both others.
         """
         farthest, space = float(np.max(np.abs(t), initial=0.0)), np.empty((3, t.size))
         step, since, lost = whole_periods(t, self.step, farthest, space, self.offsets[0])
@@ -136,10 +137,10 @@ class SeriesDerivatives:
         return angles, derivatives, sizes
 
     def _rates(self, step: Array, phase: Array, x2: Array, y2: Array) -> list[Array]:
-        """Return what tilt, spin and precession gain per step, of the latter less the mean growth.
+        """Return the rates of tilt, spin and precession per step, without the mean rates.
 
-        Last comes the size of the parts of the latter.  Formed from the width of the nutation, they
-        keep their digits where that is small.
+        The last array has the sizes of the summands of the rates of spin and precession.  The rates
+        are computed from the width of the nutation, so that they keep their digits if it is small.
         """
         z = phase * self.scales[0]
         S, C = (np.sinh(z), np.cosh(z)) if self.hyperbolic else (np.sin(z), np.cos(z))
@@ -177,7 +178,7 @@ def _in_doubles(
 ) -> tuple[list[tuple[Polynomials, Polynomials]], list[Array]]:
     """Return X and Y, and the rate of the tilt, about both turning points as rows of doubles.
 
-    Coefficients that are too small to matter are left out.
+    Negligible coefficients are omitted.
     """
     greatest = greatest_argument(ar, found.series).value
     leading = max(abs(c.real[0].value) for frame in found.frames for c in frame[:2])
@@ -196,7 +197,7 @@ def _in_doubles(
 
 
 def _component(component: Polynomials, z: Array, hyperbolic: bool) -> list[tuple[Array, Array]]:
-    """Return real and imaginary part, each in rows and with its derivative by z."""
+    """Return real and imaginary parts, each in rows and with its derivative by z."""
     S, C = (np.sinh(z), np.cosh(z)) if hyperbolic else (np.sin(z), np.cos(z))
     s, rising, curvature = S * S, 2.0 * S * C, 1.0 if hyperbolic else -1.0
     factors = (C, curvature * S), (S, C)
@@ -212,7 +213,7 @@ def _component(component: Polynomials, z: Array, hyperbolic: bool) -> list[tuple
 
 
 def _kept(polynomial: Coefficients, greatest: Decimal) -> Coefficients:
-    """Return the coefficients that matter beside the first, up to the greatest argument."""
+    """Return the coefficients that are not negligible up to the greatest argument."""
     sizes = [abs(x.value) for x in polynomial]
     return polynomial[: count_needed(sizes, greatest, _NEGLIGIBLE)]
 
@@ -238,13 +239,13 @@ def _decimal(x: Any) -> Decimal:
 
 
 class RatesAboutMeans(NamedTuple):
-    """The rates of spin and precession about their means, by how far u is from u1 and u2."""
+    """The rates of spin and precession about their means, from the distances of u to u1 and u2."""
 
     modulus: Modulus
     quarter: float
     """K."""
     south: float
-    """(beta + b)/2 (u1 - u2)/(1 + u1), over 1 + u the part of the precession rate beyond u1."""
+    """(beta + b)/2 (u1 - u2)/(1 + u1); over 1 + u, the change of the precession rate from u1."""
     north: float
     south_at_u1: float
     """(beta + b)/2/(1 + u1) less the mean of (beta + b)/2/(1 + u)."""
@@ -275,12 +276,12 @@ class RatesAboutMeans(NamedTuple):
     def at(
         self, phase: Array, odd: Array, below: Array, above: Array
     ) -> tuple[Array, Array, Array]:
-        """Return both rates less their means, and the size of the parts of which both are sums.
+        """Return both rates minus their means, and the size of their summands.
 
         `below` and `above` are 1 + u and 1 - u.
         """
         _, sn, cn, dn = jacobi(ARRAYS, phase * self.quarter, self.modulus)
-        away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 the rest
+        away = sn * sn  # (u - u2)/(u1 - u2) about u2, and cn^2 its complement
         mirrored = (self.modulus.k_prime * sn / dn) ** 2
         upper = odd != self.first_is_upper
         under_u1 = np.where(upper, mirrored, cn * cn)

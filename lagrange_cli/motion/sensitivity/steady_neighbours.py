@@ -1,7 +1,7 @@
 """Motions next to a steady precession: small nutations about a tilt next to it.
 
-With u = cos(theta) = u0 + x, equation (4,9) differentiated by t is, to first order in x,
-x'' = c1/2 - D x, where c1 = 0 and D = a (u3 - u0) at the steady precession itself.
+Let u = cos(theta) = u0 + x.  To first order in x, the derivative of (4,9) by t is x'' = c1/2 - D x.
+At the steady precession itself c1 = 0 and D = a (u3 - u0).
 """
 
 from __future__ import annotations
@@ -63,9 +63,9 @@ class SteadyDerivatives:
 
 
 def oscillation(frequency: float, turns: Pair, t: Array) -> tuple[Array, Array, Array]:
-    """Return sin(wt)/w, (1 - cos(wt))/w^2 and (wt - sin(wt))/w^3; of w = 0 their limits.
+    """Return sin(wt)/w, (1 - cos(wt))/w^2 and (wt - sin(wt))/w^3, or their limits for w = 0.
 
-    `turns` is w/2 pi as a pair of doubles: whole turns are taken off exactly.
+    `turns` is w/2 pi as a pair of doubles, so that whole turns are subtracted exactly.
     """
     if not frequency:
         return t, t * t / 2, t**3 / 6

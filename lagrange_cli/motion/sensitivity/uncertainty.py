@@ -1,6 +1,6 @@
-"""First-order propagation of uncertainties (GUM 5.1.2), by the exact derivatives of the record.
+"""First-order propagation of uncertainties (GUM 5.1.2), with the exact derivatives of the record.
 
-Every number is rounded from an enclosure, as those of the record are.
+Every number is rounded from an enclosure, like the numbers of the record.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .sensitivities import DIFFERENTIABLE, Slopes
 
 
 class Contribution(NamedTuple):
-    """What one input contributes to the uncertainty of a number, a line of a budget."""
+    """The contribution of one input to the uncertainty of a number: one line of a budget."""
 
     input: str
     value: float
@@ -32,23 +32,23 @@ class Contribution(NamedTuple):
     sensitivity: float
     """The derivative of the number by the input."""
     contribution: float
-    """Sensitivity times uncertainty, with its sign."""
+    """The product of sensitivity and uncertainty, with its sign."""
     elasticity: float | None
-    """By how many parts the number grows where the input grows by one part of itself."""
+    """The relative change of the number over the relative change of the input, or None."""
     share: float | None
-    """The part of the variance."""
+    """The share of the variance, or None."""
 
 
 class FirstOrder:
-    """Standard uncertainties of the record of a top, whose inputs are not correlated.
+    """Standard uncertainties of the record of a top with uncorrelated inputs.
 
     A key in radians ends in `_rad`.
     """
 
     def __init__(self, top: Top, stds: Mapping[str, float], given: Collection[str]) -> None:
-        """Take the uncertainties of the inputs as they were given, and the names of all inputs.
+        """Take the uncertainties of the inputs as given, and the names of all given inputs.
 
-        Raises LagtopError for a top that has no motion.
+        Raises LagtopError for an impossible start.
         """
         self.top, self.stds, self.given = top, stds, given
         self.motion = Numbers(exact(top))
@@ -67,7 +67,7 @@ class FirstOrder:
         return name in DIFFERENTIABLE and self.slopes.has(name)
 
     def slope(self, key: str, name: str, digits: int) -> Ball:
-        """Return the derivative of a key, or an input, by an input that was given; NaN for none."""
+        """Return the derivative of a key or input by a given input; NaN if it does not exist."""
         ar = balls(digits)
         row = by_given(ar, self.top, self.given)[name]
         tilt = "theta0_deg" if self.top.theta0_rad is None else "theta0_rad"
@@ -81,7 +81,7 @@ class FirstOrder:
         return total * (ar.pi / 180) if key.endswith("_rad") else total * 180 / ar.pi
 
     def std(self, key: str) -> float | None:
-        """Return the standard uncertainty of a key or of an input; None where there is none."""
+        """Return the standard uncertainty of a key or an input, or None."""
         std = self._rounded(key, lambda digits: balls(digits).sqrt(self._variance(key, digits)))
         return None if std is None or math.isnan(std) else std
 
@@ -96,9 +96,9 @@ class FirstOrder:
         return sum((part * part for part in parts), balls(digits).convert(0))
 
     def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
-        """Return what each uncertain input contributes to a key, the greatest first.
+        """Return the contributions of the uncertain inputs to a key, the greatest first.
 
-        `given` has the values of the inputs.
+        `given` holds the values of the inputs.
         """
         value, whole = self.motion.number(self.name_of(key)), self.std(key)
         assert value is not None
@@ -117,7 +117,7 @@ class FirstOrder:
         return sorted(lines, key=lambda line: -abs(line.contribution))
 
     def _elasticity(self, key: str, name: str, given: Mapping[str, float], digits: int) -> Ball:
-        """Return the relative change of a key over that of an input."""
+        """Return the relative change of a key over the relative change of an input."""
         in_degrees = self.name_of(key)
         value = self.motion.enclosure(in_degrees, digits)
         assert value is not None
@@ -131,9 +131,9 @@ class FirstOrder:
 
 
 def by_given(ar: Arithmetic[R], top: Top, given: Collection[str]) -> dict[str, dict[str, R]]:
-    """Return the derivatives of the inputs of a solved top by those that were given.
+    """Return the derivatives of the inputs of a solved top by the given inputs.
 
-    These are the same but for A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
+    The two sets differ only by A = A_cm + m s^2 and r0 = phidot0 + psidot0 cos(theta0).
     """
     tilt = "theta0_deg" if top.theta0_rad is None else "theta0_rad"
     one, m, s = (ar.convert(Fraction(x)) for x in (1, top.m, top.s))
