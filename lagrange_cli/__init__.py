@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .motion.solve import Motion, solve
     from .plot import draw
     from .plot.browser import view
+    from .plot.reports import draw_outcome
     from .sweeps.angles import sweep_angles
     from .sweeps.records import sweep
 
@@ -31,6 +32,7 @@ __all__ = [
     "angle_sensitivities",
     "compare",
     "draw",
+    "draw_outcome",
     "find",
     "fit",
     "read_scene",
@@ -51,6 +53,7 @@ _MODULES = {
     "angle_sensitivities": "motion.sensitivity.angle_sensitivities",
     "compare": "judge.compare",
     "draw": "plot",
+    "draw_outcome": "plot.reports",
     "find": "fits.find",
     "fit": "fits.fit",
     "read_scene": "inputs.given",

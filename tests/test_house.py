@@ -29,7 +29,7 @@ FLOORS = [
 """From the top to the ground."""
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 NEVER = {("motion", "output")}
-THROUGH_THE_FACE = {("motion", "draw"), ("motion", "view")}
+THROUGH_THE_FACE = {("fits", "draw_outcome"), ("motion", "draw"), ("motion", "view")}
 """Names that a room asks the face of the package for: a method whose work is done further up."""
 ALIAS = PACKAGE / "alias.py"
 """Installed as `lagtop.py` beside the package, so it imports as a user does."""

@@ -24,6 +24,17 @@ from ..motion.sensitivity.neighbourhood import PARAMETERS
 from ..sweeps.angles import sweep_angles
 from .recording import Recording
 
+MEANINGS = {
+    "a": "2mgs/A (4,4)",
+    "b": "C r0/A (4,5)",
+    "b/a": "C r0/2mgs, by the elementary theory",
+    "r0": "total spin rate",
+    "theta0": "tilt in the first row",
+    "thetadot0": "nutation rate there",
+    "psidot0": "precession rate there",
+    "psi_zero": "psi of the data there",
+    "phi_zero": "phi of the data there",
+}
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 """The state of a motion: the constants (4,4) and (4,5), and the start in radians."""
 

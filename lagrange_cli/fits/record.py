@@ -5,19 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
+from ..motion.notebook import Shown
 from ..motion.quantity import unit_name
 from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
 from .least_squares import FittedParameters, chi2_bounds, residual_of
-from .model import STATE, motion_angles
+from .model import MEANINGS, STATE, motion_angles
 from .parameters import BODY_QUANTITIES
 from .recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
 """Quantities whose keys have a unit."""
@@ -26,17 +30,6 @@ _MUCH = 2.0
 """A fit has failed if its residuals of a channel exceed so many times the noise."""
 _SURE = 4.0
 """Standard deviations from which on b is not 0."""
-MEANINGS = {
-    "a": "2mgs/A (4,4)",
-    "b": "C r0/A (4,5)",
-    "b/a": "C r0/2mgs, by the elementary theory",
-    "r0": "total spin rate",
-    "theta0": "tilt in the first row",
-    "thetadot0": "nutation rate there",
-    "psidot0": "precession rate there",
-    "psi_zero": "psi of the data there",
-    "phi_zero": "phi of the data there",
-}
 
 
 class Fit(NamedTuple):
@@ -55,7 +48,7 @@ class Fit(NamedTuple):
     """Another top that explains the only recording as well: its quantities by name."""
 
 
-class Outcome:
+class Outcome(Shown):
     """The results of a fit for one recording."""
 
     def __init__(self, found: Fit, index: int, *, radians: bool = False) -> None:
@@ -236,6 +229,12 @@ class Outcome:
         if self.verdict != "good":
             return ["psi may be counted the other way round: this fit changed its sign"]
         return ["psi is counted the other way round: its sign was changed"]
+
+    def plot(self, figure: Figure | None = None) -> Figure:
+        """Draw data, motion and residuals, on a figure of matplotlib or a new one; return it."""
+        from .. import draw_outcome  # the face of the package: drawn by a subpackage above
+
+        return draw_outcome(self, figure)
 
     def record(self) -> dict[str, Any]:
         """Return everything by key, flat."""

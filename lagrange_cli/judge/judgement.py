@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,13 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
+from ..motion.notebook import Shown
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
 from .deviations import Deviations, Extremes, Kept, LineFit, Passages
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 LIMIT = 1e-3
 """The error in radians (rad) up to which a trajectory is fine by default."""
@@ -40,7 +44,7 @@ def _field(meaning: str, default: Any = None) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Judgement:
+class Judgement(Shown):
     """The judgement of one trajectory; angles are in radians, and an unknown number is None."""
 
     file: str | None = _field("the file, `-` for standard input")
@@ -100,6 +104,20 @@ class Judgement:
     def record(self) -> dict[str, Any]:
         """Return the judgement by key."""
         return {name: getattr(self, name) for name in JUDGEMENT_KEYS}
+
+    def plot(self, figure: Figure | None = None) -> Figure:
+        """Draw the error over time, on a figure of matplotlib or a new one, and return the figure.
+
+        Raises LagtopError if the trajectory has no rows with an error.
+        """
+        from ..plot.reports import ErrorCurve, draw_error_panels, new_figure  # start-up: matplotlib
+
+        if self.t is None or self.error is None:
+            raise LagtopError("the judgement has no errors to draw")
+        figure = figure or new_figure()
+        curve = ErrorCurve(self.file or "trajectory", self.t, self.error, None, self.error_max)
+        draw_error_panels(figure, [curve], LIMIT)
+        return figure
 
     def __repr__(self) -> str:
         return f"<Judgement: {self.verdict}, error_max = {self.error_max}, {self.rows} rows>"

@@ -25,6 +25,30 @@ class Document(str):
         Path(path).write_text(self, encoding="utf-8")
 
 
+class Shown:
+    """Results with a verdict and a record: a dict for programs, a table for notebooks."""
+
+    verdict: Any
+
+    def record(self) -> dict[str, Any]:
+        """Return the results by key."""
+        raise NotImplementedError
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the results by key, as `record` does."""
+        return self.record()
+
+    def _repr_html_(self) -> str:
+        """Return the results as a table for a notebook, without keys that have none."""
+        left = 'style="text-align: left"'
+        rows = "".join(
+            f"<tr><td {left}>{escape(name)}</td><td>{escape(str(value))}</td></tr>"
+            for name, value in self.record().items()
+            if value is not None
+        )
+        return f"<table><caption>{escape(str(self.verdict))}</caption>{rows}</table>"
+
+
 def record_html(record: Mapping[str, Any]) -> str:
     """Return the record of a motion as an HTML table: symbol, meaning, value and unit."""
     rows = "".join(

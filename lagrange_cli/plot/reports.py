@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..errors import check_type
 from .files import About, figure_bytes
 from .style import LIGHT, scale, styled, symbol_and_colour
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..arithmetic.types import Array
+    from ..fits.record import Outcome
 
 _DASHES = ("-", "--", "-.", ":")
 _MARKS = "os^Dv<>pP*X"
@@ -133,6 +135,25 @@ def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
     size = 7.5, 1.0 + 3.0 * len(curves)
     about = About("lagtop fit", f"Data, fitted motion and residuals: {_names(curves)}")
     return _report(path, size, about, lambda figure: draw_fit_panels(figure, curves, unit))
+
+
+def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
+    """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure."""
+    from ..fits.record import Outcome
+    from ..fits.report import curves_of
+
+    check_type("outcome", outcome, Outcome)
+    figure = figure or new_figure()
+    curves = [FittedCurve(*x) for x in curves_of(outcome)]
+    draw_fit_panels(figure, curves, "rad" if outcome.radians else "deg")
+    return figure
+
+
+def new_figure() -> Figure:
+    """Return a new figure of pyplot, which a notebook shows."""
+    from matplotlib import pyplot  # only here: files need no pyplot
+
+    return pyplot.figure(layout="constrained")
 
 
 def draw_fit_panels(figure: Figure, curves: Sequence[FittedCurve], unit: str) -> None:

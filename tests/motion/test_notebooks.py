@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
-from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli import LagtopError, Top, compare, fit, solve
 
 MOTION = solve(Top(theta0_deg=30, psidot0=3))
 TIMES = np.array([0.0, 0.1, 1.7])
@@ -46,3 +46,18 @@ def test_names_of_a_motion_are_public_and_known() -> None:
     assert {"T_nutation", "rotation", "top", "regime", "record"} <= set(names)
     assert [name for name in names if name.startswith("_")] == []
     assert all(hasattr(MOTION, name) for name in names)
+
+
+def test_a_fit_and_a_judgement_show_themselves() -> None:
+    t = np.linspace(0, 1, 60)
+    theta, phi, psi = MOTION.angles(t)
+    noise = np.random.default_rng(1).normal(scale=1e-3, size=(3, t.size))
+    outcome = fit(t, theta=theta + noise[0], phi=phi + noise[1], psi=psi + noise[2])
+    judgement = compare(MOTION, t, theta=theta + 1e-6, phi=phi, psi=psi)
+    for shown in (outcome, judgement):
+        assert shown.to_dict() == shown.record()
+        figure = shown.plot(Figure())
+        assert len(figure.axes) == (6 if shown is outcome else 1)
+        assert all(axes.lines for axes in figure.axes)
+    assert f"<td>{judgement.rows}</td>" in judgement._repr_html_()
+    assert "<caption>good</caption>" in outcome._repr_html_()
