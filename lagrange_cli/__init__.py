@@ -63,7 +63,7 @@ _MODULES = {
     "sweep_angles": "sweeps.angles",
     "view": "plot.browser",
 }
-"""The module of each name, which is imported when the name is asked for."""
+"""The module of each public name; it is imported when the name is first used."""
 
 
 def __getattr__(name: str) -> Any:

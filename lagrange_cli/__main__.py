@@ -11,7 +11,7 @@ else:
 
 def main() -> None:
     """Run the command line; Ctrl-C during its imports ends it as a signal, without a traceback."""
-    if signal.getsignal(signal.SIGINT) == signal.default_int_handler:  # it may be ignored instead
+    if signal.getsignal(signal.SIGINT) == signal.default_int_handler:  # unless it is ignored
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     gc.disable()  # until the command is loaded: imports leave no garbage, see `LagtopGroup`
     from .cli.app import main as run

@@ -1,4 +1,4 @@
-"""The errors of the package, each with the exit code that the command line ends with.
+"""The errors of the package, each with the exit code of the command line.
 
 | code | meaning |
 |---|---|
@@ -10,17 +10,17 @@
 | 74 | output cannot be written |
 | 128 + N | ended by signal N |
 
-N is 2 for Ctrl-C and 13 for a reader that went away.
+N is 2 for Ctrl-C and 13 if the reader has gone away.
 """
 
 from __future__ import annotations
 
 
 class LagtopError(ValueError):
-    """A bad input, or the base of every other error.
+    """A bad input, and the base class of all other errors.
 
-    `key` is the name of the argument at fault, if there is one.  A message about an argument
-    begins with its name as Python spells it; the command line turns that into its option.
+    `key` is the name of the argument at fault, if there is one.  A message about an argument begins
+    with its name in Python; the command line converts it to the name of the option.
     """
 
     exit_code = 2
@@ -31,48 +31,48 @@ class LagtopError(ValueError):
 
 
 def check_type(name: str, value: object, *kinds: type) -> None:
-    """Raise TypeError for an argument that is of none of these types."""
+    """Raise TypeError for an argument of any other type."""
     if not isinstance(value, kinds):
         wanted = " or ".join(kind.__name__ for kind in kinds)
         raise TypeError(f"{name} must be a {wanted}, got {type(value).__name__}")
 
 
 class DataError(LagtopError):
-    """A file of inputs that cannot be read or has bad data: times, tops, trajectories, scenes."""
+    """A file of inputs cannot be read or has bad data: times, tops, trajectories, scenes."""
 
     exit_code = 65
 
 
 class SceneError(DataError):
-    """A scene file that cannot be read or that describes no top."""
+    """A scene file cannot be read or describes no top."""
 
 
 class SomeFailedError(LagtopError):
-    """Some tops, trajectories or recordings have failed; the output shows which, and why."""
+    """Some tops, trajectories or recordings have failed; the output shows which ones, and why."""
 
     exit_code = 1
 
 
 class AbsentError(LagtopError):
-    """A number that was asked for does not exist, or nothing was found."""
+    """A requested number does not exist, or nothing was found."""
 
     exit_code = 1
 
 
 class OutOfRangeError(LagtopError):
-    """A number that is beyond the range of doubles."""
+    """A number is beyond the range of doubles."""
 
 
 class OutOfRangeWarning(UserWarning):
-    """Some numbers of a record are beyond the range of doubles, and None in it."""
+    """Some numbers of a record are beyond the range of doubles, and are None in it."""
 
 
 class MixedBodyWarning(UserWarning):
-    """Some of m, A, C, s and g were given; the others are those of the worked example."""
+    """Only some of m, A, C, s and g were given; the others come from the worked example."""
 
 
 class NothingToDrawError(LagtopError):
-    """A picture was asked for that the motion does not have."""
+    """The motion does not have a requested picture."""
 
 
 class UnavailableError(LagtopError):
@@ -82,6 +82,6 @@ class UnavailableError(LagtopError):
 
 
 class CannotWriteError(LagtopError):
-    """The output cannot be written; the message says where and why."""
+    """The output cannot be written; the message states where and why."""
 
     exit_code = 74

@@ -18,7 +18,7 @@ def _table(first: str, second: str, rows: Iterable[tuple[str, str]]) -> list[str
 def columns_table() -> list[str]:
     """Return the table of the columns of a trajectory."""
     shown = ((f"`{key}`", f"{x.meaning}: {x.shown}") for key, x in QUANTITIES.items())
-    return _table("column", "what, and names that are known", shown)
+    return _table("column", "quantity, and known names", shown)
 
 
 def keys_table() -> list[str]:
@@ -33,7 +33,7 @@ def verdicts_table() -> list[str]:
 
 def alignments_table() -> list[str]:
     """Return the table of the words of --align."""
-    return _table("word", "what is done", ((f"`{word}`", text) for word, text in WORDS.items()))
+    return _table("word", "meaning", ((f"`{word}`", text) for word, text in WORDS.items()))
 
 
 def mistakes_table() -> list[str]:

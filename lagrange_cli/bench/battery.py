@@ -1,6 +1,7 @@
-"""One scene of the battery, judged: the worst errors of its record, angles and quaternion.
+"""The worst errors of one scene of the battery: of its record, angles and quaternion.
 
-The many-digit reference judges numbers by the nearest double, angles in units (see `reference`).
+The reference is computed to many digits.  Errors of numbers are in gaps between doubles, errors of
+angles in units (see `reference`).
 """
 
 from __future__ import annotations
@@ -29,14 +30,16 @@ from .measure import check_scene
 from .reference import EPS, ExactAngles, Reference, angle_units, key_ulps, quaternion_units
 
 CONTRACT = 4.0
-"""Units of an angle and of the quaternion that are promised."""
+"""Promised bound of the errors of angles and of the quaternion, in units."""
 KEY_CONTRACT = 0.5 + 1e-9
-"""Gaps between doubles that a key may be off: half of one, and a hair where two are as near."""
+"""Promised bound of the error of a key, in gaps between doubles: half, with a margin for ties."""
 
 DIGITS, MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
-"""Least digits of the reference, how many more check it, and units by which these may differ."""
+"""Least digits of the reference, additional digits of its check, and units by which both may
+differ.
+"""
 CONSERVED = ("energy", "Lz")
-"""The columns whose changes are reported."""
+"""Columns whose changes are reported."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +65,7 @@ class Errors:
 
     @property
     def excesses(self) -> tuple[float, float, float]:
-        """Errors of angles, quaternion and keys over the promise, which more than 1 breaks."""
+        """Errors of angles, quaternion and keys over their promised bounds."""
         key = self.key_ulps / KEY_CONTRACT
         return self.angle_units / CONTRACT, self.quaternion_units / CONTRACT, key
 
@@ -74,7 +77,7 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class Case(Errors):
-    """One scene: its errors, where they were, and those of other methods."""
+    """One scene: its errors, their times, and the errors of other methods."""
 
     top: Top
     worst_time: float
@@ -82,7 +85,7 @@ class Case(Errors):
     worst_attitude_time: float
     """Time of the worst quaternion."""
     agreement: float
-    """Greatest difference of the reference at two precisions, in units."""
+    """Greatest difference between references at two precisions, in units."""
 
     def command(self) -> str:
         """Return a command line that shows the worst number of the scene."""
@@ -104,7 +107,7 @@ def case_of(
     *,
     agreement: float = 0.0,
 ) -> Case:
-    """Return a case from its errors: a row of `units` per time, the three angles and quaternion.
+    """Return a case from its errors; `units` has a row (three angles, quaternion) per time.
 
     `key` is the worst error of a key and its name, `conserved` the changes of energy and Lz.
     """
@@ -126,16 +129,16 @@ def case_of(
 
 
 class HardScene(NamedTuple):
-    """A scene of the battery and the times it is judged at."""
+    """A scene of the battery, and the times at which it is checked."""
 
     inputs: Scene
     periods: list[float]
-    """Times anywhere, in nutation periods."""
+    """Random times, in nutation periods."""
     quarters: list[int]
-    """Times next to which angles leap if they leap anywhere, in quarters of a period."""
+    """Times at which angles might leap, in quarters of a period."""
 
     def times(self, period: Any) -> list[float]:
-        """Return all the times, with both neighbours of the double next to each quarter.
+        """Return all times, with both neighbours of the double next to each quarter.
 
         `period` is the exact nutation period, in many digits.
         """
@@ -147,8 +150,11 @@ class HardScene(NamedTuple):
 
 
 def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
-    """Return the i-th scene of a stratum, with `count` times anywhere and one half period at each
-    side of the start, one of which may be a quarter or a whole number of periods instead."""
+    """Return the i-th scene of a stratum, with `count` random times and two special ones.
+
+    The special times are a number of half periods, one before and one after the start.  One of them
+    may be a number of quarters or whole periods instead.
+    """
     rng = random.Random(f"{seed} {stratum} {i}")
     scene = judged_inputs(stratum, rng)
     least, nearest = (11, 11) if stratum == "far times" else (-9, 0)
@@ -161,7 +167,7 @@ def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
 
 
 def judged_inputs(stratum: str, rng: random.Random) -> Scene:
-    """Return inputs in doubles of a scene of a stratum that the reference can judge."""
+    """Return the inputs, as doubles, of a scene of a stratum that the reference can check."""
     while True:
         scene = in_doubles(STRATA[stratum](rng))
         with suppress(LagtopError):
@@ -170,7 +176,7 @@ def judged_inputs(stratum: str, rng: random.Random) -> Scene:
 
 
 def judged_case(scene: HardScene, settled: tuple[Reference, float] | None = None) -> Case:
-    """Return what one scene shows; its `settled_reference` may be given."""
+    """Return the errors of one scene; its `settled_reference` may be passed."""
     top = Top(**scene.inputs)
     motion = solve(top)
     reference, agreement = settled or settled_reference(top)
@@ -193,15 +199,15 @@ def judged_case(scene: HardScene, settled: tuple[Reference, float] | None = None
 
 
 def settled_reference(top: Top) -> tuple[Reference, float]:
-    """Return the reference in as many digits as a top takes, and how far fewer digits differ.
+    """Return the reference with sufficient digits for a top, and its difference from fewer digits.
 
-    The difference is the greatest one of the angles after a quarter of a period, in units.
+    The difference is the greatest of the angles after a quarter of a period, in units.
     """
     passes = [abs(float(mpmath.log10(x / y))) for x, y in Reference(top, DIGITS).gaps]
-    digits = DIGITS + math.ceil(max(passes))  # to tell the side of a pole
+    digits = DIGITS + math.ceil(max(passes))  # to find the side of a pole
     while True:
         few, more = Reference(top, digits), Reference(top, digits + MORE_DIGITS)
-        with suppress(TypeError, ValueError, ZeroDivisionError):  # digits that have cancelled
+        with suppress(TypeError, ValueError, ZeroDivisionError):  # digits lost by cancellation
             t = float(more.T) / 4
             exact = more.at(t)
             agreement = max(angle_units(few.at(t)[:3], exact))
@@ -223,7 +229,7 @@ def tabulated(motion: Motion, times: Sequence[float], columns: Sequence[str]) ->
 def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
     """Return the worst error of the numbers of a record, in gaps between doubles, and its key.
 
-    A number where the motion has none, or the other way round, is infinitely wrong.
+    The error is infinite if only one of record and motion has a number.
     """
     exact, errors = reference.record(), []
     for key in NUMBER_KEYS:
@@ -238,7 +244,7 @@ def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
 def conserved_changes(top: Top, values: Array) -> tuple[float, float]:
     """Return the changes of energy and Lz, the columns of `values`, since its first row, t = 0.
 
-    They are in eps of the sum of the terms.
+    The changes are in eps of the sum of the terms.
     """
     tilt = top.tilt(DOUBLES)
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)

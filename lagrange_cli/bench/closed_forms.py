@@ -1,7 +1,7 @@
-"""Closed forms to compare: ours, Legendre's integrals by scipy.special, and the paper's series.
+"""Closed forms to compare: lagtop, Legendre's integrals by scipy.special, and the paper's series.
 
-The last two are written in plain doubles, by the formulas of a handbook and of the paper; the roots
-that scipy.special starts from are ours.  A new closed form is one entry in CLOSED_FORMS.  Equation
+The last two use plain doubles, with the formulas of a handbook and of the paper.  The scipy.special
+form starts from the roots of lagtop.  A new closed form is one entry in CLOSED_FORMS.  Equation
 numbers in parentheses are Chrapan's.
 """
 
@@ -46,12 +46,13 @@ def _ours_in_digits(top: Top, digits: int) -> AngleFunction:
 def _legendre(top: Top, _: str) -> AngleFunction:
     """Return sn^2 by ellipj, and Legendre's third integral by Carlson's R_F and R_J.
 
-    With sn^2 counted from u1, 1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2)
-    and n = k^2 (1 +- u3)/(1 +- u1).
+    With sn^2 counted from u1 and n = k^2 (1 +- u3)/(1 +- u1):
+
+        1/(1 +- u) = 1/(1 +- u3) + (1/(1 +- u1) - 1/(1 +- u3))/(1 - n sn^2).
     """
     from scipy import special
 
-    motion: Any = solve(top)  # nutating, so that it has all its numbers
+    motion: Any = solve(top)  # a nutating motion has all these numbers
     u0 = math.cos(top.tilt(DOUBLES).degrees(DOUBLES) * math.pi / 180)
     r0, b, (u1, u2, u3) = float(top.r0), motion.b, (motion.u1, motion.u2, motion.u3)
     beta = float(top.psidot0) * (1 - u0 * u0) + b * u0
@@ -107,7 +108,7 @@ class _Paper(NamedTuple):
 def _paper(top: Top) -> _Paper:
     if not top.is_released:
         raise NotApplicableError("the paper's formulas are for a top released from rest")
-    ar = ManyDigits(17)  # for the tables of elliptic integrals; all else is in doubles
+    ar = ManyDigits(17)  # for the tables of elliptic integrals; everything else is in doubles
     a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
     r0, b = float(top.r0), float(top.C) * float(top.r0) / float(top.A)
     u1, sigma = top.tilt(DOUBLES).cos, 1 if r0 > 0 else -1
@@ -133,13 +134,13 @@ def _paper(top: Top) -> _Paper:
 
 
 def _phase(p: _Paper, t: Array) -> Array:
-    """Return pi t/T, less whole turns."""
+    """Return pi t/T without whole turns."""
     periods = t / p.T
     return np.pi * (periods - np.rint(periods))
 
 
 def _tilt(p: _Paper, x: Array, terms: int) -> Array:
-    """Return (4,20), with dn^2 = k' (theta3/theta4)^2 from so many terms of the theta functions."""
+    """Return (4,20), with dn^2 = k' (theta3/theta4)^2 from `terms` terms of the theta functions."""
     theta3, theta4 = np.ones_like(x), np.ones_like(x)
     for h in range(1, terms + 1):
         wave = 2 * p.q ** (h * h) * np.cos(2 * h * x)
@@ -155,7 +156,7 @@ def _mean_rates(top: Top, _: str) -> AngleFunction:
 
 
 def _theta_series(top: Top, terms: int) -> AngleFunction:
-    """Return (6,1) and (7,1) in their form for all times, the sums over h cut after `terms`."""
+    """Return (6,1) and (7,1) in the form for all times, with sums over h cut after `terms`."""
     p = _paper(top)
     z = math.exp(-2 * p.y)
 

@@ -24,13 +24,13 @@ from .measure import (
 from .method import OURS, Method, MethodRow, is_done, is_out
 
 SPANS = [10.0**power + 0.3 for power in range(7)]
-"""Spans in nutation periods; none ends at a turning point, where approximations do best."""
+"""Spans in nutation periods; none ends at a turning point, at which approximations are best."""
 _JUDGED_IN_A_SPAN = 21
 
 ROUNDING, LOST = 1e-11, 0.1
-"""Errors (rad) between which the order of a method is read."""
+"""Errors (rad) between which the order of a method is measured."""
 VARIABLE_ORDER = ("LSODA", "Taylor")
-"""Methods that choose their order themselves."""
+"""Methods with variable order."""
 METHOD_FIELDS = [
     Field("method", "method", is_text=True, names_the_row=True),
     Field("setting", "setting", names_the_row=True),
@@ -60,7 +60,7 @@ SPAN_FIELDS = [
     else field._replace(heading=field.heading if field.key in SPAN_KEYS else "")
     for field in METHOD_FIELDS
 ]
-"""Fields of the report over spans, which shows the span and less of the rest."""
+"""Fields of the report over spans, with the span and fewer other columns."""
 
 
 def compare_methods(
@@ -77,14 +77,14 @@ def compare_methods(
     runs = [(name, method, x) for name, method in methods.items() for x in method.settings]
     found: list[MethodRow] = []
     for name, method, setting in progress(runs, "methods"):
-        if not (found and found[-1].method == name and is_out(found[-1])):  # said once is enough
+        if not (found and found[-1].method == name and is_out(found[-1])):  # one warning is enough
             found.append(measure(work, name, method, setting))
     rows = with_front(with_order(found))
     return Report(conditions(work, limit), METHOD_FIELDS, rows, list(conclusions(rows, methods)))
 
 
 def conditions(work: Task, limit: float) -> dict[str, str]:
-    """Return all that the figures depend on."""
+    """Return all conditions that the figures depend on."""
     motion = work.motion
     return common_conditions() | {
         "scene": motion.top.options(),
@@ -101,7 +101,7 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
         "last among them",
         "units": "the same over eps (max(1, |angle|) + |tau rate|), tau the time since the nearest "
         "whole period",
-        "turns": "compared unwrapped; quaternion forms know angles modulo 2 pi, and so are judged",
+        "turns": "compared unwrapped, but modulo 2 pi for quaternion forms",
         "time": f"one thread; after a warm-up, of memory too, least and median of up to {RUNS} "
         f"runs (of one where it takes {SECONDS_OF_RUNS} s)",
         "exceptions": f"a run of {limit:g} s fails (of heyoka, one of {limit * STEPS_PER_SECOND:g} "
@@ -113,7 +113,7 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
 def compare_spans(
     motion: Motion, count: int, methods: dict[str, Method], *, limit: float, progress: Progress
 ) -> Report:
-    """Return the report on each method at its tightest setting over longer and longer spans.
+    """Return the report on each method, at its tightest setting, over increasing spans.
 
     Raises LagtopError as `task` does.
     """
@@ -143,7 +143,7 @@ def _measure(work: Task, name: str, method: Method, before: list[MethodRow]) -> 
 
 
 def _conclusions(rows: list[MethodRow]) -> list[str]:
-    """Return how error and time grow over the spans of each method, and what was not compared."""
+    """Return the growth of error and time over the spans of each method, and missing methods."""
     lines = []
     for name in dict.fromkeys(row.method for row in rows):
         done = [row for row in rows if row.method == name and is_done(row)]
@@ -160,9 +160,9 @@ def _conclusions(rows: list[MethodRow]) -> list[str]:
 
 
 def growth_of(errors: Sequence[tuple[float, float]]) -> float | None:
-    """Return the exponent p of errors that grow as t^p, by least squares; None for one or none.
+    """Return the exponent p of errors that grow as t^p, by least squares; None for fewer than two.
 
-    Each is a time and an error; errors of 0, and those beyond 0.1 rad, do not count.
+    Each element is a time and an error; errors of 0 or beyond 0.1 rad do not count.
     """
     known = [(math.log(t), math.log(error)) for t, error in errors if 0 < error < LOST]
     if len(known) < 2:
@@ -189,7 +189,7 @@ def with_order(rows: Sequence[MethodRow]) -> list[MethodRow]:
 
 
 def with_front(rows: Sequence[MethodRow]) -> list[MethodRow]:
-    """Return the rows by method and error; no other row beats a marked one in error and time.
+    """Return the rows by method and error, with the Pareto front of error and time marked.
 
     The method with the least error is the first.
     """
@@ -205,7 +205,7 @@ def with_front(rows: Sequence[MethodRow]) -> list[MethodRow]:
 
 
 def rivals(row: MethodRow, rows: Iterable[MethodRow]) -> list[MethodRow]:
-    """Return the rows that are at least as fast and as accurate, and better in one."""
+    """Return the rows at least as fast and accurate as a row, and better in one of both."""
     mine = (row.error_rad, row.ns_min)
     return [
         other
@@ -217,7 +217,7 @@ def rivals(row: MethodRow, rows: Iterable[MethodRow]) -> list[MethodRow]:
 
 
 def conclusions(rows: Sequence[MethodRow], methods: Mapping[str, Method]) -> Iterator[str]:
-    """Yield who beats our closed form in doubles, and by how much, and what was not compared."""
+    """Yield sentences on methods that beat lagtop in doubles, and on missing methods."""
     done = {row.method for row in rows if is_done(row)}
     others = [name for name in methods if name in done and name != OURS]
     outside = any(methods[name].package for name in others)
@@ -242,7 +242,7 @@ def conclusions(rows: Sequence[MethodRow], methods: Mapping[str, Method]) -> Ite
 
 
 def not_compared(rows: Sequence[MethodRow]) -> Iterator[str]:
-    """Yield a line with the methods without any result, and their first reasons."""
+    """Yield a line with the methods without any result, each with its first reason."""
     done = {row.method for row in rows if is_done(row)}
     reasons = {row.method: row.remark for row in reversed(rows) if row.method not in done}
     if reasons:

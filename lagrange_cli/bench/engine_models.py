@@ -1,6 +1,6 @@
-"""The top as a model of each engine; a function per engine, named after its package.
+"""Models of the top for physics engines, with one function per engine, named after its package.
 
-Each imports its engine by itself, in a process of its own.
+Each function imports its engine, in a separate process.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .engine_simulation import Body, Simulate
 IMPLICIT = "GeneralizedAlpha"
 DISCRETE = "discrete"
 TO_DRAKE = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
-"""Rotation from our body axes to those of the model in Drake: z becomes x."""
+"""Rotation from body axes to the axes of the model in Drake: z becomes x."""
 URDF = """<robot name="top">
   <link name="ground">
     <inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>
@@ -33,7 +33,7 @@ URDF = """<robot name="top">
 
 
 def mujoco(body: Body, scheme: str, steps: float) -> Simulate:
-    """Return a body on a ball joint, by an integrator of MuJoCo such as RK4."""
+    """Return the simulation of a body on a ball joint, by an integrator of MuJoCo such as RK4."""
     import mujoco as engine
 
     moments = f"{body.central!r} {body.central!r} {body.C!r}"
@@ -65,7 +65,7 @@ def mujoco(body: Body, scheme: str, steps: float) -> Simulate:
 
 
 def pybullet(body: Body, _: str, steps: float) -> Simulate:
-    """Return a link on a spherical joint; PyBullet has one scheme, semi-implicit."""
+    """Return the simulation of a link on a spherical joint, by PyBullet's semi-implicit scheme."""
     import pybullet as engine
 
     engine.connect(engine.DIRECT)
@@ -77,7 +77,7 @@ def pybullet(body: Body, _: str, steps: float) -> Simulate:
     engine.setGravity(0, 0, -body.g)
     damping = dict.fromkeys(("linearDamping", "angularDamping", "jointDamping"), 0)
     engine.changeDynamics(top, 0, **damping)
-    engine.setJointMotorControlMultiDof(  # or a motor would hold the joint
+    engine.setJointMotorControlMultiDof(  # otherwise a motor would hold the joint
         top, 0, engine.POSITION_CONTROL, targetPosition=[0, 0, 0, 1], force=[0, 0, 0]
     )
     w, *vector = body.attitude
@@ -99,7 +99,7 @@ def pybullet(body: Body, _: str, steps: float) -> Simulate:
 
 
 def drake(body: Body, scheme: str, setting: float) -> Simulate:
-    """Return a body on a joint with three angles, by error control or by discrete steps.
+    """Return the simulation of a body on a joint with three angles, by Drake.
 
     Its figure axis lies along body x, so that the singular attitude of the joint is the vertical
     axis, far from most motions.
@@ -147,9 +147,10 @@ def drake(body: Body, scheme: str, setting: float) -> Simulate:
 
 
 def exudyn(body: Body, scheme: str, steps: float) -> Simulate:
-    """Return a free body under a couple, by an explicit scheme such as RK67, or one on a joint.
+    """Return the simulation of a free body under a couple, or of a body on a joint.
 
-    The joint is for the implicit scheme, the generalised alpha.
+    Explicit schemes such as RK67 use the free body.  The implicit scheme, the generalised alpha,
+    uses the joint.
     """
     import exudyn as engine
     from scipy.spatial.transform import Rotation
@@ -169,16 +170,16 @@ def exudyn(body: Body, scheme: str, steps: float) -> Simulate:
         time.endTime = times[-1]
         count = body.steps(gap, steps)
         time.numberOfSteps = round(times[-1] / gap) * count
-        early = 0.5 / time.numberOfSteps  # half a step at the end: rounding makes no row late
+        early = 0.5 / time.numberOfSteps  # half a step more, so that rounding delays no row
         settings.solutionSettings.sensorsWritePeriod = gap * (1 - early)
         engine.SolveDynamic(system, solverType=solver, simulationSettings=settings)
         rows = system.GetSensorStoredData(sensor)
-        found = np.searchsorted(rows[:, 0], times - gap / count / 2)  # it may write the end twice
+        found = np.searchsorted(rows[:, 0], times - gap / count / 2)  # the end may be written twice
         rows = rows[np.minimum(found, len(rows) - 1)]
         if not np.isfinite(rows).all():
-            raise ArithmeticError("it gave what is not a number")
+            raise ArithmeticError("it returned values that are not finite")
         if np.abs(rows[:, 0] - times).max() > 0.1 * gap / count:
-            raise ValueError("it has changed its step, and misses the times")
+            raise ValueError("it changed its step, and misses the times")
         matrices = rows[:, 1:].reshape(-1, 3, 3)
         attitudes: Array = Rotation.from_matrix(matrices).as_quat(scalar_first=True)
         return attitudes
@@ -189,8 +190,8 @@ def exudyn(body: Body, scheme: str, steps: float) -> Simulate:
 def _under_a_couple(system: Any, body: Body) -> Any:
     """Add the body at its pivot, pulled down at the mass centre and up at the pivot.
 
-    Such a couple leaves the pivot where it is, so that no joint is needed: explicit schemes have
-    none.  The moments of this body are about the pivot.
+    Such a couple keeps the pivot fixed without a joint, which explicit schemes do not support.  The
+    moments of this body are about the pivot.
     """
     from exudyn import utilities as add
 

@@ -1,6 +1,6 @@
-"""The process of an engine: the body that it simulates, and the server that asks its model.
+"""The process of an engine: the body that it simulates, and the server for its model.
 
-It imports little, because every engine starts it afresh.
+The module imports little, because every engine starts it in a new process.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from ..arithmetic.types import Array
 
 
 class Body(NamedTuple):
-    """A top of mass 1 and moment 1 across the axis, about the pivot, at its start."""
+    """A top with mass 1 and equatorial moment 1 about the pivot, in its initial state."""
 
     central: float
-    """Moment across the axis about the mass centre: A - m s^2."""
+    """Equatorial moment about the mass centre, A - m s^2."""
     C: float
     s: float
     g: float
@@ -34,9 +34,9 @@ class Body(NamedTuple):
     """Nutation period."""
 
     def steps(self, gap: float, per_period: float) -> int:
-        """Return how many equal steps go into a gap, none longer than the given part of a period.
+        """Return the number of equal steps in a gap, with at least `per_period` steps per period.
 
-        Such a gap, of a whole number of steps, may be off by rounding.
+        A gap of a whole number of steps may be off by rounding.
         """
         return math.ceil(gap / self.period * per_period * (1 - 1e-9))
 
@@ -47,9 +47,9 @@ class Body(NamedTuple):
         advance: Callable[[float, int], object],
         attitude: Callable[[], Any],
     ) -> Array:
-        """Return the attitudes of an engine that `advance`s by a step so many times.
+        """Return the attitudes of an engine; `advance` makes a number of steps of a given length.
 
-        Each gap between times takes equal steps, so that every time is hit.
+        Each gap between times is divided into equal steps, so that every time is hit.
         """
         rows, now = np.empty((times.size, 4)), 0.0
         for i, t in enumerate(times.tolist()):
@@ -60,24 +60,24 @@ class Body(NamedTuple):
 
 
 Simulate = Callable[[Array], Array]
-"""Runs from the start through growing times; returns a quaternion w, x, y, z for each."""
+"""A run from the start through increasing times; it returns a quaternion w, x, y, z for each."""
 
 Build = Callable[[Body, str, Any], Simulate]
-"""Makes the model of a body for a scheme and a setting."""
+"""A function that makes the model of a body for a scheme and a setting."""
 
 
 def serve(pipe: Connection, folder: str, model: str, order: tuple[Body, str, Any]) -> None:
-    """Build a model, `module:function`, then answer times by quaternions until nobody asks.
+    """Build a model, `module:function`, then answer times by quaternions until the pipe is closed.
 
-    The order is a body, a scheme and a setting.  The first answer is None.  A text in place of an
-    answer is an error of the engine, and ends the process.  What the engine prints is lost; its
-    files go to a folder.
+    The order is a body, a scheme and a setting.  The first answer is None.  A text instead of an
+    answer is an error of the engine, and ends the process.  Output of the engine is discarded, and
+    its files go to a folder.
     """
     os.chdir(folder)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (1, 2):
         os.dup2(nowhere, stream)
-    with suppress(EOFError, BrokenPipeError):  # nobody asks any more
+    with suppress(EOFError, BrokenPipeError):  # the pipe is closed
         try:
             build: Build = resolve_name(model)
             simulate = build(*order)
@@ -86,6 +86,6 @@ def serve(pipe: Connection, folder: str, model: str, order: tuple[Body, str, Any
                 pipe.send(np.asarray(simulate(pipe.recv())))
         except (EOFError, BrokenPipeError):
             raise
-        except Exception as error:  # of any kind: it is the engine's, and the bench shows it
+        except Exception as error:  # of any kind: the bench shows errors of the engine
             first = str(error).strip().partition("\n")[0]
             pipe.send(f"{type(error).__name__}: {first}")

@@ -1,4 +1,4 @@
-"""The engines that take part, each in a process of its own: started, asked, and killed if it hangs.
+"""Physics engines, each in a separate process that is started, queried, and killed if it hangs.
 
 Another engine, or another scheme, is one entry in FAMILIES.
 """
@@ -25,25 +25,25 @@ from .integrators import problem_of, quaternion_angles
 from .method import AngleFunction, FailedError, Method, NotApplicableError
 
 SECONDS_TO_START = 60.0
-"""Seconds that the import of an engine may take."""
+"""Time limit for the import of an engine, in seconds."""
 LONGEST_ERROR = 80
-"""Letters of the error of an engine that are shown."""
+"""Number of characters shown of an error of an engine."""
 STEPS = [50, 200, 800, 3200]
 MANY_STEPS = [200, 800, 3200, 12800]
-"""Steps per nutation period of schemes with a fixed step; many for those of order 1."""
+"""Steps per nutation period of schemes with a fixed step; more for schemes of order 1."""
 MODELS = f"{__package__}.engine_models"
 IMPORTS = {"drake": "pydrake"}
-"""Modules of packages, where they have another name than the package."""
+"""Modules whose names differ from those of their packages."""
 
 
 class EngineProcess:
     """A process that runs one model; it ends with this object.
 
-    What the engine writes, such as a log, goes to a directory that ends with it.
+    Files of the engine, such as a log, go to a temporary directory.
     """
 
     def __init__(self, model: str, body: Body, scheme: str, setting: Any) -> None:
-        """Start the process and build the model.  Raises FailedError as `attitudes` does."""
+        """Start the process and build the model.  Raises FailedError, as `attitudes` does."""
         folder = TemporaryDirectory(prefix="lagtop-")
         context = multiprocessing.get_context("spawn")
         self._pipe, other = context.Pipe()
@@ -58,9 +58,9 @@ class EngineProcess:
     def attitudes(self, t: Array, seconds: float) -> Array:
         """Return the quaternions (w, x, y, z; a row for each time) of a run.
 
-        Raises FailedError if the engine has an error, takes longer, or ends.
+        Raises FailedError if the engine has an error, exceeds the time limit, or ends.
         """
-        with suppress(BrokenPipeError):  # the answer is why
+        with suppress(BrokenPipeError):  # the answer is the reason
             self._pipe.send(t)
         found: Array = self._answer(seconds)
         return found
@@ -81,7 +81,7 @@ class EngineProcess:
 
 
 def _stop(process: SpawnProcess, folder: TemporaryDirectory[str]) -> None:
-    """End the process and free what it holds."""
+    """End the process and free its resources."""
     if process.pid is not None:
         process.kill()
         process.join()
@@ -91,9 +91,9 @@ def _stop(process: SpawnProcess, folder: TemporaryDirectory[str]) -> None:
 def scaled_body(top: Top, period: float) -> tuple[Body, float]:
     """Return the body of a top with this nutation period, and its units of time per unit of time.
 
-    The unit of mass is m, that of length makes A = 1, and that of time makes the rates of the size
-    of 1, so that no engine sees numbers that are very large or small, whatever units the scene has.
-    Raises NotApplicableError where no masses have such moments: engines refuse them.
+    The units are scaled so that the mass is 1, A = 1, and the rates are of the size of 1.  No
+    engine then gets very large or small numbers, whatever the units of the scene.  Raises
+    NotApplicableError for moments that no mass distribution has, because engines refuse them.
     """
     p, mass, A = problem_of(top), float(top.m), float(top.A)
     clock = math.sqrt(p.a) + abs(p.b) + abs(p.theta_rate) + abs(p.psi_rate)
@@ -121,18 +121,18 @@ def scaled_body(top: Top, period: float) -> tuple[Body, float]:
 def engine_attitudes(
     package: str, scheme: str, top: Top, setting: Any, limit: float
 ) -> Callable[[Array], Array]:
-    """Return a function that gives the quaternions (w, x, y, z; a row for each time) of an engine.
+    """Return a function for the quaternions (w, x, y, z; a row for each time) of an engine.
 
-    The engine runs in a process of its own, `limit` seconds at most.  Raises NotApplicableError for
-    a body that engines refuse, and FailedError if the process does not start; so does the function,
-    for times before the start and for a run that goes wrong.
+    The engine runs in a separate process for at most `limit` seconds.  Raises NotApplicableError
+    for a body that engines refuse, and FailedError if the process does not start.  The function
+    raises NotApplicableError for times before the start, and FailedError if a run fails.
     """
     body, clock = scaled_body(top, float(solve(top).T_nutation or 1))
     process = EngineProcess(f"{MODELS}:{package}", body, scheme, setting)
 
     def attitudes(t: Array) -> Array:
         if t[-1] < 0:
-            raise NotApplicableError("engines run forwards only")
+            raise NotApplicableError("engines only run forwards")
         return process.attitudes(t * clock, limit)
 
     return attitudes
@@ -146,7 +146,7 @@ def _engine_angles(
 
 
 class Scheme(NamedTuple):
-    """An integrator of an engine, and the settings that it is tried at."""
+    """An integrator of an engine, and its settings."""
 
     name: str
     settings: Sequence[Any] = STEPS
@@ -167,11 +167,11 @@ FAMILIES: dict[str, dict[str, Scheme]] = {
         "discrete": Scheme("discrete", MANY_STEPS),
     },
 }
-"""Schemes of each engine, by its package; its model is the function of that name."""
+"""Schemes of each engine, by its package; the model is the function with this name."""
 
 
 def engines(limit: float) -> dict[str, Method]:
-    """Return each engine with each of its schemes by name; a run may take `limit` seconds."""
+    """Return every scheme of every engine by name, with a time limit of a run in seconds."""
     return {
         f"{package}-{short}".rstrip("-"): Method(
             scheme.settings,

@@ -1,8 +1,8 @@
-"""Random scenes of every hard kind: a function for each, whose docstring is its line of words.
+"""Random scenes of every hard kind, with a function for each, whose docstring describes it.
 
-Starts are general, of both signs, and lengths, masses and times are of the size of 1 except where a
-kind says otherwise.  Numbers are doubles, or fractions where a double could not be as near to what
-is hard.  An exact cusp, pass or precession uses tilts whose cosine is rational and numbers with few
+Starts are general, of both signs.  Lengths, masses and times are of the size of 1, unless a kind
+states otherwise.  Numbers are doubles, or fractions if a double cannot be near enough to the hard
+case.  An exact cusp, pass or precession uses tilts whose cosine is rational and numbers with few
 bits.  A new kind is one function in KINDS.
 """
 
@@ -21,7 +21,7 @@ _RATES = ("r0", "thetadot0", "psidot0")
 
 
 def power(rng: random.Random, low: float, high: float) -> float:
-    """Return a number between 10^low and 10^high, its logarithm uniform."""
+    """Return a number between 10^low and 10^high, with a uniform logarithm."""
     return 10 ** rng.uniform(low, high)
 
 
@@ -53,7 +53,7 @@ def _threshold_spin(scene: Scene) -> float:
 
 
 def _to_pole(scene: Scene, u: float, pole: int, speed2: float) -> Scene:
-    """Return rates at cos(theta0) = u whose angular momentum leads over a pole."""
+    """Return rates at cos(theta0) = u for which the axis passes over a pole."""
     rate = pole * scene["C"] * scene["r0"] / scene["A"] / (1 + pole * u)
     theta_rate = math.sqrt(max(speed2 - rate * rate * (1 - u * u), 0))
     return {"theta0_deg": math.degrees(math.acos(u)), "psidot0": rate, "thetadot0": theta_rate}
@@ -235,7 +235,7 @@ def thresholds(rng: random.Random) -> Scene:
     kind, miss = rng.randrange(3), 1 + signed(rng, power(rng, -15, -3))
     if kind == 0:
         scene = _body(rng) | {"theta0_deg": rng.uniform(1, 85)}
-        lam = math.cos(math.radians(scene["theta0_deg"])) * miss  # where k = k'
+        lam = math.cos(math.radians(scene["theta0_deg"])) * miss  # at k = k'
         return scene | {"r0": signed(rng, _threshold_spin(scene) * math.sqrt(lam))}
     if kind == 1:
         return ordinary(rng) | {"g": power(rng, -15, -6)}
@@ -281,7 +281,7 @@ STRATA: dict[str, Callable[[random.Random], Scene]] = {
 
 
 def words_of(stratum: str) -> str:
-    """Return a line that says what the scenes of a stratum are."""
+    """Return a line that describes the scenes of a stratum."""
     first = (STRATA[stratum].__doc__ or "").partition("\n")[0]
     return first.removeprefix("Return ").rstrip(".")
 

@@ -1,7 +1,7 @@
-"""Numerical integration of Euler's equations: two forms of them, and the methods of others.
+"""Numerical integration of Euler's equations, in two forms and by methods of other packages.
 
-Another method of scipy is one entry in SCIPY; another form of the equations one in FORMS.  Angles
-are in radians and rates in the units of the scene, in which tolerances act as well.
+Another method of scipy is one entry in SCIPY; another form of the equations is one in FORMS.
+Angles are in radians and rates in the units of the scene; tolerances apply to these numbers.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from .method import (
 )
 
 TIGHTEST = 3e-14
-"""Least relative tolerance that scipy takes."""
+"""Least relative tolerance that scipy accepts."""
 
 STEPS_PER_SECOND = 100_000
-"""Steps that count as a second of heyoka, which no clock can interrupt between its steps."""
+"""Steps that count as a second of heyoka, which cannot be interrupted by a clock."""
 
 Slope = Callable[[float, Sequence[Any]], Sequence[Any]]
 
@@ -51,7 +51,7 @@ class TopProblem(NamedTuple):
 
 
 def problem_of(top: Top) -> TopProblem:
-    """Return the problem of a top, in its own units."""
+    """Return the problem of a top, in the units of its scene."""
     tilt = top.tilt(DOUBLES)
     return TopProblem(
         a=2 * float(top.m) * float(top.g) * float(top.s) / float(top.A),
@@ -64,7 +64,7 @@ def problem_of(top: Top) -> TopProblem:
 
 
 class Form(NamedTuple):
-    """Variables to integrate in: their start, their slope, and the angles from them."""
+    """Variables of an integration: their start, their slope, and the angles from them."""
 
     start: Callable[[TopProblem], Sequence[float]]
     slope: Callable[[TopProblem, Any], Slope]
@@ -76,7 +76,7 @@ class Form(NamedTuple):
     """Greatest changes of energy and vertical momentum, over the sum of their terms."""
 
     def integration(self, p: TopProblem, run: Callable[[Array], tuple[Array, Work]]) -> Integration:
-        """Return what computes the angles from a run."""
+        """Return a function that computes the angles from a run."""
         return Integration(run, self.angles, partial(self.drift, p) if self.drift else None)
 
 
@@ -105,7 +105,7 @@ def _quaternion_start(p: TopProblem) -> Sequence[float]:
 
 
 def _quaternion_slope(p: TopProblem, _: Any) -> Slope:
-    """Return the slope of p, q (body) and the quaternion (body to space): nothing is singular."""
+    """Return the slope of p, q (body) and the quaternion (body to space); it is never singular."""
     twist = p.r0 - p.b
 
     def slope(_: float, state: Sequence[Any]) -> Sequence[Any]:
@@ -136,7 +136,7 @@ def _quaternion_drift(p: TopProblem, rows: Array) -> tuple[float, float]:
 
 
 def quaternion_angles(rows: Array) -> SampledAngles:
-    """Return the angles, turns aside, of quaternions w, x, y, z, a row for each."""
+    """Return the angles, modulo whole turns, of quaternions w, x, y, z, a row for each."""
     return [*angles_of(rows).values()]
 
 
@@ -153,14 +153,14 @@ FORMS = {
 
 
 class Limit:
-    """What a run may take: seconds, and evaluations of the right-hand side, which it counts."""
+    """Limits of a run: seconds, and evaluations of the right-hand side, which are counted."""
 
     def __init__(self, seconds: float, evaluations: float) -> None:
         self.seconds, self.most = seconds, evaluations
         self.end, self.count = time.perf_counter() + seconds, 0
 
     def watched(self, slope: Slope) -> Slope:
-        """Return the slope, which raises FailedError if a run takes more."""
+        """Return the slope as a function that raises FailedError if a run exceeds its limits."""
 
         def counted(now: float, state: Any) -> Sequence[Any]:
             self.count += 1
@@ -185,7 +185,7 @@ def scipy_method(
     def run(t: Array) -> tuple[Array, Work]:
         watched = Limit(*limits).watched(lambda now, state: slope(now, [*state]))
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what goes wrong is seen in the outcome
+            warnings.simplefilter("ignore")  # the outcome shows failures
             try:
                 flow = solve_ivp(
                     watched, (0.0, t[-1]), start, name, dense_output=True, rtol=rtol, atol=rtol
@@ -202,9 +202,9 @@ def scipy_method(
 def rk4_method(
     form: Form, top: Top, per_period: int, *, limits: tuple[float, float]
 ) -> AngleFunction:
-    """Return the classical Runge-Kutta method with so many equal steps per nutation period.
+    """Return the classical Runge-Kutta method with a number of equal steps per nutation period.
 
-    The gap between two times takes a whole number of steps, so that each time is hit.
+    The gap between two times is divided into a whole number of steps, so that each time is hit.
     """
     problem, period = problem_of(top), float(solve(top).T_nutation or 1)
     start, slope = np.array(form.start(problem)), form.slope(problem, math)
@@ -233,7 +233,7 @@ def rk4_method(
 
 
 def _forget_compiled_code(state: Any) -> None:
-    """Clear heyoka's cache of compiled code and leave it off, so that set-up times compare."""
+    """Clear and disable heyoka's cache of compiled code, so that set-up times are comparable."""
     state.clear_memcache()
     if hasattr(state, "set_diskcache_enabled"):
         state.set_diskcache_enabled(False)
@@ -279,7 +279,7 @@ STEPS = [50, 200, 800]
 
 
 def integrators(seconds: float, evaluations: float = math.inf) -> dict[str, Method]:
-    """Return each method in each form by name; a run may take so many seconds and evaluations."""
+    """Return each method in each form by name, with limits on seconds and evaluations of a run."""
     table = {}
     limits = seconds, evaluations
     for shape, form in FORMS.items():

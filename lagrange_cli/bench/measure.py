@@ -1,4 +1,4 @@
-"""Error against run time: the same times by every method, judged by the many-digit reference."""
+"""Error against run time, for every method at the same times, against one reference."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ from .method import (
 from .reference import ExactAngles, Reference, angle_differences, angle_units
 
 JUDGED = 201
-"""Number of the times, the last among them, that are compared with the reference."""
+"""Number of times that are compared with the reference; the last time is one of them."""
 DIGITS, FEWER_DIGITS = 80, 50
-"""Digits of the reference, and of the one that it is checked against."""
+"""Digits of the reference, and of a second one that checks it."""
 RUNS, SECONDS_OF_RUNS = 9, 0.3
-"""Most repetitions of a timing, and the seconds after which there are no more."""
+"""Largest number of repetitions of a timing, and the seconds after which they end."""
 
 
 class Task(NamedTuple):
-    """The angles of one top at some times, and the exact ones at a part of them."""
+    """Times for one top, and the exact angles at some of them."""
 
     motion: Motion
     times: Array
     judged: NDArray[np.int64]
-    """Indices into the times."""
+    """Indices of the times with exact angles."""
     exact: list[ExactAngles]
     agreement: float
-    """Greatest difference, in radians, of the reference at two precisions."""
+    """Greatest difference, in radians, between references at two precisions."""
 
     @property
     def periods(self) -> float:
@@ -61,22 +61,22 @@ class Task(NamedTuple):
 
 
 def reference_period(motion: Motion) -> float:
-    """Return the nutation period of a scene that `check_scene` has passed."""
+    """Return the nutation period of a scene that has passed `check_scene`."""
     return float(motion.T_nutation or math.inf)
 
 
 def usual_methods(limit: float) -> dict[str, Method]:
-    """Return the methods of a plain comparison by name; a run may take `limit` seconds."""
+    """Return the methods of a plain comparison by name, with a time limit of a run in seconds."""
     return CLOSED_FORMS | integrators(limit)
 
 
 def all_methods(limit: float) -> dict[str, Method]:
-    """Return every method by name, engines too."""
+    """Return every method by name, including engines."""
     return usual_methods(limit) | engines(limit)
 
 
 def groups() -> dict[str, list[str]]:
-    """Return the names that stand for several methods: all engines, and each of them."""
+    """Return the names of groups of methods: all engines, and each engine."""
     found = {
         family: [name for name, x in engines(1.0).items() if x.engine == family]
         for family in FAMILIES
@@ -85,9 +85,10 @@ def groups() -> dict[str, list[str]]:
 
 
 def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
-    """Return the methods with these names, of methods or groups of them, or the usual ones.
+    """Return the methods with these names (of methods or groups), or the usual methods.
 
-    Raises LagtopError for an unknown one, and UnavailableError where none of them is installed.
+    Raises LagtopError for an unknown name, and UnavailableError if none of the methods is
+    installed.
     """
     if names is None:
         return usual_methods(limit)
@@ -110,12 +111,12 @@ def task(
     judged: int = JUDGED,
     progress: Progress = silent,
 ) -> Task:
-    """Return `count` times from 0 to t_max (just t_max for one), with exact angles at a part.
+    """Return `count` times from 0 to t_max (only t_max if 1), with exact angles at some of them.
 
-    Raises LagtopError for a motion that the reference cannot judge, and for a time out of reach.
+    Raises LagtopError for a motion that the reference cannot check, and for a time out of reach.
     """
     check_scene(motion)
-    np.empty(1 << 21)  # glibc then keeps freed memory: to ask for it again would double the time
+    np.empty(1 << 21)  # glibc then keeps freed memory: allocating it again would double the time
     times = np.linspace(0.0, t_max, count) if count > 1 else np.array([t_max])
     motion.sampler().check(times)
     index = np.unique(np.linspace(0, count - 1, min(judged, count)).round().astype(np.int64))
@@ -126,10 +127,10 @@ def task(
 
 
 def check_scene(motion: Motion) -> None:
-    """Raise LagtopError where the reference, which is made for nutation, has nothing to say."""
+    """Raise LagtopError for a scene that the reference, made for nutation, cannot check."""
     top = motion.top
     if motion.regime not in (Regime.REGULAR, Regime.NO_SPIN):
-        raise LagtopError(f"the scene must be one that nutates, got {motion.regime.value}")
+        raise LagtopError(f"the scene must nutate, got {motion.regime.value}")
     if top.pole:
         raise LagtopError("theta0 must be off the vertical for a comparison of Euler angles")
     if not (top.r0 or top.psidot0):
@@ -137,17 +138,17 @@ def check_scene(motion: Motion) -> None:
 
 
 def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
-    """Return the judged and timed run of one method; the remark tells what failed."""
+    """Return the errors and times of a run of one method; the remark states a failure."""
     row = MethodRow(name, setting, work.periods)
     times = work.times[work.judged] if method.costly else work.times
     try:
         method.check_package()
-        with np.errstate(all="ignore"):  # what is not a number is judged as such
+        with np.errstate(all="ignore"):  # values that are not finite are reported below
             sample, setup = _set_up(method, work, setting)
             angles, seconds = _run(sample, times)
     except NotApplicableError as reason:
         return row._replace(setting="", remark=f"{NOT_APPLICABLE}: {reason}")
-    except (FailedError, ArithmeticError, ValueError) as reason:  # formulas of others in doubles
+    except (FailedError, ArithmeticError, ValueError) as reason:  # foreign formulas in doubles
         return row._replace(remark=f"failed: {reason}")
     timed = row._replace(
         setup_s=setup,
@@ -170,9 +171,9 @@ def _set_up(method: Method, work: Task, setting: Any) -> tuple[AngleFunction, fl
 
 
 def _run(sample: AngleFunction, times: Array) -> tuple[SampledAngles, list[float]]:
-    """Return the angles of a first run, and the seconds of later ones, which find all warm.
+    """Return the angles of a first run, and the seconds of later, warm runs.
 
-    A run that takes long by itself is not repeated.
+    A run that takes long is not repeated.
     """
     seconds: list[float] = []
     begun = time.perf_counter()
@@ -196,7 +197,7 @@ def _judged(
     errors = [angle_differences(angles, exact, whole_turns=turns) for angles, exact in pairs]
     worst, end = [max(angle) for angle in zip(*errors, strict=True)], errors[-1]
     if not math.isfinite(max(worst)):
-        return row._replace(remark="failed: gave what is not a number")
+        return row._replace(remark="failed: returned values that are not finite")
     units = max(max(angle_units(angles, exact, whole_turns=turns)) for angles, exact in pairs)
     each: dict[str, Any] = {f"{name}_max": x for name, x in zip(ANGLES, worst, strict=True)}
     each |= {f"{name}_end": x for name, x in zip(ANGLES, end, strict=True)}
@@ -218,7 +219,7 @@ def _processor() -> str:
 
 
 def _versions() -> str:
-    """Return the versions of Python and of all packages that take part."""
+    """Return the versions of Python and of all packages that are used."""
     parts = [f"Python {platform.python_version()}"]
     for name in ("lagtop", "numpy", "mpmath", "scipy", "heyoka"):
         try:

@@ -1,4 +1,4 @@
-"""Methods that `bench` compares: ways to compute the angles of a top, and their rows."""
+"""Methods that `bench` compares: functions for the angles of a top, and rows of the report."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ OURS = "lagtop"
 NOT_APPLICABLE = "not applicable"
 
 SampledAngles = Sequence[Any]
-"""Tilt, spin and precession (radians), each an array or a list in the length of the times."""
+"""Tilt, spin and precession (radians), each an array or a list with the length of the times."""
 
 AngleFunction = Callable[[Array], SampledAngles]
-"""Computes the angles at times that run away from 0."""
+"""A function that computes the angles at times with increasing distance from 0."""
 
 
 class Work(NamedTuple):
-    """The work of a run, which is the same on every machine; None for a number that is unknown."""
+    """The work of a run, which is the same on every machine; unknown numbers are None."""
 
     evaluations: int | None = None
-    """Evaluations of the right-hand side; of a Taylor method, its steps times its order."""
+    """Evaluations of the right-hand side; for a Taylor method, its steps times its order."""
     steps: int | None = None
     jacobians: int | None = None
 
@@ -38,58 +38,58 @@ class Integration:
         angles: Callable[[Array], SampledAngles],
         drift: Callable[[Array], tuple[float, float]] | None,
     ) -> None:
-        """Take what integrates (a row for each variable), and what its rows say."""
+        """Take a function that integrates (a row for each variable), and functions of its rows."""
         self._run, self._angles, self._drift = run, angles, drift
         self.work = Work()
         """The work of the last run."""
         self.drift: tuple[float, float] | None = None
-        """Changes of energy and vertical momentum in it, over the sum of their terms."""
+        """Changes of energy and vertical momentum in the last run, over the sum of their terms."""
 
     def __call__(self, t: Array) -> SampledAngles:
-        """Return the angles at times that run away from 0."""
+        """Return the angles at times with increasing distance from 0."""
         rows, self.work = self._run(t)
         self.drift = self._drift(rows) if self._drift else None
         return self._angles(rows)
 
 
 class NotApplicableError(Exception):
-    """A method cannot do this scene, or not here; the message says why."""
+    """A method does not apply to this scene or this installation; the message states why."""
 
 
 class FailedError(Exception):
-    """A method began and did not end well; the message says how."""
+    """The run of a method has failed; the message states how."""
 
 
 class Method(NamedTuple):
-    """A way to compute the angles, with the settings that it is tried at."""
+    """A way to compute the angles, with the settings at which it is run."""
 
     settings: Sequence[Any]
     prepare: Callable[[Top, Any], AngleFunction]
-    """Set-up: from a top and a setting to what samples.
+    """The set-up, a function of a top and a setting that returns a sampling function.
 
-    It may raise NotApplicableError; what it returns may raise FailedError.
+    The set-up may raise NotApplicableError, and the sampling function FailedError.
     """
     package: str = ""
-    """The module it needs beyond lagtop itself."""
+    """The module that the method needs besides lagtop."""
     whole_turns: bool = True
-    """Whether it counts the turns of spin and precession; if not, they are known modulo 2 pi."""
+    """Whether the method counts turns of spin and precession; otherwise they are modulo 2 pi."""
     costly: bool = False
-    """A millisecond a sample: timed at the judged times only."""
+    """Whether a sample takes a millisecond, so that only times with exact angles are timed."""
     engine: str = ""
-    """The distribution that it runs in a process of its own; it is not imported here."""
+    """The distribution of an engine that runs in a separate process; it is not imported here."""
 
     def check_package(self) -> None:
-        """Raise NotApplicableError where the package is missing."""
+        """Raise NotApplicableError if the package is missing."""
         if missing := self.missing_package():
             raise NotApplicableError(f"needs {missing}: pip install {missing}")
 
     def missing_package(self) -> str:
-        """Return the name to install it by where its package is missing, or an empty text."""
+        """Return the name of the package to install if it is missing, or an empty text."""
         name = self.package.partition(".")[0]
         return (self.engine or name) if name and find_spec(name) is None else ""
 
     def mark(self) -> str | None:
-        """Return the engine and its version, which mark its rows; None for other methods."""
+        """Return the name and version of an engine, to mark its rows; None for other methods."""
         return f"{self.engine} {version(self.engine)}" if self.engine else None
 
 
@@ -100,7 +100,7 @@ class MethodRow(NamedTuple):
     setting: float | str
     periods: float
     theta_max: float | None = None
-    """Greatest error of theta over the judged times (rad); then those of phi and psi."""
+    """Greatest error of theta over the checked times (rad); phi and psi follow."""
     phi_max: float | None = None
     psi_max: float | None = None
     theta_end: float | None = None
@@ -115,14 +115,14 @@ class MethodRow(NamedTuple):
     steps: int | None = None
     jacobians: int | None = None
     order: float | None = None
-    """Observed order of the method: by how much the error falls with the work, over settings."""
+    """Observed order: the exponent by which the error falls with the work, over settings."""
     setup_s: float | None = None
     ns_min: float | None = None
-    """Nanoseconds per sample: the least and the median of the runs."""
+    """Nanoseconds per sample: the least of the runs, followed by their median."""
     ns_median: float | None = None
     runs: int | None = None
     front: bool = False
-    """Whether no other is both faster and more accurate."""
+    """Whether no other row is both faster and more accurate."""
     remark: str | None = None
 
 

@@ -1,8 +1,8 @@
-"""Methods of all kinds in one scene over longer and longer spans: errors, condition, growth.
+"""Methods of all kinds in one scene over increasing spans: errors, condition, growth.
 
-An error is the angle (rad) of the rotation between the computed and the exact attitude, so that
-Euler angles do not blur it next to the vertical.  The condition is by how much half a unit in the
-last place of each input turns the attitude: no method can do better with inputs in doubles.
+An error is the angle (rad) of the rotation between the computed and the exact attitude.  Unlike
+errors of Euler angles, it is meaningful next to the vertical.  The condition is the rotation caused
+by half a unit in the last place of each input.  No method can do better with inputs in doubles.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from .method import FailedError, NotApplicableError
 from .reference import ExactAngles, Reference
 
 SPANS, LONG_SPAN = (5.0, 100.0), 1e4
-"""Nutation periods that every method is asked for; the last one with `long`."""
+"""Spans in nutation periods for every method; the last one only with `long`."""
 EVALUATIONS, LONG_EVALUATIONS = 50_000, 5_000_000
-"""Evaluations of the right-hand side that a run may take."""
+"""Limit of the evaluations of the right-hand side in a run."""
 SECONDS = 60.0
 _HAIR = 1e-9
 TIMES = 8
-"""Times in each span; errors are the greatest up to its end."""
+"""Number of times in each span; errors are the greatest up to its end."""
 PEERS = (
     *("lagtop", "scipy.special", "DOP853-quaternion"),
     *("Radau-quaternion", "Taylor-quaternion", "RK4-quaternion"),
@@ -44,7 +44,7 @@ VERDICTS = {
     "lost": f"error above {LOST:g} rad, or stopped within {SPANS[0]:g} periods",
     "ill-conditioned": f"a scene whose condition exceeds {LOST:g} rad",
 }
-"""Words of the verdict and their meaning, from good to bad."""
+"""The words of the verdict and their meanings, from good to bad."""
 
 
 class PeerRun(NamedTuple):
@@ -52,14 +52,14 @@ class PeerRun(NamedTuple):
 
     method: str
     points: Sequence[tuple[float, float]]
-    """Times in periods, and the error there (rad), as far as the method came."""
+    """Times in periods, and errors at these times (rad), up to the end of the run."""
     bounds: Sequence[tuple[float, float]]
-    """Times in periods, and the condition there (rad), over all spans."""
+    """Times in periods, and conditions at these times (rad), over all spans."""
     evaluations: int | None
     drift: tuple[float, float] | None
     """Changes of energy and Lz over the sum of their terms; None if a method has no rates."""
     remark: str | None
-    """Why a run ended."""
+    """The reason why the run ended early, if it did."""
 
     def error(self, span: float) -> float | None:
         """Return the greatest error in a span; infinite if the method gave up before its end."""
@@ -86,7 +86,7 @@ class PeerRun(NamedTuple):
 
     @property
     def verdict(self) -> str:
-        """A word of VERDICTS, for the longest span that was done; "" for a missing method."""
+        """A word of VERDICTS, for the longest span that was computed; "" for a missing method."""
         if self.is_missing:
             return ""
         span = self.points[-1][0] if self.points else SPANS[0]
@@ -107,7 +107,7 @@ def _greatest(points: Sequence[tuple[float, float]], span: float) -> float:
 
 
 def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterator[PeerRun]:
-    """Yield the run of each method, whose package may be missing, over growing spans."""
+    """Yield the run of each method over growing spans; the package of a method may be missing."""
     most = LONG_EVALUATIONS if len(spans) > len(SPANS) else EVALUATIONS
     known = CLOSED_FORMS | integrators(SECONDS, most)
     period = float(reference.T)
@@ -123,12 +123,12 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
         try:
             method.check_package()
             with np.errstate(all="ignore"):
-                sample = method.prepare(top, method.settings[-1])  # the tightest
+                sample = method.prepare(top, method.settings[-1])  # the tightest setting
                 for grid, true in zip(grids, exact, strict=True):
                     found = zip(*sample(grid * period), strict=True)
                     errors = [turn(x, y) for x, y in zip(found, true, strict=True)]
                     if math.inf in errors:
-                        raise FailedError("what it gave is not a number")
+                        raise FailedError("returned values that are not finite")
                     points += zip(grid.tolist(), errors, strict=True)
         except NotApplicableError as reason:
             remark = str(reason)
@@ -140,7 +140,7 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
 
 
 def turn(angles: Sequence[Any], exact: ExactAngles) -> float:
-    """Return the angle of the rotation between two attitudes; infinite for what is no number."""
+    """Return the angle of the rotation between two attitudes; infinite if one is not finite."""
     with mpmath.workdps(60):
         theta, phi, psi = (mpmath.mpf(x) for x in angles)
         plus, minus, half = (psi + phi) / 2, (psi - phi) / 2, theta / 2
@@ -155,7 +155,7 @@ def turn(angles: Sequence[Any], exact: ExactAngles) -> float:
 
 
 def _conditions(top: Top, times: Array) -> list[float]:
-    """Return the condition at times: the turns by each input, added up."""
+    """Return the condition at times: the sum of the rotations by each input."""
     slopes = angle_sensitivities(top, times)
     inputs = top.as_dict()
     steps = np.array([math.ulp(float(inputs[name] or 0)) / 2 for name in slopes.inputs])

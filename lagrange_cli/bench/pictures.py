@@ -1,9 +1,9 @@
 """Pictures of the reports, by matplotlib: work and precision, long spans, error by stratum.
 
-A family of methods has one hue, and each method a mark of its own.  The hues are as far from each
-other, from black and from white as a search could bring them for normal, protan, deutan and tritan
-vision; a test simulates these.  Marks tell methods apart within a family, and everything where
-there is no colour at all.
+A family of methods has one hue, and each method has its own mark.  A search has maximised the
+distances of the hues from each other, from black and from white.  It covers normal, protan, deutan
+and tritan vision, and a test simulates these.  Marks distinguish methods within a family, and all
+methods in prints without colour.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEAST_ERROR = 1e-17
-"""Least error (rad) that is drawn; a smaller one stands there with its number."""
+"""Least error (rad) that is drawn; smaller errors are written at the edge."""
 MOST_ERROR = 3.2
-"""Half a turn: no attitude is further off."""
+"""Half a turn, the greatest possible error of an attitude."""
 LETTERS = 0.85
-"""Size of the letters over that of `lagtop plot`."""
+"""Font size relative to that of `lagtop plot`."""
 HUES = {
     OURS: LIGHT.ink,
     "closed forms": "#005000",
@@ -42,7 +42,7 @@ HUES = {
 }
 """Colours of the families, in the order of the legend."""
 SHAPES = "os^Dv<>pP*Xhd"
-"""Marks, which are first filled, and then empty."""
+"""Marks, used first filled, then empty."""
 
 
 def draw_work_precision(findings: Report, path: str) -> None:
@@ -130,12 +130,12 @@ def _figure(panels: int) -> tuple[Figure, Any]:
 
 
 def _drawable(points: Sequence[tuple[float, float]]) -> list[list[float]]:
-    """Return the x and the y of points, none so small that it is not drawn."""
+    """Return the x and the y of points, with values below the least drawn ones raised to them."""
     return [[max(value, LEAST_ERROR) for value in axis] for axis in zip(*points, strict=True)]
 
 
 def _line(axes: Axes, name: str, look: MethodLook, points: Sequence[tuple[float, float]]) -> None:
-    """Draw the line of a method; the errors of points beyond the left edge are written there."""
+    """Draw the line of a method; errors beyond the left edge are written at the edge."""
     x, y = _drawable(points)
     axes.plot(x, y, label=name, **look.look())
     beyond = [point for point in points if point[0] < LEAST_ERROR]
@@ -182,7 +182,7 @@ class MethodLook(NamedTuple):
 def method_looks(names: Iterable[str]) -> dict[str, MethodLook]:
     """Return the look of each method, by name, in the order of the legend.
 
-    The two forms of an integrator share a mark, and that in Euler angles is dashed.
+    The two forms of an integrator share a mark; the line of the form in Euler angles is dashed.
     """
     order = [*HUES, ""]
     listed = sorted(names, key=lambda name: order.index(_family(name)))
@@ -196,7 +196,7 @@ def method_looks(names: Iterable[str]) -> dict[str, MethodLook]:
 
 
 def _family(name: str) -> str:
-    """Return the family of a method; "" for one that is not known."""
+    """Return the family of a method; "" for an unknown method."""
     method = all_methods(1.0).get(name)
     if name.startswith(OURS):
         return OURS
@@ -204,7 +204,7 @@ def _family(name: str) -> str:
         return "closed forms"
     if not method:
         return ""
-    return method.engine or method.package.partition(".")[0] or "scipy"  # RK4, in Python too
+    return method.engine or method.package.partition(".")[0] or "scipy"  # RK4 is also in Python
 
 
 def _stem(name: str) -> str:

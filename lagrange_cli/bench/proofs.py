@@ -1,8 +1,8 @@
-"""One scene of the battery, judged by enclosures: every error is an upper bound that is proved.
+"""One scene of the battery, checked by enclosures: every error is a proved upper bound.
 
-The enclosures are those of `solve` and of `table --certify`: balls that hold the exact numbers,
-angles and rates, whatever was rounded or left out on the way.  A unit is bounded from below, and
-what it divides from above.
+The enclosures of `solve` and of `table --certify` are balls that contain the exact numbers, angles
+and rates.  They include all errors of rounding and truncation.  Each error is bounded from above,
+and its unit from below.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from .reference import Many
 
 _COLUMNS = ("theta", "phi", "psi", "quaternion")
 _NARROW = 2**10
-"""One over the radius of a ball, in units, that tells an error to three digits."""
+"""Inverse of the radius of a ball, in units, that gives an error to three digits."""
 _DIGITS = 40
-"""Digits of the period that times are counted in."""
+"""Digits of the period, the unit of the times of a scene."""
 
 
 def prove(scene: HardScene) -> Case:
-    """Return what is proved of a scene: upper bounds of its errors."""
+    """Return proved upper bounds of the errors of a scene."""
     top = Top(**scene.inputs)
     motion = solve(top)
     proofs = ProvedTable(motion, _COLUMNS)
@@ -57,7 +57,7 @@ def _period(motion: Motion) -> Many:
 def worst_bound(motion: Motion) -> tuple[float, str]:
     """Return the worst bound of a key, in gaps between doubles, and the key.
 
-    One where the motion has none, or the other way round, is infinitely wrong.
+    The bound is infinite if only one of record and motion has a number.
     """
     return max((key_bound(motion, key, getattr(motion, key)), key) for key in NUMBER_KEYS)
 
@@ -83,7 +83,7 @@ def key_bound(motion: Motion, key: str, value: float | None) -> float:
 def ulps(value: float, exact: Ball) -> float:
     """Return a bound of the distance of a double from all in a ball, in gaps between doubles.
 
-    The gap is the one on the side of the ball.  Raises TooFewDigitsError where that is not sharp.
+    The gap is the one on the side of the ball.  Raises TooFewDigitsError if the bound is not sharp.
     """
     above, below = (abs(math.nextafter(value, x) - value) for x in (math.inf, -math.inf))
     ar = exact.ar
@@ -95,7 +95,7 @@ def ulps(value: float, exact: Ball) -> float:
 def bounds_at(proofs: ProvedTable, t: float, computed: Sequence[float]) -> list[float]:
     """Return upper bounds of the errors of the angles and of the quaternion at a time, in units.
 
-    Raises LagtopError where no precision makes an enclosure small beside its unit.
+    Raises LagtopError if no precision makes an enclosure small compared with its unit.
     """
     time = Fraction(t)
 
@@ -133,7 +133,7 @@ def _sizes(sample: BallSample, angles: Sequence[Ball]) -> list[Ball]:
 
 
 def _bound(error: Ball, unit: Ball) -> float:
-    """Return a bound of an error in units.  Raises TooFewDigitsError where it is not sharp."""
+    """Return a bound of an error in units.  Raises TooFewDigitsError if it is not sharp."""
     if not error.radius * _NARROW < unit.least:
         raise TooFewDigitsError
     return float((error / unit).greatest)  # its few digits are printed as they are

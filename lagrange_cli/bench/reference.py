@@ -1,9 +1,8 @@
-"""The one definition of error, and a many-digit reference that shares no formula with the program.
+"""The definition of error, and a many-digit reference that shares no formula with the program.
 
-The reference shares nothing with what it judges but the inputs as `Top` holds them.  Where the
-program uses theta functions about the highest point and means by the arithmetic-geometric mean,
-the reference uses Legendre's third integral about the lowest point, by mpmath's own sn, R_F, R_J,
-K and E, from roots by Viete's cosines:
+Both share only the inputs in a `Top`.  The program uses theta functions about the highest point,
+and the arithmetic-geometric mean.  The reference uses Legendre's third integral about the lowest
+point, by mpmath's sn, R_F, R_J, K and E, from roots by Viete's cosines:
 
     u = u2 + (u1 - u2) sn^2 w,  w = sqrt(a (u3 - u2)) (t - t2)/2,
     (psi +- phi)/2 = +-(r0 - b) t/2 + (beta +- b)/2 * integral of dt / (1 +- u).
@@ -23,7 +22,7 @@ from ..inputs.top import Top
 EPS = 2.0**-52
 
 _ROOT_DIGITS = 1000
-"""Digits of the roots, whose differences may be as small as 1e-600."""
+"""Digits of the roots, because their differences may be as small as 1e-600."""
 
 Many = Any
 """An mpf with many digits."""
@@ -47,15 +46,15 @@ class ExactAngles(NamedTuple):
 
 
 def unit(exact: Many, rate: Many, tau: Many) -> float:
-    """Return eps (max(1, |exact|) + |tau rate|), what the error of a computed value is counted in.
+    """Return eps (max(1, |exact|) + |tau rate|), the unit of the error of a computed value.
 
-    The second term is what one rounding of the time, less whole periods, does.
+    The second term is the effect of one rounding of the time since the nearest whole period.
     """
     return EPS * float(max(1, abs(exact)) + abs(tau * rate))
 
 
 def error_in_units(computed: float, exact: Many, rate: Many, tau: Many) -> float:
-    """Return the error of one value in units; not a number counts as infinite."""
+    """Return the error of one value in units; the error of NaN is infinite."""
     if not math.isfinite(computed):
         return math.inf
     return float(abs(mpmath.mpf(computed) - exact)) / unit(exact, rate, tau)
@@ -66,9 +65,10 @@ def angle_differences(
 ) -> tuple[float, float, float]:
     """Return |computed - exact| of tilt, spin and precession, in radians.
 
-    Not a number counts as infinite.  Without `whole_turns`, spin and precession count modulo 2 pi.
+    The difference of NaN is infinite.  Without `whole_turns`, spin and precession count modulo 2
+    pi.
     """
-    with mpmath.workdps(80):  # more than what is compared: nothing is lost in the differences
+    with mpmath.workdps(80):  # more digits than the numbers have
         theta, phi, psi = (
             mpmath.mpf(x) - true if mpmath.isfinite(x) else mpmath.inf
             for x, true in zip(angles, exact[:3], strict=True)
@@ -106,7 +106,7 @@ def quaternion_units(parts: Sequence[float], exact: ExactAngles) -> float:
 def key_ulps(computed: float, exact: Many, digits: int) -> float:
     """Return |computed - exact| over the gap between doubles there; at most 1/2 for the nearest.
 
-    The gap is the one on the side of the exact value, which has that many digits.
+    The gap is the one on the side of the exact value, which has `digits` digits.
     """
     with mpmath.workdps(digits):
         away = exact - mpmath.mpf(computed)
@@ -115,7 +115,7 @@ def key_ulps(computed: float, exact: Many, digits: int) -> float:
 
 
 class _Jacobi(NamedTuple):
-    """Half periods passed, and sn, cn, dn of the rest."""
+    """The number of half periods, and sn, cn, dn of the remaining argument."""
 
     turns: Many
     sn: Many
@@ -138,7 +138,7 @@ class Reference:
     def __init__(self, top: Top, digits: int = 50) -> None:
         """Raise LagtopError for a top that does not nutate."""
         self.digits = digits
-        with mpmath.workdps(max(2 * digits, _ROOT_DIGITS)):  # differences of roots cancel
+        with mpmath.workdps(max(2 * digits, _ROOT_DIGITS)):  # for differences of roots
             self._roots(top)
         with mpmath.workdps(digits):
             self.speed = mpmath.sqrt(self.a * self.u3_u2) / 2
@@ -197,7 +197,7 @@ class Reference:
         return _Jacobi(turns, *(mpmath.ellipfun(f, rest, m=self.m) for f in ("sn", "cn", "dn")))
 
     def _halves(self, t: Many) -> tuple[Many, Many]:
-        """Return (psi + phi)/2 and (psi - phi)/2, but for their start."""
+        """Return (psi + phi)/2 and (psi - phi)/2, up to their values at t = 0."""
         now, drift = self._jacobi(t), self.drift * t
         plus, minus = (
             momentum / 2 * self._third(*gaps, now, whole)
@@ -211,7 +211,7 @@ class Reference:
         return self.K + (1 - rest) / 3 * mpmath.elliprj(0, self.mc, 1, rest)
 
     def _third(self, at_u1: Many, at_u2: Many, now: _Jacobi, whole: Many) -> Many:
-        """Return the integral of dt/(at_u2 + (at_u1 - at_u2) sn^2): Legendre's Pi, cut off."""
+        """Return the incomplete integral of dt/(at_u2 + (at_u1 - at_u2) sn^2), Legendre's Pi."""
         sn2, cn2, dn2, rest = now.sn**2, now.cn**2, now.dn**2, at_u1 / at_u2
         part = mpmath.elliprf(cn2, dn2, 1)
         part += (1 - rest) / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn2)
@@ -249,7 +249,7 @@ class Reference:
             )
 
     def record(self) -> dict[str, Many]:
-        """Return the exact value of every number of the record; None for those it has not."""
+        """Return the exact value of every number of the record; None if the motion has none."""
         with mpmath.workdps(self.digits):
             plus, minus = (
                 last - first for last, first in zip(self._halves(self.T), self.start, strict=True)

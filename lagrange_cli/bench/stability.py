@@ -1,7 +1,7 @@
 """The stability report: methods of all kinds in random scenes of every hard kind.
 
-Each stratum has a row per method.  The row of lagtop also says how its record, its angles and its
-quaternion keep what is promised.
+Each stratum has a row per method.  The row of lagtop also has the errors of its record, angles and
+quaternion, to compare with the promised bounds.
 """
 
 from __future__ import annotations
@@ -36,29 +36,29 @@ from .peers import EVALUATIONS, LONG_EVALUATIONS, LONG_SPAN, SPANS, VERDICTS, Pe
 from .reference import EPS
 
 TIMES = 2
-"""Times anywhere per scene for lagtop; six more stand next to half, quarter and whole periods."""
+"""Random times per scene for lagtop; six more are next to half, quarter and whole periods."""
 FINE, EXCEEDED = "fine", "EXCEEDED"
 PROVED = (
     "enclosures in balls (Arb): every error is an upper bound that is proved; `proved` is the "
     "worst of the angles and the quaternion"
 )
 Judged = tuple[Case, list[PeerRun]]
-"""What became of a scene: lagtop's errors, and the runs of all methods."""
+"""The results of a scene: errors of lagtop, and the runs of all methods."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class StratumRow:
-    """One method in one stratum: the worst of its scenes."""
+    """One method in one stratum, with the worst results of its scenes."""
 
     stratum: str
     method: str
     scenes: int
     error_5_rad: float | None = None
-    """Greatest error over 5 periods (rad); infinite if the method gave up before."""
+    """Greatest error over 5 periods (rad); infinite if the method gave up earlier."""
     error_100_rad: float | None = None
     error_10000_rad: float | None = None
     condition_rad: float | None = None
-    """Turn of the attitude by half a unit in the last place of the inputs, over 100 periods."""
+    """Rotation of the attitude by half a unit in the last place of the inputs, over 100 periods."""
     growth: float | None = None
     """Exponent of the growth of the error in time."""
     energy: float | None = None
@@ -66,7 +66,7 @@ class StratumRow:
     Lz: float | None = None
     evaluations: int | None = None
     theta_units: float | None = None
-    """Worst error of lagtop in units (see `reference`); so for the next ones."""
+    """Worst error of lagtop in units (see `reference`), as for the next fields."""
     phi_units: float | None = None
     psi_units: float | None = None
     quaternion_units: float | None = None
@@ -74,7 +74,7 @@ class StratumRow:
     worst_key: str | None = None
     verdict: str
     proved_units: float | None = None
-    """The worst of the angles and the quaternion, where errors are proved bounds."""
+    """The worst of the angles and the quaternion, if errors are proved bounds."""
     worst_case: str | None = None
     """A command line that shows lagtop's worst number."""
     remark: str | None = None
@@ -120,7 +120,7 @@ _OF_PROOFS = {
 
 
 def chosen_strata(names: Sequence[str] | None) -> list[str]:
-    """Return the names of the strata, or of all.  Raises LagtopError for an unknown one."""
+    """Return the names of strata, by default all.  Raises LagtopError for an unknown name."""
     return list(STRATA) if names is None else check_names("strata", names, STRATA)
 
 
@@ -134,9 +134,9 @@ def run_battery(
     certify: bool = False,
     is_long: bool = False,
 ) -> Report:
-    """Return the report on so many scenes of each stratum, judged by so many processes.
+    """Return the report on `samples` scenes of each stratum, computed by `jobs` processes.
 
-    With `certify` enclosures are the judge of lagtop alone, and errors are proved bounds.
+    With `certify`, only lagtop is checked, by enclosures, and errors are proved bounds.
     """
     spans = (*SPANS, LONG_SPAN) if is_long else SPANS
     found: dict[str, list[Judged]] = {name: [] for name in strata}
@@ -152,7 +152,7 @@ def run_battery(
 
 
 def _fields(certify: bool, is_long: bool) -> list[Field]:
-    """Return the fields, with headings for those that the table shows."""
+    """Return the fields, with headings if the table shows them."""
     changed: dict[str, Field] = {}
     if certify:
         changed = {key: Field(key, heading, _hundredths) for key, heading in _OF_PROOFS.items()}
@@ -165,7 +165,7 @@ def _fields(certify: bool, is_long: bool) -> list[Field]:
 
 
 def judged(scene: tuple[str, int, int], spans: Sequence[float] = SPANS) -> Judged:
-    """Return what became of a scene: stratum, seed and number."""
+    """Return the results of a scene, given by stratum, seed and number."""
     hard = hard_scene(*scene, TIMES)
     top = Top(**hard.inputs)
     settled = settled_reference(top)
@@ -173,7 +173,7 @@ def judged(scene: tuple[str, int, int], spans: Sequence[float] = SPANS) -> Judge
 
 
 def proved(scene: tuple[str, int, int]) -> Judged:
-    """Return what is proved of a scene: stratum, seed and number."""
+    """Return the proved bounds of a scene, given by stratum, seed and number."""
     from .proofs import prove
 
     return prove(hard_scene(*scene, TIMES)), []
@@ -223,7 +223,7 @@ def stratum_rows(name: str, found: Sequence[Judged], *, certify: bool = False) -
 
 
 def _badness(run: PeerRun) -> tuple[int, float]:
-    """Return how bad a run is: by the order of the verdicts, then by its error."""
+    """Return a sorting key for the badness of a run: its verdict, then its error."""
     place = list(VERDICTS).index(run.verdict) if run.verdict else -1
     return place, run.error(SPANS[1]) or 0.0
 
@@ -237,7 +237,7 @@ def exceeded(report: Report) -> list[str]:
 def _conditions(
     strata: Sequence[str], samples: int, seed: int, agreement: float | None, is_long: bool
 ) -> dict[str, str]:
-    """Return the conditions; no `agreement` of references stands for proved bounds."""
+    """Return the conditions of the report; if there is no `agreement`, errors are proved bounds."""
     conditions = common_conditions() | {
         "scenes": f"{samples} per stratum, seed {seed}; lagtop also at {TIMES} times 1e-9 to 1e14 "
         "periods before or after the start, and at the doubles next to a half period on one side "

@@ -1,1 +1,1 @@
-"""The commands: the only room that knows names of options, exit codes and click."""
+"""The commands: the only subpackage that knows names of options, exit codes and click."""

@@ -1,4 +1,4 @@
-"""The command line: the group of commands, with our errors, exit codes and deaths by signal."""
+"""The command line: the group of commands, with one-line errors, exit codes and signals."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ COMMANDS = {
     "Functions": ("jacobi", "eta"),
     "Tests of lagtop": ("bench", "stability"),
 }
-"""The names of the commands, by their groups in the help."""
+"""Names of the commands, by their groups in the help."""
 NAMES = [name for names in COMMANDS.values() for name in names]
 _MODULES = {"view": "plot", "scenes": "explain", "stability": "bench"}
-"""Commands that share the module of another one."""
+"""Commands that share the module of another command."""
 _COLOURS = {"Error": "red", "Warning": "yellow"}
 
 
 def complain(line: str) -> None:
-    """Write one line to standard error, if that takes it, safe for any terminal.
+    """Write one line to standard error, safe for any terminal; ignore failures.
 
-    A terminal that has colours shows its first word, `Error:` or `Warning:`, in one.
+    A terminal with colours shows the first word, `Error:` or `Warning:`, in colour.
     """
     line = one_line(line)
     word, colon, rest = line.partition(":")
@@ -50,11 +50,11 @@ def complain(line: str) -> None:
 
 
 def say(text: str) -> None:
-    """Write a text of our own to standard output.  Raises CannotWriteError."""
+    """Write a text of lagtop to standard output.  Raises CannotWriteError."""
     try:
         with opened("-") as stream:
             stream.write(f"{spelt(text, view_of('-'))}\n".encode())
-    except BrokenPipeError:  # which click would turn into exit code 1
+    except BrokenPipeError:  # click would turn it into exit code 1
         die_by(CLOSED_PIPE)
 
 
@@ -68,7 +68,7 @@ def write_report(out: Output, find: Callable[[], Report]) -> Report:
 
 
 def fail_for(failures: Sequence[str], count: int, what: str, *, remedy: str = "") -> None:
-    """Raise SomeFailedError if some of what a report is about has failed, with the first of it."""
+    """Raise SomeFailedError if there are failures, with their number and the first one."""
     if failures:
         said = f"{len(failures)} of {count} {what} failed; the first: {failures[0]}"
         raise SomeFailedError(f"{said}; {remedy}" if remedy else said)
@@ -90,8 +90,8 @@ def _shown_at_once(names: Sequence[str], what: str, text: Callable[[click.Contex
 class Command(click.Command):
     """A command whose help has examples and groups of options; an error names its option.
 
-    The options --version and --help are made here: those of click look for translations, which
-    would take 2 % of the run of `lagtop solve`.
+    The options --version and --help are made here, because those of click search for translations.
+    That would take 2 % of the run time of `lagtop solve`.
     """
 
     def __init__(self, *args: Any, examples: str = "", **kwargs: Any) -> None:
@@ -117,10 +117,10 @@ class Command(click.Command):
 
 
 def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> str:
-    """Return the message with `--t-max` where the library says `t_max`.
+    """Return a message with names of options, such as `--t-max` instead of `t_max`.
 
-    That is its first word, if it is the key of the error, and any word with an underscore before
-    the value that is quoted.
+    The replaced words are the first word, if it is the key of the error, and words with an
+    underscore before the quoted value.
     """
     names = [name for param in params for name in param.opts if name.startswith("--")]
     options = {name[2:].replace("-", "_"): name for name in names}
@@ -134,18 +134,18 @@ def _naming_options(error: LagtopError, params: Sequence[click.Parameter]) -> st
 
 
 class LagtopGroup(Command, click.Group):
-    """The group of commands, with our errors (one line), exit codes and deaths by signal."""
+    """The group of commands, with one-line errors, exit codes and deaths by signal."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names, in the order of the help."""
         return NAMES
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return a command, whose module is loaded only now: start-up pays for one, not for all.
+        """Return a command; its module is loaded only now, to speed up the start.
 
-        What `__main__` has loaded so far is never looked through for garbage, here and at the end:
-        that would take 10 % of `lagtop solve`.  Imports within the command leave no garbage either:
-        Python's own threshold of 700 objects would add 15 % to the import of matplotlib.
+        Objects loaded so far are excluded from garbage collection, which would take 10 % of `lagtop
+        solve`.  Imports within the command leave no garbage either.  Python's own threshold of 700
+        objects would add 15 % to the import of matplotlib.
         """
         if cmd_name not in NAMES:
             return None
@@ -160,7 +160,7 @@ class LagtopGroup(Command, click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command of the arguments.  Raises UsageError with the name that was meant."""
+        """Return the command of the arguments.  Raises UsageError for an unknown name."""
         word = args[0]
         if word not in NAMES and not word.startswith("-"):
             from ..inputs.names import suggestion
@@ -170,7 +170,7 @@ class LagtopGroup(Command, click.Group):
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run like click's method, but end with one line on standard error and an exit code."""
-        if sys.stderr is None:  # closed by the caller: the next file would take its number
+        if sys.stderr is None:  # closed by the caller: the next file would get its number
             sys.stderr = os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
         run: Any = super().main
         if not extra.pop("standalone_mode", True):
@@ -185,7 +185,7 @@ class LagtopGroup(Command, click.Group):
         except LagtopError as error:
             complain(f"Error: {error}")
             sys.exit(error.exit_code)
-        except OSError as error:  # of what no reader or writer has named
+        except OSError as error:  # of a file that no reader or writer has named
             place = f": {error.filename}" if error.filename else ""
             complain(f"Error: {error.strerror or error}{place}")
             sys.exit(CannotWriteError.exit_code)
@@ -193,8 +193,10 @@ class LagtopGroup(Command, click.Group):
             die_by(INTERRUPT)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command.  What ends it from outside is caught here, before click turns it into
-        an exit code: a signal must kill as a signal."""
+        """Run the command, and end the program by a signal if the command was ended by one.
+
+        Signals are caught here, before click turns them into an exit code.
+        """
         try:
             with interrupts():
                 return super().invoke(ctx)
@@ -204,7 +206,7 @@ class LagtopGroup(Command, click.Group):
             number = INTERRUPT
         except Terminated as error:
             number = error.number
-        return die_by(number)  # here, where the frames of the command are gone and have cleaned up
+        return die_by(number)  # here the frames of the command are gone and have cleaned up
 
 
 @click.group(

@@ -1,4 +1,4 @@
-"""The tests of lagtop itself: `lagtop bench` and `lagtop stability`."""
+"""Tests of lagtop: `lagtop bench` and `lagtop stability`."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
 PERIODS = 20.3
-"""No end at a turning point, where approximations are at their best."""
+"""Default end in periods, not at a turning point, at which approximations are best."""
 MOST_TIMES = 10_000_000
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""Variables that say how many threads the linear algebra of packages has."""
+"""Environment variables for the number of threads of linear algebra packages."""
 SCENES, MOST_SCENES = 1, 100_000
 SEED = 1952
 
@@ -62,9 +62,15 @@ def _methods() -> list[str]:
     help="Methods, or groups such as engines.  [default: all but engines]",
 )
 @click.option(
-    "--timeout", type=NUMBER, default="3", show_default=True, help="Seconds a run may take."
+    "--timeout",
+    type=NUMBER,
+    default="3",
+    show_default=True,
+    help="Time limit of a run, in seconds.",
 )
-@click.option("--long", "is_long", is_flag=True, help="Over spans of 1 to 1e6 periods instead.")
+@click.option(
+    "--long", "is_long", is_flag=True, help="Compare over spans of 1 to 1e6 periods instead."
+)
 @plot_option
 @output_options("table", "csv", "json", "ndjson", "markdown")
 def bench_command(
@@ -86,7 +92,7 @@ def bench_command(
 
     Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method heyoka.
     """
-    os.environ.update(dict.fromkeys(_THREADS, "1"))  # before these packages are imported
+    os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.compare_methods import compare_methods, compare_spans
     from ..bench.measure import check_scene, chosen_methods, reference_period
     from ..bench.pictures import draw_long_spans, draw_work_precision
@@ -94,7 +100,7 @@ def bench_command(
 
     exclude({"--long": is_long, "--t-max": t_max})
     if t_max == 0:
-        raise LagtopError("--t-max must be other than 0: nothing has moved by then")
+        raise LagtopError("--t-max must not be 0")
     if count is not None and not 1 <= count <= MOST_TIMES:
         raise LagtopError(f"--n must be in [1, {MOST_TIMES}], got {count}")
     if not timeout > 0:
@@ -141,8 +147,8 @@ def bench_command(
     help="Only these kinds of scenes.  [default: all]",
 )
 @jobs_option
-@click.option("--certify", is_flag=True, help="Print proved bounds of lagtop's errors alone.")
-@click.option("--long", "is_long", is_flag=True, help="Over 1e4 periods too.")
+@click.option("--certify", is_flag=True, help="Print only proved bounds of the errors of lagtop.")
+@click.option("--long", "is_long", is_flag=True, help="Compare over 1e4 periods too.")
 @plot_option
 @output_options("table", "csv", "json", "ndjson", "markdown")
 def stability_command(
@@ -157,11 +163,11 @@ def stability_command(
 ) -> None:
     """Compare methods in random stiff and extreme scenes, and test lagtop there in 80 digits.
 
-    The errors of closed forms and integrators, in radians, stand beside the condition of the scene:
-    the change that half a unit in the last place of its inputs makes.
+    Errors are in radians.  Compare them with the condition of the scene: the change that half a
+    unit in the last place of its inputs makes.
 
     lagtop must round every key of the record correctly.  Its angles and its quaternion must be
-    within 4 units, at times up to 1e14 periods before and after the start, some of them next to
+    within 4 units, at times up to 1e14 periods before and after the start.  Some times are next to
     half, quarter and whole periods.  The exit code is 1 if a bound is exceeded.
     """
     exclude({"--certify": certify, "--long": is_long})

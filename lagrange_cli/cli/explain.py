@@ -44,8 +44,8 @@ def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> Non
     """Explain keys and columns, with formulas and numbers.
 
     Each formula is shown in symbols and with the numbers of the top.  Without a key, all keys of
-    the record, keys on request and columns are listed.  solve --get, sweep --keys, find and plot
-    --key use keys; table --columns uses columns.
+    the record, keys on request and columns are listed.  Pass keys to solve --get, sweep --keys,
+    find and plot --key, and columns to table --columns.
     """
     from ..motion.explanation import explanations, listed
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def _beginnings() -> list[str]:
-    """Return how words of the command may begin: keys and shipped scenes."""
+    """Return completions of words of the command: keys and shipped scenes."""
     from ..inputs.scene_file import scene_names
     from ..motion.record import all_keys
 

@@ -1,4 +1,4 @@
-"""The command `lagtop fit`: a top from data."""
+"""The command `lagtop fit`: a top from a recording."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _parse_sigma(text: str) -> float | dict[str, float]:
 
 
 def _parse_window(text: str) -> tuple[float, bool]:
-    """Return the number of windows, or their duration, and whether it is the latter."""
+    """Return the number of windows or their duration, and whether it is a duration."""
     from ..arithmetic.text import parse_number
 
     number = float(parse_number(text))
@@ -86,7 +86,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
     "a spin rate that decays.",
 )
 @click.option("--by", metavar="COLUMN", help="Column that distinguishes several recordings.")
-@click.option("--together", is_flag=True, help="All recordings of --by are of one body.")
+@click.option("--together", is_flag=True, help="Fit one body to all recordings of --by.")
 @reading_options(quaternion="wxyz")
 @text_options
 @plot_option
@@ -111,7 +111,7 @@ def fit_command(
     A recording is a file as in lagtop compare, or - for standard input: times with tilt, spin and
     precession, the axis or the attitude.  Cells may be missing, and angles may be wrapped.
 
-    Only the inputs given as options, and those of the scene named by --fix, count as known.
+    Known inputs are the inputs given as options, and the inputs of a scene that --fix names.
 
     -o FILE.toml writes the fitted top as a scene, unless the fit fails.
     """
@@ -178,7 +178,7 @@ def _fitted(
 def _known(
     top: TopOptions, described: Top | None, fix: list[str]
 ) -> tuple[dict[str, float], dict[str, float], System | None]:
-    """Return known inputs, given or of the scene, their standard deviations, and their units.
+    """Return known inputs from options or a scene, their standard deviations, and their units.
 
     Without a scene file, the scene is the one that the recording describes.  Raises LagtopError.
     """
@@ -194,7 +194,7 @@ def _known(
         present = overridden(described.inputs(), present)
     names = [x for x in present if x in given]
     if {"A_cm", "m", "s"} <= present.keys() and "A_cm" not in given:
-        present["A"] = moment(present)  # of the scene: m and s need not be known for that
+        present["A"] = moment(present)  # of the scene, because m and s need not be known
     for name in fix:
         matching = [x for x in (name, f"{name}_deg", f"{name}_rad") if x in present]
         if not matching:

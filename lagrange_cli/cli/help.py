@@ -22,15 +22,15 @@ _GROUPS = {
     "Uncertainty": {"budget", "samples", "seed", "sigma"},
     "Output": {"fmt", "output", "units", "rad", "keys", "columns", "wrap", "plot"},
 }
-"""The names of the parameters of each group; all others come first, as options of the command."""
+"""Names of the parameters of each group; all others come first, as options of the command."""
 _OWN = "Options"
 _ORDER = (_OWN, "Body", "Start", "Uncertainty", "Accuracy", "Output")
 _WIDTH, _TERM = 80, 26
-"""Columns of the help, and the column at which the texts of options begin."""
+"""Width of the help, and the column at which the texts of options begin."""
 
 
 def write_help(command: Command, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-    """Write the usage, what the command does, examples, and options in groups."""
+    """Write the usage, the description, examples, and options in groups."""
     formatter.width = _WIDTH
     command.format_usage(ctx, formatter)
     command.format_help_text(ctx, formatter)
@@ -56,14 +56,14 @@ def _group_of(param: click.Parameter) -> str:
 
 
 def _first_sentence(group: LagtopGroup, ctx: click.Context, name: str) -> str:
-    """Return what a command does, without the stop at the end."""
+    """Return the first sentence on a command, without its full stop."""
     found = group.get_command(ctx, name)
     assert found is not None
     return " ".join((found.help or "").split("\n\n")[0].split()).partition(". ")[0].rstrip(".")
 
 
 def usage_message(error: click.ClickException) -> str:
-    """Return a message of click in our words, with the help that has the remedy."""
+    """Return a message of click in the words of lagtop, with a reference to the help."""
     ctx: Any = getattr(error, "ctx", None)
     text = error.format_message()
     if isinstance(error, click.NoSuchOption):

@@ -55,7 +55,7 @@ E_prime | E' | second kind, k' | |
 def constant_keys(group: str, table: str) -> dict[str, Key]:
     """Return the keys of a table, a line each; a line without columns begins another group.
 
-    Complex numbers have the keys of their parts too.
+    Complex numbers also have the keys of their parts.
     """
     keys = {}
     for line in table.strip().split("\n"):
@@ -200,7 +200,7 @@ def jacobi_command(
 
 
 def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
-    """Return the one way in which a modulus is given.  Raises LagtopError."""
+    """Return the name and value of the modulus that is given.  Raises LagtopError."""
     chosen = [(name, value) for name, value in named.items() if value is not None]
     if len(chosen) != 1:
         raise LagtopError("give exactly one of --k, --k-prime, --modular-angle, --nome")
@@ -208,7 +208,7 @@ def _modulus(**named: Fraction | None) -> tuple[str, Fraction]:
 
 
 def _table(arguments: ComplexPoints, request: FunctionRequest, *, real: bool) -> TableOfFunctions:
-    """Return the table of real functions, or that of complex ones."""
+    """Return the table of real or of complex functions."""
     if real:
         from ..elliptic.function_table import FunctionTable
 
@@ -240,7 +240,7 @@ def _arguments(
 ) -> tuple[ComplexPoints, bool]:
     """Return the arguments, and whether they are factors of K.
 
-    Raises LagtopError for factors of K unless all is real.
+    Raises LagtopError for factors of K unless all numbers are real.
     """
     from ..arithmetic.points import ListedPoints
     from ..elliptic.request import ComplexPoints
@@ -254,9 +254,7 @@ def _arguments(
     else:
         units = [u.in_quarters]
     if not real and any(units):
-        raise LagtopError(
-            "--u must be without K beside complex numbers, and if --k is not in [0, 1]"
-        )
+        raise LagtopError("--u must not contain K if numbers are complex or --k is not in [0, 1]")
     points, in_quarters = listed_multiples(tuple(reals)) if isinstance(u, list) else u
     return ComplexPoints(points, ListedPoints(imag) if any(imag) else None), in_quarters
 
@@ -283,7 +281,7 @@ def _write_series(
     terms: int,
     out: Output,
 ) -> None:
-    """Write the sums, and on standard error how many terms are enough."""
+    """Write the sums, and on standard error the sufficient number of terms."""
     from ..elliptic.nome_series import TOLERANCE, SeriesTable
 
     if not 1 <= terms <= MOST_TERMS:

@@ -1,4 +1,4 @@
-"""Options that commands share: each is declared here once, with its type and its help."""
+"""Options that commands share, each declared once with its type and its help."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def late(module: str, name: str, **how: Any) -> Callable[..., Any]:
-    """Return a function of the package, or a constant, that is imported when it is called."""
+    """Return a function or constant of the package that is imported on the first call."""
 
     def call(*args: Any) -> Any:
         found: Any = getattr(import_module(f"...{module}", __name__), name)
@@ -37,9 +37,9 @@ def late(module: str, name: str, **how: Any) -> Callable[..., Any]:
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A parameter type: what a function makes of a text.  Errors begin with the option's name.
+    """A parameter type whose value a function parses; errors begin with the option's name.
 
-    `names` returns the names that a shell offers, of which commas may separate several.
+    `names` returns the names for completion in a shell, of which commas may separate several.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         self.name, self.parse, self.names = metavar, parse, names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the value; click may hand it in a second time, when it is no text any more."""
+        """Return the value; click may pass it a second time, when it is already converted."""
         if not isinstance(value, str):
             return value
         try:
@@ -63,7 +63,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        """Return the names that continue the last word; files if there is none."""
+        """Return the names that continue the last word; files if there are no names."""
         from click.shell_completion import CompletionItem
 
         before, comma, begun = incomplete.rpartition(",")
@@ -74,7 +74,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
 
 
 def _parse_count(text: str) -> int:
-    """Return a whole number, which may be written 1e6."""
+    """Return a whole number, which may be written as 1e6."""
     exact = parse_number(text)
     if exact.denominator != 1:
         raise LagtopError(f"must be a whole number, got {text}")
@@ -89,7 +89,7 @@ def exclude(options: dict[str, Any]) -> None:
 
 
 def on_command_line(name: str) -> bool:
-    """Return whether an option of the command that runs stands on the command line."""
+    """Return whether an option of the running command was given on the command line."""
     from click.core import ParameterSource
 
     return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
@@ -148,7 +148,7 @@ jobs_option = click.option(
 
 
 def extension(path: str) -> str:
-    """Return the extension of a file, in small letters and without its dot."""
+    """Return the extension of a file, in lower case and without its dot."""
     return splitext(path)[1][1:].lower()
 
 
@@ -157,8 +157,8 @@ def output_options(
 ) -> Callable[[F], F]:
     """Add the options --output and --format; the command receives an `Output` as `out`.
 
-    The default format is the extension of the file.  Without one it is the first of the formats, or
-    `on_terminal` if standard output is a terminal.
+    The default format is the extension of the file.  Without an extension it is the first of the
+    formats, or `on_terminal` if standard output is a terminal.
     """
     default = f"{formats[0]}; on a terminal {on_terminal}" if on_terminal else formats[0]
 
@@ -203,7 +203,7 @@ _DECIMALS = {"point": ".", "comma": ","}
 
 
 def _mark(marks: dict[str, str]) -> Callable[[str], str]:
-    """Return a parser of the name of a mark, or of the mark itself."""
+    """Return a parser for a mark, given by name or as a character."""
 
     def parse(text: str) -> str:
         if text not in {*marks, *marks.values()}:
@@ -244,7 +244,7 @@ header_comments_option = click.option(
 def is_described(out: Output, header_comments: bool) -> bool:
     """Return whether the output has a description: Parquet always, CSV with --header-comments.
 
-    Raises LagtopError for --header-comments with a format that has no place for it.
+    Raises LagtopError for --header-comments with a format that cannot hold a description.
     """
     if header_comments and out.fmt not in {"csv", "parquet"}:
         raise LagtopError(f"--header-comments describes CSV and Parquet, got --format {out.fmt}")

@@ -98,7 +98,7 @@ AXIS = Parsed("RANGE", str, _axis_names)
 @click.option("--size", metavar="WxH", help="Size of the page in inches, such as 8x6.")
 @click.option("--dpi", type=NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
 @click.option("--animate", type=FILE, help="Write a film of the top: FILE.gif or FILE.mp4.")
-@click.option("--duration", type=NUMBER, help="Seconds that the film lasts.  [default: 6]")
+@click.option("--duration", type=NUMBER, help="Length of the film in seconds.  [default: 6]")
 @click.option("--speed", type=NUMBER, help="Simulated time per second of film.")
 @click.option("--show", is_flag=True, help="Open a window.")
 @click.option(
@@ -124,7 +124,7 @@ def plot_command(
     fmt: str | None,
     output: str | None,
 ) -> None:
-    """Write, film and show the pictures that the options ask for."""
+    """Write, film and show the pictures that the options request."""
     if not (output or show or animate):
         raise LagtopError("nothing to do: give -o FILE.png, --show or --animate FILE.gif")
     top, chosen = _scene_and_kinds(top, words)
@@ -195,7 +195,7 @@ def _format_of(fmt: str | None, output: str | None) -> str:
 
 
 def _inches(size: str | None) -> tuple[float, float] | None:
-    """Return the width and height that a text such as `8x6` stands for."""
+    """Return the width and height of a text such as `8x6`."""
     if size is None:
         return None
     parts = re.fullmatch(r"(\d+\.?\d*)[x×](\d+\.?\d*)", size)
@@ -206,7 +206,7 @@ def _inches(size: str | None) -> tuple[float, float] | None:
 
 
 def _pair(text: str, separator: str, fallback: tuple[float, float]) -> tuple[float, float]:
-    """Return the two numbers of a text, or the fallback if it is no such pair."""
+    """Return the two numbers of a text, or the fallback if it is no pair."""
     try:
         first, second = (float(parse_number(part)) for part in text.split(separator))
     except (LagtopError, ValueError):
@@ -233,7 +233,7 @@ def _first_order(found: Given, motion: Motion) -> FirstOrder | None:
     """Return the uncertainties of the record, if inputs have any."""
     if not found.stds:
         return None
-    from .uncertainty import first_order  # for few pictures only
+    from .uncertainty import first_order  # few pictures need it
 
     return first_order(found, motion)
 
@@ -242,7 +242,7 @@ def _input_range(name: str, text: str | None) -> InputRange | None:
     """Return an axis of a map."""
     if text is None:
         return None
-    from ..plot.map import parse_input_range  # with the colour bars, which others do without
+    from ..plot.map import parse_input_range  # with the colour bars, which others do not need
 
     return parse_input_range(name, text)
 

@@ -1,7 +1,7 @@
 """Progress of long work: one line on the terminal of standard error, which vanishes at the end.
 
-The line appears after a second, from a thread of its own: also while the first part is still being
-computed.  Rich is loaded only then.  Nothing is shown where standard error is no terminal.
+The line appears after a second, from a separate thread, even if the first part is still being
+computed.  Rich is loaded only then.  Nothing is shown if standard error is no terminal.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 DELAY = 1.0
-"""Seconds of work that nobody needs to be told about."""
+"""Seconds of work before the line appears."""
 
 
 def with_progress(
@@ -30,7 +30,7 @@ def with_progress(
     total: int | None = None,
     size: Callable[[Item], int] = one,
 ) -> Iterator[Item]:
-    """Yield the parts as they come, and show how much is done; see `output.progress.Progress`."""
+    """Yield the parts as they arrive, and show the progress; see `output.progress.Progress`."""
     if not sys.stderr.isatty():
         yield from parts
         return
@@ -44,8 +44,11 @@ def with_progress(
 
 @contextmanager
 def _line(label: str, total: int | None) -> Iterator[_Line]:
-    """Show a line while the block runs, and take it away even if an interrupted consumer does not
-    come back: a command closes its context before its frames are gone."""
+    """Show a line while the block runs, and always remove it.
+
+    It is removed even if a consumer is interrupted and does not come back, because a command closes
+    its context before its frames are gone.
+    """
     line = _Line(label, total)
     if context := click.get_current_context(silent=True):
         context.call_on_close(line.stop)
@@ -73,7 +76,7 @@ class _Line:
         Screen.without_progress = self._out_of_the_way
 
     def advance(self, count: int) -> None:
-        """Count what is done."""
+        """Count items that are done."""
         self.done += count
         if self.progress:
             self.progress.update(self.progress.task_ids[0], completed=self.done)
@@ -86,7 +89,7 @@ class _Line:
         self.progress.start()
 
     def stop(self) -> None:
-        """Take the line away, or see to it that it never comes."""
+        """Remove the line, or prevent it from appearing."""
         self.timer.cancel()
         self.timer.join()  # it may be about to draw
         if self.progress:
@@ -95,7 +98,7 @@ class _Line:
 
 
 def _progress(*, counts: bool) -> Progress:
-    """Return an empty display that fits the width of the terminal, whatever that is."""
+    """Return an empty display that fits the width of any terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
     from rich.progress import TimeRemainingColumn as Remaining

@@ -111,7 +111,7 @@ def solve_command(
 
 
 def _check_keys(keys: list[str], radians: bool) -> None:
-    """Raise LagtopError for a key that no motion has, or that comes twice."""
+    """Raise LagtopError for an unknown or repeated key."""
     from ..inputs.names import check_names
 
     values = [key.removesuffix("_std") for key in keys]
@@ -127,7 +127,7 @@ def _keys(system: System | None, radians: bool, *, requested: bool = False) -> d
 
 
 def _chain(system: System | None, radians: bool) -> dict[str, Key]:
-    """Return the keys of the steps of section 8, step by step."""
+    """Return the keys of the steps of section 8, in order."""
     from ..motion.paper.worked_example import CHAIN
     from ..motion.quantity import unit_name
 
@@ -137,7 +137,7 @@ def _chain(system: System | None, radians: bool) -> dict[str, Key]:
 
 
 def _summary(record: dict[str, Any], system: System | None) -> dict[str, str]:
-    """Return the sentence on a motion under its key, if none of its numbers is out of range."""
+    """Return the sentence on a motion, by its key, unless one of its numbers is out of range."""
     from ..motion.summary import summary
 
     try:

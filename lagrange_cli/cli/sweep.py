@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ..sweeps.plan import Make
 
 FEW = 50
-"""Tops whose records are drawn as a table on a terminal."""
+"""Largest number of tops whose records are drawn as a table on a terminal."""
 
 
 def _parse_shard(text: str) -> tuple[int, int]:

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from ..output.formats import Header
 
 MAX_DRAWN_ROWS = 10_000
-"""The most rows that are drawn: more of them are neither read nor quickly made."""
+"""Largest number of rows that are drawn; nobody reads more, and drawing them is slow."""
 _DRAWN = ("table", "markdown")
 
 
@@ -169,9 +169,9 @@ def _check_format(
 def _listed(
     times: str | None, tops: str | None, fmt: str, dialect: Dialect
 ) -> Callable[[Motion], Points] | None:
-    """Return the times of a file as those of every motion, if there is a file.
+    """Return the times of a file as times of every motion, if there is a file.
 
-    Many tops, and the one width of a drawn table, need them more than once.
+    They are kept, because many tops, or the common width of a drawn table, need them repeatedly.
     """
     if times is None:
         return None

@@ -1,4 +1,4 @@
-"""The top of a command: its options and its scene, the motion they describe, and warnings."""
+"""The top of a command: its options and scene, the motion that they describe, and warnings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SCENE = Parsed("SCENE", str, _scenes)
 def value_type(number: str = "parse_number", **allowed: bool) -> Parsed:
     """Return the type of an input in units; `number` names the reader of its number.
 
-    What is `allowed` besides is said at `parse_value`.
+    See `parse_value` for the values of `allowed`.
     """
     read = late("inputs.ranges" if number != "parse_number" else "arithmetic.text", number)
     return Parsed("X", late("inputs.value", "parse_value", parse=read, **allowed))
@@ -39,7 +39,7 @@ UNCERTAIN = value_type(uncertain=True)
 
 
 class TopOptions(Values):
-    """What the command line says about the top."""
+    """The options of the top on the command line."""
 
     options: Mapping[str, Any]
     """The inputs by the names of their options, in the order of the command line."""
@@ -64,7 +64,7 @@ class TopOptions(Values):
         return gather(self.by_key(), self.scene, system=self.units)
 
     def solved(self) -> Motion:
-        """Return the motion; a warning says that uncertainties are not used."""
+        """Return the motion; warn if uncertainties are not used."""
         found = self.given()
         warn_unused(found.stds)
         return motion_of(found)
@@ -72,7 +72,7 @@ class TopOptions(Values):
     def in_seconds(self, **times: Value | None) -> tuple[TopOptions, dict[str, Any]]:
         """Return the options, and times as numbers, in seconds if they have units.
 
-        A time with a unit asks for units of all inputs, as --units does.
+        A time with a unit requires units of all inputs, as --units does.
         """
         given = {name: x for name, x in times.items() if x is not None}
         top = self
@@ -88,7 +88,7 @@ def top_options(
 ) -> Callable[[F], F]:
     """Add the inputs of a top, --rad, --units and SCENE; a command receives a `TopOptions`, `top`.
 
-    Not every command takes a `scene` here or `units`; a top that is not `whole` has no defaults.
+    Some commands take no `scene` here, or no `units`; a top that is not `whole` has no defaults.
     """
     from ..inputs.input_keys import DECLARED  # not for commands without a top
 
@@ -136,8 +136,8 @@ def _help_of(declared: Input, *, shows_default: bool) -> str:
 def is_scene(word: str) -> bool:
     """Return whether a word among others, such as conditions or kinds of picture, names a scene.
 
-    That is `-`, a shipped scene, a word that ends in `.toml`, or one with a dot or a slash that
-    compares nothing.
+    Scenes are `-`, shipped scenes, words that end in `.toml`, and words with a dot or a slash that
+    are no condition.
     """
     return (
         word == "-"
@@ -163,7 +163,7 @@ def scene_among(
 def motion_of(found: Given, *, exact: bool = False) -> Motion:
     """Return the motion of some inputs, `exact` for inputs that are kept as decimals.
 
-    Warnings name inputs of the worked example among others, and a body that cannot be built.
+    Warnings name defaults that are mixed with other inputs, and bodies that cannot be built.
     """
     from ..motion.solve import solve
 
@@ -175,7 +175,7 @@ def motion_of(found: Given, *, exact: bool = False) -> Motion:
 
 
 def warn_missing(found: Given) -> None:
-    """Name the inputs of the body that are those of the worked example, and a scene without any."""
+    """Warn of inputs of the body from the worked example, and of a scene without inputs."""
     if found.empty is not None:
         complain(f"Warning: {found.empty} has no inputs: using the worked example")
     if found.missing:
@@ -186,14 +186,14 @@ def warn_missing(found: Given) -> None:
 
 
 def warn_unused(uncertain: Iterable[str]) -> None:
-    """Name inputs whose uncertainties a command does not use."""
+    """Warn of inputs whose uncertainties a command does not use."""
     if names := ", ".join(uncertain):
         used = "solve, table, sweep and plot angles use it"
         complain(f"Warning: the uncertainty of {names} is not used: {used}")
 
 
 def warn_no_tops(path: str) -> None:
-    """Say that a file of tops holds none, only its header."""
+    """Warn that a file of tops has only a header."""
     from ..inputs.files import shown_path
 
     complain(f"Warning: {shown_path(path)} holds no tops")
@@ -202,7 +202,7 @@ def warn_no_tops(path: str) -> None:
 def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
     """Return the uncertainties of the angles over time, if inputs are uncertain.
 
-    A warning says why there are none.
+    If there are none, a warning states the reason.
     """
     if not found.stds:
         return None
@@ -216,7 +216,7 @@ def angle_stds(found: Given, motion: Motion) -> AngleStds | None:
 
 @contextmanager
 def blaming(times: str | None) -> Iterator[None]:
-    """Raise DataError for a time out of reach that stands in a file of times."""
+    """Raise DataError for a time out of reach in a file of times."""
     try:
         yield
     except LagtopError as error:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> None:
-    """Raise LagtopError if no input is uncertain, and for options without uncertainties."""
+    """Raise LagtopError if no input is uncertain, or for options that exclude uncertainties."""
     if not found.stds:
         raise LagtopError("no input is uncertain: give one as in --m '1587(2)'")
     others = {"--digits": digits, "--derivation": derivation, "--certify": certify}
@@ -75,7 +75,7 @@ def with_stds(
 
 
 def first_order(found: Given, motion: Motion) -> FirstOrder:
-    """Return the uncertainties of first order of a motion."""
+    """Return the first-order uncertainties of a motion."""
     return FirstOrder(motion.top, found.stds, found.inputs.keys())
 
 
@@ -93,7 +93,7 @@ class _BudgetLine(NamedTuple):
 
     @property
     def noise(self) -> float:
-        """The uncertainty of the value, which decides about its digits."""
+        """The uncertainty of the value, which determines its digits."""
         return self.std
 
 
@@ -190,7 +190,7 @@ def _sampled(found: Given, motion: Motion, samples: int, seed: int | None, radia
 
 
 def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
-    """Return every input once, as it was given or as it was solved."""
+    """Return every input once, as given or as computed."""
     inputs = {name: float(x) for name, x in motion.top.as_dict().items() if x is not None}
     for measured, solved in STANDS_FOR.items():
         if measured in found.inputs:
@@ -228,10 +228,10 @@ _SAMPLED = {
 
 
 class _Measured(Field):
-    """A number that is shown to one digit below the first one of the noise of its row."""
+    """A number that is shown to one digit more than the first digit of the noise of its row."""
 
     def cell(self, row: Any) -> str:
-        """Return the text in a table: all such numbers of a row end at the same place."""
+        """Return the text in a table; all such numbers of a row end at the same decimal place."""
         value = getattr(row, self.key)
         if value is None:
             return ""

@@ -1,4 +1,4 @@
-"""The best fit of one recording: some steps from several starts, and the nearest to their ends."""
+"""The best fit of one recording: some steps from several starts, then convergence of the best."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ from .starting_tops import StartingTop, starting_tops
 _BODY = [FIT_QUANTITIES.index(name) for name in ("a", "b", "r0")]
 _MOST_STARTS = 6
 _COMPARABLE = 50.0
-"""Starts, and then attempts, are not tried if they leave more than so many times the least."""
+"""Starts and attempts are dropped if their chi^2 exceeds the least by more than this factor."""
 _FIRST_STEPS, _MOST_FINISHED = 15, 3
-"""Steps from each start, and the attempts that are then brought to their ends."""
+"""Steps from each start, and the number of attempts that are then continued to convergence."""
 _CHANCE, _APART = 16.0, 2.0
-"""Attempts explain a recording equally well if their chi^2 differ by less, over chi^2/dof; they are
-of different tops if a number differs by more than so many standard deviations of both.
+"""Differences that make attempts distinct.  The first is of chi^2, over chi^2/dof: below it
+attempts explain a recording equally well.  The second is in standard deviations: beyond it numbers
+belong to different tops.
 """
 _MUCH = 1.5
-"""How many times the noise a good fit leaves at most."""
+"""Largest residual of a good fit, over the noise."""
 
 
 class Attempt(NamedTuple):
@@ -37,7 +38,7 @@ class Attempt(NamedTuple):
     problem: Problem
     solution: FittedParameters
     mirrored: bool
-    """Whether psi is counted the other way."""
+    """Whether psi is counted in the other direction."""
     noise: Mapping[str, float]
     """Noise by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Mapping[str, float] | None = None
@@ -45,7 +46,7 @@ class Attempt(NamedTuple):
 
     @property
     def recording(self) -> Recording:
-        """The recording, with psi counted as the attempt has it."""
+        """The recording, with psi counted in the direction of the attempt."""
         return self.problem.recordings[0]
 
     @property
@@ -60,12 +61,12 @@ class Attempt(NamedTuple):
         return values[_BODY], np.sqrt(np.diag(covariance))[_BODY]
 
     def differs(self, other: Attempt) -> bool:
-        """Return whether a, b or r0 differ from another one's by more than their uncertainties."""
+        """Return whether a, b or r0 of two attempts differ by more than their uncertainties."""
         (ours, our_spread), (theirs, their_spread) = self.body, other.body
         return bool(np.any(np.abs(ours - theirs) > _APART * (our_spread + their_spread)))
 
     def explains(self) -> bool:
-        """Return whether no residual exceeds what harmonics leave of its channel, but by chance."""
+        """Return whether all residuals are, within chance, as small as those of harmonics."""
         left = self.solution.residuals[0]
         return all(
             np.isfinite(left[channel]).any()
@@ -74,14 +75,14 @@ class Attempt(NamedTuple):
         )
 
     def continued(self, values: Array) -> Attempt:
-        """Return where the least squares lead to from some parameters."""
+        """Return the attempt after least squares from some parameters."""
         return self._replace(solution=self.problem.solve(values))
 
 
 def best_attempt(
     recording: Recording, known: Mapping[str, float], stds: Mapping[str, float], where: str
 ) -> Attempt:
-    """Return the best fit of one recording, from the starts that may lead to it.
+    """Return the best fit of one recording, from several starts.
 
     Raises LagtopError, DataError for a recording that cannot be fitted.
     """
@@ -101,7 +102,7 @@ def best_attempt(
 
 
 def _check(recording: Recording, parameters: Parameters, where: str) -> None:
-    """Raise DataError for too few numbers, LagtopError for angles that do not determine a top."""
+    """Raise DataError for too few numbers, LagtopError if the angles do not determine a top."""
     known = parameters.known
     count = sum(int(np.isfinite(recording.angles[x]).sum()) for x in recording.angles)
     if count <= len(parameters.names):
@@ -112,18 +113,18 @@ def _check(recording: Recording, parameters: Parameters, where: str) -> None:
     seen = recording.angles.keys()
     if seen == {"theta"} and "psidot0" not in known:
         raise LagtopError(
-            f"{where} has neither psi nor phi, and theta alone does not determine b: fix psidot0 "
-            "(0 for a top that is let go in the first row)"
+            f"{where} has neither psi nor phi, and theta does not determine b: fix psidot0 "
+            "(0 for a top released in the first row)"
         )
     if seen == {"psi"} and "theta0" not in known:
         raise LagtopError(
-            f"{where} has neither theta nor phi, and psi alone does not determine the tilt: fix "
+            f"{where} has neither theta nor phi, and psi does not determine the tilt: fix "
             "theta0, the tilt in the first row"
         )
 
 
 class _Way(NamedTuple):
-    """A recording with psi counted one way or the other, and what it then shows."""
+    """A recording with psi counted in one direction, and the nutation that it then shows."""
 
     recording: Recording
     mirrored: bool
@@ -131,7 +132,7 @@ class _Way(NamedTuple):
 
 
 def _ways(recording: Recording, known: Mapping[str, float], where: str) -> list[_Way]:
-    """Return a recording, and if its spin determines the sense of psi its mirror image too."""
+    """Return a recording, and its mirror image too if its spin determines the direction of psi."""
     spins = recording.kind == "angles" and "psi" in recording.angles
     both = spins and ("phi" in recording.angles or "r0" in known)
     ways = [(recording, False), (recording.mirrored, True)][: 1 + both]
@@ -142,7 +143,7 @@ def _ways(recording: Recording, known: Mapping[str, float], where: str) -> list[
 def _cases(
     ways: Sequence[_Way], known: Mapping[str, float], *, wide: bool
 ) -> list[tuple[_Way, StartingTop]]:
-    """Return the starts, the nearest first; the nearest of either way is among them."""
+    """Return the starts, the nearest first, with the nearest one for each direction of psi."""
     first: list[tuple[_Way, StartingTop]] = []
     others: list[tuple[_Way, StartingTop]] = []
     for way in ways:
@@ -159,7 +160,7 @@ def _cases(
 
 
 def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | None:
-    """Return the result of some steps from one start, or None if they lead to no top."""
+    """Return the result of some steps from one start, or None if they leave the valid tops."""
     noise = way.shown.noise
     problem = Problem([way.recording], [sigma_of(way.recording, noise)], parameters)
     a, b, theta, nutation, precession = start.state
@@ -179,7 +180,7 @@ def _begun(way: _Way, start: StartingTop, parameters: Parameters) -> Attempt | N
 
 
 def sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, Array]:
-    """Return the standard deviations, or those of the noise if they are not known."""
+    """Return the standard deviations, or estimates from the noise if they are unknown."""
     greatest = max(noise.values())
     return recording.sigma or {
         x: np.full(recording.t.size, max(noise.get(x, greatest), LEAST_SIGMA))
@@ -188,7 +189,7 @@ def sigma_of(recording: Recording, noise: Mapping[str, float]) -> Mapping[str, A
 
 
 def _finished(begun: Sequence[Attempt]) -> list[Attempt]:
-    """Return the best attempts, each of another top and brought to its end."""
+    """Return the best attempts at convergence, each for a different top."""
     found: list[Attempt] = []
     nearest = sorted(begun, key=lambda attempt: attempt.chi2)
     for one in nearest:
@@ -204,9 +205,9 @@ def _least(found: Sequence[Attempt]) -> Attempt:
 
 
 def _slowed(found: Attempt) -> Attempt:
-    """Return an attempt whose spin rate is the slowest that a rigid body can have.
+    """Return an attempt with the slowest spin rate that a rigid body can have.
 
-    Rates that are whole turns per frame apart look alike.
+    Rates that differ by whole turns per frame look alike.
     """
     recording, parameters = found.recording, found.problem.parameters
     if "phi" not in recording.angles or ("r0", 0) not in parameters.names or parameters.tied:
@@ -223,9 +224,9 @@ def _slowed(found: Attempt) -> Attempt:
 
 
 def _told_apart(found: Sequence[Attempt]) -> Attempt:
-    """Return the best attempt, with the best of those that explain the recording as well.
+    """Return the best attempt, with the best rival that explains the recording equally well.
 
-    A spin of more than half a turn per frame is left out if a slower one does as well.
+    A spin of more than half a turn per frame is dropped if a slower one fits equally well.
     """
     best = _least(found)
     chance = _CHANCE * best.chi2 / max(best.solution.dof, 1)

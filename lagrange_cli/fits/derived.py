@@ -1,7 +1,7 @@
-"""What a report on a gyroscope needs: periods, mean rates and turning points of a fitted motion.
+"""Numbers derived from a fitted motion: periods, mean rates and turning points.
 
 Their uncertainties follow from the full covariance of the fit, by the exact derivatives of the
-record.  The elementary formulas of fast tops stand beside the exact numbers.
+record.  The elementary formulas of fast tops are added for comparison.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _MEANINGS = {
     "T_nutation_elementary": "2 pi A/(C |r0|)",
     "precession_rate_elementary": "mgs/(C r0)",
 }
-"""The keys of the record that are derived, and their meanings."""
+"""Keys of the record that are derived, and their meanings."""
 _STANDS_FOR = {
     "T_nutation_elementary": "T_nutation",
     "precession_rate_elementary": "mean_precession_rate",
@@ -49,7 +49,7 @@ class DerivedNumber(NamedTuple):
     """Derivatives by a, b, r0 and the start."""
     meaning: str
     exact: str = ""
-    """The key of the exact number for which an elementary formula stands."""
+    """The key of the exact number that an elementary formula approximates."""
 
     def std(self, labels: Sequence[str], covariance: Array) -> float:
         """Return the standard deviation, from a covariance in the order of the labels.
@@ -62,7 +62,7 @@ class DerivedNumber(NamedTuple):
         return math.sqrt(max(float(change @ covariance @ change), 0.0))
 
     def less(self, other: DerivedNumber) -> DerivedNumber:
-        """Return the difference from another number."""
+        """Return the difference of two numbers as a derived number."""
         names = {*self.gradient, *other.gradient}
         gradient = {x: self.gradient.get(x, 0.0) - other.gradient.get(x, 0.0) for x in names}
         return DerivedNumber("", self.value - other.value, gradient, "")
@@ -71,7 +71,7 @@ class DerivedNumber(NamedTuple):
 def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[DerivedNumber]:
     """Yield the numbers that follow from values of a, b and the start, and of r0 if it is known.
 
-    Keys that the motion does not have are left out.
+    Keys that the motion does not have are omitted.
     """
     top = Top(**inputs_of(*(values[name] for name in STATE)))
     motion, slopes = solve(top), sensitivities(top, list(_MEANINGS)).derivatives

@@ -1,7 +1,7 @@
 """`find`: tops whose records have target values.
 
-One unknown is a root between values of a scan.  Several are found by Newton's method within their
-ranges, from the best points of the scan.
+With one unknown, solutions are roots between values of a scan.  Several unknowns are found by
+Newton's method within their ranges, from the best points of the scan.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ from .roots import roots
 from .search import Scan, Search, condition_texts, read_unknown, scan_of, search_of
 
 _SWEPT = 2.0**-48
-"""The relative error of a number of a sweep is less."""
+"""Bound of the relative error of a number of a sweep."""
 _MOST_STARTS = 16
 _NEWTON_STEPS = 6
 _APART = 1e-9
-"""Solutions that differ by less, over the range, are one."""
+"""Difference, over the range, below which two solutions count as one."""
 _PLATEAU = 3
-"""Solutions that are no single points, from which on there are more than can be listed."""
+"""Number of solutions on curves from which the conditions count as insufficient."""
 _STILL = 1e-7
-"""Parts of the steepest slope that are none: what differences may be off, and more."""
+"""Ratio to the steepest slope below which a slope counts as 0, above the error of differences."""
 _BITS = 4.0
-"""How many last bits of the unknowns, and of the number itself, a number may be off."""
+"""Permitted error of a number, in last bits of the unknowns and of the number itself."""
 _STEP = 1e-5
 """Steps over the range of an unknown: the error of a central difference is about their square."""
 
 
 class FoundTops(NamedTuple):
-    """The tops that were found, and how they were looked for."""
+    """The tops that were found, and a description of the search."""
 
     motions: list[Motion]
     looked: str
@@ -72,12 +72,12 @@ def find(
 ) -> Found:
     """Return the tops that meet all conditions: `find({"T_precession": 2}, r0=(10, 200))`.
 
-    An input is a number, or a pair (from, to) if it is unknown; there are up to three unknowns, and
-    as many conditions with a number.  Texts are accepted too: `[log:]from:to` and KEY=NUMBER.
-    `regime=`, `path=` and bounds KEY<NUMBER discard tops.  `scan` values of each unknown are
-    computed first, and roots between them are found.  One unknown is the double whose number comes
-    nearest to the target: if that number hardly changes, other doubles do as well.  The result may
-    have no tops.  Quantities of pint are converted to SI, and uncertainties are ignored.  Raises
+    An input is a number, or a pair (from, to) if it is unknown.  Pass up to three unknowns, and as
+    many conditions with a number.  Texts are accepted too: `[log:]from:to` and KEY=NUMBER.
+    `regime=`, `path=` and bounds KEY<NUMBER discard tops.  The search starts from `scan` values of
+    each unknown.  With one unknown, the solution is the double whose number is nearest to the
+    target.  If the number hardly changes, other doubles are equally good.  The result may have no
+    tops.  Quantities of pint are converted to SI, and uncertainties are ignored.  Raises
     LagtopError, also if the number has its target value in a whole range.
     """
     check_type("scan", scan, Integral, NoneType)
@@ -95,7 +95,7 @@ def find(
 def find_tops(search: Search, count: int | None, progress: Progress = silent) -> FoundTops:
     """Return the tops that keep the conditions.
 
-    Raises AbsentError, which says how near the scan came, where there is none.
+    Raises AbsentError if there is none; its message has the nearest point of the scan.
     """
     grid = scan_of(search, count, progress)
     points = _roots(search, grid) if len(search.spans) == 1 else _solutions(search, grid)
@@ -133,22 +133,22 @@ def _refuse_plateaus(search: Search, x: Array, y: Array, off: Callable[[float], 
             name = next(iter(search.spans))
             raise LagtopError(
                 f"every {name} from {x[i]:g} to {x[last]:g} has {search.target_text()}, which does "
-                f"not tell {name}: take another condition, or another unknown"
+                f"not determine {name}: use another condition, or another unknown"
             )
 
 
 def _looked(search: Search, grid: Scan) -> str:
-    """Return how fine the scan was, and what that means."""
+    """Return a sentence on the resolution of the scan, and its consequence."""
     ranges = " and ".join(f"{name} from {span}" for name, span in search.spans.items())
     each = "" if len(grid.shape) == 1 else " each"
-    caution = "what lies closer together may be missed"
+    caution = "solutions closer together may be missed"
     if len(grid.shape) > 1:
-        caution = "found is what its best points led to"
+        caution = "only its best points were followed"
     return f"scanned {ranges} at {grid.shape[0]} values{each}: {caution}"
 
 
 def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
-    """Return why nothing was found: what is nearest, or what is broken by all solutions."""
+    """Return why nothing was found: the nearest number, or a condition that all solutions break."""
     if broken is not None:
         return f"of {count} with {search.target_text()} none has {broken}"
     known = np.isfinite(grid.numbers).all(axis=1)
@@ -171,7 +171,7 @@ def _why(search: Search, grid: Scan, count: int, broken: str | None) -> str:
 
 
 def _error(search: Search, grid: Scan) -> str:
-    """Return what is wrong with the first top of a scan, if anything is."""
+    """Return the error of the first top of a scan in brackets, if it has one."""
     try:
         solve(search.top(grid.values[0]))
     except LagtopError as error:
@@ -180,7 +180,7 @@ def _error(search: Search, grid: Scan) -> str:
 
 
 def _short(value: float, wanted: float) -> str:
-    """Return a number in six digits, or in all if six are those of the target."""
+    """Return a number in six digits, or in full if six digits equal those of the target."""
     text = f"{value:.6g}"
     return double_text(value) if text == f"{wanted:.6g}" else text
 
@@ -188,8 +188,8 @@ def _short(value: float, wanted: float) -> str:
 def _solutions(search: Search, grid: Scan) -> list[list[float]]:
     """Return the values of the unknowns at which all numbers have their target values.
 
-    Raises LagtopError where these are not single points: where the numbers stay as they are along
-    some direction at as many of them as a plateau takes.
+    Raises LagtopError if the solutions are not single points.  That is the case if at _PLATEAU of
+    them the numbers are constant along some direction.
     """
     found: list[Array] = []
     loose: list[list[str]] = []
@@ -203,14 +203,14 @@ def _solutions(search: Search, grid: Scan) -> list[list[float]]:
             loose += [names] if (names := _loose(search, grid, point)) else []
             if len(loose) == _PLATEAU:
                 raise LagtopError(
-                    f"the conditions leave {' and '.join(loose[0])} open: many have "
-                    f"{search.target_text()}; take another condition, or another unknown"
+                    f"the conditions do not determine {' and '.join(loose[0])}: many values give "
+                    f"{search.target_text()}; use another condition, or another unknown"
                 )
     return sorted(point.tolist() for point in found)
 
 
 def _loose(search: Search, grid: Scan, point: Array) -> list[str]:
-    """Return the unknowns that can change together while the numbers stay, to first order."""
+    """Return the unknowns that can change together without changing the numbers, to first order."""
     width = search.ends[1] - search.ends[0]
     slopes = number_slopes(search, point) * width / _sizes(search, grid)[:, np.newaxis]
     if not np.isfinite(slopes).all():
@@ -222,7 +222,7 @@ def _loose(search: Search, grid: Scan, point: Array) -> list[str]:
 
 
 def _sizes(search: Search, grid: Scan) -> Array:
-    """Return what each number is measured by: how much it varies in the scan."""
+    """Return the scale of each number: its standard deviation in the scan."""
     spread = np.nanstd(np.where(np.isfinite(grid.numbers), grid.numbers, np.nan), axis=0)
     return np.where(spread > 0, spread, np.maximum(np.abs(search.targets), 1e-300))
 
@@ -242,7 +242,7 @@ def _starts(search: Search, grid: Scan) -> list[Array]:
 
 
 def _descended(search: Search, grid: Scan, start: Array) -> Array:
-    """Return where the least squares of what is missing lead to from a point."""
+    """Return the point that least squares of the errors reach from a point."""
     from scipy.optimize import least_squares
 
     sizes, (low, high) = _sizes(search, grid), search.ends
@@ -263,9 +263,9 @@ def _descended(search: Search, grid: Scan, start: Array) -> Array:
 
 
 def _settled(search: Search, point: Array) -> Array | None:
-    """Return a point that Newton's method with the numbers of `solve` brings to its last bits.
+    """Return a solution refined to its last bits by Newton's method, with the numbers of `solve`.
 
-    None where it is no solution: where the numbers are off by more than roundings explain.
+    Returns None if the numbers are off by more than rounding errors.
     """
     best, least = None, np.inf
     for _ in range(_NEWTON_STEPS):

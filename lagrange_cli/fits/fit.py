@@ -24,7 +24,9 @@ from .steady import SteadyOutcome, steady_fit
 
 _IN_RADIANS = Conventions("wxyz", radians=True)
 _STEADY, _REWEIGHTINGS = 0.01, 6
-"""Standard deviations are taken from the residuals until chi^2/dof is so near to 1, or so often."""
+"""Tolerance of chi^2/dof around 1, and largest number of rounds, when standard deviations are taken
+from the residuals.
+"""
 
 
 def fit_recordings(
@@ -38,9 +40,9 @@ def fit_recordings(
     """Fit one body to some recordings by least squares, and return the results of each.
 
     A single recording whose nutation is below its noise gets a steady precession.  `known` are
-    inputs by key, theta0 in radians, and `stds` the standard deviations of some: those are fitted
-    too, with the known value as a prior.  Raises LagtopError, DataError for recordings that cannot
-    be fitted.
+    inputs by key, theta0 in radians, and `stds` the standard deviations of some of them.  Inputs
+    with a standard deviation are fitted too, with the known value as a prior.  Raises LagtopError,
+    DataError for recordings that cannot be fitted.
     """
     with ARRAYS.working():
         try:
@@ -77,7 +79,7 @@ def _fitted(
 
 
 def reweighted(problem: Problem, solution: FittedParameters) -> tuple[Problem, FittedParameters]:
-    """Return a problem with the standard deviations of its residuals, and its solution."""
+    """Return a problem with standard deviations taken from its residuals, and its solution."""
     for _ in range(_REWEIGHTINGS):
         problem = Problem(problem.recordings, sigma_left(solution), problem.parameters)
         solution = problem.solve(solution.values)
@@ -87,7 +89,7 @@ def reweighted(problem: Problem, solution: FittedParameters) -> tuple[Problem, F
 
 
 def sigma_left(solution: FittedParameters) -> list[dict[str, Array]]:
-    """Return the standard deviations of residuals, by recording: one for each channel of all."""
+    """Return the standard deviations of residuals by recording, common to all recordings."""
     rest = solution.residuals
     count = sum(int(np.isfinite(values).sum()) for one in rest for values in one.values())
     share = count / max(solution.dof, 1)
@@ -99,7 +101,7 @@ def sigma_left(solution: FittedParameters) -> list[dict[str, Array]]:
 
 
 def joined(together: Parameters, alone: Sequence[Mapping[str, float]]) -> Array:
-    """Return where a fit of several recordings starts, from the quantities of each."""
+    """Return the start of a fit of several recordings, from the quantities of each."""
     found = [
         {
             **one,
@@ -130,10 +132,10 @@ def fit(
 
     Times have the shape (n,), angles too (radians, within whole turns, NaN where missing).  Instead
     of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
-    space, shape (n, 4).  `sigma` are standard deviations in radians, one or by channel; they are
-    estimated from the residuals by default.  `known` are known inputs by key; a text such as
-    `"0.070(5)"` is an uncertain one.  Raises LagtopError, DataError for a recording that cannot be
-    fitted.
+    space, shape (n, 4).  `sigma` is a standard deviation in radians, or a mapping by channel; by
+    default it is estimated from the residuals.  `known` are known inputs by key; a text such as
+    `"0.070(5)"` is an uncertain input.  Raises LagtopError, DataError for a recording that cannot
+    be fitted.
     """
     check_type("known", known, Mapping, NoneType)
     angles = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
@@ -150,7 +152,7 @@ def recording_from(
     sigma: Mapping[str, float] | float | None = None,
     **angles: ArrayLike | None,
 ) -> Recording:
-    """Return the recording in arrays, as those of `fit`.  Raises LagtopError, DataError."""
+    """Return the recording in the arguments of `fit`.  Raises LagtopError, DataError."""
     times = _numbers("t", t, ())
     arrays = {
         name: _numbers(name, x, {"axis": (3,), "quaternion": (4,)}.get(name, ()))
@@ -190,7 +192,7 @@ def _numbers(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def _check_alone(arrays: Mapping[str, Array]) -> None:
-    """Raise LagtopError unless there are angles only, or a single array of another quantity."""
+    """Raise LagtopError unless the arrays are angles only, or a single other quantity."""
     angles = sum(name in ANGLES for name in arrays)
     if len(arrays) != max(angles, 1):
         shown = ", ".join(arrays) or "nothing"

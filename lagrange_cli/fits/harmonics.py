@@ -1,7 +1,7 @@
 """Harmonics and mean rates of a recorded angle.
 
-Sums of harmonics are fitted to an angle, or to the cosine of one.  Frames that are a turn apart
-look alike, so rates are known within whole turns per frame.
+Sums of harmonics are fitted to an angle, or to the cosine of one.  Frames that differ by a turn
+look alike, so rates are known up to whole turns per frame.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from ..inputs.rotations import within_half_turn
 _HARMONICS = 4
 _FREQUENCIES = 49
 _MANY = 60
-"""Rows from which on a fine series has twice the harmonics."""
+"""Number of rows from which a fine series has twice the harmonics."""
 _BETTER = 0.9
-"""Twice the harmonics are worth it if they leave less than this part of the noise."""
+"""Ratio of noise below which twice the harmonics are accepted."""
 _DIPS = 4
-"""Frequencies that are looked at closely, where the residual has a dip."""
+"""Number of dips of the residual whose frequencies are refined."""
 _AS_GOOD = 1.2
-"""How much more than the least a frequency may leave that is as good: noise makes that much."""
+"""Residual of an equally good frequency, over the least; noise causes this difference."""
 _MOST_ROWS = 4000
 _CELLS, _MOST_CELLS = 4, 1 << 18
-"""Cells per frame of a spectrum, and in all: times need not be even."""
+"""Cells of a spectrum per frame, and in all, because times need not be evenly spaced."""
 _ALIASES = range(-3, 4)
 """Turns per frame that are tried."""
 
 
 class Harmonics(NamedTuple):
-    """A sum of harmonics, and maybe a growth, that fits data."""
+    """A sum of harmonics, with or without linear growth, fitted to data."""
 
     frequency: float
     factors: Array
@@ -43,12 +43,12 @@ class Harmonics(NamedTuple):
 
     @property
     def order(self) -> int:
-        """Number of the highest harmonic."""
+        """The order of the highest harmonic."""
         return (self.factors.size - 1 - self.grows) // 2
 
     @property
     def growth(self) -> float:
-        """The mean rate of a series that grows."""
+        """The mean rate of a series with linear growth."""
         return float(self.factors[-1])
 
     @property
@@ -57,7 +57,7 @@ class Harmonics(NamedTuple):
         return float(np.sqrt(self.misfit / max(self.rows - self.factors.size, 1)))
 
     def at(self, t: Array) -> Array:
-        """Return its values."""
+        """Return the values of the series at times t."""
         values: Array = _basis(t, self.frequency, self.order, grows=self.grows) @ self.factors
         return values
 
@@ -71,9 +71,9 @@ def harmonics_of(
     fine: bool = False,
     weights: Array | None = None,
 ) -> Harmonics:
-    """Return the series of a frequency that fits data best.
+    """Return the series of a given frequency that fits data best.
 
-    A `fine` one has as many harmonics as leave the least noise.
+    A `fine` series has the number of harmonics with the least noise.
     """
     series = _fitted(t, y, frequency, _harmonics(t, fine=fine), grows=grows, weights=weights)
     while fine and 6 * series.order < t.size:
@@ -85,7 +85,7 @@ def harmonics_of(
 
 
 def frequency_of(t: Array, y: Array, *, grows: bool = False) -> float:
-    """Return the frequency whose harmonics leave least: near the peak of the spectrum."""
+    """Return the frequency whose harmonics fit best, near the peak of the spectrum."""
     from scipy.optimize import minimize_scalar
 
     span = float(t[-1] - t[0])
@@ -161,17 +161,17 @@ def turning_rate(t: Array, angle: Array) -> float:
 
 
 def _refined(t: Array, turned: Array, rate: float) -> float:
-    """Return a rate made better by a line through the angles that it leaves."""
+    """Return a rate refined by a line through the residual angles."""
     left = np.angle(turned * np.exp(-1j * rate * t))
     left = within_half_turn(left - np.angle(np.sum(np.exp(1j * left))))
     return rate + float(np.polyfit(t, left, 1)[0])
 
 
 def slowest_spin(r0: float, b: float, b_std: float, frame: float) -> float:
-    """Return the slowest of the spin rates that look alike and that a rigid body can have.
+    """Return the slowest spin rate that looks like r0 and that a rigid body can have.
 
-    A body has 0 < C/A = b/r0 <= 2; b is known to two standard deviations.  If no rate is possible
-    r0 stays.
+    A body has 0 < C/A = b/r0 <= 2; b is taken within two standard deviations.  If no rate is
+    possible, r0 is returned.
     """
     alike = [r0 + 2 * math.pi / frame * turns for turns in _ALIASES]
     possible = [

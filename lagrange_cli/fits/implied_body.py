@@ -1,8 +1,8 @@
-"""The body that a motion implies: its inputs, and products of those not determined separately.
+"""The body that a motion implies: its inputs, and products of inputs not determined separately.
 
-A motion shows a = 2mgs/A (4,4) and b = C r0/A (4,5), and r0 if the spin is seen.  Their logarithms
-are linear in those of the six inputs: the equations are brought to echelon form, and an input that
-is not determined alone remains in a product of powers.
+A motion determines a = 2mgs/A (4,4) and b = C r0/A (4,5), and r0 if the spin is recorded.  The
+logarithms of these numbers are linear in the logarithms of the six inputs.  These equations are
+brought to echelon form.  An input that is not determined alone remains in a product of powers.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from fractions import Fraction
 from typing import NamedTuple
 
 BODY_INPUTS = ("C", "r0", "m", "s", "g", "A")
-"""The inputs of a body and its spin; the first ones are expressed by the last ones."""
+"""The inputs of a body and its spin; earlier ones are expressed by later ones."""
 _EXPONENTS: Mapping[str, Mapping[str, int]] = {
     "a": {"m": 1, "s": 1, "g": 1, "A": -1},
     "b": {"C": 1, "r0": 1, "A": -1},
     "b/a": {"C": 1, "r0": 1, "m": -1, "s": -1, "g": -1},
     "r0": {"r0": 1},
 }
-"""The inputs whose product each number is; a stands for a/2, and b/a for twice that ratio."""
+"""The inputs whose product is each number; a means a/2 here, and b/a means 2b/a."""
 
 _FACTORS = {"a": 0.5, "b/a": 2.0}
 
@@ -31,7 +31,7 @@ class DeterminedProduct(NamedTuple):
     powers: Mapping[str, Fraction]
     value: float
     shares: Mapping[str, Fraction]
-    """Powers of the numbers a, b, r0 and of the known inputs in it, for its uncertainty."""
+    """Powers of a, b, r0 and the known inputs in the product, for its uncertainty."""
 
     @property
     def name(self) -> str:
@@ -49,9 +49,9 @@ def _power(name: str, exponent: Fraction) -> str:
 def determined_products(
     seen: Mapping[str, float], known: Mapping[str, float]
 ) -> list[DeterminedProduct]:
-    """Return the unknown inputs that are determined: single ones, and products.
+    """Return the unknown inputs that are determined, single or as products.
 
-    `seen` are a, b and, where it is seen, r0; none of them is 0.
+    `seen` are a, b and, if the spin is recorded, r0; none of them is 0.
     """
     unknown = [name for name in BODY_INPUTS if name not in known]
     others = [*seen, *known]
@@ -74,7 +74,7 @@ def determined_products(
 
 
 def _reduced(rows: list[list[Fraction]], width: int) -> list[list[Fraction]]:
-    """Return rows in echelon form of the first columns, without those that are 0 there."""
+    """Return rows in echelon form of the first columns, without rows that are 0 in these."""
     done: list[list[Fraction]] = []
     for column in range(width):
         pivot = next((row for row in rows if row[column]), None)
@@ -93,10 +93,10 @@ def _reduced(rows: list[list[Fraction]], width: int) -> list[list[Fraction]]:
 def completed_body(
     seen: Mapping[str, float], known: Mapping[str, float], products: list[DeterminedProduct]
 ) -> dict[str, float]:
-    """Return all six inputs of a body that moves so; one that is not determined is 1, or C = A.
+    """Return all six inputs of a body with this motion; undetermined inputs are 1, or C = A.
 
-    The first input of a determined product takes its value.  A product of m and s is shared out so
-    that m s^2 = A/10, as of a body that can be built.
+    The first input of a determined product takes its value.  A product of m and s is split so that
+    m s^2 = A/10, which a real body can have.
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
     inputs = {name: others.get(name, 1.0) for name in BODY_INPUTS} | dict(known)

@@ -1,15 +1,15 @@
-"""The top behind its turning points, period and mean precession: a and b, for `find`.
+"""Inversion of turning points, period and mean precession: a and b of the top, for `find`.
 
-The roots u2 < u1 < u3 of (4,9) are known but for h = u3 - 1 > 0.  (4,19) and (5,1) give
+The roots u2 < u1 < u3 of (4,9) are known except for h = u3 - 1 > 0. (4,19) and (5,1) give
 
     k^2 = (u1 - u2)/(1 - u2 + h),   k'^2 = (1 - u1 + h)/(1 - u2 + h),   a = (4 K/T)^2/(1 - u2 + h),
 
-and the cubic at u = 1 and -1 gives the momenta at the poles but for their signs:
+and the cubic at u = 1 and -1 gives the momenta at the poles up to their signs:
 
     (beta - b)^2 = a (1 - u1)(1 - u2) h,    (beta + b)^2 = a (1 + u1)(1 + u2)(2 + h).
 
-The mean precession, by complete integrals of the third kind, then decides about h.  No difference
-of nearly equal numbers is formed, however near to a pole the axis turns.  Equation numbers are
+The mean precession, by complete integrals of the third kind, then determines h.  No difference of
+nearly equal numbers is formed, however near to a pole the axis turns.  Equation numbers are
 Chrapan's.
 """
 
@@ -37,8 +37,8 @@ _SEEN = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
 _SPIN = "mean_spin_rate"
 _MIDDLE = np.tan(np.linspace(0, math.pi / 2, 401)[1:-1]) ** 2
 _HEIGHTS = np.concatenate([np.geomspace(1e-40, 1e-5, 71), _MIDDLE, np.geomspace(1e5, 1e20, 31)])
-"""Values of (u3 - 1)/(1 - u2) between which a mean precession is looked for: fast tops have great
-ones, and slow ones have small ones.
+"""Values of (u3 - 1)/(1 - u2) between which a mean precession is searched for.  Fast tops have
+large values, slow tops small ones.
 """
 _BISECTIONS = 56
 """Halvings that bring neighbouring heights to neighbouring doubles."""
@@ -54,14 +54,14 @@ class TurningPoints(NamedTuple):
     period: float
 
     def checked(self, *, radians: bool = False) -> TurningPoints:
-        """Return the nutation.
+        """Return the turning points after a check.
 
-        Raises LagtopError for one that no top has, with its tilts in degrees or in radians.
+        Raises LagtopError for values that no top has, with tilts in degrees or in radians.
         """
         if not 0 < self.theta_min < self.theta_max < math.pi:
             most, unit = "pi" if radians else "180 degrees", per_radian(radians=radians)
             raise LagtopError(
-                f"theta_min and theta_max must be 0 < theta_min < theta_max < {most}, "
+                f"theta_min and theta_max must satisfy 0 < theta_min < theta_max < {most}, "
                 f"got {self.theta_min * unit:g} and {self.theta_max * unit:g}"
             )
         if not 0 < self.period < math.inf:
@@ -90,7 +90,7 @@ class TurningPoints(NamedTuple):
 
 
 class Candidates(NamedTuple):
-    """Tops that have one nutation: an array for each quantity, or a number for a single top."""
+    """Tops that share a nutation: an array for each quantity, or a number for a single top."""
 
     u3_above: Array
     """The difference u3 - 1 > 0."""
@@ -125,7 +125,7 @@ class Candidates(NamedTuple):
 
 
 def candidates(nutation: TurningPoints, u3_above: Array, signs: tuple[int, int]) -> Candidates:
-    """Return the tops with these u3 - 1; `signs` are those of beta + b and of beta - b."""
+    """Return the tops with these u3 - 1; `signs` are the signs of beta + b and beta - b."""
     north, south = nutation.from_top, nutation.from_bottom
     u3_above_u2 = north[1] + u3_above
     k_prime = np.sqrt((north[0] + u3_above) / u3_above_u2)
@@ -137,7 +137,7 @@ def candidates(nutation: TurningPoints, u3_above: Array, signs: tuple[int, int])
 
 
 def mean_inverse(k_prime: Array, at_u1: Value, at_u2: Value) -> Array:
-    """Return the mean of 1/p over a period, for p > 0 linear in u, from its values at u1 and u2.
+    """Return the mean of 1/p over a period, for p > 0 linear in u, from p at u1 and u2.
 
     With u = u2 + (u1 - u2) sn^2 w it is the mean of 1/(p(u2) cn^2 + p(u1) sn^2).
     """
@@ -146,7 +146,7 @@ def mean_inverse(k_prime: Array, at_u1: Value, at_u2: Value) -> Array:
 
 
 def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> list[Candidates]:
-    """Return the tops that have a nutation and a mean precession rate, the fastest first."""
+    """Return the tops with a given nutation and mean precession rate, the fastest first."""
     grid, found = nutation.from_top[1] * _HEIGHTS, []
     for signs in SIGNS:
         high_at = candidates(nutation, grid, signs).mean_rate > mean_rate
@@ -164,8 +164,8 @@ def with_mean_rate(nutation: TurningPoints, mean_rate: float) -> list[Candidates
 def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None = None) -> Top:
     """Return a top that starts at u1, in units of A = 1 and m = s = 1.
 
-    C is A as long as nobody knows the spin rate; a mean spin rate tells it.  Raises LagtopError
-    where no body has it.
+    C = A if no mean spin rate is given; a mean spin rate determines C.  Raises LagtopError if no
+    body has it.
     """
     a, b = float(found.a), float(found.b)
     start = {
@@ -178,19 +178,19 @@ def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None =
         return top
     r0 = mean_spin + b - solve(top).mean_spin_rate
     if not 0 < b / r0 <= 2:
-        raise LagtopError(f"mean_spin_rate must be one with 0 < C/A <= 2, got C/A = {b / r0:.6g}")
+        raise LagtopError(f"mean_spin_rate must give 0 < C/A <= 2, got C/A = {b / r0:.6g}")
     return top.replace(C=b / r0, r0=r0)
 
 
 def invert(
     seen: Sequence[str], *, radians: bool = False, known: Mapping[str, float] | None = None
 ) -> list[Motion]:
-    """Return the motions with these numbers, which start at their least tilt.
+    """Return the motions with these numbers; they start at their least tilt.
 
-    `seen` are KEY=NUMBER of theta_min, theta_max, T_nutation and mean_precession_rate, and may be
-    mean_spin_rate; `known` are inputs of the body.  They tell a and b in closed form but for one
-    root, and with the spin C/A; what they do not determine is 1, or such that C = A.  Raises
-    LagtopError, AbsentError where no top moves so.
+    `seen` are texts KEY=NUMBER of theta_min, theta_max, T_nutation, mean_precession_rate and,
+    optionally, mean_spin_rate.  They determine a and b in closed form, except for one root, and C/A
+    if the spin is given.  `known` are inputs of the body; undetermined inputs are 1, or such that C
+    = A.  Raises LagtopError, AbsentError if no top has this motion.
     """
     numbers = _numbers(seen, radians)
     unit = unit_in_radians(radians=radians)
@@ -200,19 +200,19 @@ def invert(
     for name, value in known.items():
         if not value:
             raise LagtopError(f"{name} must not be 0 in a top that nutates: leave it out", name)
-    spin = known.get("r0")  # of the sign of b
+    spin = known.get("r0")  # has the sign of b
     found = [x for x in with_mean_rate(nutation, rate) if spin is None or spin * float(x.b) > 0]
     if not found:
         raise AbsentError(
-            f"no top nutates so between these tilts and precesses by {rate:g} on average"
-            + ("" if spin is None else f" with r0 = {spin:g}")
+            f"no top with this nutation precesses at a mean rate of {rate:g}"
+            + ("" if spin is None else f" and has r0 = {spin:g}")
         )
     tops = [top_of(nutation, one, numbers.get(_SPIN)) for one in found]
     return [solve(_of_body(top, known, _SPIN in numbers)) for top in tops]
 
 
 def _numbers(seen: Sequence[str], radians: bool) -> Mapping[str, float]:
-    """Return the numbers by key.  Raises LagtopError for a wrong set of them."""
+    """Return the numbers by key.  Raises LagtopError for a wrong set of keys."""
     conditions = read_conditions(seen, radians=radians)
     needed = {unit_name(key, radians=radians) for key in _SEEN}
     given = set(conditions.numbers)
@@ -221,30 +221,29 @@ def _numbers(seen: Sequence[str], radians: bool) -> Mapping[str, float]:
         shown = " ".join(seen)[:100] or "nothing"
         raise LagtopError(
             f"without an unknown input, such as r0 = 10:200, the conditions must be {wanted}and "
-            f"may have {_SPIN}=.., got {shown}"
+            f"may include {_SPIN}=.., got {shown}"
         )
     return conditions.numbers
 
 
 def _of_body(top: Top, known: Mapping[str, float], spins: bool) -> Top:
-    """Return a top that moves so and has the inputs of the body that are known."""
+    """Return a top with this motion and the known inputs of the body."""
     a, b, r0 = 2 * float(top.g), float(top.C) * float(top.r0), float(top.r0)
     numbers = {"a": a, "b": b} | ({"r0": r0} if spins else {})
     inputs = completed_body(numbers, known, determined_products(numbers, known))
     given = ", ".join(f"{name} = {value:g}" for name, value in known.items())
     if not _moves_so(inputs, numbers):
-        raise LagtopError(f"{given} must leave the motion open, which has other numbers: give less")
+        raise LagtopError(f"{given} must agree with the motion: leave one of them out")
     ratio = inputs["C"] / inputs["A"]
     if not 0 < ratio <= 2:
         raise LagtopError(
-            f"the motion with {given} must be that of a body with 0 < C/A <= 2, "
-            f"got C/A = {ratio:.6g}"
+            f"the body with {given} and this motion must have 0 < C/A <= 2, got C/A = {ratio:.6g}"
         )
     return top.replace(**inputs)
 
 
 def _moves_so(inputs: Mapping[str, float], numbers: Mapping[str, float]) -> bool:
-    """Return whether a body has these numbers of a (4,4), b (4,5) and r0 but for rounding."""
+    """Return whether a body has these values of a (4,4), b (4,5) and r0, up to rounding."""
     m, A, C, s, g, r0 = (inputs[name] for name in ("m", "A", "C", "s", "g", "r0"))
     has = {"a": 2 * m * g * s / A, "b": C * r0 / A, "r0": r0}
     return all(math.isclose(has[name], x, rel_tol=1e-9) for name, x in numbers.items())

@@ -15,23 +15,23 @@ from .parameters import FIT_QUANTITIES, Coordinates, Parameters, SteadyParameter
 from .recording import Recording
 
 _FAR = 1e3
-"""Residuals, in standard deviations, of a state that is no top."""
+"""Residuals, in standard deviations, assigned to an invalid state."""
 MOST_STEPS = 100
 LEAST_SIGMA = 1e-15
-"""Standard deviation of residuals that are all 0."""
+"""Standard deviation used if all residuals are 0."""
 _DEPENDENT = 1e-7
-"""Singular values below this one, over the largest, belong to what the data do not tell."""
+"""Ratio to the largest singular value, below which a direction is not determined."""
 _REACH, _BENT = 3.0, 0.2
-"""Standard deviations at which chi^2 is checked, and how far from a parabola it may be there."""
+"""Standard deviations at which chi^2 is checked, and its permitted distance from a parabola."""
 _MOST_STRETCHES, _MOST_HELD, _HOLD = 10, 20, 100.0
-"""Stretches to find three standard deviations, steps of each, and how tightly each end is held."""
+"""Extensions to find three standard deviations, steps of each, and weight that holds each end."""
 _N = len(STATE)
 _BEYOND = 0.00135
-"""Probability beyond each bound of chi^2: that of three standard deviations."""
+"""Probability beyond each bound of chi^2, as for three standard deviations."""
 _DEVIATIONS = 3.0
-"""Standard deviations, 1/sqrt(n), that the autocorrelation of noise keeps within."""
+"""Bound of the autocorrelation of noise, in standard deviations 1/sqrt(n)."""
 _ROUNDING = 1e-11
-"""Radians that are left of data without noise."""
+"""Residuals of data without noise, in radians."""
 
 
 class FittedParameters(NamedTuple):
@@ -49,17 +49,17 @@ class FittedParameters(NamedTuple):
     """Parameters that the data do not determine."""
 
     def quantities(self, i: int) -> tuple[Array, Array]:
-        """Return what recording i depends on, in the order of the labels, and its covariance."""
+        """Return the quantities of recording i, in the order of the labels, and covariance."""
         found, slopes = self.parameters.quantities(self.values, i)
         return found, slopes @ self.covariance @ slopes.T
 
     def named(self, i: int) -> dict[str, float]:
-        """Return what recording i depends on, by name."""
+        """Return the quantities of recording i, by name."""
         return dict(zip(self.parameters.labels, self.quantities(i)[0].tolist(), strict=True))
 
 
 class Problem:
-    """Recordings with their standard deviations, and the parameters to be found."""
+    """Recordings with their standard deviations, and the parameters to fit."""
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class Problem:
         self._last: tuple[Array, Array, Array, list[dict[str, Array]]] | None = None
 
     def solve(self, start: Array, steps: int = MOST_STEPS) -> FittedParameters:
-        """Return the parameters that leave least, from a start, after so many steps at most.
+        """Return the parameters with the least chi^2, after at most `steps` steps from a start.
 
         Raises LagtopError.
         """
@@ -117,9 +117,9 @@ class Problem:
     def with_reach(self, solution: FittedParameters) -> FittedParameters:
         """Return a solution whose covariance holds for three standard deviations.
 
-        Along the direction in which the data determine least, chi^2 need not be a parabola.  There
-        it is followed to both sides, with the best values of everything else, until it has risen
-        by about nine.  The longer side counts.
+        Along the direction that the data determine least, chi^2 need not be a parabola.  It is
+        followed to both sides of the minimum, with the other parameters at their best values, until
+        it has risen by about nine.  The longer side counts.
         """
         centre = self.by.of(solution.values)
         inverse = _Inverse(self._slopes(centre))
@@ -135,7 +135,7 @@ class Problem:
         return solution._replace(covariance=covariance + np.outer(off, off))
 
     def _followed(self, centre: Array, column: Array, across: Array, chi2: float) -> Array:
-        """Return parameters along a direction, brought back to one standard deviation off."""
+        """Return the parameters one standard deviation away, by the rise of chi^2 along a line."""
         from scipy.optimize import least_squares
 
         values, at, step = self.by.parameters(centre), centre, column
@@ -215,7 +215,7 @@ def _left(
 def _recorded_angles(
     t: Array, quantities: Array, by_parameter: Array, angles: Array, by_state: Array
 ) -> tuple[Array, Array]:
-    """Return the angles from the zeros of the recording, with the spin rate, and derivatives."""
+    """Return the angles with the zeros and the spin rate of a recording, and derivatives."""
     value = dict(zip(FIT_QUANTITIES, quantities, strict=True))
     slope = dict(zip(FIT_QUANTITIES, by_parameter, strict=True))
     by_values = by_state @ by_parameter[:_N]
@@ -231,7 +231,7 @@ def _recorded_angles(
 
 
 class _Inverse:
-    """The inverse of derivatives, a column for each of some numbers, by singular values."""
+    """The inverse of a matrix of derivatives (a column for each parameter), by singular values."""
 
     def __init__(self, slopes: Array) -> None:
         size = np.linalg.norm(slopes, axis=0)
@@ -241,19 +241,19 @@ class _Inverse:
 
     @property
     def spread(self) -> Array:
-        """A matrix S with the covariance S S^T; what is not determined has no part in it."""
+        """A matrix S with the covariance S S^T; undetermined directions are left out."""
         inverse = np.where(self.determined, 1 / np.where(self.determined, self.values, 1.0), 0.0)
         spread: Array = self.rows.T * inverse / self.size[:, np.newaxis]
         return spread
 
     @property
     def weakest(self) -> int:
-        """The column of the spread that belongs to what is determined least."""
+        """The column of the spread along the direction that is determined least."""
         return int(np.flatnonzero(self.determined)[-1])
 
     @property
     def measure(self) -> Array:
-        """The row that counts standard deviations along that column, and none along the others."""
+        """The row that measures standard deviations along the weakest column only."""
         row: Array = self.rows[self.weakest] * self.values[self.weakest] * self.size
         return row
 
@@ -270,16 +270,16 @@ class Residual(NamedTuple):
     rms: float
     """Root of the mean square, in radians."""
     lag1: float
-    """Correlation of the residuals with those a row later."""
+    """Correlation of each residual with the next one."""
 
     @property
     def is_noise(self) -> bool:
-        """Whether the correlation is within three standard deviations of 0; roundings count too."""
+        """Whether the correlation is within three standard deviations of 0, or due to rounding."""
         return self.rms < _ROUNDING or abs(self.lag1) <= _DEVIATIONS / math.sqrt(max(self.rows, 1))
 
 
 def residual_of(values: Array) -> Residual:
-    """Return what the residuals of one channel are like; NaN is missing."""
+    """Return the size and the correlation of the residuals of one channel; NaN is missing."""
     known = values[np.isfinite(values)]
     total = float(np.sum(known * known))
     if not total:
@@ -290,7 +290,7 @@ def residual_of(values: Array) -> Residual:
 
 
 def chi2_bounds(dof: int) -> tuple[float, float]:
-    """Return the bounds that chi^2/dof keeps within but for one time in 370."""
+    """Return the bounds that chi^2/dof exceeds by chance once in 370 times."""
     from scipy.special import gammaincinv
 
     half = dof / 2

@@ -1,9 +1,9 @@
 """The angles of a top at the times of a recording, their derivatives, and residuals.
 
-A, b and the initial state determine a motion; the body is that of A = C = 1, so that its spin rate
-is b.  The spin of a body with another rate r0 is phi + (r0 - b) t, as phi' = r0 - psi' cos(theta)
-(4,8).  Directions of the axis are compared in the plane that touches the sphere at the direction of
-the motion: along its meridian and across it.  The attitude has the turn about the axis too.
+The constants a and b and the initial state determine a motion.  The body has A = C = 1, so that its
+spin rate is b.  The spin of a body with another rate r0 is phi + (r0 - b) t, as phi' = r0 - psi'
+cos(theta) (4,8).  Directions of the axis are compared in the tangent plane of the sphere, along the
+meridian and across it.  The attitude also has the rotation about the axis.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ MEANINGS = {
     "b/a": "C r0/2mgs, by the elementary theory",
     "r0": "total spin rate",
     "theta0": "tilt in the first row",
-    "thetadot0": "nutation rate there",
-    "psidot0": "precession rate there",
-    "psi_zero": "psi of the data there",
-    "phi_zero": "phi of the data there",
+    "thetadot0": "nutation rate in the first row",
+    "psidot0": "precession rate in the first row",
+    "psi_zero": "psi of the data in the first row",
+    "phi_zero": "phi of the data in the first row",
 }
 STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 """The state of a motion: the constants (4,4) and (4,5), and the start in radians."""
@@ -42,8 +42,8 @@ STATE = ("a", "b", "theta0", "thetadot0", "psidot0")
 def motion_angles(states: Array, t: Array) -> Array:
     """Return theta, phi and psi, shape (3, tops, times).
 
-    `states` are of shape (tops, 5), in the order of STATE; `t` is one row of times for all, or a
-    row for each.  Raises LagtopError where a state is no top.
+    `states` are of shape (tops, 5), in the order of STATE; `t` is one row of times for all tops, or
+    a row for each.  Raises LagtopError for an invalid state.
     """
     found = sweep_angles(t, **inputs_of(*states.T))
     if wrong := [error for error in found["error"] if error]:
@@ -54,8 +54,8 @@ def motion_angles(states: Array, t: Array) -> Array:
 def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
     """Return the angles of a top at times, and their exact derivatives by its state.
 
-    Angles are of shape (3, times), derivatives of shape (3, times, 5); those that do not exist are
-    NaN.  Raises LagtopError where the state is no top.
+    Angles are of shape (3, times), derivatives of shape (3, times, 5); derivatives that do not
+    exist are NaN.  Raises LagtopError for an invalid state.
     """
     top = Top(**inputs_of(*state.tolist()))
     with ARRAYS.working():
@@ -66,13 +66,13 @@ def angles_and_slopes(state: Array, t: Array) -> tuple[Array, Array]:
 
 
 def inputs_of(a: Any, b: Any, theta: Any, nutation: Any, precession: Any) -> dict[str, Any]:
-    """Return the inputs of `Top` of a state, or of many."""
+    """Return the inputs of `Top` for one state, or for many."""
     start = {"theta0_rad": theta, "thetadot0": nutation, "psidot0": precession}
     return {"m": 1.0, "A": 1.0, "C": 1.0, "s": 1.0, "g": a / 2, "r0": b, **start}
 
 
 class Residuals(NamedTuple):
-    """Differences by channel, recording less motion, in radians; NaN where a cell is missing."""
+    """Differences by channel, recording minus motion, in radians; NaN if a cell is missing."""
 
     values: Array
     """Shape (channels, times)."""
@@ -81,7 +81,7 @@ class Residuals(NamedTuple):
 
 
 def residuals(recording: Recording, angles: Array) -> Residuals:
-    """Return a recording less the angles of a motion, shape (3, times)."""
+    """Return the residuals: a recording minus the angles of a motion, shape (3, times)."""
     if recording.kind == "angles":
         return _of_angles(recording, angles)
     theta, phi, psi = angles

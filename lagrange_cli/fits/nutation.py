@@ -1,8 +1,9 @@
 """Turning points, period and mean precession of the nutation in a recording.
 
-The cosine of the tilt is periodic, and so are spin and precession but for their growth: each is
-fitted by a few harmonics.  If the tilt is not recorded it follows from the rates of the others, as
-cos(theta) = (r0 - phi')/psi' (4,8), but for the spin rate r0, of which several values are tried.
+The cosine of the tilt is periodic; spin and precession are periodic except for their mean rates.
+Each of them is fitted by a few harmonics.  If the tilt is not recorded, it follows from the rates
+of the other angles, as cos(theta) = (r0 - phi')/psi' (4,8).  Several values of the unknown spin
+rate r0 are tried.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ from .invert import TurningPoints
 from .recording import Recording
 
 _MOST_ROWS = 3000
-"""Rows that are enough to start from; of more, so many are drawn."""
+"""Number of rows for a start; of longer recordings this many are drawn."""
 _LEAST_F = 8.0
-"""How many times the noise, per harmonic, a nutation must explain: what noise does by chance in the
-best of all frequencies is less.
+"""Least variance that a harmonic of a nutation explains, over the variance of the noise.  Noise by
+chance explains less, even at the best of all frequencies.
 """
 _LEAST_NOISE = 1e-9
-"""Noise in radians of a recording that has none: roundings in it, and then some."""
+"""Noise in radians assumed for a recording without noise, above its rounding errors."""
 _MOST_NOISE = math.radians(30)
-"""Noise beyond which turns of an angle cannot be counted from row to row."""
+"""Noise in radians beyond which turns of an angle cannot be counted from row to row."""
 _EDGE = 1e-4
 """Least distance of a turning point from a pole."""
 _PHASES = np.linspace(0, 1, 721)[:-1]
-"""Places in a period, in periods."""
+"""Phases within a period, in periods."""
 
 
 class NoNutationError(DataError):
@@ -41,7 +42,7 @@ class NoNutationError(DataError):
 
 
 class Shown(NamedTuple):
-    """The nutation in a recording."""
+    """The nutation that a recording shows."""
 
     nutation: TurningPoints
     seen: tuple[float, float]
@@ -49,14 +50,14 @@ class Shown(NamedTuple):
     u_start: float
     """The cosine of the tilt in the first row."""
     falls: float
-    """1 where the tilt grows there, else -1."""
+    """1 if the tilt grows in the first row, else -1."""
     noise: Mapping[str, float]
-    """Residuals of a fit by harmonics, by channel, as standard deviations in radians: about the
-    noise of the recording.  A channel without such a fit is missing.
+    """Standard deviations of the residuals of a fit by harmonics, by channel, in radians.  They are
+    about the noise of the recording.  A channel without such a fit is missing.
     """
     mean_rates: list[float]
-    """Mean precession rates that go with the angles, which are known within whole turns; the first
-    one is the likeliest.  Empty where psi is not given.
+    """Possible mean precession rates, the likeliest first, as angles are known up to whole turns.
+    Empty if psi is not given.
     """
 
 
@@ -71,7 +72,7 @@ class Turns(NamedTuple):
 
 
 def shown_by(recording: Recording, where: str) -> Shown:
-    """Return what a recording with the tilt shows.  Raises DataError if there is no nutation."""
+    """Return the nutation of a recording with the tilt.  Raises DataError if there is none."""
     rows = _some_rows(recording.angles["theta"])
     t, theta = recording.t[rows], recording.angles["theta"][rows]
     if not np.ptp(theta) > 1e-12:
@@ -80,7 +81,7 @@ def shown_by(recording: Recording, where: str) -> Shown:
         )
     u = np.cos(theta)
     frequency = frequency_of(t, u)
-    series = harmonics_of(t, u, frequency, fine=True)  # the turning points want more harmonics
+    series = harmonics_of(t, u, frequency, fine=True)  # the turning points need more harmonics
     _check(series, u, t, f"{where}: theta")
     noise = {"theta": max(series.noise / max(float(np.sin(theta).mean()), 0.1), _LEAST_NOISE)}
     channels = {"psi": "psi", "phi": "phi"} if recording.kind == "angles" else {"across": "psi"}
@@ -96,7 +97,7 @@ def shown_by(recording: Recording, where: str) -> Shown:
 
 
 def turns_in(recording: Recording, where: str) -> Turns:
-    """Return what a recording without the tilt shows.  Raises DataError if there is no nutation."""
+    """Return the turns of a recording without the tilt.  Raises DataError without nutation."""
     turns = {name: _turn_of(recording, name) for name in ("psi", "phi") if name in recording.angles}
     clear = max(turns.values(), key=_Turn.clearness)
     frequency = clear.frequency
@@ -117,7 +118,7 @@ def _shown(
     noise: Mapping[str, float],
     mean_rates: list[float],
 ) -> Shown:
-    """Return what is shown by the cosine of the tilt over a period, from the first row on."""
+    """Return the nutation from the cosine of the tilt over a period, from the first row on."""
     least, greatest = np.arccos(np.clip([wave.max(), wave.min()], -1, 1)).tolist()
     nutation = TurningPoints(_inside(least), _inside(greatest), 1 / frequency)
     falls = 1.0 if wave[1] < wave[0] else -1.0
@@ -126,7 +127,7 @@ def _shown(
 
 
 def _inside(tilt: float) -> float:
-    """Return a tilt off the poles."""
+    """Return a tilt moved away from the poles if necessary."""
     return min(max(tilt, _EDGE), math.pi - _EDGE)
 
 
@@ -143,14 +144,14 @@ def _check(series: Harmonics, y: Array, t: Array, what: str) -> None:
 
 
 def _clearness(series: Harmonics, y: Array, t: Array) -> float:
-    """Return how much of the data a harmonic explains on average, over the noise."""
+    """Return the mean variance that a harmonic explains, over the variance of the noise."""
     steady = np.polyval(np.polyfit(t, y, int(series.grows)), t)
     explained = (float(np.sum((y - steady) ** 2)) - series.misfit) / (2 * series.order)
     return explained / max(series.noise**2, 1e-300)
 
 
 class _Turn(NamedTuple):
-    """The precession or the spin less its mean rate."""
+    """The periodic part of the precession or of the spin."""
 
     rows: NDArray[np.intp]
     t: Array
@@ -159,18 +160,18 @@ class _Turn(NamedTuple):
 
     @property
     def frequency(self) -> float:
-        """The frequency of the nutation that it shows."""
+        """The frequency of the nutation that the angle shows."""
         return frequency_of(self.t, self.around, grows=True)
 
     def series(
         self, frequency: float, *, fine: bool = False, weights: Array | None = None
     ) -> Harmonics:
-        """Return the harmonics and the growth of the whole angle."""
+        """Return the harmonics and the mean rate of the whole angle."""
         found = harmonics_of(self.t, self.around, frequency, grows=True, fine=fine, weights=weights)
         return found._replace(factors=np.append(found.factors[:-1], found.growth + self.rate))
 
     def clearness(self) -> float:
-        """Return how clearly it shows the nutation."""
+        """Return how clearly the angle shows the nutation."""
         return _clearness(self.series(self.frequency), self.around, self.t)
 
 
@@ -182,7 +183,7 @@ def _turn_of(recording: Recording, name: str) -> _Turn:
 
 
 def _some_rows(angle: Array) -> NDArray[np.intp]:
-    """Return rows that have an angle, in their order, and not too many."""
+    """Return at most _MOST_ROWS rows that have an angle, in order."""
     rows = np.flatnonzero(np.isfinite(angle))
     if rows.size > _MOST_ROWS:
         drawn = np.random.default_rng(0).choice(rows[1:-1], _MOST_ROWS - 2, replace=False)
@@ -191,7 +192,7 @@ def _some_rows(angle: Array) -> NDArray[np.intp]:
 
 
 def _mean_rates(recording: Recording, frequency: float) -> list[float]:
-    """Return mean precession rates, whose turns per period are not known next to a pole."""
+    """Return possible mean precession rates, as turns per period are unknown next to a pole."""
     turn = _turn_of(recording, "psi")
     theta = recording.angles["theta"][turn.rows]
     weights = np.where(np.isfinite(theta), np.abs(np.sin(theta)), 0.0) + 0.05

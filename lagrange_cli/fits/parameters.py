@@ -1,21 +1,21 @@
-"""The parameters of a fit: the unknowns of the body and of the starts, and what follows from them.
+"""The parameters of a fit: the unknowns of the body and of the starts, and quantities from them.
 
-The body is the same in all recordings of a fit: a, and C/A if it ties b to r0, which it does if it
-is known or several recordings show their spin.  Each has its own start, b or r0 or both, and zeros.
+All recordings share a and, if it is known or several recordings have their spin, C/A = b/r0.  Each
+recording has its own start, zeros, and b or r0 or both.
 
 In the coordinates for the least squares the parameters of a recording hardly correlate.  A small
 nutation about a steady precession with the rate Omega has the frequency omega of
 
     omega^2 = (b - 2 Omega cos(theta))^2 + (Omega sin(theta))^2.
 
-The tilt determines omega, and the acceleration of the tilt at the first row, but not a, b and Omega
-separately: these can change together along a curve, which a minimizer follows in many small steps.
-On that curve omega and the acceleration are constant.  It has the coordinate chi, with
+The tilt determines omega, and the acceleration of the tilt at the first row, but not a, b and
+Omega.  These can change together along a curve, on which a minimizer is slow.  Its coordinate is
+chi, with
 
     tan(chi) = Omega sin(theta)/(b - 2 Omega cos(theta)).
 
-In place of r0 stands phi' = r0 - Omega cos(theta), which the spin angle determines.  Every motion
-has these coordinates, with the precession rate at the first row for Omega.
+The coordinate phi' = r0 - Omega cos(theta), which the spin angle determines, replaces r0.  Every
+motion has these coordinates, with the precession rate at the first row for Omega.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .recording import Recording
 
 BODY_QUANTITIES = ("m", "s", "g", "C", "A", "A_cm")
 FIT_QUANTITIES = (*STATE, "r0", "psi_zero", "phi_zero", *BODY_QUANTITIES)
-"""The quantities that a recording depends on, the state first, and the known inputs of the body."""
+"""Quantities that a recording depends on: the state, then the known inputs of the body."""
 _START = ("theta0", "thetadot0", "psidot0")
 STEADY = ("theta0", "psidot0", "psi_zero", "phidot", "phi_zero")
 """The parameters of a steady precession: values of lines at the first row, and their rates."""
@@ -44,12 +44,12 @@ Name = tuple[str, int]
 """A parameter, and the number of its recording; -1 for one of the body."""
 _INSTEAD = ("A_cm", "phidot0")
 _NOT_ZERO = ("s", "g", "r0")
-"""Inputs that are factors of a product: if one is 0, nothing else of it is determined."""
+"""Inputs that are factors of a product; if one is 0, the others are not determined."""
 _NEEDED = {"a", "b", "theta0", "psidot0"}
 _REACH = 3.0
-"""Standard deviations at which uncertainties hold."""
+"""Distance, in standard deviations, at which uncertainties are evaluated."""
 _STEP = 1e-30
-"""An imaginary step, which rounds nothing off a derivative."""
+"""An imaginary step, for derivatives without cancellation."""
 
 
 class Parameters(NamedTuple):
@@ -58,13 +58,13 @@ class Parameters(NamedTuple):
     known: Mapping[str, float]
     """Inputs by key, theta0 in radians."""
     stds: Mapping[str, float]
-    """Standard deviations of the known inputs that have one: these are parameters with a prior."""
+    """Standard deviations of uncertain known inputs, which are parameters with a prior."""
     names: Sequence[Name]
 
     def quantities(self, values: Array, i: int) -> tuple[Array, Array]:
         """Return the quantities of recording i, and their derivatives by the parameters.
 
-        They are of shape (14,) and (14, parameters), in the order of FIT_QUANTITIES; 0 if unknown.
+        The shapes are (14,) and (14, parameters), in the order of FIT_QUANTITIES; 0 if unknown.
         """
         slopes = np.zeros((len(FIT_QUANTITIES), len(values)))
         for column, (_, recording) in enumerate(self.names):
@@ -89,7 +89,7 @@ class Parameters(NamedTuple):
 
     @staticmethod
     def _ratio(given: Mapping[str, Any]) -> Any:
-        """Return C/A: a parameter, known, or C a/(2mgs)."""
+        """Return C/A: a parameter, a known ratio, or C a/(2mgs)."""
         if "ratio" in given:
             return given["ratio"]
         if "A" in given:
@@ -97,7 +97,7 @@ class Parameters(NamedTuple):
         return given["C"] * given["a"] / (2 * given["m"] * given["g"] * given["s"])
 
     def priors(self, values: Array) -> tuple[Array, Array]:
-        """Return what uncertain inputs are off, over their standard deviations, and its slopes."""
+        """Return deviations of uncertain inputs over their standard deviations, and slopes."""
         rows = [i for i, (name, _) in enumerate(self.names) if name in self.stds]
         mean = np.array([self.known[self.names[i][0]] for i in rows])
         std = np.array([self.stds[self.names[i][0]] for i in rows])
@@ -115,7 +115,7 @@ class Parameters(NamedTuple):
 
     @property
     def spins(self) -> bool:
-        """Whether r0 is in play, beside b."""
+        """Whether r0 is a quantity of the fit, besides b."""
         return "r0" in self.known or ("r0", 0) in self.names
 
 
@@ -135,7 +135,7 @@ class SteadyParameters(NamedTuple):
 
     @property
     def labels(self) -> list[str]:
-        """The quantities that follow: b if a is known, else b/a."""
+        """The names of the quantities, with b if a is known, else b/a."""
         labels = ["b/a" if known_torque(self.known) is None else "b", "psidot0", "psi_zero"]
         labels += ["theta0"] if "theta" in self.angles else []
         if "phi" in self.angles:
@@ -200,8 +200,8 @@ def known_inputs(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return known inputs by key of `Top`, with theta0 in radians, and their standard deviations.
 
-    A_cm is kept beside A only if that moment is uncertain.  Raises LagtopError for an input that no
-    top has, that a fit cannot use, or that needs others.
+    A_cm is kept besides A only if it is uncertain.  Raises LagtopError for an invalid input, one
+    that a fit cannot use, or one that needs others.
     """
     check_names("known", [*given] or ["m"], [*Top.fields, *_INSTEAD])
     known, spread = {name: float(x) for name, x in given.items()}, dict(stds or {})
@@ -233,10 +233,10 @@ def _guard(known: Mapping[str, float]) -> None:
 
 
 class Coordinates:
-    """Coordinates of the parameters of one recording, which are known by their names.
+    """Coordinates of the parameters of one recording, found by their names.
 
-    If a parameter that they need is missing, or there are several recordings, the parameters are
-    their own coordinates.
+    If a parameter is missing, or if there are several recordings, the coordinates are the
+    parameters themselves.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
@@ -281,10 +281,10 @@ class Coordinates:
         return np.stack(rows, axis=-1)
 
     def covariance(self, coordinates: Array, spread: Array) -> Array:
-        """Return the covariance of the parameters, from a spread S of coordinates.
+        """Return the covariance of the parameters, from coordinates with the covariance S S^T.
 
-        These have the covariance S S^T.  The parameters are taken three standard deviations away
-        on both sides, along each column of S: where they bend, first order would be too small.
+        Parameters are evaluated three standard deviations away on both sides, along each column of
+        S.  If they are not linear there, linear propagation would underestimate the covariance.
         """
         centre = self.parameters(coordinates)
         off = [

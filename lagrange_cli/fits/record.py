@@ -24,28 +24,28 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ANGLES = ("theta0", "psi_zero", "phi_zero")
-"""Quantities whose keys have a unit."""
+"""Quantities whose keys end in a unit."""
 FAILED = "failed"
 _MUCH = 2.0
-"""A fit has failed if its residuals of a channel exceed so many times the noise."""
+"""Residuals of a channel, over its noise, beyond which a fit has failed."""
 _SURE = 4.0
-"""Standard deviations from which on b is not 0."""
+"""Number of standard deviations from which b counts as not 0."""
 
 
 class Fit(NamedTuple):
-    """The motion that leaves least of some recordings of one body."""
+    """The best motion for some recordings of one body."""
 
     recordings: Sequence[Recording]
-    """Recordings as they were understood: psi may be counted the other way."""
+    """Recordings as interpreted: psi may be counted in the other direction."""
     solution: FittedParameters
     sigma_known: bool
-    """Whether the standard deviations were given; else they are those of the residuals."""
+    """Whether the standard deviations were given; else they are estimated from the residuals."""
     mirrored: Sequence[bool]
-    """Whether psi had to be counted the other way."""
+    """Whether psi had to be counted in the other direction."""
     noise: Sequence[Mapping[str, float]]
     """Noise of each recording by channel, in radians, estimated by a fit of plain harmonics."""
     rival: Mapping[str, float] | None = None
-    """Another top that explains the only recording as well: its quantities by name."""
+    """Another top that explains a single recording as well: its quantities by name."""
 
 
 class Outcome(Shown):
@@ -74,7 +74,7 @@ class Outcome(Shown):
 
     @property
     def chi2_dof(self) -> float:
-        """Chi^2 per degree of freedom, of all recordings of the fit together."""
+        """Chi^2 per degree of freedom, over all recordings of the fit."""
         return self.fit.solution.chi2 / max(self.fit.solution.dof, 1)
 
     @property
@@ -85,7 +85,7 @@ class Outcome(Shown):
         return "doubtful" if self.warnings() else "good"
 
     def failures(self) -> list[str]:
-        """Return the reasons why the numbers are none, if there are any."""
+        """Return the reasons why the fit has failed, if there are any."""
         solution, found = self.fit.solution, []
         if self.fit.rival is not None:
             shown = ", ".join(f"{name} = {self.fit.rival[name]:.6g}" for name in self.shown)
@@ -111,11 +111,11 @@ class Outcome(Shown):
         return f"{name}_{'rad' if self.radians else 'deg'}" if name in _ANGLES else name
 
     def scale(self, name: str) -> float:
-        """Return what takes a quantity from radians to the unit of angles in use."""
+        """Return the factor of a quantity from radians to the unit of angles in use."""
         return per_radian(radians=self.radians or name not in _ANGLES)
 
     def found(self) -> Iterator[tuple[str, float, float]]:
-        """Yield name, value and standard deviation of what was found of the motion."""
+        """Yield name, value and standard deviation of each fitted quantity of the motion."""
         has = {
             "r0": self.fit.solution.parameters.spins,
             "psi_zero": "psi" in self.recording.angles,
@@ -127,7 +127,7 @@ class Outcome(Shown):
                 yield name, self.values[name], self.deviations[name]
 
     def products(self) -> Iterator[tuple[DeterminedProduct, float]]:
-        """Yield the determined products of the body, but for r0, and their standard deviations."""
+        """Yield the determined products of the body, except r0, and their standard deviations."""
         values = {**self.known, **self.values}
         for product in self.determined:
             if product.name != "r0":
@@ -142,8 +142,8 @@ class Outcome(Shown):
     def derived(self) -> list[tuple[DerivedNumber, float, float | None]]:
         """Numbers that follow from the motion, with their standard deviations.
 
-        The third entry belongs to an elementary formula: its distance from the exact number, over
-        the standard deviation of this difference.
+        For an elementary formula, the third entry is its distance from the exact number, over the
+        standard deviation of this difference.
         """
         spins = self.fit.solution.parameters.spins
         numbers = {x.key: x for x in derived_numbers(self.values, spins=spins)}
@@ -159,7 +159,7 @@ class Outcome(Shown):
         return rows
 
     def numbers(self) -> Iterator[tuple[str, float, float, str]]:
-        """Yield key, value, standard deviation and meaning of everything, in the unit in use."""
+        """Yield key, value, standard deviation and meaning of every number, in the unit in use."""
         for name, value, deviation in self.found():
             scale = self.scale(name)
             yield self.unit(name), value * scale, deviation * scale, MEANINGS[name]
@@ -195,7 +195,7 @@ class Outcome(Shown):
         return f"{name}: {first}" if name else first
 
     def warnings(self) -> list[str]:
-        """Return the reasons for doubt in the numbers, those of a failure first."""
+        """Return the reasons for doubt in the numbers; reasons of a failure come first."""
         solution, found = self.fit.solution, self.failures()
         if self.fit.sigma_known and solution.dof > 0:
             low, high = chi2_bounds(solution.dof)
@@ -217,18 +217,18 @@ class Outcome(Shown):
         return all(left.is_noise for left in self.residuals.values())
 
     def _impossible(self) -> Iterator[str]:
-        """Yield what no rigid body has, unless the spin is too small to tell."""
+        """Yield a sentence if C/A is impossible, unless the spin is too small to decide."""
         b, r0 = self.values.get("b", 0.0), self.values.get("r0", 0.0)
         if r0 and abs(b) > _SURE * self.deviations.get("b", 0.0) and not 0 < b / r0 <= 2:
             yield f"C/A = {b / r0:.3g} is impossible: a rigid body has 0 < C/A <= 2"
 
     def notes(self) -> list[str]:
-        """Return how the recording was understood."""
+        """Return sentences on how the recording was interpreted."""
         if not self.fit.mirrored[self.index]:
             return []
         if self.verdict != "good":
-            return ["psi may be counted the other way round: this fit changed its sign"]
-        return ["psi is counted the other way round: its sign was changed"]
+            return ["psi may be counted in the other direction: this fit changed its sign"]
+        return ["psi is counted in the other direction: its sign was changed"]
 
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw data, motion and residuals, on a figure of matplotlib or a new one; return it."""
@@ -269,7 +269,7 @@ class Outcome(Shown):
         }
 
     def inputs(self) -> dict[str, float]:
-        """Return inputs of `Top` that move so; what is not determined is 1, or such that C = A."""
+        """Return inputs of `Top` with this motion; undetermined ones are 1, or such that C = A."""
         known = {name: x for name, x in self.known.items() if name in BODY_INPUTS}
         body = completed_body(self.shown, known, self.determined)
         return {
@@ -280,7 +280,7 @@ class Outcome(Shown):
         }
 
     def angles(self, t: Array) -> dict[str, Array]:
-        """Return the angles of the fitted motion, as the recording counts them."""
+        """Return the angles of the fitted motion, with the zeros and signs of the recording."""
         values = self.values
         theta, phi, psi = motion_angles(np.array([[values[name] for name in STATE]]), t)[:, 0]
         spin = (values["r0"] - values["b"]) * t if "phi" in self.recording.angles else 0.0

@@ -1,4 +1,4 @@
-"""Recordings of tops: tilt, spin and precession as they were measured, with their uncertainties."""
+"""Recordings of tops: measured tilt, spin and precession, with their uncertainties."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ CHANNELS = {
     "axis": ("theta", "across"),
     "attitude": ("theta", "across", "along"),
 }
-"""Channels that are compared, by kind: angles of their own columns; the direction of the axis,
-along the meridian and across it; or the attitude, with the turn about the axis too.
+"""Channels that are compared, by kind of recording.  Angles have their own columns.  The direction
+of the axis is compared along the meridian and across it, and the attitude also about the axis.
 """
 LEAST_ROWS = 12
 _LEAST_NUMBERS = 4
-"""Rows of a recording, and numbers of each of its angles, at least."""
+"""Least number of rows of a recording, and of numbers of each of its angles."""
 _SHORTEST, _LONGEST = 1e-60, 1e60
 _BEYOND = 0.2
-"""Radians that noise may take a tilt beyond a pole."""
+"""Largest tilt beyond a pole that counts as noise, in radians."""
 
 
 @dataclass(frozen=True)
 class Recording:
-    """The motion of one top as it was measured; what is missing is NaN."""
+    """The measured motion of one top; missing numbers are NaN."""
 
     name: str
-    """The word of the rows in a column, or nothing."""
+    """The word of these rows in the `--by` column, or empty."""
     t: Array
     """Times since the first row, in ascending order."""
     t_start: float
@@ -50,9 +50,9 @@ class Recording:
     kind: str
     """A key of CHANNELS."""
     angles: Mapping[str, Array]
-    """Angles, those of theta, phi and psi that are known, in radians; within whole turns."""
+    """The known angles among theta, phi and psi, in radians, up to whole turns."""
     sigma: Mapping[str, Array]
-    """Standard deviations in radians by channel; empty where nobody gave them."""
+    """Standard deviations in radians by channel; empty if they are not given."""
     scene: Top | None = None
     """The top that the file describes, if any."""
 
@@ -65,9 +65,9 @@ class Recording:
 
     @property
     def known(self) -> Mask:
-        """Whether there is a number, shape (channels, times)."""
+        """Whether a number is present, shape (channels, times)."""
         sources = self.channels
-        if self.kind != "angles":  # of an axis or an attitude all is there, or nothing
+        if self.kind != "angles":  # an axis or an attitude is complete, or missing
             sources = ["theta"] * len(self.channels)
         return np.stack([np.isfinite(self.angles[name]) for name in sources])
 
@@ -84,7 +84,7 @@ class Reading(NamedTuple):
     columns: Sequence[str] | None = None
     conventions: Conventions = Conventions()
     by: str | None = None
-    """A column that tells recordings apart."""
+    """A column whose words separate recordings."""
     sigma: Mapping[str, float] | float | None = None
     """Standard deviations in radians: one for all channels, or by channel."""
     dialect: Dialect = UNDECIDED
@@ -113,7 +113,7 @@ def read_recordings(path: str, reading: Reading) -> list[Recording]:
 
 
 def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:
-    """Read the columns NAME_std too; return the units in their names, by what they belong to."""
+    """Read the columns NAME_std too; return the units in their names, by NAME."""
     units: dict[str, str | None] = {}
     for name in trajectory.names:
         base = name.lower().replace("_std", "")
@@ -124,7 +124,7 @@ def _add_spreads(trajectory: Trajectory) -> Mapping[str, str | None]:
 
 
 def _by_column(trajectory: Trajectory, column: str) -> dict[str, dict[str, Array]]:
-    """Return the rows of each word of a column.  Raises LagtopError where there is no such one."""
+    """Return the rows of each word of a column.  Raises LagtopError if the column is missing."""
     if column not in trajectory.names:
         shown = ", ".join(trajectory.names)[:100]
         raise LagtopError(
@@ -158,11 +158,11 @@ class Source(NamedTuple):
     reading: Reading
     said: Said
     spread: Mapping[str, str | None]
-    """Units of the columns NAME_std, by what they belong to."""
+    """Units of the columns NAME_std, by NAME."""
 
 
 def recording_of(name: str, source: Source, given: Quantities) -> Recording:
-    """Return the recording in some quantities.  Raises LagtopError, DataError for a bad one."""
+    """Return the recording in some columns.  Raises LagtopError, DataError for a bad recording."""
     kind, angles = _angles(given, source.said, source.reading.conventions)
     raw = Recording(name, given["t"][:, 0], 0.0, kind, angles, {})
     return _checked(replace(raw, sigma=_sigma(source, given, raw)), source.where)
@@ -171,8 +171,8 @@ def recording_of(name: str, source: Source, given: Quantities) -> Recording:
 def _checked(raw: Recording, where: str) -> Recording:
     """Return a recording from its first row on, in the order of time.
 
-    Rows and angles without a number are left out.  Raises DataError for a recording that has too
-    few rows, or too few angles, or tilts that no axis has.
+    Rows and angles without a number are left out.  Raises DataError for too few rows, too few
+    angles, or tilts outside 0 to pi.
     """
     if raw.t.size < LEAST_ROWS:
         raise DataError(f"{where} must have {LEAST_ROWS} rows or more, got {raw.t.size}")
@@ -194,7 +194,7 @@ def _checked(raw: Recording, where: str) -> Recording:
         )
     t = raw.t[order]
     if not t[-1] > t[0]:
-        raise DataError(f"{where}: t must go on, got {t[0]:g} in all rows")
+        raise DataError(f"{where}: t must increase, got {t[0]:g} in all rows")
     if not _SHORTEST < (span := float(t[-1]) - float(t[0])) < _LONGEST:
         raise DataError(f"{where}: t must span {_SHORTEST:g} to {_LONGEST:g}, got {span:g}")
     for channel, values in raw.sigma.items():
@@ -210,7 +210,7 @@ def _checked(raw: Recording, where: str) -> Recording:
 
 
 def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
-    """Return the angles that have numbers; what is not finite is NaN, and turns are left out.
+    """Return the angles that have numbers, within half a turn; infinities become NaN.
 
     Raises DataError for an angle with too few numbers.
     """
@@ -230,7 +230,7 @@ def _cleaned(angles: Mapping[str, Array], where: str) -> dict[str, Array]:
 def _angles(
     given: Quantities, said: Said, conventions: Conventions
 ) -> tuple[str, dict[str, Array]]:
-    """Return what is given, as a key of CHANNELS, and the angles that are known from it."""
+    """Return the kind of a recording, a key of CHANNELS, and the angles known from it."""
     alone = angles_in(given, conventions, said)
     whole = {"quaternion", "matrix", "euler", "rotvec"} & set(given)
     if alone and not whole:
@@ -244,9 +244,9 @@ def _angles(
 
 
 def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array]:
-    """Return the standard deviation of each channel: of columns, or else as it was given.
+    """Return the standard deviation of each channel, from columns or else from the options.
 
-    Raises LagtopError where only some channels have one.
+    Raises LagtopError if only some channels have one.
     """
     reading, spread = source.reading, source.spread
     found = _spread_evenly(reading.sigma, raw)
@@ -260,7 +260,7 @@ def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array
             found[channel] = values if radians else np.radians(values)
     if found and (missing := [x for x in raw.channels if x not in found]):
         raise LagtopError(
-            f"sigma must be given of all angles or of none, got none of {missing[0]}", "sigma"
+            f"sigma must be given for all angles or for none, got none for {missing[0]}", "sigma"
         )
     return found
 
@@ -268,13 +268,13 @@ def _sigma(source: Source, given: Quantities, raw: Recording) -> dict[str, Array
 def _spread_evenly(sigma: Mapping[str, float] | float | None, raw: Recording) -> dict[str, Array]:
     """Return standard deviations that are the same in all rows, by channel.
 
-    Raises LagtopError for one of what is not there.
+    Raises LagtopError for an unknown channel.
     """
     if sigma is None:
         return {}
     each = sigma if isinstance(sigma, Mapping) else dict.fromkeys(raw.channels, sigma)
     if unknown := [name for name in each if name not in raw.channels]:
         raise LagtopError(
-            f"sigma must be of {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
+            f"sigma must be for {', '.join(raw.channels)}, got {quoted(unknown[0])}", "sigma"
         )
     return {name: np.full(raw.t.size, checked_double("sigma", x)) for name, x in each.items()}

@@ -30,11 +30,11 @@ _FIELDS = [
 _FINE = 1200
 """Points of a curve."""
 Curve = tuple[str, Array, Array, Array, Array, Array]
-"""Name, times, data, fine times, motion at these, and data less motion."""
+"""Name, times, data, fine times, motion at the fine times, and data minus motion."""
 
 
 class ReportRow(NamedTuple):
-    """A number of one recording."""
+    """A number of one recording, for the report."""
 
     name: str
     key: str
@@ -43,7 +43,7 @@ class ReportRow(NamedTuple):
 
 
 def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
-    """Return the units of the keys of the record of an outcome, with the names of a system."""
+    """Return the units of the keys in the record of an outcome, in a system of units."""
     units = {"t_start": system.named("time")}
     for product, _ in outcome.products():
         units[product.name] = system.unit_of(product.powers)
@@ -61,7 +61,7 @@ def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
 def fit_report(outcomes: Sequence[Outcome], source: str, system: System | None) -> Report:
     """Return the report on the outcomes of the recordings of a file.
 
-    Where inputs have units those of a system are named.
+    If inputs have units, the report names units of `system`.
     """
     lines = [line for outcome in outcomes for line in _lines(outcome, system)]
     fields = _FIELDS if outcomes[0].recording.name else _FIELDS[1:]
@@ -187,7 +187,7 @@ def scene_text(outcome: Outcome, source: str) -> str:
 def curves_of(outcome: Outcome) -> Iterator[Curve]:
     """Yield the curves of one recording, in the unit of angles in use.
 
-    What was measured is brought to the turn of the motion that was found.
+    The measured angles are shifted by whole turns to the fitted motion.
     """
     recording, scale = outcome.recording, per_radian(radians=outcome.radians)
     t = recording.t

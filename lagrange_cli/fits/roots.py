@@ -1,9 +1,9 @@
 """Roots: values of one input at which one number of the record has its target value.
 
-Each evaluation is by `solve`, whose numbers are correctly rounded: of neighbouring doubles the one
-is taken whose number comes nearest.  Where the number hardly changes with the input, many doubles
-have the same one, and a root may be that many last bits off.  The number may pass its target, or
-touch it: next to a steady precession the axis nutates on either side.
+Each evaluation uses `solve`, whose numbers are correctly rounded.  The root is the double whose
+number is nearest to the target.  If the number hardly changes with the input, many doubles have the
+same number, and the root may be off by as many last bits.  The number may pass its target, or only
+touch it.  It touches it at a steady precession, on either side of which the axis nutates.
 """
 
 from __future__ import annotations
@@ -17,30 +17,30 @@ import numpy as np
 from ..arithmetic.types import Array
 
 Function = Callable[[float], float]
-"""The number less its target value; NaN where there is none."""
+"""The number minus its target value; NaN if there is none."""
 Point = tuple[float, float]
-"""An argument, and the value of the function there."""
+"""An argument, and the value of the function at it."""
 _MOST_EXTREMA = 12
-"""Extrema next to the target that are searched: each takes some fifty motions."""
+"""Number of extrema next to the target that are searched; each takes some fifty motions."""
 _LEAP = 1e-6
-"""The residual of a continuous function at its root, over its size, is far less."""
+"""Bound of the residual at a root, over its size, that only a leap exceeds."""
 _STEPS = 64
 _EPS, _TINY = 2.0**-52, 5e-324
 _GOLDEN = (math.sqrt(5) - 1) / 2
 _FIRST_STEPS = 40
-"""Steps of golden section, which leave 4e-9 of a bracket."""
+"""Steps of golden section, which reduce a bracket to 4e-9 of its length."""
 _NEARER = 0.1
-"""The part of a distance that is left after these, at most, where it goes to 0."""
+"""Largest remaining share of a distance after these steps, if it goes to 0."""
 _BITS = 4.0
-"""How many last bits of the argument, and of the number, a distance from 0 may be."""
+"""Largest distance from 0 at a touch, in last bits of the argument and of the number."""
 
 
 def roots(function: Function, x: Array, y: Array, target: float = 0.0) -> list[float]:
     """Return where a function is 0, from its values y at points x, in ascending order.
 
-    It is a number less its `target`.  A root is as near as the numbers can tell.  Between two
-    points that have the same sign, a pair of roots is found next to an extremum, or the place at
-    which an extremum touches 0, if its distance from 0 is explained by some last bits.
+    The function is a number minus its `target`.  Roots are as exact as the numbers allow.  Between
+    points of the same sign, a pair of roots next to an extremum is found.  An extremum counts as
+    touching 0 if some last bits explain its distance from 0.
     """
     brackets, touching = list(_sign_changes(x, y)), []
     for i in _extrema(y):
@@ -53,7 +53,7 @@ def roots(function: Function, x: Array, y: Array, target: float = 0.0) -> list[f
         if height <= _BITS * (slope * math.ulp(at) + math.ulp(target)):
             touching.append(at)
     passed = {root for bracket in brackets if (root := _root(function, *bracket)) is not None}
-    near = float(np.max(np.diff(x)))  # two roots next to an extremum are no place that it touches
+    near = float(np.max(np.diff(x)))  # an extremum between two roots does not touch 0
     apart = {at for at in touching if all(abs(at - root) > near for root in passed)}
     return sorted(passed | apart)
 
@@ -65,7 +65,7 @@ def _sign_changes(x: Array, y: Array) -> Iterator[tuple[float, float]]:
 
 
 def _extrema(y: Array) -> list[int]:
-    """Return points that are nearer to 0 than both neighbours, on the same side, nearest first."""
+    """Return points nearer to 0 than both neighbours and with the same sign, nearest first."""
     size = np.abs(y)
     inner = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
     inner = inner[(y[inner - 1] * y[inner] > 0) & (y[inner] * y[inner + 1] > 0)]
@@ -74,9 +74,9 @@ def _extrema(y: Array) -> list[int]:
 
 
 def _lowest(function: Function, sign: float, low: float, high: float) -> Point:
-    """Return where a function, times a sign, is least between two ends, by golden section.
+    """Return the minimum of a function, times a sign, between two ends, by golden section.
 
-    The search ends at the first value that is not positive.  If the values do not go to 0 it ends
+    The search ends at the first value that is not positive.  If the values do not go to 0, it ends
     after some steps, with infinity for the value.
     """
 
@@ -100,7 +100,7 @@ def _lowest(function: Function, sign: float, low: float, high: float) -> Point:
 
 
 def _root(function: Function, low: float, high: float) -> float | None:
-    """Return the root between two points, or None where the function leaps or does not exist."""
+    """Return the root between two points, or None if the function leaps or does not exist."""
     at_low, at_high = function(low), function(high)
     if not at_low * at_high <= 0:
         return None
@@ -117,8 +117,8 @@ def _root(function: Function, low: float, high: float) -> float | None:
 def crossing(function: Function, a: Point, b: Point) -> float | None:
     """Return a double next to the sign change between two points, by Chandrupatla's method (1997).
 
-    Where inverse quadratic interpolation cannot be trusted, a bisection halves the number of
-    doubles between the points, so that the search ends after a leap, too.  None if the function
+    If inverse quadratic interpolation cannot be trusted, a bisection halves the number of doubles
+    between the points.  The search therefore also ends at a leap.  Returns None if the function
     does not exist at a point between.
     """
     c, trusted = a, False
@@ -141,7 +141,7 @@ def crossing(function: Function, a: Point, b: Point) -> float | None:
 
 
 def _interpolated(a: Point, b: Point, c: Point) -> float:
-    """Return where the parabola x(y) through three points meets y = 0, as a part of the way a-b."""
+    """Return the zero of the parabola x(y) through three points, as a fraction of the way a-b."""
     ab, ac, bc = b[1] - a[1], c[1] - a[1], c[1] - b[1]
     return -a[1] / ab * c[1] / bc + (c[0] - a[0]) / (b[0] - a[0]) * a[1] / ac * b[1] / bc
 

@@ -29,22 +29,22 @@ from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
 
 COUNTS = {1: 1000, 2: 60, 3: 20}
-"""Values of each unknown in a scan, by the number of unknowns."""
+"""Number of values of each unknown in a scan, by the number of unknowns."""
 MOST_TOPS = 10_000_000
 _WORDS = {"regime": [regime.value for regime in Regime], "path": ["cusped", "looping", "wavy"]}
-"""The keys that hold a word, and the words."""
+"""Keys that hold a word, and the words."""
 _BOUNDS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 
 class Inequality(NamedTuple):
-    """A number that must not be beyond another one."""
+    """A bound on a key: its number must be less, or greater, than a limit."""
 
     key: str
     relation: str
     limit: float
 
     def holds(self, record: Mapping[str, Any]) -> bool:
-        """Return whether a record keeps the bound; a number that it does not have does not."""
+        """Return whether a record keeps the bound; a missing number breaks it."""
         value = record[self.key]
         return value is not None and _BOUNDS[self.relation](value, self.limit)
 
@@ -62,7 +62,7 @@ class Conditions(NamedTuple):
 
     @property
     def keys(self) -> list[str]:
-        """All keys that are spoken of, once."""
+        """All keys that the conditions name, once."""
         return list(dict.fromkeys([*self.numbers, *self.words, *(x.key for x in self.bounds)]))
 
     def broken_by(self, record: Mapping[str, Any]) -> str | None:
@@ -74,9 +74,9 @@ class Conditions(NamedTuple):
 
 
 def read_conditions(texts: Iterable[str], *, radians: bool = False) -> Conditions:
-    """Return what `KEY=VALUE` and `KEY<VALUE` say; an angle may leave out its unit.
+    """Parse conditions `KEY=VALUE` and `KEY<VALUE`; the key of an angle may omit its unit.
 
-    Raises LagtopError for an unknown key, and for a value that it cannot have.
+    Raises LagtopError for an unknown key, and for an impossible value.
     """
     numbers: dict[str, float] = {}
     words: dict[str, str] = {}
@@ -128,7 +128,7 @@ def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Se
 
 
 def read_unknown(name: str, given: Any) -> Any:
-    """Return a number or a range as it counts; a unit stays with it."""
+    """Return a number or a range as exact fractions; a unit is kept."""
     if isinstance(given, str):
         try:
             return parse_span(given)
@@ -152,7 +152,7 @@ def read_unknown(name: str, given: Any) -> Any:
 
 def _exact(name: str, number: Any) -> Fraction:
     """Return a real number as a fraction.  Raises LagtopError for anything else."""
-    number = number.item() if isinstance(number, np.generic) else number  # NumPy's would overflow
+    number = number.item() if isinstance(number, np.generic) else number  # NumPy's overflow
     try:
         if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
             float(number)
@@ -172,11 +172,11 @@ class Search(NamedTuple):
 
     @property
     def targets(self) -> Array:
-        """The numbers that the record shall have."""
+        """The target values of the conditions."""
         return np.array(list(self.conditions.numbers.values()))
 
     def target_text(self) -> str:
-        """Return the conditions that name numbers, as they are written."""
+        """Return the conditions on numbers as text."""
         numbers = self.conditions.numbers.items()
         return ", ".join(f"{key}={double_text(x).removesuffix('.0')}" for key, x in numbers)
 
@@ -195,7 +195,7 @@ class Search(NamedTuple):
         return Top(**{key: float(value) for key, value in self.inputs(values).items()})
 
     def numbers(self, values: Sequence[float]) -> Array:
-        """Return the numbers that have a target value, each the nearest double; NaN for none."""
+        """Return the numbers that have a target value, correctly rounded; NaN if a key has none."""
         try:
             motion = solve(self.top(values))
             record = motion.record(radians=self.radians, keys=list(self.conditions.numbers))
@@ -205,13 +205,13 @@ class Search(NamedTuple):
         return np.array([np.nan if x is None else x for x in found])
 
     def swept(self, values: Array) -> Array:
-        """Return those numbers of many tops by `sweep`, a row for each row of values."""
+        """Return the numbers that have a target value by `sweep`, a row for each row of values."""
         keys = list(self.conditions.numbers)
         found = sweep(keys=keys, radians=self.radians, **self.inputs(list(values.T)))
         return np.stack([np.asarray(found[key], dtype=np.float64) for key in keys], axis=-1)
 
     def check(self) -> Search:
-        """Return the search.  Raises LagtopError where it cannot have single solutions."""
+        """Return the search.  Raises LagtopError if it cannot have single solutions."""
         unknown, numbers = len(self.spans), len(self.conditions.numbers)
         if not 1 <= unknown <= max(COUNTS):
             raise LagtopError(
@@ -233,7 +233,7 @@ def search_of(
     scene: str | None = None,
     radians: bool = False,
 ) -> tuple[Search, Given]:
-    """Return a search, and what is given of the top: by inputs and by a scene file, if any.
+    """Return a search, and the given inputs of the top, from options and from a scene file.
 
     An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError.
     """
@@ -253,13 +253,13 @@ class Scan(NamedTuple):
     values: Array
     """The unknowns of each top, shape (tops, unknowns); the last unknown varies fastest."""
     numbers: Array
-    """The numbers that have a target value there, in the same shape; NaN for none."""
+    """The numbers that have a target value, in the same shape; NaN if a key has none."""
 
 
 def scan_of(search: Search, count: int | None, progress: Progress) -> Scan:
-    """Compute the tops on a grid of so many values of each unknown.
+    """Compute the tops on a grid with `count` values of each unknown.
 
-    Raises LagtopError for a count that is too small, or too large together.
+    Raises LagtopError if the count is too small, or the grid too large.
     """
     each = COUNTS[len(search.spans)] if count is None else count
     if each < 3 or each ** len(search.spans) > MOST_TOPS:

@@ -2,7 +2,7 @@
 
 If the tilt is not recorded, turning points are tried on a grid.  Each pair of them, with the period
 and the mean precession, gives tops in closed form.  Their precession and spin over a period are
-compared with those of the recording, at whichever phase they are nearest.
+compared with the recording, at the best phase.
 """
 
 from __future__ import annotations
@@ -25,32 +25,32 @@ from .nutation import Shown, Turns
 from .recording import Recording
 
 _MOST_STATES = {False: 12, True: 60}
-"""Tops that are tried if the tilt is not recorded, in a narrow and in a wide search."""
+"""Number of tops tried if the tilt is not recorded, in a narrow and in a wide search."""
 _NEAREST = 3
-"""Tops that are tried for a mean precession that no top has."""
+"""Number of tops tried for a mean precession that no top has."""
 _HEIGHTS = (1e-4, 0.1, 1.0, 10.0)
-"""Values of (u3 - 1)/(1 - u2) that are tried where no mean precession is known."""
+"""Values of (u3 - 1)/(1 - u2) that are tried if no mean precession is known."""
 _LEAST_TILT = 1e-9
-"""Least distance of a start from the vertical, where psi has no meaning."""
+"""Least distance of a start from the vertical, at which psi is undefined."""
 _NEAR = np.array([0.01, 0.03, 0.06, 0.1, 0.17, 0.27, 0.4])
 _LEVELS = np.concatenate([_NEAR, np.linspace(0.55, math.pi - 0.55, 15), math.pi - _NEAR[::-1]])
 """Tilts between which an axis may nutate."""
 _SWINGS = (0.01, 0.04, 0.15)
-"""Differences of the turning points of small nutations, over their distance from a pole."""
+"""Differences of turning points of small nutations, over their distance from a pole."""
 _MODULI = 10.0 ** np.linspace(-4, 4, 33)
-"""Values of (u3 - 1)/(1 - u2) between which a mean precession is looked for."""
+"""Values of (u3 - 1)/(1 - u2) between which a mean precession is searched for."""
 _PHASES = np.arange(128) / 128
 _TILT_OFF = 0.02
-"""Radians that the tilt of a start may differ from the known one."""
+"""Largest difference of the tilt of a start from the known tilt, in radians."""
 
 
 class StartingTop(NamedTuple):
-    """A top to start a fit from, and how far it is from the recording."""
+    """A top to start a fit from, and its distance from the recording."""
 
     state: Array
     """The state, in the order of `model.STATE`."""
     excess: float
-    """r0 - b, where the spin is seen."""
+    """r0 - b if the spin is recorded."""
     psi_zero: float
     phi_zero: float
     misfit: float
@@ -60,7 +60,7 @@ class StartingTop(NamedTuple):
 def starting_tops(
     recording: Recording, shown: Shown | Turns, tilt: float | None = None, *, wide: bool = False
 ) -> list[StartingTop]:
-    """Return tops that move about as a recording shows, the nearest first.
+    """Return tops that move approximately as a recording shows, the nearest first.
 
     `tilt` is the tilt in the first row, if it is known but not recorded.  The tops have the
     nutation and the mean precession of the recording.  If the search is `wide`, or if psi is not
@@ -88,7 +88,7 @@ def _states_shown(shown: Shown, *, wide: bool) -> Array:
 
 
 def _near(shown: Shown) -> list[Shown]:
-    """Return what is shown, and the same with other turning points near the poles."""
+    """Return a nutation, and variants with other turning points near the poles."""
     least, greatest, period = shown.nutation
     low, high = shown.seen
     pairs = [(least, greatest), (low, greatest), (low / 3, greatest)]
@@ -104,7 +104,7 @@ def _grid(shown: Shown) -> Candidates:
 
 
 def _with_mean_rates(shown: Shown) -> Candidates:
-    """Return the tops with the mean precession, or those that come nearest to it."""
+    """Return the tops with the mean precession, or the tops nearest to it."""
     found: list[Candidates] = []
     for rate in shown.mean_rates:
         exact = with_mean_rate(shown.nutation, rate)
@@ -117,7 +117,7 @@ def _with_mean_rates(shown: Shown) -> Candidates:
 
 
 def _states(shown: Shown, tops: Candidates) -> Array:
-    """Return the states at the first row, of tops whose tilt there is known."""
+    """Return the states of tops at the first row, whose tilt is known."""
     u = min(max(shown.u_start, shown.nutation.u2), shown.nutation.u1)
     theta = np.full_like(tops.a, math.acos(u))
     falls = shown.falls * tops.tilt_rate(shown.nutation, theta)
@@ -127,7 +127,7 @@ def _states(shown: Shown, tops: Candidates) -> Array:
 def _start(
     recording: Recording, noise: Mapping[str, float], state: Array, angles: Array
 ) -> StartingTop:
-    """Return a start with the zeros of psi and phi, and the spin rate, that fit it best."""
+    """Return a start with the best zeros of psi and phi, and the best spin rate."""
     theta, phi, psi = angles
     psi_zero, excess, phi_zero = 0.0, 0.0, 0.0
     if "psi" in recording.angles:
@@ -184,7 +184,7 @@ def _tilts(nutation: TurningPoints, tops: Candidates) -> Array:
 
 
 def _tops(period: float, mean_rate: float) -> tuple[TurningPoints, Candidates]:
-    """Return tops with a period and nearly a mean precession, and their turning points."""
+    """Return tops with a period and approximately a mean precession, and their turning points."""
     least, greatest = _turning_points()
     parts = []
     for signs in SIGNS:
@@ -201,7 +201,7 @@ def _tops(period: float, mean_rate: float) -> tuple[TurningPoints, Candidates]:
 
 
 def _turning_points() -> tuple[Array, Array]:
-    """Return the least and the greatest tilts that are tried: all pairs, and pairs close by."""
+    """Return the least and the greatest tilts to try: all pairs of a grid, and close pairs."""
     near, far = np.triu_indices(_LEVELS.size, 1)
     room = np.minimum(_LEVELS, math.pi - _LEVELS)
     close = [_LEVELS - swing * room for swing in _SWINGS]

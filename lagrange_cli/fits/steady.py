@@ -1,12 +1,12 @@
-"""A recording without visible nutation: the mean precession, and what it implies by itself.
+"""Fit of a recording without visible nutation: the mean precession, and the ratio b/a from it.
 
 A fast top precesses almost steadily, by a quadratic equation for its rate Omega:
 
     a/2 - b Omega + Omega^2 cos(theta) = 0,
 
 with a = 2mgs/A (4,4) and b = C r0/A (4,5).  If a is known, b follows.  Otherwise only their ratio
-does, by the elementary theory of fast tops, which leaves out the last term: b/a = C r0/2mgs =
-1/(2 Omega).  This is too small by cos(theta)/(4 lambda) of itself, with lambda = b^2/2a.
+follows, by the elementary theory of fast tops, which omits the last term: b/a = C r0/2mgs = 1/(2
+Omega).  This ratio is too small by the fraction cos(theta)/(4 lambda), with lambda = b^2/2a.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ def steady_fit(
 ) -> Fit:
     """Fit a steady precession to a recording with psi; its tilt may be known instead of recorded.
 
-    Standard deviations are those of the residuals by default.  Raises DataError if psi is constant.
+    Standard deviations are estimated from the residuals by default.  Raises DataError if psi is
+    constant.
     """
     lines = {
         name: _line(recording.t, recording.angles[name], _sigma(recording, name), name != "theta")
@@ -70,7 +71,7 @@ def steady_fit(
 
 
 def _sigma(recording: Recording, name: str) -> Array | None:
-    """Return the standard deviation of an angle, of which those of an axis are taken across it."""
+    """Return the standard deviation of an angle; that of an axis is divided by sin(theta)."""
     sigma = recording.sigma
     if not sigma or name in sigma:
         return sigma.get(name)
@@ -99,7 +100,7 @@ class SteadyOutcome(Outcome):
     """The results of a fit of a steady precession."""
 
     derived: Any = ()
-    """Nothing follows from the precession rate but b/a, or b."""
+    """Empty, because only b/a or b follows from the precession rate."""
 
     def notes(self) -> list[str]:
         """Return what the recording determines."""
@@ -111,10 +112,10 @@ class SteadyOutcome(Outcome):
         ]
 
     def inputs(self) -> dict[str, float]:
-        """Raise LagtopError: many tops precess so."""
+        """Raise LagtopError, because many tops have this precession."""
         raise LagtopError("a scene needs a and b, and this recording determines b/a only")
 
     def angles(self, t: Array) -> dict[str, Array]:
-        """Return the angles of the steady precession, as the recording counts them."""
+        """Return the angles of the steady precession, with the zeros of the recording."""
         theta, rate, psi_zero, spin, phi_zero = self.fit.solution.values.tolist()
         return {"theta": theta + 0 * t, "psi": psi_zero + rate * t, "phi": phi_zero + spin * t}

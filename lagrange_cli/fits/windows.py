@@ -1,8 +1,8 @@
 """A recording in windows: one body, and a spin rate that decays from window to window.
 
-Friction slows a real top, which the closed form leaves out.  Within a window that is short enough
-the loss is below the noise.  All windows share a and C/A; each has its own start and its own r0, or
-b if the spin is not recorded.  A line through the logarithms of these gives the decay time.
+Friction slows a real top, but the closed form has no friction.  Within a short window the loss is
+below the noise.  All windows share a and C/A.  Each window has its own start and its own r0, or b
+if the spin is not recorded.  A line through the logarithms of r0 (or b) gives the decay time.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from .record import FAILED, Fit, Outcome
 from .recording import LEAST_ROWS, Recording
 
 _STEPS = 30
-"""Steps of each window from the end of the one before it."""
+"""Steps of the fit of each window, from the end of the previous one."""
 _SURE = 3.0
-"""Standard deviations from which on a decay is told from none."""
+"""Number of standard deviations from which a decay is significant."""
 
 
 class Decay(NamedTuple):
@@ -56,7 +56,7 @@ class Window(NamedTuple):
 
     outcome: Outcome
     middle: float
-    """Time of its middle, on the clock of the recording."""
+    """Time of the middle of the window, on the clock of the recording."""
     chi2_dof: float
     verdict: str
     """`good` or `doubtful`, or `failed` if the fit of all windows has failed."""
@@ -111,9 +111,9 @@ class WindowedFit(NamedTuple):
 
 
 def split(recording: Recording, window: float, *, is_time: bool, where: str) -> list[Recording]:
-    """Return a recording in windows: so many of the same duration, or of so long a time each.
+    """Return a recording in windows: a number of equal windows, or windows of a given duration.
 
-    A last window that is shorter joins the one before it.  Raises LagtopError for a bad window.
+    A shorter last window is merged into the previous one.  Raises LagtopError for a bad window.
     """
     span = float(recording.t[-1])
     count = int(span / window * (1 + 1e-9)) if is_time and window > 0 else window
@@ -152,11 +152,11 @@ def fit_windows(
 ) -> WindowedFit:
     """Fit one body to the windows of a recording.
 
-    The start of each window is looked for where the motion of the window before it leads.  Raises
-    LagtopError, DataError for a recording that cannot be fitted.
+    The fit of each window starts from the motion of the previous window.  Raises LagtopError,
+    DataError for a recording that cannot be fitted.
     """
     if "r0" in known:
-        raise LagtopError("a fit in windows finds r0: leave it out", "r0")
+        raise LagtopError("r0 is an unknown of a fit in windows: leave it out", "r0")
     with ARRAYS.working():
         first = best_attempt(parts[0], known, stds, f"{where}, {parts[0].name}")
         if first.mirrored:
@@ -196,7 +196,7 @@ def _led_to(values: Mapping[str, float], t: float) -> dict[str, float]:
 
 
 def _window(outcome: Outcome, sigma: Array) -> Window:
-    """Return a window with its own chi^2, of which it has its part of all degrees of freedom."""
+    """Return a window with its own chi^2 and its share of the degrees of freedom."""
     solution, recording = outcome.fit.solution, outcome.recording
     rows = np.stack(list(outcome.residuals_by_row.values()))
     known = np.isfinite(rows)

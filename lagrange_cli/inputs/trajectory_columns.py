@@ -120,7 +120,7 @@ QUANTITIES: dict[str, Quantity] = {
         [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("axis figureaxis director", parts)],
     ),
     "position": Quantity(
-        "mass centre in space, from the pivot; read where nothing above is given",
+        "mass centre in space, from the pivot; read if nothing above is given",
         "x y z, com_x ..., tx ty tz",
         [x for parts in (_XYZ, _DIGITS[0]) for x in _spelt("position com pos p t", parts)]
         + _spelt("-", _XYZ),

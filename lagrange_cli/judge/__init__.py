@@ -1,1 +1,1 @@
-"""The judge of trajectories: somebody's motion of a top against the exact one."""
+"""Comparison of trajectories of a top with the exact motion."""

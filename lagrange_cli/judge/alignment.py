@@ -1,4 +1,4 @@
-"""Frames and clocks of others, brought to ours: `--align`."""
+"""Conversion of other frames and clocks to those of lagtop: `--align`."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ AXES = ("x", "y", "z", "-x", "-y", "-z")
 WORDS = {
     "axis=y": "the figure axis is the body's y axis (or x, -x, -y, -z)",
     "up=y": "up is the y axis of space (or x, -x, -y, -z)",
-    "start": "spin and precession count from the first row",
-    "body": "one rotation of the body's frame, taken from the first row",
-    "space": "one rotation of the frame of space, taken from the first row",
-    "time": "the first row is at the time 0",
+    "start": "spin and precession are 0 in the first row",
+    "body": "a constant rotation of the body's frame, taken from the first row",
+    "space": "a constant rotation of the frame of space, taken from the first row",
+    "time": "the first row is at time 0",
 }
-"""The words that can be given, with their meanings."""
+"""The words of `--align`, with their meanings."""
 _NEAR_POLE = 1e-9
 
 
 class Alignment(NamedTuple):
-    """Changes of a trajectory before it is judged."""
+    """Changes of a trajectory before it is compared."""
 
     axis: str = "z"
     up: str = "z"
@@ -42,12 +42,12 @@ class Alignment(NamedTuple):
 
     @property
     def hides_frames(self) -> bool:
-        """Whether the first row is brought to the exact attitude, whatever it is."""
+        """Whether the first row is always rotated to the exact attitude."""
         return self.body or self.space
 
 
 def alignment(words: Sequence[str]) -> Alignment:
-    """Return the alignment of some words.  Raises LagtopError for one that is not known."""
+    """Return the alignment of some words.  Raises LagtopError for an unknown word."""
     if isinstance(words, str):
         raise LagtopError(f"align must be a list of words, got {quoted(words)}", "align")
     found: dict[str, str | bool] = {}
@@ -66,7 +66,7 @@ def alignment(words: Sequence[str]) -> Alignment:
 
 
 class FrameChange(NamedTuple):
-    """Constant rotations and shifts that bring a trajectory to our frames."""
+    """Constant rotations and shifts that convert a trajectory to the frames of lagtop."""
 
     space: Array
     body: Array
@@ -75,7 +75,7 @@ class FrameChange(NamedTuple):
     psi: float = 0.0
 
     def aligned(self, seen: Seen) -> Seen:
-        """Return the trajectory in our frames."""
+        """Return the trajectory in the frames of lagtop."""
         shifts = {"phi": self.phi, "psi": self.psi}
         angles = {key: value - shifts.get(key, 0.0) for key, value in seen.angles.items()}
         turned = seen.turned(self.space, self.body)
@@ -85,7 +85,7 @@ class FrameChange(NamedTuple):
 def frames_of(alignment: Alignment, motion: Motion, first: Seen) -> FrameChange:
     """Return the frames of a trajectory from its first row.
 
-    Raises LagtopError where what is given of the attitude does not have the frames.
+    Raises LagtopError if the attitude is not complete enough for the alignment.
     """
     if first.quaternion is None:
         _check(alignment, first)
@@ -117,7 +117,7 @@ def _check(alignment: Alignment, first: Seen) -> None:
 
 
 def _counted_from(frames: FrameChange, seen: Seen, exact: dict[str, float]) -> FrameChange:
-    """Return the frames turned about the vertical and about the figure axis to fit a row."""
+    """Return frames rotated about the vertical and about the figure axis to match a row."""
     if seen.quaternion is not None:
         angles = {key: float(x[0]) for key, x in rotations.angles_of(seen.quaternion).items()}
         w, x, y, z = seen.quaternion[0].tolist()

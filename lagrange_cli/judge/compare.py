@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 FINE, DRIFTS, OFF, ANOTHER, LOST = "fine", "drifts", "off from the start", "another top", "lost"
 JUDGEMENTS = {
     FINE: "the error stays below the limit, 1e-3 rad or --max-error",
-    DRIFTS: "it starts right, and the error grows beyond the limit",
+    DRIFTS: "the first row is right, but the error grows beyond the limit",
     ANOTHER: "the error exceeds the limit and does not fall with the step, or a mistake causes it",
-    OFF: "the first row is beyond the limit already: another start, or other frames",
+    OFF: "the first row already exceeds the limit: another start, or other frames",
     LOST: "a row is not finite",
 }
-"""The words with their meanings; of several that apply it is the last one."""
+"""The words with their meanings; if several apply, the verdict is the last one."""
 _OF_THE_FILE = {"t", "angle_rates"}
-"""Arguments that a file gives, so that an error about them is one of its data."""
+"""Arguments that come from a file, so that errors about them are errors of data."""
 
 
 def compare(
@@ -65,15 +65,17 @@ def compare(
 ) -> Judgement:
     """Compare a trajectory of n rows, at the times t, with the exact motion of a top.
 
-    Pass any of: quaternion (n, 4) from body to space, matrix (n, 3, 3) or (n, 9), the angles theta,
-    phi, psi (n,), three angles about coordinate axes (n, 3) by a sequence in scipy's notation, a
-    rotation vector (n, 3), the figure axis (n, 3), the position of the centre of mass from the
-    pivot (n, 3), angular velocity (n, 3) in the frame of the `body` or of `space`, and the rates of
-    theta, phi, psi (n, 3).  Angles are in radians; a masked element is a missing number.  `align`
-    changes the trajectory first, as in `lagtop compare`.  A trajectory is fine up to `max_error`
-    radians.  `step` is kept in the judgement, for the `convergence` of several.
+    Pass any of the following arrays.  The attitude: quaternion (n, 4) from body to space, matrix
+    (n, 3, 3) or (n, 9), or a rotation vector (n, 3).  Angles: theta, phi, psi (n,), or three angles
+    about coordinate axes (n, 3) with a sequence in scipy's notation.  Directions: the figure axis
+    (n, 3), or the position of the centre of mass from the pivot (n, 3).  Rates: angular velocity
+    (n, 3) in the frame of the `body` or of `space`, or the rates of theta, phi, psi (n, 3).
 
-    Raises LagtopError for a bad argument, and for times that are not finite, turn back or repeat.
+    Angles are in radians; a masked element is a missing number.  `align` changes the trajectory
+    first, as in `lagtop compare`.  A trajectory is fine up to `max_error` radians.  `step` is kept
+    in the judgement, for the `convergence` of several trajectories.
+
+    Raises LagtopError for a bad argument, and for times that are not finite or not monotonic.
     """
     arrays = {
         **{"quaternion": quaternion, "matrix": matrix, "theta": theta, "phi": phi, "psi": psi},
@@ -90,13 +92,13 @@ def compare(
 
 
 def _quantities(t: ArrayLike, arrays: dict[str, ArrayLike]) -> Quantities:
-    """Return the arrays as quantities.  Raises LagtopError for one of another shape."""
+    """Return the arrays as quantities.  Raises LagtopError for an array of another shape."""
     times = doubles_of("t", t).reshape(-1, 1)
     if not arrays:
         raise LagtopError("compare must be given an attitude, an axis, angles or rates, got none")
-    steps = times[1:, 0], times[:-1, 0]  # a difference may be beyond all doubles
+    steps = times[1:, 0], times[:-1, 0]  # a difference may exceed the range of doubles
     if not np.isfinite(times).all() or not (np.all(np.greater(*steps)) or np.all(np.less(*steps))):
-        raise LagtopError("t must be finite and go on in one direction, each time once", "t")
+        raise LagtopError("t must be finite, and increase or decrease from row to row", "t")
     block = {"t": times}
     for key, array in arrays.items():
         numbers, size = doubles_of(key, _unmasked(array)), QUANTITIES[key].size
@@ -123,9 +125,9 @@ def with_verdicts(
 ) -> tuple[list[Judgement], Convergence | None]:
     """Return the judgements of trajectories with their verdicts, and their convergence.
 
-    The limit is LIMIT by default.  Mistakes are tried if a trajectory is beyond the limit, but not
-    if the error falls with the step: then the top is the right one.  Raises LagtopError for bad
-    steps.
+    The limit is LIMIT by default.  Mistakes are tried if a trajectory exceeds the limit.  They are
+    not tried if the error falls with the step, because then the top is right.  Raises LagtopError
+    for bad steps.
     """
     limit = LIMIT if limit is None else limit
     judgements = [run.judgement for run, _ in cases]
@@ -145,7 +147,7 @@ def with_verdicts(
 def _mistake(
     motion: Motion, run: JudgedRun, given: ReadTrajectory, limit: float, found: Convergence | None
 ) -> dict[str, Any]:
-    """Return the keys of the mistake that explains a trajectory, if it needs to be explained."""
+    """Return the keys of the mistake that explains a trajectory, if it exceeds the limit."""
     error = run.judgement.error_max
     if error is None or (error <= limit if found is None else found.falls):
         return {}
@@ -154,7 +156,7 @@ def _mistake(
 
 
 def _verdict(judgement: Judgement, limit: float, found: Convergence | None) -> str:
-    """Return the word for a trajectory, alone or among others with other steps."""
+    """Return the verdict on a trajectory, alone or among others with other steps."""
     beyond = judgement.error_max is not None and judgement.error_max > limit
     if judgement.lost_at is not None:
         return LOST
@@ -166,10 +168,10 @@ def _verdict(judgement: Judgement, limit: float, found: Convergence | None) -> s
 
 
 class ComparisonRequest(NamedTuple):
-    """Options of comparing trajectories in files."""
+    """Options for comparing trajectories in files."""
 
     columns: Sequence[str] | None = None
-    """The names of all columns from the left; None for those that the files give."""
+    """The names of all columns from the left; None to take them from the files."""
     conventions: Conventions = Conventions()
     align: Alignment = Alignment()
     limit: float | None = None
@@ -178,12 +180,12 @@ class ComparisonRequest(NamedTuple):
 
 
 class Comparison(NamedTuple):
-    """Trajectories that have been judged together."""
+    """Trajectories that have been compared together."""
 
     judgements: Sequence[Judgement]
     convergence: Convergence | None
     motion: Motion
-    """The motion that they were compared with."""
+    """The motion with which they were compared."""
     warnings: Sequence[str]
     """Files that describe another scene."""
 
@@ -198,8 +200,8 @@ def compare_files(
 ) -> Comparison:
     """Compare the trajectories in files with a motion.
 
-    If the scene is not named, a description in the first file gives it.  Raises LagtopError for a
-    bad request, DataError for a file that cannot be read or is bad.
+    If no scene is named, a description in the first file gives it.  Raises LagtopError for a bad
+    request, DataError for a bad or unreadable file.
     """
     if paths.count("-") > 1:
         raise LagtopError("standard input can be read once, got - twice")

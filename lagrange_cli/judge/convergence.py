@@ -1,4 +1,4 @@
-"""Convergence of several trajectories of the same motion, made with different steps."""
+"""Convergence of several trajectories of the same motion, computed with different steps."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from ..errors import LagtopError
 from .judgement import Judgement
 
 LOST_PHASE = 0.3
-"""An error in radians beyond which the motions have lost each other, and no order can be seen."""
+"""Error in radians beyond which the phase is lost, and no order can be measured."""
 ROUNDING = 1e-8
-"""An error that need not fall any more."""
+"""Error that need not fall any more."""
 LEAST_ORDER = 0.5
-"""An order that any method has which converges at all."""
+"""Least order of a method that converges."""
 
 
 class Convergence(NamedTuple):
     """The dependence of the error on the step."""
 
     order: float | None
-    """Fitted exponent; None where there are less than two errors to fit."""
+    """Fitted exponent; None if there are fewer than two errors to fit."""
     falls: bool
-    """Whether the error depends on the step, or is that of rounding."""
+    """Whether the error depends on the step, or is a rounding error."""
     until: float
-    """Time up to which the errors were compared: then the first of them loses the phase."""
+    """Time up to which the errors were compared, at which the first trajectory loses the phase."""
     errors: Sequence[float]
-    """Greatest error of each trajectory up to then."""
+    """Greatest error of each trajectory up to that time."""
 
 
 def check_step_sizes(step_sizes: Sequence[float], count: int) -> None:
-    """Raise LagtopError for steps that are not positive or not as many as trajectories."""
+    """Raise LagtopError for steps that are not positive, or not one per trajectory."""
     if len(step_sizes) != count:
         raise LagtopError(
-            f"step_sizes must be as many as trajectories, {count}, got {len(step_sizes)}",
+            f"step_sizes must have one number per trajectory ({count}), got {len(step_sizes)}",
             "step_sizes",
         )
     for step in step_sizes:
@@ -46,10 +46,10 @@ def check_step_sizes(step_sizes: Sequence[float], count: int) -> None:
 
 
 def convergence(judgements: Sequence[Judgement]) -> Convergence | None:
-    """Return how the errors of trajectories fall with their steps, or None for less than two.
+    """Return how the errors of trajectories fall with their steps, or None for fewer than two.
 
-    The order is fitted to the greatest errors up to the time at which the first of them passes 0.3
-    rad.  Steps finer than that of the least error do not count: rounding grows there.
+    The order is fitted to the greatest errors up to the time at which the first one exceeds 0.3
+    rad.  Steps finer than the step of the least error do not count, because rounding grows there.
     """
     curves = [_greatest_so_far(judgement) for judgement in judgements]
     if len({judgement.step for judgement in judgements}) < 2:
@@ -64,9 +64,9 @@ def convergence(judgements: Sequence[Judgement]) -> Convergence | None:
 
 
 def _depends_on_step(points: Sequence[tuple[float, float]]) -> bool:
-    """Return whether some error is that of rounding, or much less than another, for its step.
+    """Return whether some error is a rounding error, or much less than another, for its step.
 
-    Errors that are nearly the same whatever the step are those of another motion.
+    Errors that hardly depend on the step belong to another motion.
     """
     steps, errors = zip(*points, strict=True)
     if not ROUNDING <= min(errors) < math.inf:
@@ -75,7 +75,7 @@ def _depends_on_step(points: Sequence[tuple[float, float]]) -> bool:
 
 
 def _greatest_so_far(judgement: Judgement) -> tuple[Array, Array]:
-    """Return the time since the first row and the greatest error so far, infinite when lost."""
+    """Return times since the first row, and the greatest error so far; infinite when lost."""
     assert judgement.t is not None
     assert judgement.error is not None
     error = np.nan_to_num(judgement.error, nan=np.inf)
@@ -83,7 +83,7 @@ def _greatest_so_far(judgement: Judgement) -> tuple[Array, Array]:
 
 
 def _time_within(t: Array, error: Array) -> float:
-    """Return the last time at which the phase is not lost; the first one where it always is."""
+    """Return the last time at which the phase is not lost, or the first time if there is none."""
     return float(t[max(int(np.searchsorted(error, LOST_PHASE)) - 1, 0)])
 
 

@@ -1,6 +1,6 @@
 """Differences between a trajectory and the exact motion: row by row, and summaries of them.
 
-A summary takes the rows block by block, in an amount of memory that does not grow with them.
+A summary takes the rows block by block, so that memory does not grow with their number.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..motion.solve import Motion
 
 MOST_KEPT = 4096
 _SURE = 2.0
-"""Radians that a deviation may change by from row to row; beyond, it may as well be a turn less."""
+"""Largest change of a deviation from row to row, in radians, for whole turns to be counted."""
 
 
 class Deviations:
@@ -45,8 +45,8 @@ class Deviations:
     def of(self, seen: Seen) -> dict[str, Array]:
         """Return the deviations by name; unknown ones are missing.
 
-        `error` is that of the attitude, or else of the axis, of the angles given, or of the angular
-        velocity over the size of the rates.  A row with anything that is not finite is NaN there.
+        `error` is the error of the attitude, or else of the axis, the given angles, or the angular
+        velocity over the size of the rates.  It is NaN in a row with values that are not finite.
         """
         found = self._attitude(seen) | self._rates(seen) | self._conserved(seen)
         if seen.norm is not None:
@@ -88,7 +88,7 @@ class Deviations:
             "axis": rotations.angle_between_vectors(*axes),
             "theta": angles["theta"] - exact["theta"],
         }
-        if self.vertical:  # of spin and precession only the sum or the difference is defined
+        if self.vertical:  # only the sum or the difference of spin and precession is defined
             up = self.motion.regime == Regime.SLEEPING
             twist = angles["psi"] + angles["phi"] if up else angles["phi"] - angles["psi"]
             ours = exact["psi"] + exact["phi"] if up else exact["phi"] - exact["psi"]
@@ -133,13 +133,13 @@ class Deviations:
 
 
 class Extremes:
-    """The greatest size of a deviation, and the last."""
+    """The greatest size of a deviation, and its last size."""
 
     def __init__(self) -> None:
         self.greatest = self.last = math.nan
 
     def add(self, values: Array) -> None:
-        """Take the deviations of some rows; NaN stands for none."""
+        """Add the deviations of some rows; NaN is a missing value."""
         known = abs(values[np.isfinite(values)])
         if known.size:
             self.greatest = float(np.fmax(self.greatest, known.max()))
@@ -150,7 +150,7 @@ class FittedLine(NamedTuple):
     """A straight line through the deviations of an angle."""
 
     slope: float
-    """Growth per unit of time."""
+    """Slope per unit of time."""
     rest: float
     """Root mean square of the residuals."""
 
@@ -163,12 +163,12 @@ class LineFit:
         self.t = self.x = self.tt = self.tx = self.xx = 0.0
 
     def add(self, t: Array, wrapped: Array) -> None:
-        """Take deviations in (-pi, pi]: each is the one nearest to that of the row before."""
+        """Add deviations in (-pi, pi], unwrapped from row to row."""
         known = np.isfinite(wrapped)
         if not known.any():
             return
         t, x = t[known], np.unwrap(np.concatenate([[self.last], wrapped[known]]))
-        steps = np.diff(x)[self.count == 0 :]  # the first row has none before it
+        steps = np.diff(x)[self.count == 0 :]  # the first row has no predecessor
         self.turns_are_sure &= not np.any(np.abs(steps) > _SURE)
         x = x[1:]
         self.last = float(x[-1])
@@ -186,7 +186,7 @@ class LineFit:
         self.count = whole
 
     def line(self) -> FittedLine | None:
-        """Return the line, or None for less than three rows or if whole turns are not sure."""
+        """Return the line, or None for fewer than three rows or if whole turns are uncertain."""
         if self.count < 3 or not self.turns_are_sure:
             return None
         slope = self.tx / self.tt
@@ -194,27 +194,27 @@ class LineFit:
 
 
 class Passages:
-    """The first times at which a deviation passes some sizes."""
+    """The first times at which a deviation exceeds some sizes."""
 
     def __init__(self, sizes: tuple[float, ...]) -> None:
         self.times: dict[float, float | None] = dict.fromkeys(sizes)
 
     def add(self, t: Array, values: Array) -> None:
-        """Take the deviations of some rows."""
+        """Add the deviations of some rows."""
         for size, time in self.times.items():
             if time is None and (beyond := np.flatnonzero(values > size)).size:
                 self.times[size] = float(t[beyond[0]])
 
 
 class Kept:
-    """Rows spread evenly over a trajectory of unknown length, MOST_KEPT at most."""
+    """At most MOST_KEPT rows, spread evenly over a trajectory of unknown length."""
 
     def __init__(self) -> None:
         self.stride, self.seen, self.size = 1, 0, 0
         self._parts: list[dict[str, Array]] = []
 
     def add(self, rows: Mapping[str, Array]) -> None:
-        """Take some rows: arrays of the same length by name."""
+        """Add some rows: arrays of the same length by name."""
         count = len(next(iter(rows.values())))
         start = -self.seen % self.stride
         if start < count:

@@ -1,4 +1,4 @@
-"""The judgement of one trajectory: its keys, and how the rows become it."""
+"""The judgement of one trajectory: its keys, and its computation from the rows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LIMIT = 1e-3
-"""The error in radians (rad) up to which a trajectory is fine by default."""
+"""The error in radians up to which a trajectory is fine by default."""
 PASSED = {"t_past_1e_6": 1e-6, "t_past_1e_3": 1e-3, "t_past_0_1": 0.1, "t_past_1": 1.0}
 _JUDGED = {
     "attitude": "attitude",
@@ -33,9 +33,9 @@ _JUDGED = {
     "psi": "angles",
     "rate": "rates",
 }
-"""Quantities that the error is of, by the first deviation that there is."""
+"""The quantity of the error, by the first deviation that is available."""
 PROVED, DISPROVED = 1e-6, 1e-3
-"""Errors at the first row by which one order of a quaternion is right and the other is wrong."""
+"""Errors at the first row that prove one order of a quaternion right, and the other wrong."""
 
 
 def _field(meaning: str, default: Any = None) -> Any:
@@ -48,10 +48,10 @@ class Judgement(Shown):
     """The judgement of one trajectory; angles are in radians, and an unknown number is None."""
 
     file: str | None = _field("the file, `-` for standard input")
-    step: float | None = _field("its step, by --step-sizes")
-    verdict: str = _field("the verdict, in a word", "fine")
+    step: float | None = _field("step size of the trajectory (--step-sizes)")
+    verdict: str = _field("verdict on the trajectory", "fine")
     rows: int = _field("the number of rows", 0)
-    judged: str = _field("what the error is of: attitude, axis, angles or rates", "")
+    judged: str = _field("quantity of the error: attitude, axis, angles or rates", "")
     error_max: float | None = _field(
         "greatest error: of the attitude, or of what is given of it "
         "(of an angular velocity over the size of the rates)"
@@ -90,7 +90,7 @@ class Judgement(Shown):
     quaternion_order: str | None = _field(
         "order of the quaternion, if it was found from the first row"
     )
-    order: float | None = _field("order of convergence of all files, by --step-sizes")
+    order: float | None = _field("order of convergence of all files (--step-sizes)")
     explained_by: str | None = _field("the mistake that explains the error best")
     explained_error: float | None = _field("greatest error with that mistake corrected")
 
@@ -130,35 +130,35 @@ JUDGEMENT_KEYS: dict[str, str] = {
 
 
 class JudgedRun(NamedTuple):
-    """A trajectory that has been gone through."""
+    """A trajectory that has been read to its end, with its judgement."""
 
     judgement: Judgement
     kept: Quantities
-    """Some rows of it, as they were given."""
+    """Some of its rows, as they were given."""
     conventions: Conventions
-    """Conventions by which it was read."""
+    """Conventions with which it was read."""
 
 
 class ReadTrajectory(NamedTuple):
-    """A trajectory as it is given: blocks of quantities, and how they are meant."""
+    """A trajectory as it is given: blocks of quantities, and their conventions."""
 
     blocks: Iterable[Quantities]
     said: Said
     conventions: Conventions
     alignment: Alignment
     change: Callable[[Seen], Seen] | None = None
-    """Change of the trajectory before it is brought to our frames."""
+    """Change of the trajectory before its conversion to the frames of lagtop."""
 
     def see(self, block: Quantities) -> Seen:
-        """Return what a block shows, in the frames of its maker."""
+        """Return the motion in a block, in its original frames."""
         seen = see(block, self.conventions, self.said)
         return seen if self.change is None else self.change(seen)
 
 
 def judge(motion: Motion, given: ReadTrajectory) -> JudgedRun:
-    """Return what a trajectory is like, but for its verdict.
+    """Return the judgement of a trajectory, except for its verdict.
 
-    Raises LagtopError for one without rows, and where nothing tells the order of a quaternion.
+    Raises LagtopError for a trajectory without rows, or if the order of a quaternion is unknown.
     """
     tally: _Tally | None = None
     with ARRAYS.working():
@@ -174,7 +174,7 @@ def judge(motion: Motion, given: ReadTrajectory) -> JudgedRun:
 
 
 def errors_of(motion: Motion, given: ReadTrajectory) -> Array:
-    """Return the errors of a trajectory in one block against some other motion."""
+    """Return the errors of a trajectory in one block, compared with another motion."""
     (block,) = given.blocks
     with ARRAYS.working():
         frames = frames_of(given.alignment, motion, given.see(_first_row(block)))
@@ -182,7 +182,7 @@ def errors_of(motion: Motion, given: ReadTrajectory) -> Array:
 
 
 def _first_row(block: Quantities) -> dict[str, Array]:
-    """Return the first row that is finite, or else the first one."""
+    """Return the first row that is finite, or else the first row."""
     finite = np.all([np.isfinite(values).all(axis=1) for values in block.values()], axis=0)
     row = int(np.argmax(finite))
     return rows_of(block, slice(row, row + 1))
@@ -208,7 +208,7 @@ class _Tally:
         self.lost_at: float | None = None
 
     def add(self, block: Quantities) -> None:
-        """Take a block of rows."""
+        """Add a block of rows."""
         seen = self.frames.aligned(self.given.see(block))
         found = self.deviations.of(seen)
         for name, values in found.items():
@@ -231,7 +231,7 @@ class _Tally:
         return {name: x for name, x in self.kept.rows().items() if name != "error"}
 
     def judgement(self) -> Judgement:
-        """Return what is known, but for the verdict."""
+        """Return the judgement, except for the verdict."""
         period = self.motion.T_nutation or self.motion.T_spin or 1.0
         values: dict[str, Any] = {}
         for name in ("attitude", "axis", *ANGLES, "rate"):
@@ -266,9 +266,9 @@ class _Tally:
 
 
 def _proved_order(motion: Motion, given: ReadTrajectory, first: Mapping[str, Array]) -> str:
-    """Return the order of a quaternion by which the first row is right, where only one is.
+    """Return the order of a quaternion that makes the first row right, if only one does.
 
-    Raises LagtopError where it is not.
+    Raises LagtopError otherwise.
     """
     errors = {}
     for order in ORDERS:

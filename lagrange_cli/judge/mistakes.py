@@ -1,4 +1,4 @@
-"""Common mistakes: each is undone in turn, and the one that explains an error best is named.
+"""Common mistakes: each is corrected in turn, and the best explanation of an error is named.
 
 Another mistake is one entry of MISTAKES, or of `_mistakes_of_rates` if a start has rates.
 """
@@ -24,23 +24,23 @@ from .alignment import Alignment
 from .judgement import JudgedRun, ReadTrajectory, errors_of
 
 EXPLAINS = 0.1
-"""The part of the error that may be left where a mistake explains it."""
+"""Largest share of the error that may remain if a mistake explains it."""
 
 
 class Mistake(NamedTuple):
-    """A mistake: the top that moved in the place of the one that was meant, or another reading."""
+    """A mistake: another top that moved instead of the intended one, or another reading."""
 
     name: str
     top: Callable[[Top], Top] | None = None
     seen: Callable[[Seen], Seen] | None = None
     alignment: Callable[[Alignment], Alignment] | None = None
     other_unit: bool = False
-    """Whether angles whose names have no unit are in the other one."""
+    """Whether angles whose names have no unit are in the other unit."""
     excess: Callable[[Top], Fraction] | None = None
-    """Spin rate of the top that moved, less that of `top`, if another body stands for it."""
+    """Spin rate of the top that moved minus that of `top`, if another body represents it."""
 
     def reading(self, given: ReadTrajectory, meant: Top) -> ReadTrajectory:
-        """Return the trajectory of the top that was meant as it is read without the mistake."""
+        """Return the trajectory of the intended top, as read without the mistake."""
         conventions = given.conventions
         if self.other_unit:
             conventions = conventions._replace(radians=not conventions.radians)
@@ -54,13 +54,13 @@ class Explanation(NamedTuple):
 
     name: str
     error: float
-    """Greatest error that is left."""
+    """Greatest remaining error."""
 
 
 def explanation(motion: Motion, run: JudgedRun, given: ReadTrajectory) -> Explanation | None:
     """Return the mistake that leaves the least error in the kept rows, if it explains them.
 
-    Rows that are lost do not count.
+    Rows that are not finite do not count.
     """
     kept = given._replace(blocks=[run.kept], conventions=run.conventions)
     left = [
@@ -74,7 +74,7 @@ def explanation(motion: Motion, run: JudgedRun, given: ReadTrajectory) -> Explan
 
 
 def _error_without(mistake: Mistake, motion: Motion, given: ReadTrajectory) -> float | None:
-    """Return the greatest error without a mistake, or None for one that cannot be."""
+    """Return the greatest error without a mistake, or None if the mistake is impossible."""
     try:
         moved = motion if mistake.top is None else solve(mistake.top(motion.top))
         errors = errors_of(moved, mistake.reading(given, motion.top))
@@ -98,7 +98,7 @@ def _spin_times(name: str, factor: float) -> Mistake:
 
 
 def _tilt_of(top: Top, side: int) -> Top:
-    """Return the top whose tilt in degrees counts as radians, on one side of the upright."""
+    """Return the top whose tilt in degrees is taken as radians, on one side of the vertical."""
     angle = math.remainder(math.degrees(_tilt(top)), 2 * math.pi)
     if angle * side < 0:
         raise LagtopError("the axis starts on the other side")
@@ -106,15 +106,16 @@ def _tilt_of(top: Top, side: int) -> Top:
 
 
 def _upside_down(top: Top) -> Top:
-    """Return the top as it is seen upside down, where gravity points upwards."""
+    """Return the top seen upside down, so that gravity points upwards."""
     tilt = math.pi - _tilt(top)
     return top.replace(theta0_rad=tilt, psidot0=-top.psidot0, thetadot0=-top.thetadot0)
 
 
 def _exchanged_moments(top: Top) -> Top:
-    """Return a top that moves like one with A and C exchanged, but for its spin.
+    """Return a top that moves like one with A and C exchanged, except for its spin.
 
-    That one need not be a rigid body, as C may exceed 2A; this one has C = A and the same a and b.
+    The exchanged top need not be a rigid body, as C may exceed 2A.  The returned top has C = A and
+    the same a and b.
     """
     return top.replace(A=top.C, C=top.C, r0=Fraction(top.r0) * Fraction(top.A) / Fraction(top.C))
 
@@ -124,7 +125,7 @@ def _spin_of_exchanged_moments(top: Top) -> Fraction:
 
 
 def _spun_less(rate: float) -> Callable[[Seen], Seen]:
-    """Return the change to a body that spins by a constant rate less."""
+    """Return the change to a body that spins more slowly by a constant rate."""
 
     def changed(seen: Seen) -> Seen:
         angle = rate * seen.t
@@ -149,7 +150,7 @@ def _with_quaternion(name: str, change: Callable[[Array], Array]) -> Mistake:
 
 
 def _exchanged(seen: Seen) -> Seen:
-    """Return what is seen if spin and precession have each other's names."""
+    """Return the motion with the names of spin and precession exchanged."""
     if seen.quaternion is not None:
         angles = rotations.angles_of(seen.quaternion)
         q = rotations.of_angles(angles["theta"], phi=angles["psi"], psi=angles["phi"])
@@ -159,7 +160,7 @@ def _exchanged(seen: Seen) -> Seen:
 
 
 def _framed(name: str, *, axis: str = "z", up: str = "z") -> Mistake:
-    """Return the mistake of frames with these axes, with the angles counted from the first row."""
+    """Return the mistake of frames with these axes, with angles counted from the first row."""
 
     def aligned(alignment: Alignment) -> Alignment:
         if alignment.hides_frames:
@@ -204,7 +205,7 @@ MISTAKES = [
     _with_quaternion("the quaternion is the conjugate, from space to body", rotations.conjugate),
     _with_quaternion("the quaternion is xyzw and was read as wxyz", lambda q: np.roll(q, 1, 1)),
     _with_quaternion("the quaternion is wxyz and was read as xyzw", lambda q: np.roll(q, -1, 1)),
-    Mistake("phi and psi have each other's names", seen=_exchanged),
+    Mistake("phi and psi are exchanged", seen=_exchanged),
     Mistake(
         "the angular velocity is in the other frame (--rates-frame)",
         seen=lambda x: replace(x, body_rates=x.space_rates, space_rates=x.body_rates),

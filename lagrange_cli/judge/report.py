@@ -1,4 +1,4 @@
-"""The report on trajectories: a row for each, and what may be concluded."""
+"""The report on trajectories: a row for each, and conclusions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SHOWN: dict[str, tuple[str, Callable[[Any], str]]] = {
     "t_past_1e_3": ("past 1e-3 at", lambda t: f"{t:.4g}"),
     "lost_at": ("lost at", lambda t: f"{t:.4g}"),
 }
-"""The columns of the table: their headings and how they are shown."""
+"""The columns of the table, with their headings and formats."""
 _TEXTS = {"file", "verdict", "judged", "explained_by", "quaternion_order"}
 _FIELDS = [
     Field(
@@ -58,7 +58,7 @@ def comparison_report(motion: Motion, comparison: Comparison, request: Compariso
 
 
 def failures(findings: Report) -> list[str]:
-    """Return the trajectories that are not fine, and why."""
+    """Return the trajectories that are not fine, with reasons."""
     return [
         f"{_name(x)}: {_sentence(x).removesuffix('.')}" for x in findings.rows if x.verdict != FINE
     ]

@@ -1,8 +1,9 @@
-"""Where output goes: a file that is replaced only on success, or standard output.
+"""Destination of output: a file that is replaced only on success, or standard output.
 
 `Output` is a destination with a format; it writes values, a record, rows or a report.  One record
-in CSV or JSON is put together here: importing orjson would cost `lagtop solve` 4 % of its time, and
-orjson knows doubles only.  Formats of rows and reports are imported when they are needed.
+in CSV or JSON is formatted here, because importing orjson would cost `lagtop solve` 4 % of its
+time, and orjson only supports doubles.  Formats of rows and reports are imported when they are
+needed.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class Output(Values):
             write_bytes(self.path, lambda: text)
 
     def table(self, names: Sequence[str], blocks: Iterable[Array | Texts], count: int = 0) -> None:
-        """Write `count` rows in blocks, which are arrays or lists of numbers that are written out.
+        """Write `count` rows in blocks: arrays, or lists of numbers as text.
 
         The count is 0 if it is unknown.
         """
@@ -67,7 +68,7 @@ class Output(Values):
             FORMATS[self.fmt].write_table(stream, names, blocks, view_of(self.path), count)
 
     def blocks(self, names: Sequence[str], blocks: Iterable[bytes]) -> None:
-        """Write blocks that `formats.block_text` made, with what belongs around them."""
+        """Write blocks made by `formats.block_text`, with the header and footer of the format."""
         from .formats import FORMATS
 
         with opened(self.path) as stream:
@@ -106,9 +107,9 @@ def _json_value(value: Any) -> str:
 def opened(path: str, mark: str = "") -> Iterator[BinaryIO]:
     """Yield a binary stream to a file, or to standard output for `-`.
 
-    An existing file is replaced when the block ends well and left alone when it does not; the name
-    of the temporary file is `.lagtop-`, a mark, and some random characters.  Raises
-    CannotWriteError, or BrokenPipeError for a reader that went away.
+    An existing file is replaced if the block succeeds, and kept otherwise.  The name of the
+    temporary file is `.lagtop-`, a mark, and some random characters.  Raises CannotWriteError, or
+    BrokenPipeError if the reader has gone away.
     """
     try:
         with _standard_output() if path == "-" else _file(path, mark) as stream:
@@ -174,9 +175,9 @@ def _file(path: str, mark: str) -> Iterator[BinaryIO]:
 
 
 def _is_replaceable(path: str) -> bool:
-    """Return whether a path is a regular file, or nothing yet.
+    """Return whether a path is a regular file, or does not exist.
 
-    Raises OSError where a shell would refuse the path too.
+    Raises OSError if a shell would refuse the path too.
     """
     if path.endswith(("/", os.sep)):
         raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
@@ -198,7 +199,7 @@ def _mode(target: str) -> int:
 
 
 def _sync_folder(folder: str) -> None:
-    """Bring the new name of the file to the disk, where the system can do that."""
+    """Flush the new name of the file to the disk, if the system can do that."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
         try:

@@ -1,7 +1,7 @@
 """The formats of rows, one object each: csv, json, ndjson, parquet, npy, table and markdown.
 
-A double has the same text in all of them (see `arithmetic.text`).  A block of rows is made by any
-process as bytes (`block_text`), and the blocks are written by one (`Output.blocks`).
+A double has the same text in all formats (see `arithmetic.text`).  Any process may format a block
+of rows as bytes (`block_text`); one process writes all blocks (`Output.blocks`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .rows import Columns
 
 Texts = Sequence[Sequence[str]]
-"""A block of rows whose numbers are written out; an empty text stands for none."""
+"""A block of rows with numbers as text; an empty text is a missing number."""
 
 
 class Header(list[str]):
@@ -32,7 +32,7 @@ class Header(list[str]):
 
 
 def description_of(names: Sequence[str]) -> Mapping[str, str]:
-    """Return the description that goes with names of columns, if any."""
+    """Return the description that belongs to the names of columns, if any."""
     return names.description if isinstance(names, Header) else {}
 
 
@@ -43,30 +43,30 @@ class Format:
     closing = b""
 
     def opening(self, names: Sequence[str]) -> bytes:
-        """Return what stands before the rows."""
+        """Return the bytes before the rows."""
         return b""
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return rows of numbers and JSON values, given by their columns."""
+        """Return rows of numbers and JSON values as bytes, from their columns."""
         raise NotImplementedError
 
     def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return rows of numbers that are written out already."""
+        """Return rows of numbers as bytes, from numbers as text."""
         raise NotImplementedError
 
     def write_blocks(
         self, stream: BinaryIO, names: Sequence[str], blocks: Iterable[bytes], view: View
     ) -> None:
-        """Write blocks made by `block`, with what stands before, between and after them."""
+        """Write blocks made by `block`, with the bytes before, between and after them."""
         texts = filter(None, blocks)
-        first = next(texts, b"")  # before anything is written: what is wrong often shows here
+        first = next(texts, b"")  # before anything is written, because most errors occur here
         stream.write(self.opening(names) + first)
         for text in texts:
             stream.write(self.between + text)
         stream.write(self.closing)
 
     def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
-        """Return the file of a part of a sweep: part 0 alone begins with the header."""
+        """Return the file of a part of a sweep; only part 0 begins with the header."""
         return text if number else self.opening(names) + text
 
     def write_table(
@@ -77,7 +77,7 @@ class Format:
         view: View,
         count: int,
     ) -> None:
-        """Write `count` rows in blocks, arrays or numbers written out; 0 if it is unknown."""
+        """Write `count` rows in blocks, arrays or numbers as text; the count is 0 if unknown."""
         made = (
             self.texts(block, names) if isinstance(block, list) else self._array(block, names)
             for block in blocks
@@ -89,7 +89,7 @@ class Format:
 
 
 class Csv(Format):
-    """Comma-separated values with a header; nothing stands for none."""
+    """Comma-separated values with a header; an empty cell is a missing value."""
 
     def opening(self, names: Sequence[str]) -> bytes:
         """Return the header, below comments that describe it."""
@@ -108,28 +108,28 @@ class Csv(Format):
 
 
 class Json(Format):
-    """JSON: an array with an object per row, each on a line; null stands for none."""
+    """JSON: an array with an object per row, each on a line; null is a missing value."""
 
     between = b",\n"
     closing = b"]\n"
 
     def opening(self, names: Sequence[str]) -> bytes:
-        """Return the bracket of the array."""
+        """Return the opening bracket of the array."""
         return b"["
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
-        """Return the objects, with commas between."""
+        """Return the objects, separated by commas."""
         from .rows import json_objects
 
         return json_objects(columns, names, b",\n")
 
     def texts(self, rows: Texts, names: Sequence[str]) -> bytes:
-        """Return the objects, with commas between."""
+        """Return the objects, separated by commas."""
         return ",\n".join(_objects(rows, names)).encode()
 
 
 class Ndjson(Format):
-    """JSON lines: an object per row; null stands for none."""
+    """JSON lines: an object per row; null is a missing value."""
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return a line per row."""
@@ -143,7 +143,7 @@ class Ndjson(Format):
 
 
 def _objects(rows: Texts, names: Sequence[str]) -> Iterator[str]:
-    """Yield the JSON objects of rows that are written out, as orjson would write them."""
+    """Yield the JSON objects of rows of numbers as text, as orjson would write them."""
     for row in rows:
         pairs = zip(names, row, strict=True)
         yield f"{{{','.join([f'{_QUOTE}{name}{_QUOTE}:{x or _NULL}' for name, x in pairs])}}}"
@@ -153,7 +153,7 @@ _QUOTE, _NULL = '"', "null"
 
 
 class Parquet(Format):
-    """Parquet, a row group per block; a block on its way is an Arrow stream."""
+    """Parquet, a row group per block; between processes a block is an Arrow stream."""
 
     def block(self, columns: Columns, names: Sequence[str]) -> bytes:
         """Return an Arrow stream."""
@@ -174,7 +174,7 @@ class Parquet(Format):
         write_parquet(stream, names, filter(None, blocks), description_of(names))
 
     def part(self, names: Sequence[str], number: int, text: bytes) -> bytes:
-        """Return the file of a part of a sweep, which is whole."""
+        """Return the file of a part of a sweep, which is complete by itself."""
         stream = BytesIO()
         self.write_blocks(stream, names, [text], View())
         return stream.getvalue()
@@ -191,7 +191,7 @@ class Npy(Format):
         view: View,
         count: int,
     ) -> None:
-        """Write a header with the number of rows, and the rows as they come."""
+        """Write a header with the number of rows, and the rows as they arrive."""
         import numpy as np
 
         row = np.dtype([(name, "<f8") for name in names])
@@ -203,14 +203,14 @@ class Npy(Format):
 
 
 def _doubles(rows: Texts) -> Array:
-    """Return rows that are written out as an array, with NaN for an empty text."""
+    """Return rows of numbers as text as an array, with NaN for an empty text."""
     import numpy as np
 
     return np.array([[float(x or "nan") for x in row] for row in rows])
 
 
 class Drawn(Csv):
-    """A table or markdown, drawn when all rows are known; a block on its way is CSV."""
+    """A table or markdown, drawn when all rows are known; between processes a block is CSV."""
 
     def __init__(self, fmt: str) -> None:
         self.fmt = fmt
@@ -263,6 +263,7 @@ def block_text(columns: Columns, names: Sequence[str], fmt: str) -> bytes:
 def part_file(fmt: str, names: Sequence[str], number: int, text: bytes) -> bytes:
     """Return the content of the file of a part, from the text that `block_text` made.
 
-    One after the other the files are what `Output.blocks` writes.  A file of Parquet is whole.
+    The concatenation of the files is the output of `Output.blocks`.  A Parquet file is complete by
+    itself.
     """
     return FORMATS[fmt].part(names, number, text)

@@ -1,4 +1,4 @@
-"""The one type of progress: a function that hands on the parts of long work as they are done."""
+"""The type of progress: a function that passes on the parts of long work as they are done."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def one(_: Any) -> int:
 
 
 class Progress(Protocol):
-    """Shows how much of some work is done while somebody iterates over its parts."""
+    """A function that shows the progress of some work during iteration over its parts."""
 
     def __call__(
         self,
@@ -23,7 +23,7 @@ class Progress(Protocol):
         total: int | None = None,
         size: Callable[[Item], int] = one,
     ) -> Iterator[Item]:
-        """Yield the parts as they come.
+        """Yield the parts as they arrive.
 
         `size` gives the items of a part, and `total` the items of all parts.  Without a total it is
         summed over the parts if these are a sequence, and unknown otherwise.

@@ -1,6 +1,6 @@
-"""What a person reads: records, rows and reports as cells, drawn as a table or as markdown.
+"""Output for people: records, rows and reports as cells, drawn as a table or as markdown.
 
-`Report` is the one class of reports: budget, Monte Carlo, compare, fit, stability and bench.
+`Report` is the class of all reports: budget, Monte Carlo, compare, fit, stability and bench.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ RECORD_HEADINGS = ("Symbol", "Name", "Value", "Unit", "Equation")
 
 
 class Field(NamedTuple):
-    """A column of a report: the key of its values in CSV and JSON, and how a table shows it."""
+    """A column of a report: the key of its values in CSV and JSON, and its format in a table."""
 
     key: str
     heading: str = ""
-    """Heading in a table; a field without one is not shown there."""
+    """Heading in a table; a field without a heading is not shown in tables."""
     show: Callable[[Any], str] = str
     is_text: bool = False
     names_the_row: bool = False
@@ -54,7 +54,7 @@ class Report(NamedTuple):
     def text(self, fmt: str, view: View) -> bytes:
         """Return the report in a format.
 
-        CSV and ndjson hold the rows alone.  JSON is one object, in which infinite numbers are null.
+        CSV and ndjson hold only the rows.  JSON is one object, in which infinite numbers are null.
         """
         if fmt == "table":
             from .tables import drawn_report
@@ -90,7 +90,7 @@ class Report(NamedTuple):
 def record_cells(record: Mapping[str, Any], keys: Keys, view: View) -> dict[str, list[list[str]]]:
     """Return five cells for each key that has a value, by group.
 
-    A radius, if there is one, takes the place of the equation.
+    If there is a radius, it replaces the equation.
     """
     groups: dict[str, list[list[str]]] = {}
     for name, key in keys.items():
@@ -137,20 +137,20 @@ def with_unit(text: str, unit: str | None) -> str:
 
 
 def short(value: float) -> str:
-    """Return two significant digits."""
+    """Return a number with two significant digits."""
     return f"{value:.1e}"
 
 
 _LEAST_EXPONENT = -4
-"""Below it, and if a rounded place stands before the point, there is an exponent."""
+"""Bound below which numbers have an exponent, as they do if a rounded digit is before the point."""
 
 
 def uncertain_text(value: float, std: float) -> str:
     """Return a number with its standard uncertainty, such as 0.4293(48) or 73.9(1.2).
 
-    The uncertainty is rounded by the rule of the Particle Data Group: to two digits if its first
-    three are at most 354, to one up to 949, and up to 1000 beyond.  A number that is certain is
-    written in full.
+    The uncertainty is rounded by the rule of the Particle Data Group.  It has two digits if its
+    first three are at most 354, and one digit up to 949; beyond, it is rounded up to 1000.  A
+    number without uncertainty is written in full.
     """
     if not std:
         return double_text(value)
@@ -175,7 +175,7 @@ def last_place(std: float) -> int:
 
 
 def _in_brackets(number: Decimal, spread: Decimal, last: int) -> str:
-    """Return both with digits down to a place, the spread as a count of it below 1."""
+    """Return value and uncertainty with digits down to a place, as in 0.4293(48)."""
     places = max(-last, 0)
     inside = f"{spread:.{places}f}" if spread >= 1 else f"{spread.scaleb(places):.0f}"
     return f"{number:.{places}f}({inside})"

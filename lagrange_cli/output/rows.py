@@ -15,19 +15,24 @@ from ..arithmetic.types import Array
 from ..errors import UnavailableError
 
 Columns = Sequence["Array | Sequence[Any]"]
-"""The columns of a block: arrays of numbers, one or several columns each, where NaN stands for
-none; or lists of texts and JSON values."""
+"""The columns of a block, in one of two types.
+
+Arrays hold numbers, with one or several columns each and NaN for missing values.  Lists hold texts
+and JSON values.
+"""
 
 _FEW = 8
-"""Numbers per row up to which an array is written as one text, and not row by row."""
+"""Numbers per row up to which an array is written as one text instead of row by row."""
 _CELLS_AT_ONCE = 1 << 15
-"""Cells of a block that are in memory together: in the cache."""
+"""Number of cells of a block that are processed together, in the cache."""
 _WIDE = 256
-"""Characters per row from which the ends of rows are found first: to split at `],[` is slower."""
+"""Characters per row beyond which the ends of rows are found first, because splitting at `],[` is
+slower.
+"""
 
 
 def csv_lines(columns: Columns, names: Sequence[str]) -> bytes:
-    """Return a line of CSV per row, with nothing for NaN."""
+    """Return a line of CSV per row, with an empty cell for NaN."""
     if not len(columns[0]):
         return b""
     first = columns[0]
@@ -39,14 +44,14 @@ def csv_lines(columns: Columns, names: Sequence[str]) -> bytes:
     if len(names) > 1:
         parts = [part for column in columns for part in _parts(column)]
         return b"".join(map(_lines, _slices(parts, names)))
-    # An empty line would be lost to its reader.
+    # Readers would skip an empty line.
     return b"".join(b"%s\n" % (cell or b'""') for cell in _cells(first))
 
 
 def _lines(columns: Columns) -> bytes:
-    """Return lines of CSV, joined from pieces; what lies between is one piece if it is the same.
+    """Return lines of CSV, joined from pieces; equal parts of all rows are one piece.
 
-    That is the commas, and texts that are alike in all rows.
+    Such parts are the commas, and texts that are equal in all rows.
     """
     pieces: list[Iterable[bytes]] = []
     between = b""
@@ -64,11 +69,11 @@ def _lines(columns: Columns) -> bytes:
 
 
 def _array_lines(rows: Array) -> bytes:
-    """Return an array of numbers, a line per row and nothing for NaN."""
+    """Return an array of numbers as CSV, a line per row and an empty cell for NaN."""
     text = bytearray(orjson.dumps(rows.ravel(), option=orjson.OPT_SERIALIZE_NUMPY))
     if b"n" in text:
         text = text.replace(b"null", b"")
-    # Commas at the ends of rows become line ends in place: to look for `],[` takes twice as long.
+    # Commas at the ends of rows are replaced in place: a search for `],[` takes twice as long.
     view = np.frombuffer(text, dtype=np.uint8)
     commas = np.flatnonzero(view == ord(","))
     view[commas[rows.shape[1] - 1 :: rows.shape[1]]] = ord("\n")
@@ -83,22 +88,22 @@ def _one_column(numbers: Array) -> bytes:
 
 
 def _slices(columns: Columns, names: Sequence[str]) -> Iterator[Columns]:
-    """Yield some rows of a block after the others."""
+    """Yield slices of rows of a block."""
     step = max(_CELLS_AT_ONCE // len(names), 1)
     for first in range(0, len(columns[0]), step):
         yield [column[first : first + step] for column in columns]
 
 
 def _parts(column: Array | Sequence[Any]) -> Iterator[Array | Sequence[Any]]:
-    """Yield an array in up to three parts: what is the same in all rows at either end stands apart.
+    """Yield an array in up to three parts, with equal columns at either end separated.
 
-    That is a view of one row, such as that of the inputs which all tops of a sweep share.
+    Such a part is a view of one row, for example of the inputs that all tops of a sweep share.
     """
     if not isinstance(column, np.ndarray):
         yield column
         return
     bits = column.view(np.int64)
-    alike = bits[0] == bits[-1]  # only where the ends are alike can all be
+    alike = bits[0] == bits[-1]  # all rows can only be equal if the ends are
     alike[alike] = (bits[:, alike] == bits[0, alike]).all(axis=0)
     places = np.flatnonzero(~alike).tolist()
     first, end = (places[0], places[-1] + 1) if places else (column.shape[1],) * 2
@@ -116,7 +121,7 @@ def _cells(column: Array | Sequence[Any]) -> Sequence[bytes]:
 
 
 def _array_rows(rows: Array) -> list[bytes]:
-    """Return an array of numbers, a text per row with nothing for NaN."""
+    """Return an array of numbers as text per row, with an empty cell for NaN."""
     text = orjson.dumps(np.ascontiguousarray(rows), option=orjson.OPT_SERIALIZE_NUMPY)
     if b"n" in text:
         text = text.replace(b"null", b"")
@@ -129,7 +134,7 @@ def _array_rows(rows: Array) -> list[bytes]:
 def json_objects(columns: Columns, names: Sequence[str], between: bytes, end: bytes = b"") -> bytes:
     """Return the JSON objects of all rows, with some bytes between them and at the end.
 
-    Members are made column by column, several times as fast as objects one by one.
+    Members are formatted column by column, several times as fast as objects one by one.
     """
     keys = [orjson.dumps(name) + b":" for name in names]
     rows: list[bytes] = []
@@ -167,10 +172,10 @@ def _number_members(numbers: Array, key: bytes) -> Sequence[bytes]:
 
 
 def _texts_of(column: Sequence[Any], write: Callable[[Any], bytes]) -> Sequence[bytes]:
-    """Return a text per value; of texts that come again, and of None, it is made once."""
+    """Return a text per value; repeated texts, and None, are formatted once."""
     try:
         different = set(column)
-    except TypeError:  # a value of JSON that cannot be hashed
+    except TypeError:  # a JSON value that cannot be hashed
         return [write(value) for value in column]
     if not all(value is None or type(value) is str for value in different):
         return [write(value) for value in column]
@@ -185,7 +190,7 @@ def _csv_cell(value: Any) -> bytes:
 
 
 def check_parquet() -> None:
-    """Raise UnavailableError where pyarrow is not installed."""
+    """Raise UnavailableError if pyarrow is not installed."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:

@@ -1,8 +1,8 @@
-"""Signals that end the program: an ignored one stays ignored, any other kills as a signal.
+"""Signals that end the program: ignored signals stay ignored, others kill as a signal.
 
-A shell loop stops only when the command inside it dies by the signal itself, not with an exit code
-that looks like one.  Whether SIGPIPE was ignored at the start cannot be told: Python ignores it
-before any of this code runs.
+A shell loop stops only if the command inside it dies by the signal itself, not with an exit code
+that looks like one.  It is unknown whether SIGPIPE was ignored at the start, because Python ignores
+it before this code runs.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGALRM", "SIGUSR1", "SIGUSR2", "SIGX
 """Other signals that end a program: temporary files are removed first."""
 CLOSED_PIPE = getattr(signal, "SIGPIPE", None)
 NO_SIGPIPE = 128 + 13
-"""The exit code for a reader that went away, where the system has no SIGPIPE."""
+"""The exit code if the reader has gone away and the system has no SIGPIPE."""
 
 
 class Terminated(BaseException):
-    """A signal to end, raised so that a temporary file is removed on the way out."""
+    """A signal to end, raised so that temporary files are removed."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -43,13 +43,13 @@ def _terminate(number: int, _: FrameType | None) -> NoReturn:
 def terminated_by(names: Sequence[str]) -> Iterator[None]:
     """Turn these signals into Terminated while the block runs.
 
-    A signal that is ignored or handled already, or that the system does not have, is left alone.
+    A signal is left alone if it is ignored, already handled, or unknown to the system.
     """
     numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
     ours = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
     caught = []
     try:
-        with suppress(ValueError):  # handlers belong to the main thread; in another there are none
+        with suppress(ValueError):  # only the main thread can set handlers
             for number in ours:
                 signal.signal(number, _terminate)
                 caught.append(number)
@@ -63,9 +63,9 @@ def terminated_by(names: Sequence[str]) -> Iterator[None]:
 def interrupts() -> Iterator[None]:
     """Raise KeyboardInterrupt for Ctrl-C while the block runs, so that it can clean up.
 
-    Before and after it Ctrl-C kills at once (see `__main__`), as nothing would catch the exception.
+    Outside the block Ctrl-C kills at once (see `__main__`), as nothing would catch the exception.
     """
-    if signal.getsignal(signal.SIGINT) != signal.SIG_DFL:  # ignored, or in the hands of a host
+    if signal.getsignal(signal.SIGINT) != signal.SIG_DFL:  # ignored, or handled by a host
         yield
         return
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -76,7 +76,7 @@ def interrupts() -> Iterator[None]:
 
 
 def die_by(number: int | None) -> NoReturn:
-    """End the program by a signal, or with an exit code where the system does not have it."""
+    """End the program by a signal, or with an exit code if the system does not have the signal."""
     if number is None:
         sys.exit(NO_SIGPIPE)
     signal.signal(number, signal.SIG_DFL)

@@ -1,6 +1,6 @@
 """Records, rows and reports as tables drawn by rich.  No digit is ever cut.
 
-On a terminal a table that is too wide is folded: its columns come in blocks, one below the other.
+On a terminal a table that is too wide is folded: blocks of columns follow one below the other.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     from .terminal import View
 
 _GAP = 3
-"""Columns of the screen between two columns of a table."""
+"""Width of the space between two columns of a table."""
 _RECORD_WIDTH = 80
-"""The width of the summary of a record if no terminal says another."""
+"""The width of the summary of a record if the output is no terminal."""
 _TEXT_WIDTH = 100
-"""The width of running text where no terminal says another."""
+"""The width of running text if the output is no terminal."""
 
 _CODES = re.compile("\x1b\\[[0-9;]*m")
 _HEADING, _GIVEN, _FOUND, _WARNING = "bold", "cyan", "green", "yellow"
-"""How a terminal shows headings, inputs, results and warnings."""
+"""Styles of headings, inputs, results and warnings on a terminal."""
 INPUT_GROUP = "Inputs"
-"""The group of a record that holds what is given."""
+"""The group of a record that holds the inputs."""
 
 
 class DrawnColumn(NamedTuple):
@@ -51,7 +51,7 @@ class DrawnColumn(NamedTuple):
         return max(map(cell_len, lines))
 
     def flush_right(self) -> DrawnColumn:
-        """Return the column with heading and cells that end at the same place, if it is numeric."""
+        """Return the column, with heading and cells aligned to the right if it is numeric."""
         if not self.numeric:
             return self
         heading, *cells = _flush_right([self.heading, *self.cells])
@@ -78,7 +78,7 @@ def drawn_record(
 
 
 def _record(groups: Mapping[str, list[list[str]]]) -> Table:
-    """Return five columns.  A group is one row of many lines: rich takes its time for each cell."""
+    """Return five columns; a group is one row of many lines, as rich is slow for many cells."""
     texts = {
         group: ["\n".join(cells) for cells in zip(*lines, strict=True)]
         for group, lines in groups.items()
@@ -95,7 +95,7 @@ def _record(groups: Mapping[str, list[list[str]]]) -> Table:
 
 
 def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
-    """Return four columns, each value in lines of its own below the name."""
+    """Return four columns, with each value on separate lines below its name."""
     every = [line for lines in groups.values() for line in lines]
     beside = [DrawnColumn("", [line[i] for line in every]).width() for i in (0, 3, 4)]
     room = max(width - sum(max(used, len("Equation")) for used in beside) - 3 * _GAP, 12)
@@ -109,7 +109,7 @@ def _narrow_record(groups: Mapping[str, list[list[str]]], width: int) -> Table:
 
 
 def _style(group: str) -> str:
-    """Return how the values of a group of a record are shown."""
+    """Return the style of the values of a group of a record."""
     return _GIVEN if group == INPUT_GROUP else _FOUND
 
 
@@ -142,7 +142,7 @@ def drawn_report(report: Report, view: View) -> bytes:
 
 
 def _folded(keys: Sequence[DrawnColumn], columns: Sequence[DrawnColumn], view: View) -> str:
-    """Return the table in blocks of columns that fit; the keys are the first ones of each."""
+    """Return the table in blocks of columns that fit; each block begins with the keys."""
     blocks = _blocks(keys, columns, view.width) if view.width else [[*keys, *columns]]
     return "\n".join(_drawn(_filled_table(block), view) for block in blocks)
 
@@ -151,7 +151,7 @@ def _blocks(
     keys: Sequence[DrawnColumn], columns: Sequence[DrawnColumn], width: int
 ) -> Iterator[list[DrawnColumn]]:
     used = sum(column.width() + _GAP for column in keys)
-    if any(used + column.width() > width for column in columns):  # keys too wide to be repeated
+    if any(used + column.width() > width for column in columns):  # keys too wide to repeat
         keys, columns, used = [], [*keys, *columns], 0
     block, room = list(keys), width - used
     for column in columns:
@@ -173,7 +173,7 @@ def _filled_table(columns: Sequence[DrawnColumn]) -> Table:
 
 
 def _empty(headings: Iterable[str]) -> Table:
-    """Return a table without rows.  Texts stay as they are: for rich to align them takes longer."""
+    """Return a table without rows, for texts that are already aligned (rich takes longer)."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     for heading in headings:
         table.add_column(heading, overflow="ignore", no_wrap=True)
@@ -181,7 +181,7 @@ def _empty(headings: Iterable[str]) -> Table:
 
 
 def _flush_right(texts: Sequence[str]) -> list[str]:
-    """Return texts of one or more lines, every line filled with spaces on its left."""
+    """Return texts of one or more lines, with every line padded on its left."""
     lines = [text.split("\n") for text in texts]
     width = max(len(line) for text in lines for line in text)
     return ["\n".join(line.rjust(width) for line in text) for text in lines]
@@ -193,7 +193,7 @@ def _chunks(text: str, width: int) -> list[str]:
 
 
 def _width(text: str) -> int:
-    """Return the width of what is drawn, without the codes for letters."""
+    """Return the width of a drawn text, without codes for styles."""
     return max(cell_len(line) for line in _CODES.sub("", text).splitlines())
 
 
@@ -209,12 +209,12 @@ def _condition(name: str, text: str, view: View) -> str:
 
 
 def _coloured(text: str, view: View) -> str:
-    """Return a warning in its colour, where there are colours."""
+    """Return a warning in its colour, if the output has colours."""
     return _drawn(Text(text, _WARNING), view).rstrip("\n") if view.has_colours else text
 
 
 def _drawn(table: Table | Text, view: View) -> str:
-    """Return what rich draws at its natural width; bold and coloured only where that is shown."""
+    """Return the text drawn by rich at its natural width, with styles only if they are shown."""
     file = io.StringIO()
     Console(
         file=file,

@@ -1,4 +1,4 @@
-"""What a terminal is safe to show, how wide it is, and who else writes to it."""
+"""Terminals: text that is safe to show, their width, and the line of progress."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from typing import TextIO
 
 MOST_CHARACTERS = 1000
-"""The length of a line that is still read."""
+"""The largest length of a line; longer lines are shortened."""
 
 
 def one_line(text: str) -> str:
     """Return a text as one line of printable characters, with the middle left out of a long one.
 
-    Control characters, marks that change the direction of writing and the like come out as escapes,
-    such as `\\x1b`: a file name or a datum may hold any of them, and a terminal would obey.
+    Control characters and marks that change the direction of writing become escapes, such as
+    `\\x1b`.  A file name or a datum may hold any of them, and a terminal would obey.
     """
     words = " ".join(text.split())
     line = "".join(x if x.isprintable() else x.encode("unicode_escape").decode() for x in words)
@@ -32,12 +32,12 @@ def one_line(text: str) -> str:
 
 
 class View(Values):
-    """What a reader of the output can see."""
+    """Properties of the output: its width, its letters and its colours."""
 
     width: int | None = None
-    """Columns of the terminal; None where the output goes elsewhere and may be as wide as it is."""
+    """Columns of the terminal; None if the output is no terminal, and may have any width."""
     has_greek: bool = True
-    """Whether the encoding has every letter that we write."""
+    """Whether the encoding has every letter that lagtop writes."""
     has_colours: bool = False
     """Whether letters may be bold or coloured."""
 
@@ -45,7 +45,7 @@ class View(Values):
 def view_of(path: str) -> View:
     """Return the view of the output to a file, or to standard output for `-`.
 
-    The variable COLUMNS wins over what the terminal says about its width.
+    The variable COLUMNS overrides the width of the terminal.
     """
     if path != "-" or sys.stdout is None:
         return View()
@@ -58,14 +58,14 @@ def view_of(path: str) -> View:
 
 
 def is_terminal(stream: TextIO | None) -> bool:
-    """Return whether a standard stream is a terminal; one that is closed is None."""
+    """Return whether a standard stream is a terminal; a closed stream is None."""
     return stream is not None and stream.isatty()
 
 
 def has_colours(stream: TextIO) -> bool:
-    """Return whether a stream is a terminal that shows colours, and the user wants them.
+    """Return whether a stream is a terminal with colours, and the user has not disabled them.
 
-    The variable NO_COLOR (https://no-color.org) says that he does not.
+    The variable NO_COLOR (https://no-color.org) disables colours.
     """
     unwanted = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
     return stream.isatty() and not unwanted
@@ -78,7 +78,7 @@ _ASCII = str.maketrans(
 
 
 def spelt(text: str, view: View) -> str:
-    """Return a text with its Greek letters and powers spelt out where the encoding lacks them."""
+    """Return a text, with Greek letters and powers spelt out if the encoding lacks them."""
     return text if view.has_greek else text.translate(_ASCII)
 
 
@@ -86,4 +86,4 @@ class Screen:
     """The terminal of the process, which output may share with a line of progress."""
 
     without_progress: Callable[[], AbstractContextManager[None]] = nullcontext
-    """Takes the line of progress, if any, away while others write."""
+    """A context that hides the line of progress while something else is written."""

@@ -217,7 +217,7 @@ def test_what_fails_is_told() -> None:
         assert remark == "failed: took more than 10 steps"
     nothing = methods.Method(["x"], lambda _, __: lambda t: [np.full_like(t, np.nan)] * 3)
     lost = measure(work, "x", nothing, "x")
-    assert lost.remark == "failed: gave what is not a number"
+    assert lost.remark == "failed: returned values that are not finite"
     assert lost.ns_min is not None
     lost = run(Top(r0=1e-3, theta0_deg=179.9999999), "scipy.special", "double")
     assert lost.remark == "failed: float division by zero"
@@ -272,13 +272,13 @@ BAD = {
     "--methods ,": "--methods must be among 30 names, got '': lagtop, ",
     "--n 0": "--n must be in [1, 10000000], got 0",
     "--n 2e7": "--n must be in [1, 10000000], got 20000000",
-    "--t-max 0": "--t-max must be other than 0",
+    "--t-max 0": "--t-max must not be 0",
     "--timeout 0": "--timeout must be > 0, got 0.0",
     "--plot x.pdf": "--plot must end in .svg or .png, got 'x.pdf'",
     "--long --t-max 1": "use --long or --t-max, not both",
     "--t-max 1e30": "t must be finite and within 2^50 periods",
-    "--theta0 0": "the scene must be one that nutates, got sleeping",
-    "--g 0": "the scene must be one that nutates, got torque-free",
+    "--theta0 0": "the scene must nutate, got sleeping",
+    "--g 0": "the scene must nutate, got torque-free",
     "--theta0 0 --thetadot0 1": "theta0 must be off the vertical",
     "--r0 0": "r0 or psidot0 must be other than 0",
 }

@@ -31,7 +31,7 @@ JACOBI = [
     ("--k x", "--k must be a finite decimal number, got 'x'"),
     ("--k 1.5 --phi 30", "--phi needs a real --u, and a --k in [0, 1]"),
     ("--k 0.5 --u i --series 3", "--series needs a real --u, and a --k in [0, 1]"),
-    ("--k 0.5 --u i,2K", "--u must be without K beside complex numbers"),
+    ("--k 0.5 --u i,2K", "--u must not contain K if numbers are complex"),
     (
         "--k 1 --u i --functions theta",
         "--k must not be 0 or 1 for theta functions of complex arguments",

@@ -56,7 +56,7 @@ def test_both_senses_of_psi_are_tried(seed: int, by_row: bool) -> None:
     assert found.notes() == []
     found = fit(t, **angles | {"psi": -angles["psi"]})
     assert found.values["r0"] == pytest.approx(float(MISLED.r0), abs=0.2)
-    assert found.notes() == ["psi is counted the other way round: its sign was changed"]
+    assert found.notes() == ["psi is counted in the other direction: its sign was changed"]
 
 
 def test_spin_and_precession_give_the_tilt_too() -> None:
@@ -78,7 +78,7 @@ def test_a_fit_that_is_not_good_takes_no_sense_of_psi_for_a_fact(
     found = fit(t, **angles | {"psi": -angles["psi"]})
     assert found.verdict == "good"
     monkeypatch.setattr(Outcome, "warnings", lambda _: ["doubts"])
-    assert found.notes() == ["psi may be counted the other way round: this fit changed its sign"]
+    assert found.notes() == ["psi may be counted in the other direction: this fit changed its sign"]
 
 
 def test_a_recording_that_two_tops_explain_has_no_good_fit() -> None:

@@ -325,7 +325,7 @@ T = np.linspace(0, 2, 100)
         ([T, T * np.nan, T * np.nan], 65, "must have 12 rows or more with a number, got 0"),
         ([T[::-1] ** 2 % 0.5, 30 + T, T], 65, "t must not turn back"),
         ([T / 10, 30 + 5 * np.sin(T), T], 65, "a recording must last for a period"),
-        ([0 * T + 1, 30 + T, T], 65, "t must go on, got 1 in all rows"),
+        ([0 * T + 1, 30 + T, T], 65, "t must increase, got 1 in all rows"),
     ],
 )
 def test_bad_data_get_a_line(
@@ -342,7 +342,7 @@ def test_bad_data_get_a_line(
     ("words", "code", "message"),
     [
         ("--sigma 0", 2, "--sigma must be > 0"),
-        ("--sigma theta=1", 2, "--sigma must be given of all angles or of none"),
+        ("--sigma theta=1", 2, "--sigma must be given for all angles or for none"),
         ("--fix m", 2, "--fix m needs m: give it as an option or in a scene"),
         ("--g 0", 2, "--g must not be 0 in a fit"),
         ("--phidot0 3", 2, "unknown option --phidot0"),
@@ -375,7 +375,7 @@ def test_a_failed_fit_leaves_no_scene(
 
 def test_theta_alone_needs_a_start(lagtop: Lagtop, tmp_path: Path) -> None:
     path = written(tmp_path / "data.csv", "t,theta", [T, 40 + 5 * np.sin(20 * T)])
-    assert_one_line(lagtop("fit", path), 2, f"{path} has neither psi nor phi, and theta alone")
+    assert_one_line(lagtop("fit", path), 2, f"{path} has neither psi nor phi, and theta does not")
 
 
 @pytest.mark.slow
@@ -402,7 +402,10 @@ def test_arrays_in_python() -> None:
         ({"theta": t, "axis": turns.apply([0, 0, 1])}, "fit takes angles, or an axis"),
         ({}, "fit takes angles, or an axis, or a quaternion, got nothing"),
         ({"theta": t / 9, "psi": t, "known": {"mass": 1}}, "known must be among"),
-        ({"theta": t / 9, "psi": t, "sigma": {"chi": 1}}, "sigma must be of theta, psi, got 'chi'"),
+        (
+            {"theta": t / 9, "psi": t, "sigma": {"chi": 1}},
+            "sigma must be for theta, psi, got 'chi'",
+        ),
         ({"theta": t / 9, "psi": t, "sigma": -1}, "theta_std must be > 0, got -1"),
         (
             {"theta": np.degrees(angles_of(turns)["theta"]), "psi": t},

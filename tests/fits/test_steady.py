@@ -84,9 +84,9 @@ def test_the_precession_alone_with_a_known_tilt(seed: int) -> None:
 @pytest.mark.parametrize(
     ("names", "known", "message"),
     [
-        (("psi",), {}, "has neither theta nor phi, and psi alone does not determine the tilt: fix"),
+        (("psi",), {}, "has neither theta nor phi, and psi does not determine the tilt: fix"),
         (("phi",), {"theta0_deg": 60}, "phi alone does not determine a top"),
-        (("theta",), {"r0": 800.0}, "has neither psi nor phi, and theta alone does not determine"),
+        (("theta",), {"r0": 800.0}, "has neither psi nor phi, and theta does not determine"),
         (("theta",), {"psidot0": 0.0}, "theta must nutate beyond its noise"),
         (("theta", "phi"), {}, "theta must nutate beyond its noise"),
     ],

@@ -102,7 +102,7 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path, short: fuzz_windows.Slowed)
     assert len(lines) == 6
     for words, message in (
         (["--by", "t"], "use --window or --by, not both"),
-        (["--r0", 10], "a fit in windows finds r0: leave it out"),
+        (["--r0", 10], "--r0 is an unknown of a fit in windows: leave it out"),
         (["-o", tmp_path / "x.toml"], "use --window or --output"),
     ):
         assert_one_line(lagtop(*options, *words), 2, message)

@@ -449,7 +449,7 @@ READINGS: dict[str, dict[str, Any]] = {
     "conjugate": {"quaternion": Q * [1, -1, -1, -1]},
     "was read as wxyz": {"quaternion": np.asarray(TURN.as_quat())},
     "was read as xyzw": {"quaternion": Q, "quaternion_order": "xyzw"},
-    "each other's names": {"phi": ANGLES[:, 2], "psi": ANGLES[:, 0], "theta": ANGLES[:, 1]},
+    "phi and psi are exchanged": {"phi": ANGLES[:, 2], "psi": ANGLES[:, 0], "theta": ANGLES[:, 1]},
     "other frame": {"rates": TURN.apply(RATES)},
     "taken as radians": {"theta": np.degrees(ANGLES[:, 1])},
     "--align start": {"quaternion": scalar_first(about_z(1) * TURN)},

@@ -224,7 +224,7 @@ def small_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (
             ["a.csv", "--step-sizes", "1,2"],
             2,
-            "--step-sizes must be as many as trajectories, 1, got 2",
+            "--step-sizes must have one number per trajectory (1), got 2",
         ),
         (["a.csv", "--step-sizes", "-1"], 2, "--step-sizes must be > 0, got -1.0"),
         (

@@ -1,13 +1,13 @@
-"""Recordings of tops that friction slows, for `fit --window`; judged by the truth; not collected.
+"""Random recordings with friction, to check `fit --window` against the truth; not collected.
 
     python tests/tools/fuzz_windows.py --recordings 200 --seed 1
 
-The spin about the figure axis decays with a time of 200 s and is watched for 20 s: tilt,
-precession and spin with 0.3, 0.5 and 1 degree of noise, 60 frames a second.  Of these 5 % and a gap
+The spin about the figure axis decays with a time of 200 s and is recorded for 20 s, at 60 frames a
+second.  Tilt, precession and spin have 0.3, 0.5 and 1 degree of noise.  5 % of the frames and a gap
 of 0.4 s are missing.  The equations of motion with the friction torque are integrated by DOP853;
-nothing of the closed form is used.  The exit code is 1 if the decay time is within one standard
-deviation of the truth in less than 58 % or more than 78 % of the recordings, within two in less
-than 91 % or more than 99 %, or if the mean chi^2/dof is not between 0.9 and 1.1.
+nothing of the closed form is used.  The exit code is 1 if one of these conditions is broken.  The
+decay time is within one standard deviation of the truth in 58 to 78 % of the recordings, and within
+two in 91 to 99 %.  The mean chi^2/dof is between 0.9 and 1.1.
 """
 
 from __future__ import annotations
@@ -98,16 +98,16 @@ def fitted(case: Slowed, *, sigma: bool = True, window: float = WINDOW) -> Windo
 
 
 class Judged(NamedTuple):
-    """What became of one recording."""
+    """Results for one recording."""
 
     seed: int
     pull: float
-    """The decay rate less the true one, over its standard deviation."""
+    """Error of the decay rate over its standard deviation."""
     pulls: list[float]
     """Errors of a and C/A over their standard deviations."""
     chi2_dof: float
     good: float
-    """Share of the windows that are called good."""
+    """Share of the windows with the verdict `good`."""
 
 
 def judged(seed: int) -> Judged:
