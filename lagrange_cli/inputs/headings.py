@@ -64,10 +64,16 @@ def column_of(heading: str) -> tuple[str, str]:
     return (name, unit) if name in {*INPUTS, TILT} else (heading, "")
 
 
+_TILTS = ("ϑ", "θ", "tilt", "elevation")
+"""Names of the tilt in trajectories, or of 90 degrees less the tilt, which no top is given by."""
+
+
 def check_spelling(carried: Sequence[str], named: Collection[str], name: str) -> None:
     """Raise DataError for an unread column that looks like an input missing from `named`."""
     missing = [known for known in reversed(INPUTS) if known not in named]
     inputs = {_plain(known): known for known in missing}  # the first of similar names
+    if not {"theta0_deg", "theta0_rad"} & set(named):
+        inputs |= dict.fromkeys(_TILTS, "theta0_deg")
     for column in carried:
         if known := inputs.get(_plain(column)):
             raise DataError(f"{name}: the column {column} must be spelt {known}")
@@ -75,7 +81,8 @@ def check_spelling(carried: Sequence[str], named: Collection[str], name: str) ->
 
 def _plain(column: str) -> str:
     """Return a name without easily mistaken parts: case, underscores, the 0 of theta0, the unit."""
-    return re.sub("_|0|deg$|rad$", "", column.lower()) or column
+    bare = re.split(r"[\s(\[]", column.strip().lower())[0]
+    return re.sub("_|0|deg$|rad$", "", bare) or column
 
 
 def check_header(columns: Sequence[str], known: Collection[str], name: str) -> None:

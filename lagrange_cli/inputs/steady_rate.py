@@ -37,6 +37,18 @@ class SteadyRate(float):
         rate.word = word
         return rate
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether the other is this rate, or the number 0 if this is.
+
+        The nearest double of the rate is another rate: it belongs to a top that nutates.
+        """
+        if isinstance(other, SteadyRate):
+            return self.word == other.word and float(self) == float(other)
+        return other == 0 and float(self) == 0
+
+    def __hash__(self) -> int:
+        return hash((self.word, float(self)))
+
     def __repr__(self) -> str:
         return repr(self.word)
 
@@ -118,7 +130,7 @@ def steady_rate_of(top: Any, word: str) -> SteadyRate:
             "psidot0",
         )
     if not rates.exists(word):
-        raise LagtopError(f"psidot0 must be a number, got {word}: {_why(top, rates)}", "psidot0")
+        raise LagtopError(f"psidot0 cannot be {word}: {_why(top, rates)}", "psidot0")
     found = settled(
         "psidot0",
         lambda digits: rates.in_balls(digits, word),

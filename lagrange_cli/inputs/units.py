@@ -140,9 +140,9 @@ def converted(inputs: Mapping[str, Value], system: System | None) -> dict[str, V
 
 def needs_unit(key: str, value: Value) -> bool:
     """Return whether an input needs a unit but has none."""
-    if DIMENSIONS.get(key, TIME) == TIME or value.unit or key == TILT:
-        return False
     number = value.number
+    if DIMENSIONS.get(key, TIME) == TIME or value.unit or key == TILT or isinstance(number, str):
+        return False
     return number.bounds() != [0.0, 0.0] if isinstance(number, Points) else number != 0
 
 

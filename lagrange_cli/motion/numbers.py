@@ -97,7 +97,7 @@ class Numbers:
             )
 
             found = requested_fractions(self.exact).get(name)
-            if found is not None or name not in {"f_slope_u1", "u2_criterion"}:
+            if found is not None or name not in {"f_slope_u1", "u2_criterion", "discriminant"}:
                 return found
             u1 = self.fraction("u1", digits)
             return None if u1 is None else by_rational_u1(self.exact, u1)[name]

@@ -165,3 +165,11 @@ def test_the_output_of_a_command_is_input(made: str, lagtop: Lagtop) -> None:
         assert [x.removesuffix(",") for x in again.stdout.split("\n")[1:]] == (
             output.stdout.split("\n")[1:]
         )
+
+
+@pytest.mark.parametrize("heading", ["ϑ", "θ", "tilt", "tilt [deg]", "elevation", "ϑ (Grad)"])
+def test_a_tilt_of_trajectories_is_no_input_of_tops(lagtop: Lagtop, heading: str) -> None:
+    wrong = lagtop("sweep", "-", "--keys", "theta0_deg", input=f"{heading};r0\n10;20\n")
+    assert wrong.exit_code == 65
+    assert wrong.stdout == ""
+    assert "must be spelt theta0_deg" in wrong.stderr

@@ -238,7 +238,7 @@ def test_products_of_rational_roots_may_be_midway(digits: int, start: dict[str, 
         UNIT | {"theta0_deg": "60", "psidot0": psi_rates.get(digits, "0")} | start
     )
     top = Top(**{name: Fraction(x) for name, x in given.items()})
-    found = solve(top).record(digits=digits, keys=["f_slope_u1", "u2_criterion"])
+    found = solve(top).record(digits=digits, keys=["f_slope_u1", "u2_criterion", "discriminant"])
     with mpmath.workdps(120):
         m, A, C, s, g, r0, psi_rate = (mpmath.mpf(given[x]) for x in "m A C s g r0 psidot0".split())
         u0 = mpmath.mpf({"60": "0.5", "90": "0"}[given["theta0_deg"]])
@@ -247,7 +247,11 @@ def test_products_of_rational_roots_may_be_midway(digits: int, start: dict[str, 
         cubic = [alpha - beta**2, 2 * beta * b - a, -(alpha + b**2), a]
         roots = mpmath.polyroots(cubic, maxsteps=500, extraprec=500, asc=True)
         u2, u1, u3 = sorted(roots, key=mpmath.re)
-        right = {"f_slope_u1": -a * (u1 - u2) * (u3 - u1), "u2_criterion": a * u2 * u3}
+        right = {
+            "f_slope_u1": -a * (u1 - u2) * (u3 - u1),
+            "u2_criterion": a * u2 * u3,
+            "discriminant": (a * (u3 - u2)) ** 2,
+        }
         for key, text in found.items():
             half = mpmath.mpf(10) ** (Decimal(text).adjusted() + 1 - digits) / 2
             assert abs(mpmath.mpf(text) - mpmath.re(right[key])) <= half * (

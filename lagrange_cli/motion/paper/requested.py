@@ -53,9 +53,12 @@ def by_rational_u1(exact: Exact, u1: Fraction) -> dict[str, Fraction | None]:
     """
     square = exact.alpha + exact.b * exact.b
     pairs = 2 * exact.b * exact.beta - exact.a
+    criterion = pairs - u1 * square + exact.a * u1 * u1
+    total = square - exact.a * u1
     polynomials = {
         "f_slope_u1": 3 * exact.a * u1 * u1 - 2 * u1 * square + pairs,
-        "u2_criterion": pairs - u1 * square + exact.a * u1 * u1,
+        "u2_criterion": criterion,
+        "discriminant": total * total - 4 * exact.a * criterion,
     }
     return {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
 
