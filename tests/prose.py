@@ -1,4 +1,4 @@
-"""The rule of docstrings: full plain sentences, each of which can be read alone."""
+"""The rule of plain English: which sentences of docstrings, help, messages and pages break it."""
 
 from __future__ import annotations
 
@@ -8,82 +8,74 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-Node = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
-Function = ast.FunctionDef | ast.AsyncFunctionDef
+MOST_WORDS = 25
+"""Words of a sentence; code counts as one."""
+
+BANNED = re.compile(
+    r"\b(what is left|what remains|what is not given|told apart|tell \w+ apart|so many"
+    r"|nearest to (its|the) exact value|commas between|hangs? on|usual slips?|first order holds"
+    r"|wanted numbers?|mean growth|nods|nodding|half a body|rooms?|the house|errands?|whence|anew"
+    r"|thereof|and the like)\b"
+    r"|\bby --\w",
+    re.IGNORECASE,
+)
+"""Private words, for which the trade has terms of its own."""
 
 LEANING = re.compile(
     r"(?:Also|And|As|But|If so|In|It|Its|Likewise|Of|Or|So|That|The others?|The same|Then|These|"
     r"They|This|Those)\b"
 )
-"""Beginnings that lean on something said before."""
+"""Beginnings of a docstring that lean on something said before."""
 
-VERBS = frozenset(
-    """
-    Abort Accept Add Advance Align Allow Answer Append Apply Arrange Ask Assert Attach Await
-    Bind Bound Break Bring Build Call Cancel Carry Catch Change Check Choose Clean Clear Close
-    Collect Combine Compare Compute Connect Continue Convert Copy Correct Count Cover Create Cut
-    Decide Define Describe Determine Differentiate Divide Do Draw Drop Echo Empty End Ensure
-    Enter Estimate Evaluate Exchange Exit Expand Explain Export Fail Feed Fill Find Finish Fit
-    Flush Fold Follow Format Forward Gather Generate Get Give Group Guard Hand Hide Hold Ignore
-    Import Include Insert Install Integrate Interpolate Invert Iterate Join Judge Keep Kill
-    Label Lay Leave Let List Load Look Lose Make Map Mark Mask Match Measure Merge Move Multiply
-    Name Normalize Note Offer Open Order Pair Parse Pass Pause Pick Place Plot Poll Prepare
-    Print Prove Pull Push Put Raise Read Rebuild Receive Reduce Refine Refuse Register Reject
-    Release Remember Remove Rename Render Repeat Replace Report Require Reset Resolve Restore
-    Resume Return Round Run Sample Save Say Scale Scan Search Select Send Serve Set Settle Shape
-    Shift Show Shut Sign Simulate Skip Solve Sort Space Spare Split Spoil Start State Stop Store
-    Stream Strip Subtract Sum Swap Take Tell Test Time Track Transform Translate Try Turn Unwrap
-    Update Use Verify Wait Walk Warn Watch Work Wrap Write Yield
-    """.split()
-)
-"""Imperatives that a function's docstring may begin with; further plain ones are welcome."""
+ERRORS = re.compile(r"\w*(Error|Warning)$|^(echo|warn|refused)$")
+"""Calls whose texts users read."""
 
-NOUN_DECORATORS = {"property", "cached_property", "quantity", "key", "setter"}
-NOUN_DECORATORS |= {"constant_key", "angle_key", "rate_key", "step_key", "elementary_key"}
-HELP_DECORATORS = {"command", "group"}
+Node = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class Fault(NamedTuple):
-    """A docstring that breaks the rule: where it stands, how it begins, and what is wrong."""
+    """A sentence that breaks the rule: its place, how it begins, and the reason."""
 
     place: str
     beginning: str
     reason: str
 
 
-def faults(path: Path, name: str) -> list[Fault]:
-    """Return the faulty docstrings of a module, called by a name."""
+def faults(path: Path, name: str, *, sentences_too: bool = True) -> list[Fault]:
+    """Return the faulty docstrings of a module, called by a name, and its faulty messages."""
     tree = ast.parse(path.read_text())
-    return [
-        Fault(f"{name}:{line}", text[:40].replace("\n", " "), reason)
-        for node, line, text in docstrings(tree)
-        if (reason := fault(node, text))
-    ]
+    texts = list(docstrings(tree))
+    found = [(line, text, why) for line, text in texts if (why := bad_docstring(text))]
+    for line, text in [*texts, *messages(tree)] if sentences_too else []:
+        found += [(line, sentence, why) for sentence, why in bad_sentences(text)]
+    return [Fault(f"{name}:{line}", text[:60].replace("\n", " "), why) for line, text, why in found]
 
 
-def docstrings(tree: ast.Module) -> Iterator[tuple[ast.AST | None, int, str]]:
-    """Yield the docstrings of a module; those of attributes have None for their node."""
-    for node in ast.walk(tree):
-        if isinstance(node, Node):
-            text = ast.get_docstring(node)
-            if text is not None:
-                yield node, node.body[0].lineno, text
-        if isinstance(node, ast.Module | ast.ClassDef):
-            yield from _attributes(node)
+def bad_sentences(text: str) -> Iterator[tuple[str, str]]:
+    """Yield each faulty sentence of a text, and the reason."""
+    for sentence in sentences(text):
+        if banned := BANNED.search(sentence):
+            yield sentence, f"says {banned.group()!r}"
+        if sentence.startswith("What ") and not sentence.endswith("?"):
+            yield sentence, "begins with 'What'"
+        if (count := len(sentence.split())) > MOST_WORDS:
+            yield sentence, f"has {count} words"
 
 
-def _attributes(node: ast.Module | ast.ClassDef) -> Iterator[tuple[None, int, str]]:
-    """Yield the texts that stand below assignments."""
-    for before, after in zip(node.body, node.body[1:], strict=False):
-        match after:
-            case ast.Expr(ast.Constant(str(text))) if isinstance(
-                before, ast.Assign | ast.AnnAssign
-            ):
-                yield None, after.lineno, text
+def sentences(text: str) -> Iterator[str]:
+    """Yield the sentences of a text, without code, formulas, quotations and tables."""
+    text = re.sub(r"^```[\s\S]*?^```$|^(?: {4}|\||#|>>>|!\[).*$", "\n\n", text, flags=re.M)
+    text = re.sub(r"(?m)^\\x08\n(?:.+\n)*", "\n\n", text.replace("\b", "\\x08"))
+    text = re.sub(r"`[^`]*`", "Code", text)
+    text = re.sub(r"\]\([^)]*\)", "]", text)
+    text = re.sub(r"\"[^\"]*\"|“[^”]*”", "quotation", text)
+    for block in re.split(r"\n\s*\n|\n\s*(?:[-*>]|\d+\.)\s|\s·\s", text):
+        flat = " ".join(block.split())
+        yield from filter(None, re.split(r"(?<=[.!?:;])\s+(?=[A-Z(\"'`*-])", flat))
 
 
-def fault(node: ast.AST | None, text: str) -> str | None:
-    """Return what is wrong with a docstring, or None."""
+def bad_docstring(text: str) -> str | None:
+    """Return why a docstring cannot be read alone, or None."""
     summary, *_ = text.strip().split("\n\n")
     if leaning := LEANING.match(summary):
         return f"begins with {leaning.group()!r}"
@@ -91,20 +83,43 @@ def fault(node: ast.AST | None, text: str) -> str | None:
         return "its first sentence has no full stop"
     if not text.rstrip().endswith((".", ".)", "```", "|")) and ">>>" not in text:
         return "does not end with a full stop"
-    if isinstance(node, Function) and needs_verb(node):
-        word = re.split(r"\W", summary, maxsplit=1)[0]
-        return None if word in VERBS else f"begins with {word!r}, which is no verb of the list"
     return None
 
 
-def needs_verb(node: Function) -> bool:
-    """Return whether a function is neither a property, nor a command, nor a test."""
-    names = {_decorator(decorator) for decorator in node.decorator_list}
-    return not (names & (NOUN_DECORATORS | HELP_DECORATORS) or node.name.startswith("test_"))
+def docstrings(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the docstrings of a module, those of attributes too, with their lines."""
+    for node in ast.walk(tree):
+        if isinstance(node, Node) and (text := ast.get_docstring(node)) is not None:
+            yield node.body[0].lineno, text
+        if isinstance(node, ast.Module | ast.ClassDef):
+            for before, after in zip(node.body, node.body[1:], strict=False):
+                match after:
+                    case ast.Expr(ast.Constant(str(text))) if isinstance(
+                        before, ast.Assign | ast.AnnAssign
+                    ):
+                        yield after.lineno, text
 
 
-def _decorator(node: ast.expr) -> str:
-    """Return the last name of a decorator: `command` for `@main.command("solve")`."""
-    if isinstance(node, ast.Call):
-        return _decorator(node.func)
-    return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+def messages(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the texts of errors, warnings and help, with their lines; values are `X`."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        name = (
+            node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+        )
+        texts = [x.value for x in node.keywords if x.arg == "help"]
+        texts += node.args[:1] if ERRORS.match(name) else []
+        yield from ((x.lineno, _text(x)) for x in texts)
+
+
+def _text(node: ast.expr) -> str:
+    """Return the text of a literal, with X for each value in it."""
+    match node:
+        case ast.Constant(str(text)):
+            return text
+        case ast.JoinedStr(values):
+            return "".join(x.value if isinstance(x, ast.Constant) else "X" for x in values)
+        case ast.BinOp(left, ast.Add(), right):
+            return _text(left) + _text(right)
+    return ""

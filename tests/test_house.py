@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from prose import faults
+from prose import bad_sentences, faults
 
 PACKAGE = ROOT / "lagrange_cli"
 FLOORS = [
@@ -31,6 +31,11 @@ FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 NEVER = {("motion", "output")}
 THROUGH_THE_FACE = {("fits", "draw_outcome"), ("motion", "draw"), ("motion", "view")}
 """Names that a room asks the face of the package for: a method whose work is done further up."""
+PAGES = sorted(
+    path
+    for path in ROOT.rglob("*.md")
+    if not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
+)
 ALIAS = PACKAGE / "alias.py"
 """Installed as `lagtop.py` beside the package, so it imports as a user does."""
 FILES = sorted(set(PACKAGE.rglob("*.py")) - {ALIAS})
@@ -107,12 +112,17 @@ def test_the_rule_was_tested_on_real_arrows() -> None:
     assert ("motion", "elliptic") in arrows
 
 
-def test_docstrings_can_be_read_alone() -> None:
-    bad = [
-        fault for path in [*FILES, *TESTS] for fault in faults(path, str(path.relative_to(ROOT)))
-    ]
+def test_texts_are_plain_english() -> None:
+    bad = [fault for path in FILES for fault in faults(path, str(path.relative_to(ROOT)))]
+    for path in TESTS:
+        bad += faults(path, str(path.relative_to(ROOT)), sentences_too=False)
     shown = "\n".join(f"{x.place}: {x.beginning!r}: {x.reason}" for x in bad)
     assert not bad, shown
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_pages_are_plain_english(path: Path) -> None:
+    assert list(bad_sentences(path.read_text())) == []
 
 
 @pytest.mark.parametrize(
@@ -122,15 +132,18 @@ def test_docstrings_can_be_read_alone() -> None:
         ('def f():\n    """The same in degrees."""', "begins with 'The same'"),
         ('class A:\n    """It holds a top."""', "begins with 'It'"),
         ('def f():\n    """Return the top"""', "its first sentence has no full stop"),
-        ('def f():\n    """The top."""', "begins with 'The', which is no verb of the list"),
         ('x = 1\n"""And one."""', "begins with 'And'"),
-        ('class A:\n    x: int\n    """As given."""', "begins with 'As'"),
+        ('def f():\n    """What a top does."""', "begins with 'What'"),
+        ('def f():\n    """Return so many tops."""', "says 'so many'"),
+        (f'def f():\n    """Return {"a " * 25}top."""', "has 27 words"),
+        ('raise LagtopError("the rest hangs on it")', "says 'hangs on'"),
+        ('raise LagtopError(f"What {x} is not given " + "is left")', "begins with 'What'"),
         ('def f():\n    """Return the top."""', None),
-        ('@property\ndef f():\n    """Tilt of the axis."""', None),
         ('class A:\n    """A top."""\n    x: int\n    """Period of the nutation."""', None),
+        ('def f():\n    """Return the sum; with `what is left` it is exact."""', None),
     ],
 )
-def test_the_rule_of_docstrings_sees_faults(text: str, reason: str | None, tmp_path: Path) -> None:
+def test_the_rule_of_english_sees_faults(text: str, reason: str | None, tmp_path: Path) -> None:
     path = tmp_path / "module.py"
     path.write_text(text + "\n")
     assert [fault.reason for fault in faults(path, "module")] == ([reason] if reason else [])
