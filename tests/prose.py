@@ -119,7 +119,7 @@ def _text(node: ast.expr) -> str:
         case ast.Constant(str(text)):
             return text
         case ast.JoinedStr(values):
-            return "".join(x.value if isinstance(x, ast.Constant) else "X" for x in values)
+            return "".join(str(x.value) if isinstance(x, ast.Constant) else "X" for x in values)
         case ast.BinOp(left, ast.Add(), right):
             return _text(left) + _text(right)
     return ""
