@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
-from ..motion.notebook import Shown
+from ..motion.notebook import HasRecord
 from ..motion.quantity import unit_name
 from .derived import DerivedNumber, derived_numbers
 from .implied_body import BODY_INPUTS, DeterminedProduct, completed_body, determined_products
@@ -48,7 +48,7 @@ class Fit(NamedTuple):
     """Another top that explains a single recording as well: its quantities by name."""
 
 
-class Outcome(Shown):
+class Outcome(HasRecord):
     """The results of a fit for one recording."""
 
     def __init__(self, found: Fit, index: int, *, radians: bool = False) -> None:

@@ -14,7 +14,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.names import ANGLES
 from ..inputs.seen import ORDERS, Conventions, Quantities, Said, Seen, rows_of, see
-from ..motion.notebook import Shown
+from ..motion.notebook import HasRecord
 from ..motion.solve import Motion
 from .alignment import Alignment, frames_of
 from .deviations import Deviations, Extremes, Kept, LineFit, Passages
@@ -44,7 +44,7 @@ def _field(meaning: str, default: Any = None) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Judgement(Shown):
+class Judgement(HasRecord):
     """The judgement of one trajectory; angles are in radians, and an unknown number is None."""
 
     file: str | None = _field("the file, `-` for standard input")

@@ -25,7 +25,7 @@ class Document(str):
         Path(path).write_text(self, encoding="utf-8")
 
 
-class Shown:
+class HasRecord:
     """Results with a verdict and a record: a dict for programs, a table for notebooks."""
 
     verdict: Any
