@@ -85,7 +85,7 @@ def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
         "lagtop.py",
     }
     assert {"lagrange_cli/py.typed", "lagrange_cli/CITATION.cff"} <= set(files)
-    assert "One top: `solve`" in readme
+    assert "Why closed form" in readme
     assert re.findall(r"\]\((?!https?:)[^)]*\)", readme) == []  # an index has no such files
     with tarfile.open(sdist) as archive:
         roots = {name.split("/")[1] for name in archive.getnames() if "/" in name}

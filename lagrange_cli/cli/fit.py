@@ -67,7 +67,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
     examples="""
         lagtop table --t-max 2 --n 200 -o recording.csv
         lagtop fit recording.csv --m 1587 --g 981 -o fitted.toml
-        lagtop fit recording.csv --sigma theta=0.3,psi=0.5 --plot residuals.svg
+        lagtop fit recording.csv --sigma 0.3 --plot residuals.svg
     """,
 )
 @click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] RECORDING")

@@ -179,9 +179,13 @@ def _listed(
 
     file = TimesFile(times, counted=fmt == "npy", dialect=dialect)
     if tops is None and fmt not in _DRAWN:
-        return lambda _: file
-    listed = file.listed(None if tops is not None else MAX_DRAWN_ROWS + 1)
-    return lambda _: listed
+        return partial(_same, file)
+    return partial(_same, file.listed(None if tops is not None else MAX_DRAWN_ROWS + 1))
+
+
+def _same(times: Points, _: Motion) -> Points:
+    """Return the times of a file, which other processes can receive as this function."""
+    return times
 
 
 def _grid(motion: Motion, **interval: Any) -> Points:

@@ -129,7 +129,9 @@ def key_map(
     def part(y_values: Array) -> Array:
         """Return the key, a and b for each top of some rows; raise LagtopError on failure."""
         over = {x_input: x.values, y_input: y_values[:, None]}
-        records = sweep(keys=keys, radians=radians, **motion.top.inputs(radians=radians) | over)
+        given = motion.top.inputs(radians=radians)
+        given["psidot0"] = float(given["psidot0"])  # a steady rate belongs to one top
+        records = sweep(keys=keys, radians=radians, **given | over)
         for error in filter(None, records["error"].ravel().tolist()):
             raise LagtopError(error)
         return np.stack([records[name].astype(np.float64) for name in (key, "a", "b")])

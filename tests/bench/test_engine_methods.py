@@ -107,7 +107,7 @@ def test_row_of_an_engine(name: str) -> None:
     assert many.error_end == pytest.approx(one.error_rad, rel=0.5, abs=1e-9)
     assert many.runs is not None
     back = measure(task(motion, -0.1, 1), name, method, method.settings[0])
-    assert back.remark == "not applicable: engines run forwards only"
+    assert back.remark == "not applicable: engines only run forwards"
 
 
 FAKE = """
