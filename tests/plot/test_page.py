@@ -17,8 +17,7 @@ from conftest import Lagtop
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
-from pictures import REGIMES, drawn, regime_motion, sample_motion
-from scenes import SAMPLES
+from pictures import NUTATING, REGIMES, drawn, regime_motion, sample_motion
 
 from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
@@ -52,8 +51,8 @@ def png(page: Page, dpi: float) -> Array:
 @pytest.mark.parametrize(
     ("path", "look"),
     [
-        *((path, LIGHT) for path in SAMPLES[2::4] if "steady" not in path.read_text()),
-        (SAMPLES[0], DARK),
+        *((path, LIGHT) for path in NUTATING[1::4]),
+        (NUTATING[0], DARK),
     ],
 )
 def test_every_kind_has_ink(path: Path, look: Look) -> None:
