@@ -14,6 +14,7 @@ from contextlib import closing, contextmanager, nullcontext, suppress
 from pathlib import Path
 
 import pytest
+from click.testing import Result
 from conftest import LAGTOP, Lagtop, assert_one_line, is_alive
 
 from lagrange_cli.errors import CannotWriteError, LagtopError, UnavailableError
@@ -135,10 +136,18 @@ def test_bytes_are_those_of_one_process(
     Path("few.csv").write_text(tops(12))
     Path("times.txt").write_text("0.5\n" * 20_000)
     alone, shared = (lagtop(*options, "--jobs", jobs) for jobs in (1, 2))
-    assert (shared.exit_code, shared.stdout_bytes) == (alone.exit_code, alone.stdout_bytes)
+    assert (shared.exit_code, determined(shared)) == (alone.exit_code, determined(alone))
     assert len(shared.stdout) > 10
     if options[0] != "stability":  # which says on standard error how fast the machine is
         assert shared.stderr == alone.stderr
+
+
+def determined(result: Result) -> list[bytes]:
+    """Return the lines whose bytes no library chooses: the last digits of Radau are LAPACK's.
+
+    LAPACK adds in an order that depends on where in memory the matrices are.
+    """
+    return [line for line in result.stdout_bytes.splitlines() if b",Radau-" not in line]
 
 
 class Started(_Worker):
