@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType, NoneType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,9 +12,10 @@ from numpy.typing import ArrayLike
 from ..arithmetic.arrays import ARRAYS, doubles_of
 from ..arithmetic.types import Array
 from ..errors import LagtopError, check_type
+from ..inputs.given import gather
 from ..inputs.names import ANGLES
 from ..inputs.seen import Conventions
-from ..inputs.value import Value, as_value, parse_value
+from ..inputs.value import Value, parse_value, value_of
 from .attempts import best_attempt, sigma_of
 from .least_squares import LEAST_SIGMA, FittedParameters, Problem
 from .nutation import NoNutationError
@@ -126,23 +128,22 @@ def fit(
     axis: ArrayLike | None = None,
     quaternion: ArrayLike | None = None,
     sigma: Mapping[str, float] | float | None = None,
-    known: Mapping[str, float | str] | None = None,
+    known: Mapping[str, Any] | None = None,
 ) -> Outcome:
     """Fit a top to a recording; the results are in `record()`.
 
     Times have the shape (n,), angles too (radians, within whole turns, NaN where missing).  Instead
     of angles, pass the axis in space, shape (n, 3), or the quaternion w, x, y, z from body to
     space, shape (n, 4).  `sigma` is a standard deviation in radians, or a mapping by channel; by
-    default it is estimated from the residuals.  `known` are known inputs by key; a text such as
-    `"0.070(5)"` is an uncertain input.  Raises LagtopError, DataError for a recording that cannot
-    be fitted.
+    default it is estimated from the residuals.  `known` are known inputs by key.  Texts such as
+    `"0.070(5)"`, and numbers of uncertainties, are uncertain; units are converted to SI.  Raises
+    LagtopError, DataError for a recording that cannot be fitted.
     """
     check_type("known", known, Mapping, NoneType)
     angles = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}
     recording = recording_from(t, **angles, sigma=sigma)
-    values = {name: _value(name, x) for name, x in (known or {}).items()}
-    stds = {name: float(x.std) for name, x in values.items() if x.std is not None}
-    inputs, stds = known_inputs({name: x.number for name, x in values.items()}, stds)
+    given = gather({name: _value(name, x) for name, x in (known or {}).items()})
+    inputs, stds = known_inputs(given.inputs, given.stds)
     return fit_recordings([recording], inputs, stds=stds)[0]
 
 
@@ -174,10 +175,12 @@ def recording_from(
     return recording_of("", source, columns)
 
 
-def _value(name: str, given: float | str) -> Value:
+def _value(name: str, given: Any) -> Value:
     """Return a known input as a value.  Raises LagtopError."""
+    if not isinstance(given, str):
+        return value_of(name, given)
     try:
-        return parse_value(given, uncertain=True) if isinstance(given, str) else as_value(given)
+        return parse_value(given, uncertain=True)
     except LagtopError as error:
         raise LagtopError(f"{name} {error}", name) from None
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from decimal import Decimal
-from fractions import Fraction
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
@@ -19,7 +17,7 @@ from ..inputs.input_keys import overridden
 from ..inputs.names import check_names
 from ..inputs.ranges import Product, Span, parse_span
 from ..inputs.top import Top
-from ..inputs.value import Value
+from ..inputs.value import Value, exact_number, parse_value, value_of
 from ..motion.quantity import unit_name
 from ..motion.record import all_keys
 from ..motion.regime import Regime
@@ -122,44 +120,28 @@ def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Se
     if not isinstance(conditions, Mapping):
         return conditions
     return [
-        f"{key}={value if isinstance(value, str) else repr(float(_exact(key, value)))}"
+        f"{key}={value if isinstance(value, str) else repr(float(exact_number(key, value)))}"
         for key, value in conditions.items()
     ]
 
 
-def read_unknown(name: str, given: Any) -> Any:
-    """Return a number or a range as exact fractions; a unit is kept."""
+def read_unknown(name: str, given: Any) -> Value:
+    """Return a number, or a range as exact fractions; a unit is kept."""
     if isinstance(given, str):
         try:
-            return parse_span(given)
+            return parse_value(given, parse_span, uncertain=True)
         except LagtopError as error:
             raise LagtopError(f"{name} {error}", name) from None
-    if hasattr(given, "units"):
-        number = read_unknown(name, given.magnitude)
-        return Value(
-            number if isinstance(number, Span) else _exact(name, number), f"{given.units:C}"
-        )
-    given = getattr(given, "nominal_value", given)
-    if not isinstance(given, tuple | list | np.ndarray):
-        return given
-    if (isinstance(given, np.ndarray) and given.ndim != 1) or len(given) != 2:
+    value = value_of(name, given)
+    pair = value.number
+    if not isinstance(pair, tuple | list | np.ndarray):
+        return value
+    if (isinstance(pair, np.ndarray) and pair.ndim != 1) or len(pair) != 2:
         raise LagtopError(f"{name} must be a real number or a pair, got {quoted(given)}", name)
-    first, last = (_exact(name, x) for x in given)
+    first, last = (exact_number(name, x) for x in pair)
     if not first < last:
         raise LagtopError(f"{name} must have its smaller end first, got {quoted(given)}", name)
-    return Span(first, last)
-
-
-def _exact(name: str, number: Any) -> Fraction:
-    """Return a real number as a fraction.  Raises LagtopError for anything else."""
-    number = number.item() if isinstance(number, np.generic) else number  # NumPy's overflow
-    try:
-        if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
-            float(number)
-            return Fraction(number)
-    except (ValueError, OverflowError):
-        pass
-    raise LagtopError(f"{name} must be a finite number, got {quoted(number)}", name)
+    return value.replace(number=Span(first, last))
 
 
 class Search(NamedTuple):

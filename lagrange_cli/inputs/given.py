@@ -11,9 +11,9 @@ from ..arithmetic.numbers import Number, is_real
 from ..arithmetic.text import quoted
 from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
-from .input_keys import BODY, from_example, one_of_each, overridden, warn_of
+from .input_keys import BODY, TILT, from_example, one_of_each, overridden, warn_of
 from .top import Top
-from .value import STEADY_WORDS, Value, as_value
+from .value import STEADY_WORDS, Value, value_of
 
 if TYPE_CHECKING:
     from .scene_file import SceneFile
@@ -68,12 +68,13 @@ def gather(
 ) -> Given:
     """Return the `given` inputs and those of a scene file, if any; given inputs override the file.
 
-    An input is a `Value`, or a number without a unit.  Inputs with units are converted to a
+    An input is a `Value`, or has its type read by `value_of`.  Inputs with units are converted to a
     `system`, `si` (the default) or `cgs`.  So are `others`, such as times or the units of columns.
     `varying` names inputs that are given later.  Raises SceneError for a bad file, LagtopError for
     a bad given input.
     """
-    inputs = {name: as_value(x) for name, x in given.items()}
+    read = {name: value_of(name, x) for name, x in given.items()}
+    inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in read.items()}
     file: SceneFile | None = None
     if path is not None:
         from .scene_file import SceneFile

@@ -25,7 +25,7 @@ from ..inputs.scene_file import is_scene_file
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
-from ..inputs.value import Value, as_value
+from ..inputs.value import Value, value_of
 from ..output.formats import Header, block_text
 from ..output.rows import Columns
 from .records import BLOCK_ROWS, check_keys, column_keys, records
@@ -143,7 +143,7 @@ def plan(
     wanted = Sweep((), {}, chosen, radians, fmt, until_error, is_described=is_described)
     if not tables:
         return _of_grid(wanted, gather(axes, scene, system=system))
-    if ranges := ranges_of({name: as_value(x).number for name, x in axes.items()}):
+    if ranges := ranges_of({name: value_of(name, x).number for name, x in axes.items()}):
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = digested(tables[0]) if described else (None, "")
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}

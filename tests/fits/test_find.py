@@ -495,6 +495,10 @@ def test_quantities_are_conditions_of_the_known_inputs() -> None:
     expected = find({"T_precession": 2.0}, r0=(10, 200))
     assert found["r0"] == pytest.approx(expected["r0"], rel=1e-12)
     assert found["m"].tolist() == [1.587]
+    tilted = find(
+        {"T_precession": 2.0}, r0="100:1900 rpm", theta0_deg=unit.Quantity("0.5 rad"), **known
+    )
+    assert tilted["theta0_deg"] == pytest.approx([math.degrees(0.5)], rel=1e-15)
     known["r0"] = ufloat(50, 1)
     with pytest.raises(LagtopError, match="r0 must have a unit"):
         find({"T_precession": 2.0}, theta0_deg=(10, 20), **known)

@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pint
 import pytest
 import recordings
 from conftest import Lagtop, assert_one_line
 from engines import Array, Body, dop853
 from scipy.spatial.transform import Rotation
+from uncertainties import ufloat
 
 from lagrange_cli import LagtopError, Top, fit, read_scene, solve, sweep
 from lagrange_cli.fits import fit as fits
@@ -472,6 +474,9 @@ def test_an_uncertain_known_input_widens_what_depends_on_it(sample: Outcome) -> 
     assert found["A_std"] / found["A"] == pytest.approx(both, rel=1e-4)
     assert (found["m"], found["m_std"]) == pytest.approx((1.587, 0.002), rel=1e-6)
     assert found["a_std"] == pytest.approx(exact["a_std"], rel=1e-4)
+    unit: Any = pint.UnitRegistry()
+    mass = unit.Quantity(ufloat(1587, 2), "g")
+    assert refitted(sample, m=mass, g="9.81 m/s^2", s=unit.Quantity(4, "cm")) == found
 
 
 def test_a_prior_is_between_a_known_input_and_none(sample: Outcome) -> None:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
+import numpy as np
+import pint
 import pytest
+import xarray
+from uncertainties import ufloat
 
 from lagrange_cli.errors import LagtopError
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.inputs.value import Value, parse_value, split_unit
+from lagrange_cli.inputs.value import Value, parse_value, split_unit, value_of
 
 
 @pytest.mark.parametrize(
@@ -103,3 +108,50 @@ def test_other_texts_are_refused(text: str) -> None:
 def test_an_uncertainty_is_at_least_0_and_finite(text: str, wrong: str) -> None:
     with pytest.raises(LagtopError, match=wrong):
         parse_value(text, uncertain=True)
+
+
+UNIT: Any = pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(
+    ("given", "value"),
+    [
+        (50, Value(50)),
+        (Value(Fraction(1), "g"), Value(Fraction(1), "g")),
+        (ufloat(50, 0.5), Value(50.0, "", Fraction(1, 2))),
+        (UNIT.Quantity(350, "g"), Value(Fraction(350), "gram")),
+        (UNIT.Quantity(np.int64(3), "kg m^2"), Value(Fraction(3), "kilogram*meter**2")),
+        (UNIT.Quantity(np.array(0.25), "m"), Value(Fraction(1, 4), "meter")),
+        (
+            UNIT.Quantity(ufloat(50, 0.5), "rpm"),
+            Value(50, "revolutions_per_minute", Fraction(1, 2)),
+        ),
+        (UNIT.Quantity(4.0, "cm").plus_minus(0.25), Value(4, "centimeter", Fraction(1, 4))),
+    ],
+)
+def test_objects_of_other_libraries_are_values(given: Any, value: Value) -> None:
+    found = value_of("x", given)
+    assert found == value
+    assert isinstance(found.number, Fraction) == bool(value.unit)
+
+
+def test_arrays_keep_their_type_and_a_unit_of_pint() -> None:
+    found = value_of("r0", UNIT.Quantity([400.0, 500.0], "rpm"))
+    assert (found.unit, found.number.tolist()) == ("revolutions_per_minute", [400.0, 500.0])
+    assert found.scaled(Fraction(1, 4)).number.tolist() == [100.0, 125.0]
+    labelled = xarray.DataArray([1.0, 2.0], dims="x", attrs={"units": "kg"})
+    assert value_of("m", labelled).number is labelled
+    assert value_of("m", labelled).unit == ""
+
+
+@pytest.mark.parametrize(
+    ("given", "wrong"),
+    [
+        (UNIT.Quantity(float("nan"), "kg"), "m must be a finite number, got nan"),
+        (ufloat(1, float("inf")), "the uncertainty of m must be a finite number, got inf"),
+    ],
+)
+def test_objects_without_a_finite_number_are_refused(given: Any, wrong: str) -> None:
+    with pytest.raises(LagtopError) as found:
+        value_of("m", given)
+    assert (str(found.value), found.value.key) == (wrong, "m")
