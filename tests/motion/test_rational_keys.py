@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from decimal import Decimal
 from fractions import Fraction
@@ -102,6 +103,25 @@ def test_rates_that_vanish_half_a_period_after_a_start_with_rates(
     moved = solve(Top(**HALF | inputs | {"thetadot0": 2 + Fraction("1e-100")}))
     assert known_fraction(moved.exact, key) is None
     assert abs(Decimal(moved.record(digits=3)[key])) > 0
+
+
+@pytest.mark.parametrize(
+    ("inputs", "u3", "rate"),
+    [
+        ({"A": 0.5, "C": 0.5, "r0": 0.5, "psidot0": 3}, 1.5, 2.0),
+        ({"A": 1, "C": 0.5, "r0": 2, "psidot0": -2}, 1 + math.sqrt(3), -1 - math.sqrt(3)),
+    ],
+)
+def test_the_spin_vanishes_half_a_period_after_a_start_at_120_degrees(
+    inputs: dict[str, float], u3: float, rate: float
+) -> None:
+    """No number of digits shows the 0.  By hand, the cubics (4,9) divided by u - u0.
+
+    They are 4 u^2 - 7 u + 3/2 with the roots 1/4, 3/2, and 2 u^2 - 4 u - 4 with 1 -+ sqrt(3).
+    """
+    motion = solve(Top(**UNIT | inputs | {"theta0_deg": 120}))
+    assert motion.u3 == u3
+    assert (motion.spin_rate_half, motion.precession_rate_half) == (0, rate)
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
     if exact.facts.free or exact.facts.at_rest or exact.facts.steady or exact.facts.pole:
         return {}
     a, beta = exact.a, exact.beta
-    pairs, total = 2 * exact.b * beta - a, exact.energy + exact.b * exact.b
+    pairs, total = 2 * exact.b * beta - a, exact.alpha + exact.b * exact.b
     cubic = _in_u3(exact.alpha - beta * beta, pairs, -1 * total, Polynomial(a))
     N = _in_u3(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
     M = _in_u3(-a * U, Polynomial(a))
