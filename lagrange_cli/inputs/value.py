@@ -71,7 +71,7 @@ def value_of(name: str, given: Any) -> Value:
 
 def exact_number(name: str, number: Any, what: str = "") -> Fraction:
     """Return a real number as a fraction.  Raises LagtopError for anything else."""
-    number = number.item() if hasattr(number, "dtype") else number  # NumPy's overflow
+    number = number.item() if getattr(number, "shape", None) == () else number  # NumPy's overflow
     try:
         if isinstance(number, int | float | Fraction | Decimal) and not isinstance(number, bool):
             float(number)
