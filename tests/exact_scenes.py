@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable
 from fractions import Fraction
 
-from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic, power, signed
+from lagrange_cli.bench.hard_scenes import STRATA, Scene, generic, signed, ten_to
 
 TILTS = {60: 0.5, 90: 0.0, 120: -0.5}
 """Degrees whose cosine is rational."""
@@ -52,13 +52,13 @@ def over_a_pole(rng: random.Random) -> Scene:
 def from_a_pole(rng: random.Random) -> Scene:
     """Return a start on the vertical that leaves it."""
     scene = generic(rng) | {"theta0_deg": rng.choice([0, 180]), "psidot0": 0}
-    scene["thetadot0"] = signed(rng, rng.choice([rng.uniform(0.01, 6), power(rng, -9, 1)]))
+    scene["thetadot0"] = signed(rng, rng.choice([rng.uniform(0.01, 6), ten_to(rng, -9, 1)]))
     return scene | {"r0": rng.choice([0, scene["r0"], scene["r0"]])}
 
 
 def no_torque(rng: random.Random) -> Scene:
     """Return a top without torque, or nearly."""
-    scene = generic(rng) | {rng.choice(["g", "s"]): rng.choice([0, 0, power(rng, -18, -3)])}
+    scene = generic(rng) | {rng.choice(["g", "s"]): rng.choice([0, 0, ten_to(rng, -18, -3)])}
     scene["r0"] *= rng.choice([0, 1, 1, 1])
     scene["theta0_deg"] = rng.choice([60, 90, 0, scene["theta0_deg"]])
     return scene | ({} if scene["theta0_deg"] else {"psidot0": 0})

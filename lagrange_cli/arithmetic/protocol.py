@@ -108,7 +108,7 @@ class SeriesArithmetic(Arithmetic[R], Protocol[R]):
         """Return the integer nearest to x."""
 
 
-Value = Any
+Numeric = Any
 """A real or complex number, or an array of them, of a `FunctionArithmetic`; mpmath has no types."""
 
 

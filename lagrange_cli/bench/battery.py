@@ -25,7 +25,7 @@ from ..inputs.top import Top
 from ..motion.over_time.table import rows
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
-from .hard_scenes import STRATA, Scene, in_doubles, power, signed
+from .hard_scenes import STRATA, Scene, in_doubles, signed, ten_to
 from .measure import check_scene
 from .reference import EPS, ExactAngles, Reference, angle_units, key_ulps, quaternion_units
 
@@ -158,11 +158,11 @@ def hard_scene(stratum: str, seed: int, i: int, count: int) -> HardScene:
     rng = random.Random(f"{seed} {stratum} {i}")
     scene = judged_inputs(stratum, rng)
     least, nearest = (11, 11) if stratum == "far times" else (-9, 0)
-    periods = [signed(rng, power(rng, least, 14)) for _ in range(count)]
+    periods = [signed(rng, ten_to(rng, least, 14)) for _ in range(count)]
     if stratum == "half periods":
         periods = [round(2 * x) / 2 for x in periods]
     sides = rng.sample([-1, 1], 2)
-    halves = [4 * int(power(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
+    halves = [4 * int(ten_to(rng, nearest, 14)) + part for part in (2, rng.randrange(4))]
     return HardScene(scene, periods, [side * n for side, n in zip(sides, halves, strict=True)])
 
 

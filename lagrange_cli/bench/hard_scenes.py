@@ -20,7 +20,7 @@ _HALF_PI = Decimal("1.5707963267948966192313216916397514420985846996875529104874
 _RATES = ("r0", "thetadot0", "psidot0")
 
 
-def power(rng: random.Random, low: float, high: float) -> float:
+def ten_to(rng: random.Random, low: float, high: float) -> float:
     """Return a number between 10^low and 10^high, with a uniform logarithm."""
     return 10 ** rng.uniform(low, high)
 
@@ -36,13 +36,13 @@ def near(rng: random.Random, value: float) -> float:
         for _ in range(rng.randrange(3)):
             value = math.nextafter(value, signed(rng, math.inf))
         return value
-    return value * (1 + signed(rng, power(rng, -16, -2)))
+    return value * (1 + signed(rng, ten_to(rng, -16, -2)))
 
 
 def _body(rng: random.Random) -> Scene:
     """Return a body, which may be a sphere, a disc (C = 2A), a needle, or nearly."""
-    A, tiny = rng.uniform(0.5, 2), rng.choice([0.0, power(rng, -15, -6)])
-    some = rng.uniform(0.01, 2), power(rng, -8, -2)
+    A, tiny = rng.uniform(0.5, 2), rng.choice([0.0, ten_to(rng, -15, -6)])
+    some = rng.uniform(0.01, 2), ten_to(rng, -8, -2)
     ratio = rng.choice([*some, 1 + signed(rng, tiny), 2 * (1 - tiny)])
     return {"m": 1, "s": 1, "g": 1, "A": A, "C": A * ratio}
 
@@ -80,17 +80,17 @@ def generic(rng: random.Random) -> Scene:
 def from_rest(rng: random.Random) -> Scene:
     """Return a release from rest, slow to fast."""
     scene = _body(rng) | {"theta0_deg": rng.uniform(0.1, 179.9)}
-    return scene | {"r0": signed(rng, rng.choice([power(rng, -3, 3), rng.uniform(0, 9)]))}
+    return scene | {"r0": signed(rng, rng.choice([ten_to(rng, -3, 3), rng.uniform(0, 9)]))}
 
 
 def units(rng: random.Random) -> Scene:
     """Return masses, lengths and times of 1e-20 to 1e20, and rates of any size."""
-    scene, (mass, length, second) = generic(rng), (power(rng, -20, 20) for _ in range(3))
+    scene, (mass, length, second) = generic(rng), (ten_to(rng, -20, 20) for _ in range(3))
     scene |= {"m": mass, "s": length, "g": length / second**2}
     scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
     wild = rng.random() < 0.5
     for key in _RATES:
-        scene[key] *= power(rng, -12, 12) / second if wild else 1 / second
+        scene[key] *= ten_to(rng, -12, 12) / second if wild else 1 / second
     return scene
 
 
@@ -98,7 +98,7 @@ def stiff(rng: random.Random) -> Scene:
     """Return a fast spin, 10 to 1e15 times the pace of the precession, or other large rates."""
     scene = generic(rng)
     for key in rng.choice([["r0"], ["r0"], rng.sample(_RATES, rng.choice([1, 2, 3]))]):
-        scene[key] = signed(rng, power(rng, 1, 15))
+        scene[key] = signed(rng, ten_to(rng, 1, 15))
     return scene
 
 
@@ -106,7 +106,7 @@ def slow(rng: random.Random) -> Scene:
     """Return tiny rates, one or all of them."""
     scene = generic(rng)
     for key in rng.sample(_RATES, rng.choice([1, 2, 3])):
-        scene[key] = signed(rng, power(rng, -30, -1))
+        scene[key] = signed(rng, ten_to(rng, -30, -1))
     return scene
 
 
@@ -123,7 +123,7 @@ def near_separatrix(rng: random.Random) -> Scene:
 
 def near_steady(rng: random.Random) -> Scene:
     """Return a steady precession, a little disturbed."""
-    scene = generic(rng) | {"thetadot0": rng.choice([0, signed(rng, power(rng, -16, -3))])}
+    scene = generic(rng) | {"thetadot0": rng.choice([0, signed(rng, ten_to(rng, -16, -3))])}
     scene["r0"] = signed(rng, _threshold_spin(scene) * rng.uniform(1, 5))
     u, b = math.cos(math.radians(scene["theta0_deg"])), scene["C"] * scene["r0"]
     root = math.copysign(math.sqrt(max(b * b - 4 * scene["A"] * u, 0)), b)
@@ -137,7 +137,7 @@ def next_to_a_cusp(rng: random.Random) -> Scene:
     """
     scene = generic(rng)
     if rng.random() < 0.4:
-        tiny = {key: signed(rng, power(rng, -18, -3)) for key in ("thetadot0", "psidot0")}
+        tiny = {key: signed(rng, ten_to(rng, -18, -3)) for key in ("thetadot0", "psidot0")}
         tiny[rng.choice(["thetadot0", "psidot0"])] *= rng.choice([0, 1])
         return scene | tiny
     b, a = scene["C"] * scene["r0"] / scene["A"], 2 / scene["A"]
@@ -171,7 +171,7 @@ def near_a_pole(rng: random.Random) -> Scene:
 
 def no_spin(rng: random.Random) -> Scene:
     """Return a pendulum, plane or spherical, or nearly."""
-    scene = generic(rng) | {"r0": rng.choice([0, 0, signed(rng, power(rng, -60, -6))])}
+    scene = generic(rng) | {"r0": rng.choice([0, 0, signed(rng, ten_to(rng, -60, -6))])}
     scene["psidot0"] *= rng.choice([0, 1])
     return scene | {"theta0_deg": rng.choice([60, 90, 120, scene["theta0_deg"]])}
 
@@ -181,12 +181,12 @@ def tiny_tilt(rng: random.Random) -> Scene:
 
     The tilt is 1e-30 to 1 degree, and the threshold that above which an upright top sleeps.
     """
-    tilt = rng.choice([power(rng, -12, 0), power(rng, -30, 0), 180 - power(rng, -12, 0)])
+    tilt = rng.choice([ten_to(rng, -12, 0), ten_to(rng, -30, 0), 180 - ten_to(rng, -12, 0)])
     scene = generic(rng) | {"theta0_deg": tilt}
     factor = rng.choice([rng.uniform(0.1, 3), near(rng, 1), near(rng, 1)])
     return scene | {
         "r0": signed(rng, _threshold_spin(scene) * factor),
-        "thetadot0": rng.choice([0, signed(rng, power(rng, -20, -1))]),
+        "thetadot0": rng.choice([0, signed(rng, ten_to(rng, -20, -1))]),
         "psidot0": rng.choice([0, 1, -2.5]),
     }
 
@@ -196,12 +196,12 @@ def tiny_tilt_with_rates(rng: random.Random) -> Scene:
 
     Smaller tilts are refused; the latter are decimals.
     """
-    tilt: float | Fraction = power(rng, -150, -1)
+    tilt: float | Fraction = ten_to(rng, -150, -1)
     if rng.random() < 0.4:
         tilt = 180 - Fraction(f"{rng.uniform(1, 9):.3f}e{rng.randrange(-300, -1)}")
-    scene = _body(rng) | {"r0": signed(rng, power(rng, -3, 3)), "theta0_deg": tilt}
+    scene = _body(rng) | {"r0": signed(rng, ten_to(rng, -3, 3)), "theta0_deg": tilt}
     for key in ("thetadot0", "psidot0"):
-        scene[key] = rng.choice([0, signed(rng, power(rng, -25, 1)), 1])
+        scene[key] = rng.choice([0, signed(rng, ten_to(rng, -25, 1)), 1])
     return scene
 
 
@@ -212,7 +212,7 @@ def radians(rng: random.Random) -> Scene:
     if rng.random() < 0.2:
         return scene | {"theta0_rad": math.radians(degrees)}
     inwards = 1 if quarters == 0 else -1 if quarters == 2 else rng.choice([-1, 1])
-    exact = quarters * _HALF_PI + inwards * Decimal(power(rng, -30, -1))
+    exact = quarters * _HALF_PI + inwards * Decimal(ten_to(rng, -30, -1))
     tilt: float | Fraction = Fraction(f"{exact:.{digits}f}")
     if rng.random() < 0.5:
         tilt = float(exact) if 0 < float(exact) < math.pi else math.nextafter(math.pi, 0)
@@ -223,23 +223,23 @@ def radians(rng: random.Random) -> Scene:
 
 def any_spin(rng: random.Random) -> Scene:
     """Return a spin from 1e-300 to 1e100, with both rates."""
-    scene = generic(rng) | {"r0": signed(rng, power(rng, -300, 100))}
+    scene = generic(rng) | {"r0": signed(rng, ten_to(rng, -300, 100))}
     return scene | {
         "thetadot0": rng.choice([0, rng.uniform(-3, 3)]),
-        "psidot0": signed(rng, rng.choice([1, 3, power(rng, -6, 6)])),
+        "psidot0": signed(rng, rng.choice([1, 3, ten_to(rng, -6, 6)])),
     }
 
 
 def thresholds(rng: random.Random) -> Scene:
     """Return a start next to another kind of motion or of series: k = k', no torque, rest."""
-    kind, miss = rng.randrange(3), 1 + signed(rng, power(rng, -15, -3))
+    kind, miss = rng.randrange(3), 1 + signed(rng, ten_to(rng, -15, -3))
     if kind == 0:
         scene = _body(rng) | {"theta0_deg": rng.uniform(1, 85)}
         lam = math.cos(math.radians(scene["theta0_deg"])) * miss  # at k = k'
         return scene | {"r0": signed(rng, _threshold_spin(scene) * math.sqrt(lam))}
     if kind == 1:
-        return ordinary(rng) | {"g": power(rng, -15, -6)}
-    return ordinary(rng) | {key: signed(rng, power(rng, -15, -6)) for key in _RATES}
+        return ordinary(rng) | {"g": ten_to(rng, -15, -6)}
+    return ordinary(rng) | {key: signed(rng, ten_to(rng, -15, -6)) for key in _RATES}
 
 
 def half_periods(rng: random.Random) -> Scene:

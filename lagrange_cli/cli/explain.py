@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..motion.explanation import Explained
     from ..output.destination import Output
 
-FORMATS = ("table", "json", "csv", "ndjson", "markdown")
+_FORMATS = ("table", "json", "csv", "ndjson", "markdown")
 
 
 def _names() -> list[str]:
@@ -39,7 +39,7 @@ def _names() -> list[str]:
 )
 @click.argument("words", nargs=-1, type=Parsed("KEY", str, _names), metavar="[SCENE] [KEY]...")
 @top_options(UNCERTAIN, scene=False)
-@output_options(*FORMATS)
+@output_options(*_FORMATS)
 def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> None:
     """Explain keys and columns, with formulas and numbers.
 
@@ -117,7 +117,7 @@ class _Scene(NamedTuple):
         lagtop scenes --format json
     """,
 )
-@output_options(*FORMATS)
+@output_options(*_FORMATS)
 def scenes_command(out: Output) -> None:
     """List the shipped scenes, whose names every command takes as a scene.
 

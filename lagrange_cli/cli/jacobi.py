@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from ..output.destination import Output
 
 MOST_TERMS = 10_000
-FAMILIES = ("am", "theta", "zeta", "omega", "pi")
+_FAMILIES = ("am", "theta", "zeta", "omega", "pi")
 _JACOBI = """
 k | k | modulus | |
 k_prime | k' | complementary modulus | |
@@ -119,7 +119,7 @@ function_formats = output_options("table", "csv", "json", "ndjson", "markdown", 
 @click.option(
     "--functions",
     "families",
-    type=names_type(lambda: FAMILIES),
+    type=names_type(lambda: _FAMILIES),
     help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
     "omega, pi (of u and --param, after Chrapan).  [default: am]",
 )
@@ -166,8 +166,8 @@ def jacobi_command(
     way = _modulus(k=real_k, k_prime=k_prime, modular_angle=modular_angle, nome=nome)
     modulus = ModulusInput(*way, radians=rad)
     if families is not None:
-        check_names("functions", families, FAMILIES)
-    asked = tuple(name for name in FAMILIES if name in (families or ["am"]))
+        check_names("functions", families, _FAMILIES)
+    asked = tuple(name for name in _FAMILIES if name in (families or ["am"]))
     parameter, imaginary = _parameter(param, asked)
     has_complex = isinstance(u, list) and any(isinstance(x, ExactComplex) for x in u)
     real = not (beyond or has_complex or (parameter.real and parameter.imag))

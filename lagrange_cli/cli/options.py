@@ -23,7 +23,7 @@ MOST_RECORD_DIGITS, MOST_TABLE_DIGITS = 1000, 100
 BINARY = ("parquet", "npy")
 """Formats that are not written to a terminal."""
 
-F = TypeVar("F", bound=Callable[..., Any])
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def late(module: str, name: str, **how: Any) -> Callable[..., Any]:
@@ -113,7 +113,7 @@ KEY = Parsed("KEY", str, _all_keys)
 COLUMN_NAMES = names_type(late("motion.over_time.columns", "column_names"))
 
 
-def digits_option(most: int) -> Callable[[F], F]:
+def digits_option(most: int) -> Callable[[Command], Command]:
     """Add the option --digits, from 1 to `most`."""
 
     def check(_: click.Context, __: click.Parameter, digits: int | None) -> int | None:
@@ -134,7 +134,7 @@ keys_option = click.option(
 )
 
 
-def seed_option(**how: Any) -> Callable[[F], F]:
+def seed_option(**how: Any) -> Callable[[Command], Command]:
     """Add the option --seed."""
     return click.option("--seed", type=COUNT, **how)
 
@@ -154,7 +154,7 @@ def extension(path: str) -> str:
 
 def output_options(
     *formats: str, extensions: Iterable[str] = (), on_terminal: str = ""
-) -> Callable[[F], F]:
+) -> Callable[[Command], Command]:
     """Add the options --output and --format; the command receives an `Output` as `out`.
 
     The default format is the extension of the file.  Without an extension it is the first of the
@@ -178,7 +178,7 @@ def output_options(
             raise LagtopError(f"--format {fmt} is not for a terminal: use -o FILE.{fmt}")
         return fmt
 
-    def decorate(command: F) -> F:
+    def decorate(command: Command) -> Command:
         @wraps(command)
         def run(*args: Any, output: str, fmt: str | None, **options: Any) -> Any:
             name = click.get_current_context().command.name or ""
@@ -213,7 +213,7 @@ def _mark(marks: dict[str, str]) -> Callable[[str], str]:
     return parse
 
 
-def text_options(command: F) -> F:
+def text_options(command: Command) -> Command:
     """Add --delimiter and --decimal; the command receives a `dialect`."""
 
     @wraps(command)
@@ -251,11 +251,11 @@ def is_described(out: Output, header_comments: bool) -> bool:
     return header_comments or out.fmt == "parquet"
 
 
-def reading_options(quaternion: str | None) -> Callable[[F], F]:
+def reading_options(quaternion: str | None) -> Callable[[Command], Command]:
     """Add the options for the columns of a trajectory; `quaternion` is the default order."""
     order = quaternion or "by the first row"
 
-    def decorate(command: F) -> F:
+    def decorate(command: Command) -> Command:
         command = click.option(
             "--euler-sequence",
             type=Parsed("SEQ", late("inputs.seen", "euler_sequence")),

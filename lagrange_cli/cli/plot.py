@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from ..motion.solve import Motion
     from ..plot.map import InputRange
 
-FORMATS = ("png", "svg", "pdf")
+_FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
 HELP = """Draw pictures of one motion.
 
@@ -102,7 +102,7 @@ AXIS = Parsed("RANGE", str, _axis_names)
 @click.option("--speed", type=NUMBER, help="Simulated time per second of film.")
 @click.option("--show", is_flag=True, help="Open a window.")
 @click.option(
-    "--format", "fmt", type=click.Choice(FORMATS), metavar="FORMAT", help="png, svg or pdf."
+    "--format", "fmt", type=click.Choice(_FORMATS), metavar="FORMAT", help="png, svg or pdf."
 )
 @click.option("-o", "--output", type=FILE, help="FILE.png, .svg or .pdf (replaced on success).")
 def plot_command(
@@ -188,8 +188,8 @@ def _format_of(fmt: str | None, output: str | None) -> str:
     if fmt or output in (None, "-"):
         return fmt or "png"
     suffix = output.rpartition(".")[2].lower()
-    if suffix not in FORMATS:
-        wanted = " or ".join(f".{ending}" for ending in FORMATS)
+    if suffix not in _FORMATS:
+        wanted = " or ".join(f".{ending}" for ending in _FORMATS)
         raise LagtopError(f"-o must be a file that ends in {wanted}, got {output!r}")
     return suffix
 

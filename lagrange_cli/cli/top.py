@@ -12,7 +12,7 @@ import click
 from ..arithmetic.values import Values
 from ..errors import DataError, LagtopError
 from .app import complain
-from .options import F, Parsed, late, rad_option
+from .options import Command, Parsed, late, rad_option
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
@@ -85,7 +85,7 @@ class TopOptions(Values):
 
 def top_options(
     kind: Parsed, *, scene: bool = True, units: bool = True, whole: bool = True
-) -> Callable[[F], F]:
+) -> Callable[[Command], Command]:
     """Add the inputs of a top, --rad, --units and SCENE; a command receives a `TopOptions`, `top`.
 
     Some commands take no `scene` here, or no `units`; a top that is not `whole` has no defaults.
@@ -97,7 +97,7 @@ def top_options(
     one_top = whole and kind in {INPUT, UNCERTAIN}
     steady = value_type(uncertain=kind is UNCERTAIN, steady=True) if one_top else kind
 
-    def decorate(command: F) -> F:
+    def decorate(command: Command) -> Command:
         @wraps(command)
         def run(**options: Any) -> Any:
             inputs = {name: options.pop(name) for name in [*options] if name in names}

@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.points import ExactComplex
-from ..arithmetic.protocol import Value
+from ..arithmetic.protocol import Numeric
 from ..errors import LagtopError
 from .complete import complete_k, period_mean
 from .modulus import Modulus, constants, exact_modulus
@@ -40,19 +40,19 @@ class AnyModulus(NamedTuple):
 
     kind: ModulusKind
     modulus: Modulus
-    stretch: Value = 1
+    stretch: Numeric = 1
     """Factor of the argument."""
 
 
 class AnyConstants(NamedTuple):
     """K, K', E, E' and the nome q of any modulus; None for infinite values."""
 
-    k_prime: Value
-    K: Value
-    K_prime: Value
-    E: Value
-    E_prime: Value
-    q: Value
+    k_prime: Numeric
+    K: Numeric
+    K_prime: Numeric
+    E: Numeric
+    E_prime: Numeric
+    q: Numeric
 
 
 def any_modulus(ar: ManyDigits, k: ExactComplex | complex) -> AnyModulus:
@@ -97,7 +97,7 @@ def any_constants(ar: ManyDigits, given: AnyModulus) -> AnyConstants:
     return AnyConstants(k_prime, K, K_prime, E, E_prime, q)
 
 
-def _e_beyond(ar: ManyDigits, k: Value, k_prime: Value) -> Value:
+def _e_beyond(ar: ManyDigits, k: Numeric, k_prime: Numeric) -> Numeric:
     """Return E of the modulus 1/k > 1, {E - k'^2 K + i (E' - k^2 K')}/k (DLMF 19.7.3).
 
     The difference E - k'^2 K is computed as k^2 K times the mean of cn^2 over a period, so that

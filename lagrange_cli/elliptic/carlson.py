@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any, cast
 from ..arithmetic.numbers import F, R, absolute, in_arithmetic, power, root_of_epsilon
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Value
+    from ..arithmetic.protocol import Arithmetic, FunctionArithmetic, Numeric
 
-    Roots = tuple[Value, Value, Value, Value]
-    Gain = Callable[[Roots, Value, Value], Value]
+    Roots = tuple[Numeric, Numeric, Numeric, Numeric]
+    Gain = Callable[[Roots, Numeric, Numeric], Numeric]
 
 
 def blockwise(function: F) -> F:
@@ -107,34 +107,34 @@ def carlson_rf(ar: Arithmetic[R], x: R, y: R, z: R) -> R:
 
 
 @in_pairs
-def carlson_rc(ar: FunctionArithmetic, x: Value, y: Value) -> Value:
+def carlson_rc(ar: FunctionArithmetic, x: Numeric, y: Numeric) -> Numeric:
     """Return R_C(x, y) = R_F(x, y, y) for x >= 0, y > 0 (DLMF 19.2.17)."""
     return carlson_rf(ar, x, y, y)
 
 
 @blockwise
-def carlson_rd(ar: FunctionArithmetic, x: Value, y: Value, z: Value) -> Value:
+def carlson_rd(ar: FunctionArithmetic, x: Numeric, y: Numeric, z: Numeric) -> Numeric:
     """Return R_D(x, y, z) for x, y >= 0, at most one of them 0, and z > 0 (DLMF 19.36.2)."""
     if ar.is_array:
         from scipy.special import elliprd  # for arrays only
 
         return elliprd(x, y, z)
 
-    def gain(roots: Roots, z: Value, shift: Value) -> Value:
+    def gain(roots: Roots, z: Numeric, shift: Numeric) -> Numeric:
         return 3 / (roots[2] * (z + shift))
 
     return _duplicated(ar, (x, y, z, z), gain)
 
 
 @in_pairs
-def carlson_rj(ar: FunctionArithmetic, x: Value, y: Value, z: Value, p: Value) -> Value:
+def carlson_rj(ar: FunctionArithmetic, x: Numeric, y: Numeric, z: Numeric, p: Numeric) -> Numeric:
     """Return R_J(x, y, z, p) for x, y, z >= 0, at most one of them 0, and p > 0 (DLMF 19.36.2).
 
     Each step adds an R_C(1, 1 + e).  A quotient of sums gives 1 + e, so that nothing cancels if p
     is much smaller than the other arguments.
     """
 
-    def gain(roots: Roots, p: Value, shift: Value) -> Value:
+    def gain(roots: Roots, p: Numeric, shift: Numeric) -> Numeric:
         root_x, root_y, root_z, root_p = roots
         beta = root_p * (p + shift)
         total = beta + p * (root_x + root_y + root_z) + root_x * root_y * root_z
@@ -157,7 +157,7 @@ def _radius(*shares: R) -> R:
     return total
 
 
-def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
+def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Numeric:
     """Return R_J, or R_D = R_J with p = z, where each step of the duplication adds a `gain`."""
     x, y, z, p = arguments
     mean, total, weight = (x + y + z + 2 * p) / 5, 0 * p, 1 + 0 * p
@@ -173,7 +173,7 @@ def _duplicated(ar: FunctionArithmetic, arguments: Roots, gain: Gain) -> Value:
     return total + rest * weight
 
 
-def _near_mean(ar: FunctionArithmetic, dx: Value, dy: Value, dz: Value) -> Value:
+def _near_mean(ar: FunctionArithmetic, dx: Numeric, dy: Numeric, dz: Numeric) -> Numeric:
     """Return the Taylor series of R_J about equal arguments, to seventh order (DLMF 19.36.2).
 
     The truncation error is bounded as in `carlson_rf`, with 3/2 and 5/2 in place of 1/2 and 3/2.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.arrays import ARRAYS
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ExactComplex, check_reach
-from ..arithmetic.protocol import ComplexArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Numeric
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind, any_constants, any_modulus
 from .complex_theta import theta_at_place, zeta_at_place
@@ -70,7 +70,7 @@ class ComplexTable(TableOfFunctions):
         def row(u: ExactComplex) -> dict[str, NumberText]:
             known = known_parts(u, self.request, given)
 
-            def compute(ar: ManyDigits) -> dict[str, Value]:
+            def compute(ar: ManyDigits) -> dict[str, Numeric]:
                 for far in (*u, *self.request.parameter):
                     settled.require(ar, abs(ar.convert(far)) * given.stretch)
                 z = ar.mpc(ar.convert(u.real), ar.convert(u.imag))
@@ -128,10 +128,10 @@ class ComplexTable(TableOfFunctions):
     def _parts(
         self,
         ar: ComplexArithmetic,
-        u: Value,
+        u: Numeric,
         constants: _ComplexConstants,
         poles: Collection[str] = (),
-    ) -> dict[str, Value]:
+    ) -> dict[str, Numeric]:
         """Return the parts of the functions at u by name; `poles` are NaN."""
         parts, both = {"u": u}, {}
         if "am" in self.request.families:
@@ -150,7 +150,7 @@ class ComplexTable(TableOfFunctions):
 
     def _families(
         self, ar: ComplexArithmetic, at: Place, functions: _ComplexConstants, periods: Lattice
-    ) -> Iterator[tuple[str, Callable[[], Value]]]:
+    ) -> Iterator[tuple[str, Callable[[], Numeric]]]:
         """Yield the columns of the families by name, each with the function that computes it."""
         functions_of_u = {"theta": theta_at_place, "zeta": zeta_at_place}
         functions_of_both = {"omega": omega_at, "pi": pi_at}
@@ -164,10 +164,10 @@ class ComplexTable(TableOfFunctions):
                     yield f"{family}{ij}", partial(third, ar, at, kind)
 
 
-def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str, Value]:
+def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str, Numeric]:
     """Return constants of a modulus that is imaginary or above 1, in real and imaginary parts."""
 
-    def compute(ar: ManyDigits) -> dict[str, Value]:
+    def compute(ar: ManyDigits) -> dict[str, Numeric]:
         given = any_modulus(ar, modulus)
         k_prime, K, K_prime, E, E_prime, q = any_constants(ar, given)
         k = ar.mpc(ar.convert(modulus.real), ar.convert(modulus.imag))
@@ -182,7 +182,7 @@ def any_constants_record(modulus: ExactComplex, digits: int | None) -> dict[str,
     return AgreeingNumbers(digits).texts(compute, zeros.split())
 
 
-def _both(ar: ComplexArithmetic, columns: dict[str, Value]) -> dict[str, Value]:
+def _both(ar: ComplexArithmetic, columns: dict[str, Numeric]) -> dict[str, Numeric]:
     """Return the real and the imaginary part of every column."""
     return {
         f"{name}{suffix}": part(z)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.protocol import ComplexArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Numeric
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
 from .many_digits import ManyDigits
@@ -172,16 +172,16 @@ class Base(NamedTuple):
     value: Complex
     slope: Complex
 
-    def mirrored(self, ar: ComplexArithmetic, where: Value) -> Base:
+    def mirrored(self, ar: ComplexArithmetic, where: Numeric) -> Base:
         """Return the series of the conjugate argument where a condition holds."""
         return self.chosen(ar, where, Base(ar.conj(self.value), ar.conj(self.slope)))
 
-    def chosen(self, ar: ComplexArithmetic, where: Value, other: Base) -> Base:
+    def chosen(self, ar: ComplexArithmetic, where: Numeric, other: Base) -> Base:
         """Return the `other` series where a condition holds, and this one elsewhere."""
         return Base(*(ar.where(where, b, a) for a, b in zip(self, other, strict=True)))
 
 
-def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Value) -> Base:
+def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Numeric) -> Base:
     """Return theta_ij at z = phase + i height t/pi, with the nome exp(-t), and its slope.
 
     For 11 and 10, return q^(-1/4) exp(-t height) theta_ij.  Requires t >= pi, a phase within 1/2,
@@ -205,7 +205,7 @@ def cell_series(ar: ComplexArithmetic, ij: str, phase: Fine, height: Fine, t: Va
     return Base(turn * rest.value, rest.slope - ar.mpc(0, ar.pi)).chosen(ar, low, plain)
 
 
-def _cosines(ar: ComplexArithmetic, phase: Fine, height: Value, t: Value) -> Base:
+def _cosines(ar: ComplexArithmetic, phase: Fine, height: Numeric, t: Numeric) -> Base:
     """Return the series of theta10; next to its zero, theta11 half a period away."""
     here = coarse(phase)
     middle = abs(here) < 0.25
@@ -217,12 +217,14 @@ def _cosines(ar: ComplexArithmetic, phase: Fine, height: Value, t: Value) -> Bas
     return beside.chosen(ar, middle, plain)
 
 
-def _sines(ar: ComplexArithmetic, phase: Value, height: Value, t: Value) -> Base:
+def _sines(ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric) -> Base:
     """Return the series of theta11."""
     return _odd(ar, phase, height, t, sines=True)
 
 
-def _odd(ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, sines: bool) -> Base:
+def _odd(
+    ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric, *, sines: bool
+) -> Base:
     """Return 2 sum (-1)^n q^(n (n + 1)) sin (2n + 1) pi z, over exp(t height), and its slope.
 
     Without `sines`, return the sum of cosines without the signs.
@@ -246,7 +248,7 @@ def _odd(ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, sines:
 
 
 def _even(
-    ar: ComplexArithmetic, phase: Value, height: Value, t: Value, *, alternating: bool
+    ar: ComplexArithmetic, phase: Numeric, height: Numeric, t: Numeric, *, alternating: bool
 ) -> Base:
     """Return 1 + 2 sum (+-1)^n q^(n^2) cos 2 n pi z, and its slope, for a height up to 1/4."""
     real, imag, slope_real, slope_imag = 1 + 0 * phase, 0 * phase, 0 * phase, 0 * phase

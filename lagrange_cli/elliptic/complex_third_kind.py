@@ -24,7 +24,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.protocol import ComplexArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, Numeric
 from .any_modulus import ModulusKind
 from .complex_theta import base_at, inner_name, rises, slope_in_cell
 from .many_digits import ManyDigits
@@ -44,7 +44,7 @@ class Parameter(NamedTuple):
     """Growth of Pi when eta grows by 2K, without half turns."""
     up: Complex
     """Growth of Pi when eta grows by 2iK', without half turns."""
-    turns: Value
+    turns: Numeric
     """The half turns that `along` leaves out, so that it is small if they cancel."""
     side: int
     """Sign of the height of v if the slope leaves out the rise of the series with it; else 0."""
@@ -147,7 +147,7 @@ class _Cell:
 
     rise: Fine
     """Half the difference of the heights, in units of the steepness."""
-    phase: Value
+    phase: Numeric
     """Half the difference of the phases, in half turns."""
     logarithm: Complex
     """Half the difference of the logarithms of the series."""
@@ -173,7 +173,7 @@ class _Cell:
         size = ar.log(abs(values[0]) / abs(values[1]))
         self.logarithm = ar.mpc(size, angles[0] - angles[1]) / 2
 
-    def _angle(self, ar: ComplexArithmetic, value: Complex, at: Place) -> Value:
+    def _angle(self, ar: ComplexArithmetic, value: Complex, at: Place) -> Numeric:
         """Return the angle of the series at a place; on a line of zeros, the mean of both sides."""
         angle = ar.atan2(ar.im(value), ar.re(value))
         if self.inner == "11":  # from -pi/2 to 3 pi/2 above the line of zeros
@@ -183,7 +183,7 @@ class _Cell:
             angle = ar.where(coarse(at.y.rest) == 0, 0 * angle, angle)
         return angle
 
-    def half_turns(self, at: Place) -> Value:
+    def half_turns(self, at: Place) -> Numeric:
         """Return the half turns of the difference, including the whole periods of u and v."""
         (less, more), v = self.places, self.given.at
         turns = -less.y.whole * (at.x.whole - v.x.whole) + more.y.whole * (at.x.whole + v.x.whole)
@@ -196,6 +196,6 @@ class _Cell:
         return turns
 
 
-def _sign(x: Value) -> Value:
+def _sign(x: Numeric) -> Numeric:
     """Return -1, 0 or 1."""
     return (x > 0) * 1 - (x < 0) * 1

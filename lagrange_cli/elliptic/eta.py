@@ -21,7 +21,7 @@ from fractions import Fraction
 from math import prod
 from typing import NamedTuple
 
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..errors import LagtopError
 from .complete import agm
 from .modulus import Modulus
@@ -125,25 +125,25 @@ class Quadrature(NamedTuple):
 class EtaConstants(NamedTuple):
     """The constants of (3.2.3) to (3.2.12) and the complement k1', in some arithmetic."""
 
-    m1: Value
+    m1: Numeric
     """m' (3.2.3)."""
-    m2: Value
+    m2: Numeric
     """m'' (3.2.3)."""
-    k: Value
+    k: Numeric
     """Modulus k (3.2.5), or k/i for a complex pair of roots."""
-    k1: Value
+    k1: Numeric
     """Modulus k1 (3.2.8), or k1/i for a complex pair of roots."""
-    k1_prime: Value
+    k1_prime: Numeric
     """Complement of k1; it is above 1 if k1 is imaginary."""
-    sigma1: Value
+    sigma1: Numeric
     """Rate of the argument (3.2.8)."""
-    s: Value
+    s: Numeric
     """Amplitude of sn (3.2.12)."""
-    d: Value
+    d: Numeric
     """Coefficient of the denominator (3.2.12)."""
-    gamma: Value
+    gamma: Numeric
     """Shift (3.2.12)."""
-    period: Value
+    period: Numeric
     """Period in tau, 4 K1/sigma1."""
 
 
@@ -203,7 +203,7 @@ def _constants_of_pair(ar: FunctionArithmetic, quadrature: Quadrature) -> EtaCon
     )
 
 
-def _beyond(ar: FunctionArithmetic, distance: Value, part: Fraction, height: Value) -> Value:
+def _beyond(ar: FunctionArithmetic, distance: Numeric, part: Fraction, height: Numeric) -> Numeric:
     """Return distance - part, where distance = sqrt(part^2 + height^2); part may be negative."""
     exact = ar.convert(part)
     return height**2 / (distance + exact) if part > 0 else distance - exact
@@ -212,8 +212,8 @@ def _beyond(ar: FunctionArithmetic, distance: Value, part: Fraction, height: Val
 def _constants_from(
     ar: FunctionArithmetic,
     quadrature: Quadrature,
-    distances: tuple[Value, Value],
-    *moduli_and_rate: Value,
+    distances: tuple[Numeric, Numeric],
+    *moduli_and_rate: Numeric,
 ) -> EtaConstants:
     """Return all constants from m', m'', and from k, k1, k1', sigma1."""
     (m1, m2), (k, k1, k1_prime, sigma1) = distances, moduli_and_rate
@@ -235,8 +235,8 @@ def _constants_from(
 
 
 def _sum_and_difference(
-    ar: FunctionArithmetic, quadrature: Quadrature, high: Value, low: Value
-) -> tuple[Value, Value]:
+    ar: FunctionArithmetic, quadrature: Quadrature, high: Numeric, low: Numeric
+) -> tuple[Numeric, Numeric]:
     """Return m'' delta + m' delta* and m'' delta - m' delta* from the two terms.
 
     If the terms cancel, the exact difference of their squares gives the result.
@@ -252,19 +252,19 @@ def _sum_and_difference(
 class Band(NamedTuple):
     """The ends of the band, and the distances of the outer roots from it, in some arithmetic."""
 
-    lower: Value
+    lower: Numeric
     """delta*."""
-    upper: Value
+    upper: Numeric
     """delta."""
-    width: Value
+    width: Numeric
     """delta - delta*."""
-    below: list[Value]
+    below: list[Numeric]
     """Distances from delta* of the outer roots below the band."""
-    above: list[Value]
+    above: list[Numeric]
     """Distances from delta of the outer roots above the band."""
-    g: Value
+    g: Numeric
     """The leading coefficient."""
-    pair: tuple[Value, Value, Value] | None = None
+    pair: tuple[Numeric, Numeric, Numeric] | None = None
     """The numbers delta* - p, delta - p and height of a complex pair p +- i height."""
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.balls import Balls, balls
 from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, Points, check_reach
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import Pair, decided, pair
 from .complete import complete_k
 from .eta import Band, EtaConstants, Quadrature, band_of, eta_constants, modulus_in_use
@@ -32,9 +32,9 @@ class EtaMotion(NamedTuple):
 
     constants: EtaConstants
     band: Band
-    half_period: Value
+    half_period: Numeric
     """2K of the modulus in use."""
-    periods: Callable[[Value], tuple[Value, Value]]
+    periods: Callable[[Numeric], tuple[Numeric, Numeric]]
     """Function of tau: periods since a passage of delta*, as whole periods and the rest."""
 
 
@@ -71,7 +71,7 @@ class EtaTable(RealTable):
         c, band = eta_constants(ar, self.quadrature), band_of(ar, self.quadrature)
         quarter = complete_k(ar, modulus_in_use(c, band).k_prime)
 
-        def periods(tau: Value) -> tuple[Value, Value]:
+        def periods(tau: Numeric) -> tuple[Numeric, Numeric]:
             turns, rest, _ = whole_and_rest(ar, tau / c.period)
             return turns, rest
 
@@ -94,8 +94,8 @@ class EtaTable(RealTable):
         return EtaMotion(c, band, 2 * quarter, lambda tau: reduce_phase(tau, rate))
 
     def columns(
-        self, ar: FunctionArithmetic, x: Value, constants: EtaMotion, known: Known
-    ) -> dict[str, Value]:
+        self, ar: FunctionArithmetic, x: Numeric, constants: EtaMotion, known: Known
+    ) -> dict[str, Numeric]:
         """Return tau, eta and the other columns of the table."""
         c, band, half_period, periods = constants
         turns, rest = periods(x)
@@ -123,8 +123,8 @@ class EtaTable(RealTable):
 
 
 def chain(
-    ar: FunctionArithmetic, periods: tuple[Value, Value], c: EtaConstants, band: Band, unit: str
-) -> tuple[Value, Value, Value]:
+    ar: FunctionArithmetic, periods: tuple[Numeric, Numeric], c: EtaConstants, band: Band, unit: str
+) -> tuple[Numeric, Numeric, Numeric]:
     """Return h1, theta and xi' at a time given in periods since a passage of delta*.
 
         h1 = sigma1 (tau + tau3) (3.2.10),  theta = am(h1, k1) (3.2.9),  xi' = sn(h1, k1) (3.2.11)
@@ -145,15 +145,15 @@ def chain(
 class PlaceInBand(NamedTuple):
     """The place of eta in its band, by its distances from both ends."""
 
-    eta: Value
-    risen: Value
+    eta: Numeric
+    risen: Numeric
     """eta - delta*."""
-    left: Value
+    left: Numeric
     """delta - eta."""
-    falling: Value
+    falling: Numeric
     """Whether eta is returning to delta*."""
 
-    def rate(self, ar: FunctionArithmetic, band: Band) -> Value:
+    def rate(self, ar: FunctionArithmetic, band: Band) -> Numeric:
         """Return d eta/d tau, the root of (3.2.1), from distances that keep their digits."""
         risen, left = self.risen, self.left
         gaps = [gap + risen for gap in band.below] + [gap + left for gap in band.above]
@@ -165,7 +165,7 @@ class PlaceInBand(NamedTuple):
         return ar.where(self.falling, -size, size)
 
 
-def place_in_band(ar: FunctionArithmetic, v: Value, c: EtaConstants, band: Band) -> PlaceInBand:
+def place_in_band(ar: FunctionArithmetic, v: Numeric, c: EtaConstants, band: Band) -> PlaceInBand:
     """Return the place of eta at v = 2K w/T, where w is the time since a passage of delta*.
 
         (eta - delta*) : (delta - eta) = (sqrt(g) m'' sn v)^2 : (sigma1 cn v dn v)^2

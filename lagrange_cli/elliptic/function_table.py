@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..arithmetic.balls import Balls, balls
 from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import MAX_PERIODS, MAX_TIME, ListedPoints, Points, check_reach
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import decided, pair
 from ..errors import LagtopError
 from .complete import complete_k
@@ -35,7 +35,7 @@ class FunctionConstants(NamedTuple):
     series: ThetaSeries | None
     """None for k = 1, which has no periods."""
     third: dict[str, ThirdKind]
-    K: Value
+    K: Numeric
     """The quarter period; a pair of doubles in a table of doubles, None for k = 1."""
 
     def rounded(self, modulus: Modulus) -> FunctionConstants:
@@ -104,8 +104,8 @@ class FunctionTable(RealTable):
         )
 
     def columns(
-        self, ar: FunctionArithmetic, x: Value, constants: FunctionConstants, known: Known
-    ) -> dict[str, Value]:
+        self, ar: FunctionArithmetic, x: Numeric, constants: FunctionConstants, known: Known
+    ) -> dict[str, Numeric]:
         """Return the columns at arguments x, without those that are `known`."""
         u, series = x, constants.series
         if not series:
@@ -121,14 +121,14 @@ class FunctionTable(RealTable):
             columns[name] = known[name] if name in known else compute()
         return columns
 
-    def _named(self, ar: FunctionArithmetic, found: Jacobi) -> Iterator[tuple[str, Value]]:
+    def _named(self, ar: FunctionArithmetic, found: Jacobi) -> Iterator[tuple[str, Numeric]]:
         """Yield am (in the unit of the request), sn, cn and dn with the names of their columns."""
         yield self.request.am, found.am * (1 if self.request.radians else 180 / ar.pi)
         yield from zip(("sn", "cn", "dn"), found[1:], strict=True)
 
     def _families(
         self, ar: FunctionArithmetic, at: Periods, functions: FunctionConstants, series: ThetaSeries
-    ) -> Iterator[tuple[str, Callable[[], Value]]]:
+    ) -> Iterator[tuple[str, Callable[[], Numeric]]]:
         """Yield the columns of the families by name, each with the function that computes it."""
         suffix = "_imag" if self.request.imaginary else ""
         for family in self.request.families:
@@ -156,7 +156,7 @@ class FunctionTable(RealTable):
         return len(str(int(max(abs(x), abs(self.request.size)))))
 
 
-def times_quarter(ar: FunctionArithmetic, factor: Value, K: Value) -> Value:
+def times_quarter(ar: FunctionArithmetic, factor: Numeric, K: Numeric) -> Numeric:
     """Return `factor` times K, which is a pair of doubles for arrays."""
     if not ar.is_array:
         return factor * K

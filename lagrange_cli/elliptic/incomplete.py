@@ -11,7 +11,7 @@ from ..arithmetic.balls import Balls
 from ..arithmetic.exact_cosine import below_quarters
 from ..arithmetic.numbers import in_arithmetic
 from ..arithmetic.points import MAX_PERIODS, Points, check_reach
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from .carlson import carlson_rd, carlson_rf
 from .complete import complete_e, complete_k
 from .modulus import Modulus, ModulusInput
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 class Amplitude(NamedTuple):
     """An amplitude: whole half turns, and sine and cosine of the rest, up to a quarter turn."""
 
-    half_turns: Value
-    sine: Value
-    cosine: Value
+    half_turns: Numeric
+    sine: Numeric
+    cosine: Numeric
     """Never negative; exactly 0 at a quarter turn in degrees."""
 
 
-def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
+def in_radians(ar: FunctionArithmetic, phi: Numeric) -> Amplitude:
     """Return an amplitude given in radians; arrays keep their digits up to 2^50 half turns."""
     if not ar.is_array:
         half_turns = ar.nint(ar.re(phi) / ar.pi)
@@ -49,7 +49,7 @@ def in_radians(ar: FunctionArithmetic, phi: Value) -> Amplitude:
     return Amplitude(half_turns + beyond, ar.where(cosine < 0, -sine, sine), abs(cosine))
 
 
-def in_degrees(ar: FunctionArithmetic, phi: Value) -> Amplitude:
+def in_degrees(ar: FunctionArithmetic, phi: Numeric) -> Amplitude:
     """Return an amplitude given in degrees; whole half turns are removed exactly."""
     if ar.is_array:
         import numpy as np
@@ -66,7 +66,7 @@ def in_degrees(ar: FunctionArithmetic, phi: Value) -> Amplitude:
 
 
 @in_arithmetic
-def incomplete_f(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
+def incomplete_f(ar: FunctionArithmetic, phi: Numeric, modulus: Modulus) -> Numeric:
     """Return F(phi, k), the integral of d phi/sqrt(1 - k^2 sin^2 phi) from 0 to phi (3.1.2).
 
     `phi` is any real amplitude in radians, of numpy or an mpmath context.  F(phi + n pi) is F(phi)
@@ -76,7 +76,7 @@ def incomplete_f(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
 
 
 @in_arithmetic
-def incomplete_e(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
+def incomplete_e(ar: FunctionArithmetic, phi: Numeric, modulus: Modulus) -> Numeric:
     """Return E(phi, k), the integral of sqrt(1 - k^2 sin^2 phi) d phi from 0 to phi.
 
     `phi` is any real amplitude in radians, as in `incomplete_f`.  E(phi + n pi) is E(phi) + 2 n E.
@@ -85,7 +85,7 @@ def incomplete_e(ar: FunctionArithmetic, phi: Value, modulus: Modulus) -> Value:
 
 
 @in_arithmetic
-def f_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
+def f_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Numeric:
     """Return F of an amplitude: sin(phi) R_F(cos^2 phi, 1 - k^2 sin^2 phi, 1) within a turn."""
     cosine2, delta2 = _squares(ar, phi, modulus)
     within = phi.sine * carlson_rf(ar, cosine2, delta2, 1 + 0 * delta2)
@@ -95,7 +95,7 @@ def f_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
 
 
 @in_arithmetic
-def e_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
+def e_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Numeric:
     """Return E of an amplitude, as a sum of positive terms (DLMF 19.25.10)."""
     cosine2, delta2 = _squares(ar, phi, modulus)
     one, complement = 1 + 0 * delta2, modulus.k_prime * modulus.k_prime
@@ -106,7 +106,7 @@ def e_of(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> Value:
     return _quasi_periodic(ar, phi, within, complete_e, modulus)
 
 
-def _squares(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> tuple[Value, Value]:
+def _squares(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> tuple[Numeric, Numeric]:
     """Return cos^2 phi and 1 - k^2 sin^2 phi as a sum of squares; both are 1 at a quarter turn."""
     cosine2 = phi.cosine * phi.cosine
     delta2 = cosine2 + modulus.k_prime * modulus.k_prime * (1 - cosine2)
@@ -117,10 +117,10 @@ def _squares(ar: FunctionArithmetic, phi: Amplitude, modulus: Modulus) -> tuple[
 def _quasi_periodic(
     ar: FunctionArithmetic,
     phi: Amplitude,
-    within: Value,
+    within: Numeric,
     complete: Callable[..., Any],
     modulus: Modulus,
-) -> Value:
+) -> Numeric:
     """Return an integral from its part `within` a quarter turn and the complete integral.
 
     For arrays, the complete integral is a pair of doubles, so that a difference keeps its digits.
@@ -177,8 +177,8 @@ class AmplitudeTable(RealTable):
         return self.modulus.in_doubles()
 
     def columns(
-        self, ar: FunctionArithmetic, x: Value, constants: Modulus, known: Known
-    ) -> dict[str, Value]:
+        self, ar: FunctionArithmetic, x: Numeric, constants: Modulus, known: Known
+    ) -> dict[str, Numeric]:
         """Return the amplitudes, F and E."""
         name, reduced = ("phi_rad", in_radians) if self.radians else ("phi_deg", in_degrees)
         phi = reduced(ar, x)

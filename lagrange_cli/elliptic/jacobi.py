@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Numeric
 from ..arithmetic.rounding import triple
 from .any_modulus import AnyModulus, ModulusKind
 from .complete import complete_k
@@ -23,14 +23,14 @@ from .theta import ThetaSeries, series_for, theta_at
 class Jacobi(NamedTuple):
     """am u, unwrapped; its sine and its cosine; and dn u, the derivative of am u."""
 
-    am: Value
-    sn: Value
-    cn: Value
-    dn: Value
+    am: Numeric
+    sn: Numeric
+    cn: Numeric
+    dn: Numeric
 
 
 @in_arithmetic
-def jacobi(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Jacobi:
+def jacobi(ar: FunctionArithmetic, u: Numeric, modulus: Modulus) -> Jacobi:
     """Return am, sn, cn, dn of u (3.1.3), for k in [0, 1].
 
     - numpy: u is real and broadcasts with the modulus.  The worst error seen is 1.2 units of eps
@@ -103,8 +103,8 @@ def complex_jacobi(ar: ComplexArithmetic, u: Complex, given: AnyModulus) -> Jaco
 
 
 def _real(
-    ar: ComplexArithmetic, u: Value, modulus: Modulus, stretch: Value
-) -> tuple[Jacobi, Value]:
+    ar: ComplexArithmetic, u: Numeric, modulus: Modulus, stretch: Numeric
+) -> tuple[Jacobi, Numeric]:
     """Return the functions of real numbers times a factor, and the number of whole periods."""
     k, k_prime, _ = modulus
     rate = stretch / (2 * complete_k(k.context, k_prime)) if k_prime else 0 * k
@@ -121,7 +121,7 @@ def _combined(
     real: Jacobi,
     other: Jacobi,
     kind: ModulusKind,
-    inner: tuple[Value, Value],
+    inner: tuple[Numeric, Numeric],
 ) -> Jacobi:
     """Return the functions from their values at the real part and at the imaginary part."""
     k, k_prime = inner
@@ -146,6 +146,6 @@ def _combined(
     return Jacobi(ar.mpc(angle, ar.asinh(d * s1 / size)), sn, cn, dn)
 
 
-def _near(ar: ComplexArithmetic, angle: Value, am: Value) -> Value:
+def _near(ar: ComplexArithmetic, angle: Numeric, am: Numeric) -> Numeric:
     """Return an angle with the whole turns added that bring it next to am of the real part."""
     return angle + 2 * ar.pi * ar.nint((am - angle) / (2 * ar.pi))

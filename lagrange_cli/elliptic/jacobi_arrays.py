@@ -15,7 +15,7 @@ import numpy as np
 from ..arithmetic.arrays import ARRAYS, blocks
 from ..arithmetic.double_double import reduce_phase, sqrt_pair, two_product, two_sum
 from ..arithmetic.numbers import polynomial
-from ..arithmetic.protocol import Value
+from ..arithmetic.protocol import Numeric
 from ..arithmetic.rounding import Pair
 from ..arithmetic.types import Array
 from .complete import nome
@@ -29,13 +29,13 @@ _SMALL = 1e-290
 """Size below which q' = (k'/4)^2 loses digits, being close to the end of the range."""
 
 
-Powers = tuple[Value, ...]
+Powers = tuple[Numeric, ...]
 """Coefficients of powers, the lowest power first."""
 JacobiArrays = tuple[Array, Array, Array, Array]
 """am, sn, cn, dn."""
 
 
-def jacobi_of_arrays(u: Value, modulus: Modulus) -> JacobiArrays:
+def jacobi_of_arrays(u: Numeric, modulus: Modulus) -> JacobiArrays:
     """Return the functions of arguments and moduli that broadcast."""
     u = np.asarray(u, dtype=float)
     if all(np.ndim(part) == 0 for part in modulus):
@@ -69,14 +69,14 @@ class _Series(NamedTuple):
     """
 
     circular: bool
-    k_prime: Value
+    k_prime: Numeric
     rate: Pair
     """Half periods per unit of u, 1/(2K)."""
-    stretch: Value
+    stretch: Numeric
     """Argument y per half period."""
     above: Powers
     below: Powers
-    q: Value
+    q: Numeric
     """The nome in use."""
 
 
@@ -94,7 +94,7 @@ def _series(modulus: Modulus) -> _Series:
     return _Series(False, k_prime, rate, stretch, *_hyperbolic(q), q)
 
 
-def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
+def rate_of_half_periods(k_prime: Numeric, rest: Numeric) -> Pair:
     """Return agm(1, k')/pi = 1/(2K), the rate of half periods, for k' in (0, 1], to 30 digits."""
     a, a_low = two_sum(np.asarray(k_prime) / 2, 0.5)
     a_low += rest / 2
@@ -113,7 +113,7 @@ def rate_of_half_periods(k_prime: Value, rest: Value) -> Pair:
     return Pair(*two_sum(high, low))
 
 
-def _circular(q: Value, root: Value) -> tuple[Powers, Powers]:
+def _circular(q: Numeric, root: Numeric) -> tuple[Powers, Powers]:
     """Return theta1 and theta2 in powers of sin^2, up to a factor; `root` is sqrt(k')."""
     q2 = q * q
     q6 = q2 * q2 * q2
@@ -122,7 +122,7 @@ def _circular(q: Value, root: Value) -> tuple[Powers, Powers]:
     return above, tuple(root * c for c in below)
 
 
-def _hyperbolic(q: Value) -> tuple[Powers, Powers]:
+def _hyperbolic(q: Numeric) -> tuple[Powers, Powers]:
     """Return theta1 and theta4 of an imaginary argument in powers of q sinh^2, up to a factor."""
     q2 = q * q
     q4 = q2 * q2
@@ -149,7 +149,7 @@ def _of_arguments(u: Array, series: _Series) -> JacobiArrays:
 
 
 def _evaluate(
-    halves: Array, since: Array, u: Value, series: _Series, low: Value = 0.0
+    halves: Array, since: Array, u: Numeric, series: _Series, low: Numeric = 0.0
 ) -> JacobiArrays:
     """Return the functions at `halves` + `since` periods 2K, or at u itself if k' = 0.
 

@@ -15,37 +15,37 @@ from .complete import complete_e, complete_k, nome
 from .tables import ProvedNumbers
 
 if TYPE_CHECKING:  # NumPy is loaded for arrays only
-    from ..arithmetic.protocol import FunctionArithmetic, Value
+    from ..arithmetic.protocol import FunctionArithmetic, Numeric
 
 
 class Modulus(NamedTuple):
     """k and its complement k', scalars or arrays, each good to an ulp."""
 
-    k: Value
-    k_prime: Value
-    rest: Value = 0.0
+    k: Numeric
+    k_prime: Numeric
+    rest: Numeric = 0.0
     """The part of k' lost to rounding (arrays only); the period needs it far away from 0."""
 
 
 class Constants(NamedTuple):
     """K, E and the nome q of k; K' and E' of the complement; for k = 1, K is inf and q = 1."""
 
-    K: Value
-    K_prime: Value
-    E: Value
-    E_prime: Value
-    q: Value
+    K: Numeric
+    K_prime: Numeric
+    E: Numeric
+    E_prime: Numeric
+    q: Numeric
 
 
 @in_arithmetic
 def modulus(
     ar: FunctionArithmetic,
     *,
-    k: Value = None,
-    k_prime: Value = None,
-    m: Value = None,
-    angle: Value = None,
-    q: Value = None,
+    k: Numeric = None,
+    k_prime: Numeric = None,
+    m: Numeric = None,
+    angle: Numeric = None,
+    q: Numeric = None,
 ) -> Modulus:
     """Return the modulus from exactly one of k, k', m = k^2, the modular angle, the nome q.
 
@@ -102,7 +102,7 @@ def in_many_digits(ar: FunctionArithmetic, modulus: Modulus) -> Modulus:
     return Modulus(ar.convert(k), ar.convert(k_prime) + ar.convert(rest))
 
 
-def _from_m(ar: FunctionArithmetic, m: Value) -> Modulus:
+def _from_m(ar: FunctionArithmetic, m: Numeric) -> Modulus:
     if not ar.is_array:
         return Modulus(ar.sqrt(m), ar.sqrt(1 - m))
     import numpy as np
@@ -112,7 +112,7 @@ def _from_m(ar: FunctionArithmetic, m: Value) -> Modulus:
     return Modulus(ar.sqrt(m), *sqrt_pair(*two_sum(np.ones_like(m), -m)))
 
 
-def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
+def _from_q(ar: FunctionArithmetic, q: Numeric) -> Modulus:
     """Return theta2^2/theta3^2 and theta4^2/theta3^2, in the smaller of the nomes of k and k'."""
     limit = ar.exp(-ar.pi)
     large = ar.either(q > limit)
@@ -135,7 +135,7 @@ def _from_q(ar: FunctionArithmetic, q: Value) -> Modulus:
     return Modulus(ar.where(large, other, one), ar.where(large, one, other), 0 * q)
 
 
-def _complement(ar: FunctionArithmetic, k: Value) -> tuple[Value, Value]:
+def _complement(ar: FunctionArithmetic, k: Numeric) -> tuple[Numeric, Numeric]:
     """Return sqrt(1 - k^2) and the part of it lost to rounding."""
     if not ar.is_array:
         return ar.sqrt((1 - k) * (1 + k)), 0 * k
@@ -148,7 +148,7 @@ def _complement(ar: FunctionArithmetic, k: Value) -> tuple[Value, Value]:
     return sqrt_pair(*two_sum(difference, rest - error))
 
 
-_FROM: dict[str, Callable[[FunctionArithmetic, Value], Modulus]] = {
+_FROM: dict[str, Callable[[FunctionArithmetic, Numeric], Modulus]] = {
     "k": lambda ar, k: Modulus(k, *_complement(ar, k)),
     "k_prime": lambda ar, other: Modulus(_complement(ar, other)[0], other, 0 * other),
     "m": _from_m,
@@ -224,7 +224,7 @@ class ModulusInput(NamedTuple):
         return found
 
 
-def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[str, Value]:
+def constants_in(ar: FunctionArithmetic, modulus_input: ModulusInput) -> dict[str, Numeric]:
     """Return the record of a modulus in some arithmetic; None for infinite constants."""
     exact, zeros = modulus_input.in_digits(ar), modulus_input.zeros()
     K, K_prime, E, E_prime, q = constants(ar, exact)

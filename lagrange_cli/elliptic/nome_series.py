@@ -17,7 +17,7 @@ from itertools import accumulate, count, islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.points import MAX_PERIODS
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.text import double_text
 from ..errors import LagtopError
 from .complete import complete_k, nome
@@ -29,37 +29,41 @@ from .tables import TableOfFunctions
 if TYPE_CHECKING:
     from .tables import Rows
 
-ErrorBound = Callable[[Value], Value]
+ErrorBound = Callable[[Numeric], Numeric]
 """A bound on the error after n terms, as a function of n."""
 
 
-def sn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
+def sn_sums(ar: FunctionArithmetic, u: Numeric, modulus: Modulus) -> Iterator[Numeric]:
     """Yield sums of sn u = 2 pi/(k K) sum q^(n-1/2)/(1 - q^(2n-1)) sin (2n-1) pi u/2K  (3.1.4)."""
     return _odd_sums(ar, u, modulus, -1, ar.sin)
 
 
-def cn_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
+def cn_sums(ar: FunctionArithmetic, u: Numeric, modulus: Modulus) -> Iterator[Numeric]:
     """Yield sums of cn u = 2 pi/(k K) sum q^(n-1/2)/(1 + q^(2n-1)) cos (2n-1) pi u/2K  (3.1.5)."""
     return _odd_sums(ar, u, modulus, 1, ar.cos)
 
 
 def _odd_sums(
-    ar: FunctionArithmetic, u: Value, modulus: Modulus, sign: int, wave: Callable[[Value], Value]
-) -> Iterator[Value]:
+    ar: FunctionArithmetic,
+    u: Numeric,
+    modulus: Modulus,
+    sign: int,
+    wave: Callable[[Numeric], Numeric],
+) -> Iterator[Numeric]:
     """Yield the partial sums of the waves of odd order, with `sign` before q^(2n-1)."""
     q, angle, scale = _parts(ar, u, modulus)
     root = ar.sqrt(q)
     return accumulate(scale * root**n / (1 + sign * q**n) * wave(n * angle) for n in count(1, 2))
 
 
-def am_sums(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> Iterator[Value]:
+def am_sums(ar: FunctionArithmetic, u: Numeric, modulus: Modulus) -> Iterator[Numeric]:
     """Yield the sums of am u = pi u/2K + sum (2/n) q^n/(1 + q^2n) sin 2n pi u/2K  (3.1.7)."""
     q, angle, _ = _parts(ar, u, modulus)
     terms = (2 * q**n / (n * (1 + q ** (2 * n))) * ar.sin(2 * n * angle) for n in count(1))
     return accumulate(terms, initial=angle)
 
 
-def k_sums(ar: FunctionArithmetic, modulus: Modulus) -> Iterator[Value]:
+def k_sums(ar: FunctionArithmetic, modulus: Modulus) -> Iterator[Numeric]:
     """Yield the sums of K = pi/2 {1 + (1/2)^2 k^2 + (1 3/2 4)^2 k^4 + ...}  (3.1.8)."""
     m = modulus.k * modulus.k
     factors = (((2 * n - 1) / ar.convert(2 * n)) ** 2 * m for n in count(1))
@@ -116,12 +120,14 @@ def k_bound(ar: FunctionArithmetic, modulus: Modulus) -> ErrorBound:
     return lambda n: min(power(n) / ((2 * n + half) * complement), K)
 
 
-def _falling(ar: FunctionArithmetic, fall: Value) -> ErrorBound:
+def _falling(ar: FunctionArithmetic, fall: Numeric) -> ErrorBound:
     """Return exp(n fall) as a function of n, but at least exp(-10^6), which is quicker."""
     return lambda n: ar.exp(max(n * fall, -(10**6)))
 
 
-def _parts(ar: FunctionArithmetic, u: Value, modulus: Modulus) -> tuple[Value, Value, Value]:
+def _parts(
+    ar: FunctionArithmetic, u: Numeric, modulus: Modulus
+) -> tuple[Numeric, Numeric, Numeric]:
     """Return the nome (3.1.6), pi u/2K and 2 pi/(k K)."""
     K = complete_k(ar, modulus.k_prime)
     q = nome(ar, m=modulus.k * modulus.k, k_prime=modulus.k_prime)
@@ -138,8 +144,8 @@ _DIGITS = 400
 class _Series(NamedTuple):
     """The partial sums of a series, their limit, and a bound on the error after n terms."""
 
-    sums: Iterator[Value]
-    exact: Value
+    sums: Iterator[Numeric]
+    exact: Numeric
     bound: ErrorBound
 
 
@@ -202,7 +208,7 @@ class SeriesTable(TableOfFunctions):
             yield [str(n), *(double_text(float(x) + 0.0) for x in cells)]
 
 
-def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[str, _Series]:
+def _at(ar: ManyDigits, u: Numeric, modulus: Modulus, *, radians: bool) -> dict[str, _Series]:
     """Return the series at u."""
     am, sn, cn, _ = jacobi(ar, u, modulus)
     unit, bound = 1 if radians else 180 / ar.pi, am_bound(ar, modulus)
@@ -216,7 +222,7 @@ def _at(ar: ManyDigits, u: Value, modulus: Modulus, *, radians: bool) -> dict[st
     }
 
 
-def terms_needed(bound: ErrorBound, tolerance: Value) -> Value:
+def terms_needed(bound: ErrorBound, tolerance: Numeric) -> Numeric:
     """Return the least number of terms for which a falling bound is at most the tolerance.
 
     The result is a number of the context, correct to 300 bits, since k may be arbitrarily close to
@@ -224,7 +230,7 @@ def terms_needed(bound: ErrorBound, tolerance: Value) -> Value:
     """
     ar = tolerance.context
 
-    def bisected(few: Value, enough: Value, terms: Callable[[Value], Value]) -> Value:
+    def bisected(few: Numeric, enough: Numeric, terms: Callable[[Numeric], Numeric]) -> Numeric:
         """Return the least number that is enough, by bisection."""
         while enough - few > max(1, ar.ldexp(enough, -min(300, ar.prec - 10))):
             middle = (few + enough) // 2

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import triple
 from ..errors import LagtopError
 from .any_modulus import AnyModulus, ModulusKind
@@ -27,16 +27,16 @@ if TYPE_CHECKING:  # NumPy is loaded for arrays only
 INDICES = ("01", "00", "11", "10")
 """The indices of the four theta functions, in the order of the sources."""
 
-Complex = Value
+Complex = Numeric
 """A real or complex number, or array, of the arithmetic in use."""
 
 
 class Periods(NamedTuple):
     """A real argument in periods: whole periods, and a rest within half a period."""
 
-    turns: Value
-    rest: Value
-    low: Value = 0.0
+    turns: Numeric
+    rest: Numeric
+    low: Numeric = 0.0
     """The part of the rest lost to rounding (arrays only)."""
 
     def half_further(self, ar: FunctionArithmetic) -> Periods:
@@ -50,7 +50,7 @@ class Periods(NamedTuple):
         return Periods(self.turns + ar.where(forward, 0.0, 1.0), rest + (low + self.low))
 
 
-def whole_and_rest(ar: FunctionArithmetic, x: Value) -> Periods:
+def whole_and_rest(ar: FunctionArithmetic, x: Numeric) -> Periods:
     """Split a real number of periods into whole periods and the rest."""
     turns = ar.nint(x)
     return Periods(turns, x - turns)
@@ -86,8 +86,8 @@ def is_complex(ar: FunctionArithmetic, x: Complex) -> bool:
 
 
 def each_alone(
-    ar: FunctionArithmetic, function: Callable[..., Value], x: Value, *constants: Value
-) -> Value:
+    ar: FunctionArithmetic, function: Callable[..., Numeric], x: Numeric, *constants: Numeric
+) -> Numeric:
     """Return a function of arrays that broadcast, evaluated once for each set of constants."""
     if not ar.is_array:
         return function(x, *constants)
@@ -101,21 +101,21 @@ def each_alone(
     return values
 
 
-Fine = Value
+Fine = Numeric
 """A real number of a context, or an array of pairs of doubles."""
 
 
 class Coordinate(NamedTuple):
     """An integer and a rest, whose sum counts periods."""
 
-    whole: Value
+    whole: Numeric
     rest: Fine
 
     def exactly(self) -> Fine:
         """Return the sum with all its digits."""
         return fine_whole(self) + self.rest
 
-    def total(self) -> Value:
+    def total(self) -> Numeric:
         """Return the sum, rounded once."""
         return self.whole + coarse(self.rest)
 
@@ -126,7 +126,7 @@ class Place(NamedTuple):
     x: Coordinate
     y: Coordinate
 
-    def coarse_rests(self) -> tuple[Value, Value]:
+    def coarse_rests(self) -> tuple[Numeric, Numeric]:
         """Return the rests, rounded once."""
         return coarse(self.x.rest), coarse(self.y.rest)
 
@@ -158,17 +158,17 @@ class Lattice(NamedTuple):
     kind: ModulusKind
     circular: bool
     """Whether the series run in the nome of k (k <= k'), not in the nome of k'."""
-    steepness: Value
+    steepness: Numeric
     """pi K'/K or pi K/K', whichever is at least pi."""
-    ratio: Value
+    ratio: Numeric
     """K'/K."""
-    scale: Value
+    scale: Numeric
     """Half periods along 2K per unit of the argument, stretch/(2K)."""
     along: Triple
     """Factor of real parts, to three times the precision of doubles."""
     up: Triple
     """Factor of imaginary parts, to three times the precision of doubles."""
-    across: Value
+    across: Numeric
     """stretch/(2K') in many digits."""
     steep: Fine
     """The steepness, in the type of rests."""
@@ -231,7 +231,7 @@ def coordinate_of(ar: FunctionArithmetic, x: Fine) -> Coordinate:
     return Coordinate(whole, x - type(x)(whole))
 
 
-def fine(ar: FunctionArithmetic, value: Value) -> Fine:
+def fine(ar: FunctionArithmetic, value: Numeric) -> Fine:
     """Convert a number with many digits to the type of rests."""
     if not ar.is_array:
         return value
@@ -245,6 +245,6 @@ def fine_whole(coordinate: Coordinate) -> Fine:
     return type(coordinate.rest)(coordinate.whole)
 
 
-def coarse(x: Fine) -> Value:
+def coarse(x: Fine) -> Numeric:
     """Return the nearest doubles, or a number of a context unchanged."""
     return getattr(x, "high", x)

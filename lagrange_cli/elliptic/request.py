@@ -14,7 +14,7 @@ from .modulus import ModulusInput
 
 if TYPE_CHECKING:
     from ..arithmetic.points import Points
-    from ..arithmetic.protocol import Value
+    from ..arithmetic.protocol import Numeric
     from ..arithmetic.types import Array
     from .many_digits import ManyDigits
 
@@ -68,7 +68,7 @@ class ComplexPoints(NamedTuple):
     real: Points
     imag: Points | None = None
 
-    def blocks(self) -> Iterator[Value]:
+    def blocks(self) -> Iterator[Numeric]:
         """Yield all arguments as complex arrays."""
         if self.imag is None:
             yield from (block + 0j for block in self.real.blocks())
@@ -172,7 +172,7 @@ class Known(NamedTuple):
         split = {f"{name}{part}" for name in self.poles for part in ("", "_re", "_im")}
         return split | self.parts | self.turns
 
-    def cleared(self, ar: ManyDigits, parts: dict[str, Value]) -> dict[str, Value]:
+    def cleared(self, ar: ManyDigits, parts: dict[str, Numeric]) -> dict[str, Numeric]:
         """Return all parts, with 0 for `turns` that are 0 up to rounding."""
         trace = ar.mpf(10) ** (-ar.dps // 2)
         none = {name for name in self.turns & parts.keys() if abs(parts[name]) < trace}

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from ..arithmetic.ball import Ball, TooFewDigitsError, TooSmallError
 from ..arithmetic.balls import Balls, balls
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import MOST_DIGITS, alike, precisions, text_of, too_small
 from ..arithmetic.text import NumberText, double_text
 from ..errors import LagtopError
@@ -164,8 +164,8 @@ class RealTable(TableOfFunctions):
         raise NotImplementedError
 
     def columns(
-        self, ar: FunctionArithmetic, x: Value, constants: Any, known: Known
-    ) -> dict[str, Value]:
+        self, ar: FunctionArithmetic, x: Numeric, constants: Any, known: Known
+    ) -> dict[str, Numeric]:
         """Return the columns by name at balls or arrays x; `known` columns may be left out."""
         raise NotImplementedError
 
@@ -193,7 +193,7 @@ class RealTable(TableOfFunctions):
             x = Fraction(float(point)) if digits is None and self.rounds else point
             known = table.known(x)
 
-            def compute(ar: Balls) -> dict[str, Value]:
+            def compute(ar: Balls) -> dict[str, Numeric]:
                 return table.columns(ar, ar.convert(x), constants(ar), known)
 
             return numbers.texts(compute, known, table.digits_lost(x))

@@ -19,7 +19,7 @@ from typing import NamedTuple
 from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.balls import balls
 from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import Triple, decided, triple
 from ..errors import LagtopError
 from .complete import complete_k, nome
@@ -41,14 +41,14 @@ class ThetaSeries(NamedTuple):
 
     circular: bool
     """Whether the Fourier series are in use, rather than the Gaussians."""
-    q: Value
+    q: Numeric
     """The nome, at most exp(-pi)."""
-    steepness: Value
+    steepness: Numeric
     """pi K/K' of the Gaussians, at least pi."""
-    even_size: Value
+    even_size: Numeric
     """Common factor of all terms of the even function."""
-    odd_size: Value
-    rate: Value
+    odd_size: Numeric
+    rate: Numeric
     """1/(2K)."""
     exact_rate: Triple | None = None
     """1/(2K) for reducing arrays of arguments; None for numbers."""
@@ -104,7 +104,7 @@ def theta(ar: FunctionArithmetic, ij: str, x: Complex, modulus: Modulus) -> Comp
     """Return theta_ij(x, iK'/K) of section 1; `ij` is 01, 00, 11 or 10."""
     _check(ij)
 
-    def function(x: Complex, *parts: Value) -> Complex:
+    def function(x: Complex, *parts: Numeric) -> Complex:
         if is_complex(ar, x):
             from .complex_theta import theta_of_modulus  # loads NumPy and mpmath
 
@@ -122,7 +122,7 @@ def zeta(ar: FunctionArithmetic, ij: str, v: Complex, modulus: Modulus) -> Compl
     """
     _check(ij)
 
-    def function(v: Complex, *parts: Value) -> Complex:
+    def function(v: Complex, *parts: Numeric) -> Complex:
         if is_complex(ar, v):
             from .complex_theta import zeta_of_modulus  # loads NumPy and mpmath
 
@@ -140,13 +140,13 @@ def _check(ij: str) -> None:
         raise LagtopError(f"ij must be 01, 00, 11 or 10, got {ij}", "ij")
 
 
-def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
+def theta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Numeric:
     """Return theta_ij at a place in its periods."""
     size = series.odd_size if ij[0] == "1" else series.even_size
     return size * _bell(ar, ij, x.rest, series) * _value(ar, ij, x, series)
 
 
-def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
+def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Numeric:
     """Return Z_ij at a place in its periods."""
     value, slope = _sums(ar, ij, x, series)
     if ij == "10":
@@ -154,14 +154,14 @@ def zeta_at(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) ->
     return slope / value * series.rate
 
 
-def in_periods(ar: FunctionArithmetic, v: Value, series: ThetaSeries) -> Periods:
+def in_periods(ar: FunctionArithmetic, v: Numeric, series: ThetaSeries) -> Periods:
     """Return v/2K; arrays keep their digits far away and next to whole periods."""
     if series.exact_rate:
         return reduced(v, series.exact_rate)
     return whole_and_rest(ar, v * series.rate)
 
 
-def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Value:
+def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> Numeric:
     """Return theta_ij(x) divided by the size of the function and its `_bell`.
 
     To be accurate next to its zero, theta10 is evaluated as theta11 half a period away.  The
@@ -174,7 +174,7 @@ def _value(ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries) -> 
 
 def _sums(
     ar: FunctionArithmetic, ij: str, x: Periods, series: ThetaSeries, *, slopes: bool = True
-) -> tuple[Value, Value]:
+) -> tuple[Numeric, Numeric]:
     """Return the sum of a series and, if `slopes` is set, of its derivative."""
     if series.circular:
         value, slope = _fourier(ar, ij, x.rest, series.q, slopes=slopes)
@@ -185,8 +185,8 @@ def _sums(
 
 
 def _fourier(
-    ar: FunctionArithmetic, ij: str, x: Value, q: Value, *, slopes: bool
-) -> tuple[Value, Value]:
+    ar: FunctionArithmetic, ij: str, x: Numeric, q: Numeric, *, slopes: bool
+) -> tuple[Numeric, Numeric]:
     """Return the series of section 1 in q <= exp(-pi), and its derivative.
 
     - 01 and 00: 1 + 2 sum (-+1)^h q^(h^2) cos 2 pi h x.
@@ -208,7 +208,7 @@ def _fourier(
     return widened_by(ar, value, 4 * left_out), widened_by(ar, slope, 26 * terms * left_out)
 
 
-def _bell(ar: FunctionArithmetic, ij: str, x: Value, series: ThetaSeries) -> Value:
+def _bell(ar: FunctionArithmetic, ij: str, x: Numeric, series: ThetaSeries) -> Numeric:
     """Return the greatest Gaussian, by which sums are divided; 1 for Fourier series."""
     if series.circular:
         return 1
@@ -217,8 +217,8 @@ def _bell(ar: FunctionArithmetic, ij: str, x: Value, series: ThetaSeries) -> Val
 
 
 def _gaussians(
-    ar: FunctionArithmetic, ij: str, x: Value, c: Value, *, slopes: bool
-) -> tuple[Value, Value]:
+    ar: FunctionArithmetic, ij: str, x: Numeric, c: Numeric, *, slopes: bool
+) -> tuple[Numeric, Numeric]:
     """Return sum (+-1)^n exp(-c (x - n)^2) and its derivative, over the greatest Gaussian.
 
     c is the steepness.  For 01 and 11, n runs over the half-integers; for 00 and 10, over the
@@ -251,6 +251,6 @@ def _gaussians(
     return value * (turn if subtracted else 1), slope * (1 if subtracted else turn)
 
 
-def widened_by(ar: FunctionArithmetic, value: Value, left_out: Value) -> Value:
+def widened_by(ar: FunctionArithmetic, value: Numeric, left_out: Numeric) -> Numeric:
     """Return a ball with `left_out` added to its radius; other numbers are left as they are."""
     return ar.widened(value, lambda: (left_out,), lambda x: x, values_only=True)

@@ -24,7 +24,7 @@ from typing import Any, Self
 
 from ..arithmetic.balls import balls
 from ..arithmetic.numbers import in_arithmetic
-from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Value
+from ..arithmetic.protocol import ComplexArithmetic, FunctionArithmetic, Numeric
 from ..arithmetic.rounding import decided
 from ..errors import LagtopError
 from .complete import complete_k
@@ -35,7 +35,7 @@ from .third_kind_real import RealCircular, RealHyperbolic, ThirdKind, ZeroParame
 
 
 def third_kind(
-    ar: FunctionArithmetic, ij: str, size: Value, modulus: Modulus, *, imaginary: bool
+    ar: FunctionArithmetic, ij: str, size: Numeric, modulus: Modulus, *, imaginary: bool
 ) -> ThirdKind:
     """Return Omega_ij and Pi_ij of a parameter, with constants in balls or an mpmath context.
 
@@ -69,7 +69,7 @@ def third_kind(
 
 
 @in_arithmetic
-def omega(ar: ComplexArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus) -> Complex:
+def omega(ar: ComplexArithmetic, ij: str, eta: Numeric, v: Complex, modulus: Modulus) -> Complex:
     """Return Omega_ij(eta, v) of section 2, for real eta.
 
     - For real v, return the real part.
@@ -84,18 +84,18 @@ def omega(ar: ComplexArithmetic, ij: str, eta: Value, v: Complex, modulus: Modul
 
 @in_arithmetic
 def pi_function(
-    ar: ComplexArithmetic, ij: str, eta: Value, v: Complex, modulus: Modulus
+    ar: ComplexArithmetic, ij: str, eta: Numeric, v: Complex, modulus: Modulus
 ) -> Complex:
     """Return Pi_ij(eta, v) = eta Z_ij(v) + Omega_ij(eta, v), (3,1) and (3,2), as `omega` does."""
     return _evaluate(ar, "pi", ij, (eta, v), modulus)
 
 
 def _evaluate(
-    ar: Any, name: str, ij: str, place: tuple[Value, Complex], modulus: Modulus
+    ar: Any, name: str, ij: str, place: tuple[Numeric, Complex], modulus: Modulus
 ) -> Complex:
     """Return Omega or Pi of numbers of a context, or of arrays that broadcast."""
 
-    def function(eta: Value, v: Complex, *parts: Value) -> Complex:
+    def function(eta: Numeric, v: Complex, *parts: Numeric) -> Complex:
         given, real, imag = Modulus(*parts), ar.re(v), ar.im(v)
         if imag and real:
             raise LagtopError("param must be real or imaginary", "param")
@@ -128,22 +128,22 @@ class ImaginaryCircular(ThirdKind):
     """Whether the series are evaluated at x + 1/2."""
     sign: int
     """Sign of alpha."""
-    zeta: Value
+    zeta: Numeric
     """2K Z(i |alpha|)/i."""
-    growth: Value
+    growth: Numeric
     """Growth of Pi per period: zeta, with half a turn for the odd function."""
-    floor: Value
+    floor: Numeric
     """theta01(i y) for the even function; it vanishes with K' - alpha."""
-    heights: tuple[Value, ...]
+    heights: tuple[Numeric, ...]
     """Coefficients that contain cosh."""
-    slants: tuple[Value, ...]
+    slants: tuple[Numeric, ...]
     """Coefficients that contain sinh."""
-    left_out: Value
+    left_out: Numeric
     """A bound on the truncation error of each series."""
 
     @classmethod
     def at(
-        cls, ar: FunctionArithmetic, ij: str, y: Value, q: Value, terms: int
+        cls, ar: FunctionArithmetic, ij: str, y: Numeric, q: Numeric, terms: int
     ) -> ImaginaryCircular:
         """Return the constants from y = alpha/2K and the nome.
 
@@ -174,19 +174,19 @@ class ImaginaryCircular(ThirdKind):
         parts = tuple(heights), tuple(slants), 2 * left_out
         return cls(odd, shifted, sign, zeta, growth, floor, *parts)
 
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return the phase of the theta function."""
         half_turns, within = self._phase(ar, x)
         return self.sign * (ar.pi * half_turns + within)
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Pi, from its growth over whole periods and its value within one."""
         half_turns, within = self._phase(ar, x)
         if self.odd:
             within = within + ar.pi * (half_turns - x.turns)
         return self.sign * (self.growth * x.turns + (self.zeta * x.rest + within))
 
-    def _phase(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value]:
+    def _phase(self, ar: FunctionArithmetic, x: Periods) -> tuple[Numeric, Numeric]:
         """Return the whole half turns of the phase, and the rest."""
         turns, rest, _ = x.half_further(ar) if self.shifted else x
         series = list(enumerate(zip(self.heights, self.slants, strict=True)))
@@ -198,7 +198,7 @@ class ImaginaryCircular(ThirdKind):
         across = sum(b * ar.sin(2 * (h + 1) * ar.pi * rest) for h, (_, b) in series)
         return 0 * turns, self._angle(ar, across, along)
 
-    def _angle(self, ar: FunctionArithmetic, across: Value, along: Value) -> Value:
+    def _angle(self, ar: FunctionArithmetic, across: Numeric, along: Numeric) -> Numeric:
         """Return the angle of two sums, widened by their truncation errors."""
         return ar.atan2(*(widened_by(ar, x, self.left_out) for x in (across, along)))
 
@@ -220,21 +220,21 @@ class ImaginaryHyperbolic(ThirdKind):
     ij: str
     sign: int
     """Sign of alpha."""
-    steepness: Value
-    turn: Value
+    steepness: Numeric
+    turn: Numeric
     """2 c y = pi |alpha|/K', less than pi."""
-    slope: Value
+    slope: Numeric
     """Z of the sum alone: 2K Z(i |alpha|)/i + 2 c y."""
-    growth: Value
+    growth: Numeric
     """Growth of Pi per period: 2K Z(i |alpha|)/i, with half a turn for the odd function."""
-    cosines: tuple[Value, ...]
+    cosines: tuple[Numeric, ...]
     """cos 2 c n y."""
-    sines: tuple[Value, ...]
+    sines: tuple[Numeric, ...]
     """sin 2 c n y."""
 
     @classmethod
     def at(
-        cls, ar: FunctionArithmetic, ij: str, y: Value, steepness: Value, terms: int
+        cls, ar: FunctionArithmetic, ij: str, y: Numeric, steepness: Numeric, terms: int
     ) -> ImaginaryHyperbolic:
         """Return the constants from y = alpha/2K and the steepness."""
         c, half_turn = steepness, steepness * abs(y)
@@ -260,17 +260,17 @@ class ImaginaryHyperbolic(ThirdKind):
         growth = slope - turn + ar.pi if ij[0] == "1" else slope - turn
         return cls(ij, -1 if y < 0 else 1, c, turn, slope, growth, cosines, sines)
 
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return the phase of the theta function."""
         half_turns = ar.pi * x.turns if self.ij[0] == "1" else 0 * x.turns
         return self.sign * (half_turns + (self.turn * x.rest + self._phase(ar, x.rest)))
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Pi, from its growth over whole periods and its value within one."""
         within = self.slope * x.rest + self._phase(ar, x.rest)
         return self.sign * (self.growth * x.turns + within)
 
-    def _phase(self, ar: FunctionArithmetic, rest: Value) -> Value:
+    def _phase(self, ar: FunctionArithmetic, rest: Numeric) -> Numeric:
         """Return the phase of the sum alone, within a period."""
         c, size, half = self.steepness, abs(rest), self.ij[1] == "1"
         plus = minus = 0 * size, 0 * size

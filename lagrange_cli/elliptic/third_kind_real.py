@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 from ..arithmetic.ball import Ball
-from ..arithmetic.protocol import FunctionArithmetic, Value
+from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import pair
 from .periods import Periods
 from .theta import widened_by
@@ -24,11 +24,11 @@ class ThirdKind:
     For an imaginary parameter both are imaginary, and are returned without the i.
     """
 
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Omega at x = eta/2K."""
         raise NotImplementedError
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Pi at x = eta/2K; NaN if it has a pole for every eta."""
         raise NotImplementedError
 
@@ -44,11 +44,11 @@ class ZeroParameter(ThirdKind):
 
     ij: str
 
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return 0."""
         return 0 * x.rest
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return 0, or NaN for the function 11."""
         return (math.nan if self.ij == "11" else 0) * x.rest
 
@@ -60,7 +60,7 @@ def _in_doubles(x: Any) -> Any:
     return float(x) if isinstance(x, Ball) else x
 
 
-def _distance(ar: FunctionArithmetic, x: Periods, size: Value, low: Value) -> Value:
+def _distance(ar: FunctionArithmetic, x: Periods, size: Numeric, low: Numeric) -> Numeric:
     """Return the distance between |x| and |y|, where |y| is size + low."""
     return abs((abs(x.rest) - size) + (ar.where(x.rest < 0, -x.low, x.low) - low))
 
@@ -72,24 +72,31 @@ class RealCircular(ThirdKind):
     odd: bool
     sign: int
     """Sign of y."""
-    growth: Value
+    growth: Numeric
     """2K Z(|v|), the growth of Pi per period."""
-    cosines: tuple[Value, ...]
+    cosines: tuple[Numeric, ...]
     """Coefficients of the series of P (odd: of A) below."""
-    sines: tuple[Value, ...]
+    sines: tuple[Numeric, ...]
     """Coefficients of the series of Q (odd: of B) below."""
-    weights: tuple[Value, ...]
+    weights: tuple[Numeric, ...]
     """Coefficients of both, before they are multiplied by cosines and sines."""
-    size: Value
+    size: Numeric
     """|y|."""
-    left_out: Value
+    left_out: Numeric
     """A bound on the truncation error of each series."""
-    low: Value = 0.0
+    low: Numeric = 0.0
     """The part of |y| lost to rounding."""
 
     @classmethod
     def at(
-        cls, ar: FunctionArithmetic, odd: bool, y: Value, growth: Value, q: Value, *, terms: int
+        cls,
+        ar: FunctionArithmetic,
+        odd: bool,
+        y: Numeric,
+        growth: Numeric,
+        q: Numeric,
+        *,
+        terms: int,
     ) -> RealCircular:
         """Return the constants from y and the nome.
 
@@ -118,7 +125,7 @@ class RealCircular(ThirdKind):
         left_out, sign = 4 * q ** (terms * terms), -1 if y < 0 else 1
         return cls(odd, sign, growth, cosines, sines, tuple(weights), size, left_out)
 
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Omega: artanh Q/P or, for the odd function, -artanh B/A or -artanh A/B.
 
         Next to its pole, the odd function is log[(A - B)/(A + B)]/2, with A - B from the series at
@@ -140,11 +147,11 @@ class RealCircular(ThirdKind):
         logarithm = ar.log(ar.where(pole, close / (A + B), 1 + 0 * A)) / 2
         return side * ar.where(pole, logarithm, -ar.atanh(ar.where(pole, 0 * ratio, ratio)))
 
-    def _whole(self, ar: FunctionArithmetic, total: Value) -> Value:
+    def _whole(self, ar: FunctionArithmetic, total: Numeric) -> Numeric:
         """Return a sum, widened by its truncation error."""
         return widened_by(ar, total, self.left_out)
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Pi, from its growth over whole periods and its value within one."""
         return (self.sign * self.growth) * x.turns + (
             (self.sign * self.growth) * x.rest + self.omega(ar, x)
@@ -167,24 +174,24 @@ class RealHyperbolic(ThirdKind):
     odd: bool
     sign: int
     """Sign of y."""
-    growth: Value
+    growth: Numeric
     """2K Z(|v|), the growth of Pi per period."""
-    size: Value
+    size: Numeric
     """|y|."""
-    room: Value
+    room: Numeric
     """1 - 2 |y|."""
-    steepness: Value
-    slope: Value
+    steepness: Numeric
+    slope: Numeric
     """d log S/da at |y|."""
-    tilt: Value
+    tilt: Numeric
     """The sum of slope and steepness, which cancel for small y."""
     terms: int
-    low: Value = 0.0
+    low: Numeric = 0.0
     """The part of |y| lost to rounding."""
 
     @classmethod
     def at(
-        cls, ar: FunctionArithmetic, odd: bool, y: Value, steepness: Value, terms: int
+        cls, ar: FunctionArithmetic, odd: bool, y: Numeric, steepness: Numeric, terms: int
     ) -> RealHyperbolic:
         """Return the constants from y and the steepness."""
         size, c = abs(y), steepness
@@ -203,13 +210,13 @@ class RealHyperbolic(ThirdKind):
         room, sign = 1 - 2 * size, -1 if y < 0 else 1
         return cls(odd, sign, c * room + slope, size, room, c, slope, slope + c, terms)
 
-    def omega(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def omega(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return -c small (1 - 2 large) + log[S(a)/S(b)]/2; small <= large are |x| and |y|."""
         small, room, apart = self._sorted(ar, x)
         main = -self.steepness * small * room
         return self.sign * ar.sign(x.rest) * (main + self._ratio(ar, small, room, apart))
 
-    def pi(self, ar: FunctionArithmetic, x: Periods) -> Value:
+    def pi(self, ar: FunctionArithmetic, x: Periods) -> Numeric:
         """Return Pi, from its growth over whole periods and its value within one."""
         size, c = abs(x.rest), self.steepness
         small, room, apart = self._sorted(ar, x)
@@ -224,7 +231,7 @@ class RealHyperbolic(ThirdKind):
         """Return the parameter with its constants in doubles, of which fewer terms are needed."""
         return super().rounded(low=pair(self.size).low, terms=4, **others)
 
-    def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Value, Value, Value]:
+    def _sorted(self, ar: FunctionArithmetic, x: Periods) -> tuple[Numeric, Numeric, Numeric]:
         """Return the smaller of |x| and |y|, 1 - 2 times the larger, and their distance."""
         size = abs(x.rest)
         room = (1 - 2 * size) - 2 * ar.where(x.rest < 0, -x.low, x.low)
@@ -232,7 +239,7 @@ class RealHyperbolic(ThirdKind):
         apart = _distance(ar, x, self.size, self.low)
         return ar.where(less, size, self.size), ar.where(less, self.room, room), apart
 
-    def _ratio(self, ar: FunctionArithmetic, small: Value, room: Value, a: Value) -> Value:
+    def _ratio(self, ar: FunctionArithmetic, small: Numeric, room: Numeric, a: Numeric) -> Numeric:
         """Return log[S(a)/S(b)]/2 from S(a) - S(b), which keeps its digits.
 
         S is a sum of exp(-c i (i + 1 - 2a)) and their images exp(-c (i + 1)(i + 2a)).  For the odd
@@ -260,7 +267,7 @@ class RealHyperbolic(ThirdKind):
         logarithm = ar.log(ar.where(pole, there, 0 * there + 1))
         return ar.where(pole, logarithm, ar.log1p(ar.where(pole, 0 * quotient, quotient))) / 2
 
-    def _odd_sum(self, ar: FunctionArithmetic, a: Value) -> Value:
+    def _odd_sum(self, ar: FunctionArithmetic, a: Numeric) -> Numeric:
         """Return S(a) of the odd function."""
         c, total = self.steepness, 0 * a
         for i in range(self.terms):

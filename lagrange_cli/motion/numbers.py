@@ -20,7 +20,7 @@ from .regime import Exact, Facts, Regime
 if TYPE_CHECKING:
     from .over_time.samplers import Sampler
 
-S = TypeVar("S")
+_S = TypeVar("_S")
 
 SAMPLER_DIGITS = 40
 """Digits of the gaps of a sampler: 2^50 periods use 16 of them, and a double 16 more."""
@@ -140,7 +140,7 @@ class Numbers:
             )
         return self._requested[digits][name in TEXTBOOK]
 
-    def decide(self, what: str, ask: Callable[[Kind[Ball]], S]) -> S:
+    def decide(self, what: str, ask: Callable[[Kind[Ball]], _S]) -> _S:
         """Return the result of `ask` at the first precision that decides it.
 
         Raises LagtopError if no precision does.

@@ -33,7 +33,7 @@ _SIGNALS_TAKE = 0.2
 """Seconds by which a signal may reach another process before it reaches this one."""
 _SAFE_PATH = "PYTHONSAFEPATH"
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 P = TypeVar("P")
 
 
@@ -50,7 +50,7 @@ def parse_jobs(text: str) -> int:
     return int(text)
 
 
-def in_order(work: Callable[[T], P], items: Iterable[T], jobs: int) -> Generator[P, None, None]:
+def in_order(work: Callable[[_T], P], items: Iterable[_T], jobs: int) -> Generator[P, None, None]:
     """Yield `work(item)` for each item, in order; this process is one of the `jobs`.
 
     If `jobs` > 1, the work, its items and its results must be picklable.  Raises UnavailableError

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R, polynomial
-from ...arithmetic.protocol import SeriesArithmetic, Value
+from ...arithmetic.protocol import Numeric, SeriesArithmetic
 from ...elliptic.complete import place
 from ..degenerate import Constant, Separatrix
 from ..kinds import Kind, Nutating
@@ -72,8 +72,8 @@ def direction(motion: Nutating[R] | Separatrix[R]) -> int:
 
 
 def evaluate(
-    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Value, rises: int
-) -> tuple[Value, Value, Value, Value]:
+    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Numeric, rises: int
+) -> tuple[Numeric, Numeric, Numeric, Numeric]:
     """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 
     On the upper pole Y = 0.  Its argument is then the limit from later times if the tilt `rises`,
@@ -83,7 +83,7 @@ def evaluate(
     S, C = (ar.sinh(z), ar.cosh(z)) if series.hyperbolic else (ar.sin(z), ar.cos(z))
     s = S * S
 
-    def polar(c: Component, side: int) -> tuple[Value, Value]:
+    def polar(c: Component, side: int) -> tuple[Numeric, Numeric]:
         P, Q = polynomial(c.real, s), polynomial(c.imag, s)
         real, imag = (P, S * C * Q) if c.even else (C * P, S * Q)
         return ar.sqrt(real * real + imag * imag), ar.atan2(imag if P or S else side * Q, real)

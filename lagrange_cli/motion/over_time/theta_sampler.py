@@ -21,7 +21,7 @@ import numpy as np
 from ...arithmetic.arrays import order_by_parity, placed, taken
 from ...arithmetic.double_double import Period, period_of, whole_periods
 from ...arithmetic.points import MAX_PERIODS
-from ...arithmetic.protocol import Value
+from ...arithmetic.protocol import Numeric
 from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
 from ..degenerate import Separatrix
@@ -213,9 +213,9 @@ class SeriesFromStart(NamedTuple):
     """The series about that turning point and about the other one."""
     first_is_upper: bool
     """Whether that turning point is u1."""
-    offset: Value
+    offset: Numeric
     """Steps of half a period from that turning point to the start, from -1/2 to 1/2."""
-    starts: tuple[Value, Value]
+    starts: tuple[Numeric, Numeric]
     """The arguments of X and Y at the start."""
 
 

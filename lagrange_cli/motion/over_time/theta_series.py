@@ -17,7 +17,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...arithmetic.protocol import Arithmetic, SeriesArithmetic, Value
+from ...arithmetic.protocol import Arithmetic, Numeric, SeriesArithmetic
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
 
 Coefficients = list[Any]
@@ -58,37 +58,37 @@ class Frame(NamedTuple):
 class SquaredRatio(NamedTuple):
     """A number eta from 0 to K', as sn^2(eta, k') and cn^2(eta, k') up to a common factor."""
 
-    s2: Value
-    c2: Value
+    s2: Numeric
+    c2: Numeric
 
 
 class ThetaConstants(NamedTuple):
     """The constants of a nutating top in its series."""
 
-    period: Value
-    quarter: Value
+    period: Numeric
+    quarter: Numeric
     """K."""
-    quarter_prime: Value
+    quarter_prime: Numeric
     """K'; None without torque, as it is then infinite."""
-    m: Value
+    m: Numeric
     """k^2."""
-    k: Value
-    k_prime: Value
+    k: Numeric
+    k_prime: Numeric
     plus: SquaredRatio
     """The parameter of X, 2K y+/pi."""
     minus: SquaredRatio
     """The parameter of Y, 2K y-/pi."""
-    x_size: Value
+    x_size: Numeric
     """|X| at u1, which is cos(theta_min/2)."""
-    y_size: Value
+    y_size: Numeric
     """|Y| at u2, sin(theta_max/2), times sqrt(k'), the ratio of theta3 at u2 and at u1."""
-    sign_plus: Value
-    sign_minus: Value
-    offset: Value
+    sign_plus: Numeric
+    sign_minus: Numeric
+    offset: Numeric
     """Periods since the nearest passage of u1, at t = 0."""
     rises: int
     """Sign of the nutation rate at t = 0; +1 if the rate is 0."""
-    nutation: Value
+    nutation: Numeric
     """-du/dt over the phase x near a passage of u1; None if it is not needed."""
 
 
@@ -97,11 +97,11 @@ class Series(NamedTuple):
 
     hyperbolic: bool
     frames: list[Frame]
-    scale: Value
+    scale: Numeric
     """Argument of the functions per step of the phase."""
-    spin_slope: Value
+    spin_slope: Numeric
     """Slope per step that is added to the spin of the series to make it periodic."""
-    precession_slope: Value
+    precession_slope: Numeric
 
 
 def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
@@ -131,7 +131,7 @@ def circular_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) 
 
 def hyperbolic_series(ar: Arithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in q'; Jacobi's transformation adds a linear exponent of its own."""
-    ratio: Value = c.quarter / c.quarter_prime
+    ratio: Numeric = c.quarter / c.quarter_prime
     mc = c.k_prime * c.k_prime
     q = nome(ar, m=mc, k_prime=c.k)
     plus, minus = (
@@ -158,7 +158,7 @@ def _frames(x: Components, y: Components, rate: Coefficients) -> list[Frame]:
 
 
 def _circular_components(
-    weights: list[Value], first: tuple[Value, Value], size: Value, sign: Value
+    weights: list[Numeric], first: tuple[Numeric, Numeric], size: Numeric, sign: Numeric
 ) -> Components:
     """Return theta2 and theta1 of x - i sign y, turned so that each is real at x = 0.
 
@@ -176,7 +176,7 @@ def _circular_components(
     )
 
 
-def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Value]:
+def _weights(ar: Arithmetic[Any], q: Numeric, first: int, terms: int) -> list[Numeric]:
     """Return q^(n^2) or, for a first exponent of 2, q^(n(n+1)): weights of theta3 and theta2.
 
     The truncation error of N terms in a nome q <= 1/20 is added to the first two weights, which
@@ -200,7 +200,11 @@ def _weights(ar: Arithmetic[Any], q: Value, first: int, terms: int) -> list[Valu
 
 
 def _hyperbolic_components(
-    even: list[Value], odd: list[Value], first: tuple[Value, Value], sign: Value, size: Value
+    even: list[Numeric],
+    odd: list[Numeric],
+    first: tuple[Numeric, Numeric],
+    sign: Numeric,
+    size: Numeric,
 ) -> Components:
     """Return theta2 and theta1 after Jacobi's transformation: theta4 and theta1 of v + i h.
 
@@ -224,7 +228,7 @@ def _hyperbolic_components(
     )
 
 
-def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients:
+def _rate(weights: list[Numeric], curvature: int, nutation: Numeric) -> Coefficients:
     """Return theta1(2x) over S C, scaled such that theta1(2x) begins with nutation * x."""
     if nutation is None:
         return []
@@ -234,7 +238,7 @@ def _rate(weights: list[Value], curvature: int, nutation: Value) -> Coefficients
     return summed(SIN_EVEN, curvature, unit, terms)
 
 
-def summed(family: Family, curvature: int, unit: Value, weights: list[Value]) -> Coefficients:
+def summed(family: Family, curvature: int, unit: Numeric, weights: list[Numeric]) -> Coefficients:
     """Return a weighted sum of the polynomials of a family, times a unit.
 
     The curvature is 1 for circular functions, -1 for hyperbolic ones.
@@ -258,19 +262,19 @@ def _polynomials(family: Family, count: int) -> list[list[int]]:
     return found[:count]
 
 
-def alternated(terms: list[Value]) -> list[Value]:
+def alternated(terms: list[Numeric]) -> list[Numeric]:
     """Return terms with every second sign changed, starting with the second."""
     return [-term if n % 2 else term for n, term in enumerate(terms)]
 
 
-def doubled(cos: Value, sin: Value, curvature: int) -> tuple[Value, Value]:
+def doubled(cos: Numeric, sin: Numeric, curvature: int) -> tuple[Numeric, Numeric]:
     """Return cosine and sine of twice an angle; hyperbolic functions for a curvature of -1."""
     return 1 - 2 * curvature * sin * sin, 2 * sin * cos
 
 
 def multiples(
-    first: tuple[Value, Value], step: tuple[Value, Value], curvature: int, count: int
-) -> tuple[list[Value], list[Value]]:
+    first: tuple[Numeric, Numeric], step: tuple[Numeric, Numeric], curvature: int, count: int
+) -> tuple[list[Numeric], list[Numeric]]:
     """Return cosines and sines of first, first + step, first + 2 step ..., from those of both.
 
     A common factor of all sines, or of all cosines, keeps its digits.
