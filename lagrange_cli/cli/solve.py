@@ -27,6 +27,7 @@ from .top import UNCERTAIN, TopOptions, motion_of, top_options
 if TYPE_CHECKING:
     from ..arithmetic.values import Key
     from ..inputs.units import System
+    from ..motion.regime import Facts
     from ..motion.solve import Motion
     from ..output.destination import Output
 
@@ -92,7 +93,9 @@ def solve_command(
     record = _record(motion, digits, top.radians, wanted, certify)
     if found.system is not None and record.get("remark"):
         record["remark"] = found.system.in_words(record["remark"])
-    summed = _summary(record, found.system) if wanted is None and out.fmt != "csv" else {}
+    summed = {}
+    if wanted is None and out.fmt != "csv":
+        summed = _summary(record, motion.exact.facts, found.system)
     bare = keys is not None and not on_command_line("fmt")
     if found.stds:
         record = uncertainty.with_stds(found, motion, record, out.fmt == "table" and not bare)
@@ -136,12 +139,12 @@ def _chain(system: System | None, radians: bool) -> dict[str, Key]:
     return {name: keys[name].replace(group=step) for name, step in chain.items()}
 
 
-def _summary(record: dict[str, Any], system: System | None) -> dict[str, str]:
+def _summary(record: dict[str, Any], facts: Facts, system: System | None) -> dict[str, str]:
     """Return the sentence on a motion, by its key, unless one of its numbers is out of range."""
     from ..motion.summary import summary
 
     try:
-        return {"summary": summary(record, str if system is None else system.named)}
+        return {"summary": summary(record, facts, str if system is None else system.named)}
     except TypeError:  # a number beyond the range of doubles is None
         return {}
 
