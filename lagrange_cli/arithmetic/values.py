@@ -95,4 +95,6 @@ class Key(Values):
     unit: str = ""
     equation: str = ""
     formula: str = ""
-    """The formula, written with names of keys, such as `2*m*g*s/A`; see `motion.formulas`."""
+    """The formula, written with names of keys, such as `2*m*g*s/A`; see `motion.explanation`."""
+    absent: str = ""
+    """The case in which the number does not exist, such as `if r0 = 0`, besides some regimes."""

@@ -69,12 +69,13 @@ def _block(row: Explained, width: int) -> str:
     lines = {
         "formula": row.formula,
         "numbers": row.numbers if row.numbers != row.formula else "",
-        "value": f"{value_text(row.value)} {row.unit}".strip(),
+        "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}".rstrip(),
+        "missing": row.missing,
     }
     shown = [
         fill(f"  {name:9}{text}", width, subsequent_indent=" " * 11, break_on_hyphens=False)
         for name, text in lines.items()
-        if text and not (name == "value" and row.value is None)
+        if text
     ]
     return "\n".join([f"{row.name}: {title}", *shown, ""])
 
@@ -99,6 +100,7 @@ _EXPLAINED = [
     _text("equation", "equation"),
     _text("formula", "formula"),
     _text("numbers", "with numbers"),
+    _text("missing", "missing"),
     Field("kind"),
 ]
 

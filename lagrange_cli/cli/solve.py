@@ -174,7 +174,7 @@ def _record(
 def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:
     """Return a value of the record.  Raises AbsentError if the regime has none."""
     if record[key] is None:
-        raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
+        raise AbsentError(f"{key} is undefined {motion.absence(key)}")
     return record[key]
 
 

@@ -104,7 +104,7 @@ def _budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
     """
     value, uncertain = motion.record(radians=radians, keys=[key])[key], first_order(found, motion)
     if value is None:
-        raise AbsentError(f"a top of the regime {motion.regime.value!r} has no {key}")
+        raise AbsentError(f"{key} is undefined {motion.absence(key)}")
     whole = uncertain.std(key)
     if whole is None:
         reason = uncertain.slopes.reason(uncertain.name_of(key))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from itertools import chain
 from typing import Any, NamedTuple
 
 from ..inputs.names import check_names
@@ -18,6 +19,7 @@ from .quantity import unit_name
 from .record import KEYS, all_keys, shown_keys
 from .solve import Motion, record_in_range
 
+_NAME = r"[A-Za-z_]\w*"
 _WORDS = {
     "pi": "π",
     "acos": "arccos",
@@ -50,8 +52,10 @@ class Explained(NamedTuple):
     text: str
     """The formula as declared."""
     numbers: str = ""
-    """The formula with the numbers of a motion."""
+    """The formula with the numbers of a motion; empty if one of them is undefined."""
     value: Any = None
+    missing: str = ""
+    """The numbers that the motion does not have, among the value and its formula, and why."""
 
 
 def explained_names() -> list[str]:
@@ -63,8 +67,7 @@ def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[
     """Return all keys and columns; `named` gives the names of units of a system."""
     keys = shown_keys(radians=radians, named=named, requested=True)
     of_record = {unit_name(name, radians=radians) for name in KEYS}
-    symbols = {_bare(name): key.symbol for name, key in keys.items() if key.symbol}
-    symbols |= {name: column.parts[0].symbol for name, column in COLUMNS.items()} | _WORDS
+    symbols = _symbols()
     rows = [
         Explained(
             *(name, "record" if name in of_record else "on request", key.symbol, key.meaning),
@@ -104,20 +107,47 @@ def explanations(
     rows = listed(radians=radians, named=named)
     check_names("KEY", names, list(dict.fromkeys(row.name for row in rows)))
     chosen = [row for name in names for row in rows if row.name == name]
-    record, _ = record_in_range(motion, radians=radians, keys=all_keys(radians=radians))
+    keys = {_bare(name): name for name in all_keys(radians=radians)}
+    parts = [[keys[x] for x in re.findall(_NAME, row.text) if x in keys] for row in chosen]
+    wanted = {*chain(names, *parts)} & {*keys.values()}
+    record, beyond = record_in_range(motion, radians=radians, keys=wanted)
+    if beyond:
+        raise beyond[0]
+    if "psidot0" in record:
+        record["psidot0"] = float(motion.top.psidot0)  # the number of a word such as steady
     unit = "" if radians else "°"
-    texts = {
+    texts = _symbols() | {
         _bare(name): f"{value:.6g}{unit if name.endswith('_deg') else ''}"
         for name, value in record.items()
         if isinstance(value, float)
     }
-    return [
-        row._replace(
-            numbers=_shown(row.text, {**_WORDS, **texts}, "·"),
-            value=record.get(row.name) if row.kind != "column" else None,
+    found = []
+    for row, used in zip(chosen, parts, strict=True):
+        own = [row.name] if row.kind != "column" else []
+        absent = [x for x in dict.fromkeys([*own, *used]) if record[x] is None]
+        found.append(
+            row._replace(
+                numbers="" if absent else _shown(row.text, texts, "·"),
+                value=record[row.name] if own else None,
+                missing=_reasons(motion, absent),
+            )
         )
-        for row in chosen
-    ]
+    return found
+
+
+def _reasons(motion: Motion, absent: Sequence[str]) -> str:
+    """Return the names of numbers that a motion does not have, with the reason of each."""
+    names: dict[str, list[str]] = {}
+    for name in absent:
+        names.setdefault(motion.absence(name), []).append(name)
+    return "; ".join(f"{', '.join(some)}: undefined {why}" for why, some in names.items())
+
+
+def _symbols() -> dict[str, str]:
+    """Return the symbols of names in formulas."""
+    keys = shown_keys(requested=True).items()
+    symbols = {_bare(name): key.symbol for name, key in keys if key.symbol}
+    return symbols | {name: column.parts[0].symbol for name, column in COLUMNS.items()} | _WORDS
 
 
 def _bare(name: str) -> str:
@@ -132,5 +162,5 @@ def _shown(formula: str, words: Mapping[str, str], times: str = " ") -> str:
         text = words.get(match[0], match[0])
         return f"({text})" if text.startswith("-") else text
 
-    text = re.sub(r"[A-Za-z_]\w*", word, formula)
+    text = re.sub(_NAME, word, formula)
     return text.replace("**2", "²").replace("*", times)

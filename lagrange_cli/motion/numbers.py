@@ -128,6 +128,14 @@ class Numbers:
             raise
         return value * kind.degree if radians and value is not None else value
 
+    def absence(self, name: str) -> str:
+        """Return why the motion has no number of this key: `in the regime ...` or `if ...`."""
+        name = name.replace("_rad", "_deg")
+        key = number_key(name)
+        if key is None or not key.absent or name in self.kind_class.lacks:
+            return f"in the regime {self.regime.value!r}"
+        return key.absent
+
     def _on_request(self, name: str, digits: int) -> Any:
         """Return the object that computes a key on request, in balls of `digits` digits."""
         from .paper.requested import TEXTBOOK, Textbook, WorkedExample  # start-up

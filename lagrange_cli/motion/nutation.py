@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 
+_STARTED = "unless the top is released from rest"
+
+
 class Nutation(Over[R]):
     """The numbers of sections 4 and 5 by key; None if the motion has no such number."""
 
@@ -72,6 +75,7 @@ class Nutation(Over[R]):
         "",
         "(4,11)",
         formula="(energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2",
+        absent="without torque",
     )
     def u3(self) -> R | None:
         """The third root (4,11); None without torque, as it is then infinite."""
@@ -123,6 +127,7 @@ class Nutation(Over[R]):
         "",
         "(2,4)",
         formula="ellint_F(pi/2, k_prime)",
+        absent="if k = 0",
     )
     def K_prime(self) -> R | None:
         """The quarter period of the complementary modulus; None if k = 0."""
@@ -146,7 +151,15 @@ class Nutation(Over[R]):
         """The rate dw/dt of the argument w = sqrt(a (u3 - u2)) t/2 (4,30)."""
         return self.ar.sqrt(self.gaps.a_u3_u2) / 2
 
-    @key("Periods", "T", "nutation period", "time", "(5,1)", formula="4*K/sqrt(a*(u3 - u2))")
+    @key(
+        "Periods",
+        "T",
+        "nutation period",
+        "time",
+        "(5,1)",
+        formula="4*K/sqrt(a*(u3 - u2))",
+        absent="if nothing moves",
+    )
     def T_nutation(self) -> R:
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate
@@ -158,6 +171,7 @@ class Nutation(Over[R]):
         "",
         "(5,2)",
         formula="u1 - (u1 - u2)*k_prime/(1 + k_prime)",
+        absent="unless the start is at u1",
     )
     def u_quarter(self) -> R | None:
         """u(T/4) after a start at u1 (5,2), as a difference from u1: a large u3 costs no digits."""
@@ -187,6 +201,7 @@ class Nutation(Over[R]):
         "angle",
         "(7,2)",
         formula="atan(sqrt((u3 - u2)/(1 + u2)))",
+        absent=_STARTED,
     )
     def amplitude_deg(self) -> R | None:
         """The amplitude of alpha (7,2) in degrees, from its tangent, after release from rest."""
@@ -202,6 +217,7 @@ class Nutation(Over[R]):
         "",
         "(1,6)",
         formula="ellint_F(amplitude, k_prime)",
+        absent=_STARTED,
     )
     def alpha(self) -> R | None:
         """The parameter alpha = F(amplitude, k') (1,6), after release from rest only."""

@@ -36,9 +36,10 @@ def key(
     equation: str = "",
     *,
     formula: str = "",
+    absent: str = "",
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
     """Make a method a quantity that is a key of the record; see `Key` for the arguments."""
-    shown = Key(group, symbol, meaning, unit, equation, formula)
+    shown = Key(group, symbol, meaning, unit, equation, formula, absent)
 
     def decorate(formula: Callable[[Any], V]) -> quantity[V]:
         return quantity(formula, shown)

@@ -29,6 +29,8 @@ _POLES = (
 """The means of (beta - b)/(1 - u) and (beta + b)/(1 + u), times K."""
 _HALF = "U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
 """Definition of the cosine of the tilt half a period after the start."""
+_ON_A_POLE = "if the axis leaves the vertical at the start"
+HALF_OVER_POLE = "if the axis is vertical half a period after the start"
 
 
 class SpinPrecession(Nutation[R]):
@@ -120,7 +122,15 @@ class SpinPrecession(Nutation[R]):
             return self._south + self._north
         return self._whole_south + self._whole_north
 
-    @key("Periods", "Tφ", "mean spin period", "time", "§8", formula="2*pi/abs(mean_spin_rate)")
+    @key(
+        "Periods",
+        "Tφ",
+        "mean spin period",
+        "time",
+        "§8",
+        formula="2*pi/abs(mean_spin_rate)",
+        absent="if the mean spin rate is 0",
+    )
     def T_spin(self) -> R | None:
         """The time of one turn at the mean spin rate (section 8)."""
         return turn_time(self.ar, self.mean_spin_rate)
@@ -132,6 +142,7 @@ class SpinPrecession(Nutation[R]):
         "time",
         "§8",
         formula="2*pi/abs(mean_precession_rate)",
+        absent="if the mean precession rate is 0",
     )
     def T_precession(self) -> R | None:
         """The time of one turn at the mean precession rate (section 8)."""
@@ -144,6 +155,7 @@ class SpinPrecession(Nutation[R]):
         "rad/time",
         "(6,2)",
         formula="r0 - psidot0*cos(theta0)",
+        absent=_ON_A_POLE,
     )
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
@@ -156,6 +168,7 @@ class SpinPrecession(Nutation[R]):
         "rad/time",
         "(6,2)",
         formula=f"r0 - U*precession_rate_half where {_HALF}",
+        absent=HALF_OVER_POLE,
     )
     def spin_rate_half(self) -> R | None:
         """The spin rate (4,8) half a period after the start; None on a pole."""
@@ -164,7 +177,15 @@ class SpinPrecession(Nutation[R]):
         below, above = self._half
         return self.r0 - (below - above) / 2 * self.precession_rate_half
 
-    @key("Rates", "ψ'(0)", "precession rate at start", "rad/time", "(4,7)", formula="psidot0")
+    @key(
+        "Rates",
+        "ψ'(0)",
+        "precession rate at start",
+        "rad/time",
+        "(4,7)",
+        formula="psidot0",
+        absent=_ON_A_POLE,
+    )
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
@@ -176,6 +197,7 @@ class SpinPrecession(Nutation[R]):
         "rad/time",
         "(4,7)",
         formula=f"(momentum_constant - b*U)/(1 - U**2) where {_HALF}",
+        absent=HALF_OVER_POLE,
     )
     def precession_rate_half(self) -> R | None:
         """The precession rate (4,7) half a period after the start; None on a pole."""

@@ -118,3 +118,103 @@ def test_a_formula_is_shown_in_symbols_and_with_numbers() -> None:
     (tilt,) = explanations(solve(Top()), ["spin_rate_start"])
     assert tilt.formula == "r0 - ψ'0 cos(ϑ0)"
     assert tilt.numbers == "50 - 0·cos(30°)"
+
+
+def test_only_the_numbers_of_the_formula_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = []
+    number = Motion.number
+
+    def counted(motion: Motion, name: str, *args: Any, **how: Any) -> Any:
+        computed.append(name)
+        return number(motion, name, *args, **how)
+
+    monkeypatch.setattr(Motion, "number", counted)
+    explanations(solve(Top()), ["T_nutation", "psidot"])
+    assert sorted(computed) == sorted(
+        ["T_nutation", "K", "a", "b", "u2", "u3", "momentum_constant"]
+    )
+
+
+def test_a_word_for_a_rate_is_its_number_in_a_formula() -> None:
+    motion = solve(Top(r0=60.0, psidot0="steady"))
+    (row,) = explanations(motion, ["precession_rate_start"])
+    assert row.numbers == "8.02159"
+
+
+def test_a_missing_number_has_a_reason() -> None:
+    (period,) = explanations(solve(Top(theta0_deg=0)), ["T_nutation"])
+    assert (period.value, period.numbers) == (None, "")
+    assert period.missing == "T_nutation, K, u3: undefined in the regime 'sleeping'"
+    (period,) = explanations(solve(Top(g=0.0, psidot0=3.0)), ["T_nutation"])
+    assert period.value == solve(Top(g=0.0, psidot0=3.0)).T_nutation
+    assert period.missing == "u3: undefined without torque"
+
+
+UNIT = Top(m=1, A=2, C=1, s=1, g=1, r0=0.0)
+DEGENERATE = {
+    "rates": Top(psidot0=3.0, thetadot0=1.0),
+    "starts at u2": Top(theta0_deg=73.9, psidot0=10.0),
+    "plane": Top(r0=0.0),
+    "pendulum": Top(r0=0.0, psidot0=2.0),
+    "steady pendulum": Top(r0=0.0, theta0_deg=120.0, psidot0="steady"),
+    "sleeping": Top(theta0_deg=0.0),
+    "upright": Top(theta0_deg=0.0, r0=0.0),
+    "hanging": Top(theta0_deg=180.0),
+    "turns about an axis": Top(g=0.0),
+    "nothing moves": Top(g=0.0, r0=0.0),
+    "without torque": Top(g=0.0, psidot0=3.0),
+    "without torque over the poles": Top(g=0.0, r0=0.0, thetadot0=3.0),
+    "steady": Top(r0=60.0, psidot0="steady"),
+    "level": Top(theta0_deg=90.0),
+    "level, steady": Top(theta0_deg=90.0, psidot0="steady"),
+    "level, without spin": Top(theta0_deg=90.0, r0=0.0),
+    "separatrix": UNIT.replace(theta0_deg=90.0, thetadot0=1.0),
+    "falls from the top": Top(theta0_deg=0.0, thetadot0=2.0),
+    "rises from below": Top(theta0_deg=180.0, thetadot0=2.0),
+}
+
+
+def cases(motion: Motion) -> dict[str, bool]:
+    """Return each case in which a number may not exist, and whether it is that of the motion."""
+    facts, top, record = motion.exact.facts, motion.top, motion.record()
+    nutates = record["T_nutation"] is not None and not facts.steady
+    turning = record["u_quarter"] is not None or motion.angles([0.0]).theta[0] == pytest.approx(
+        np.radians(record["theta_max_deg"]), abs=1e-12
+    )
+    at_top = record["u_quarter"] is not None
+    half_on_pole = turning and (facts.over_bottom if at_top else facts.upper_root == 1)
+    too_slow = abs(top.r0) < motion.r0_steady_min
+    level = top.theta0_deg == 90
+    return {
+        "without torque": top.g == 0,
+        "if r0 = 0": top.r0 == 0,
+        "if k = 0": record["k"] in {0, None},
+        "if nothing moves": top.g == 0 and top.r0 == 0 and top.thetadot0 == 0,
+        "unless the start is at u1": not at_top,
+        "unless the top is released from rest": not facts.at_rest,
+        "if the mean spin rate is 0": not record["mean_spin_rate"],
+        "if the mean precession rate is 0": not record["mean_precession_rate"],
+        "if the axis leaves the vertical at the start": bool(top.pole and top.thetadot0),
+        "if the axis is vertical half a period after the start": half_on_pole,
+        "if |r0| < r0_steady_min, or at 90 degrees": too_slow or level,
+        "if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees": too_slow or (level and not top.r0),
+        "unless the top nutates": not nutates,
+        "unless the top nutates after release from rest": not (nutates and facts.at_rest),
+        "unless the top nutates, and if it passes over a pole": not nutates
+        or facts.over_bottom
+        or facts.upper_root == 1,
+        "unless the top nutates, and if the axis is vertical half a period after the start": (
+            not nutates or half_on_pole
+        ),
+    }
+
+
+@pytest.mark.parametrize("top", [*TOPS.values(), *DEGENERATE.values()], ids=[*TOPS, *DEGENERATE])
+def test_the_reason_of_a_missing_number_is_the_case_of_the_motion(top: Top) -> None:
+    motion = solve(top)
+    holds = cases(motion)
+    for name, value in motion.record(keys=all_keys()).items():
+        key = number_key(name)
+        if key is None or name in motion.kind_class.lacks or name == "u2_criterion":
+            continue
+        assert (value is None) == (bool(key.absent) and holds[key.absent]), name

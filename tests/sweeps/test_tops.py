@@ -28,7 +28,7 @@ def test_get_with_digits_and_radians(lagtop: Lagtop) -> None:
 def test_get_what_is_not_there(lagtop: Lagtop) -> None:
     absent = lagtop("solve", "--theta0", "0", "--get", "T_nutation")
     assert (absent.exit_code, absent.stdout) == (1, "")
-    assert absent.stderr == "Error: a top of the regime 'sleeping' has no T_nutation\n"
+    assert absent.stderr == "Error: T_nutation is undefined in the regime 'sleeping'\n"
     for wrong, meant in (("nutation_period", "T_nutation"), ("spin_rate_mean", "mean_spin_rate")):
         assert f"(did you mean '{meant}'?)" in lagtop("solve", "--get", wrong).stderr
     unknown = lagtop("solve", "--get", "T")

@@ -17,13 +17,17 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, cast
 from ...arithmetic.numbers import R
 from ..kinds import Kind, Nutating
 from ..quantity import key, quantity
+from ..spin_precession import HALF_OVER_POLE
 
 if TYPE_CHECKING:
     from ..regime import Exact
 
 constant_key = partial(key, "Constants of section 4")
-angle_key = partial(key, "Angles after half a period and a whole one", unit="angle")
-rate_key = partial(key, "Mean rates of the quarters", unit="rad/time")
+STILL = "unless the top nutates"
+angle_key = partial(key, "Angles after half a period and a whole one", unit="angle", absent=STILL)
+half_key = partial(angle_key, absent=f"{STILL}, and {HALF_OVER_POLE}")
+quarter_key = partial(key, "Mean rates of the quarters", unit="rad/time", absent=STILL)
+rate_key = partial(quarter_key, absent=f"{STILL}, and if it passes over a pole")
 
 
 class EnergyMomentum(Generic[R]):
@@ -150,7 +154,7 @@ class Quarters(EnergyMomentum[R]):
         )
         return Turned(last.phi - first.phi, last.psi - first.psi)
 
-    @angle_key(
+    @half_key(
         "φ(T/2)",
         "spin after half a period",
         equation="§6",
@@ -166,7 +170,7 @@ class Quarters(EnergyMomentum[R]):
         kind = self.nutating
         return None if kind is None else kind.mean_spin_rate * kind.T_nutation / kind.degree
 
-    @angle_key(
+    @half_key(
         "ψ(T/2)",
         "precession after half a period",
         equation="§7",
@@ -202,7 +206,7 @@ class Quarters(EnergyMomentum[R]):
         first, middle, last = (2 * ar.atan2(ar.sqrt(x), ar.sqrt(y)) for x, y in places)
         return first, middle, last
 
-    @rate_key(
+    @quarter_key(
         "ϑ' 1st",
         "nutation, quarter after u1",
         equation="§5",
@@ -214,7 +218,7 @@ class Quarters(EnergyMomentum[R]):
             return None
         return self._rate(self.tilts[1] - self.tilts[0])
 
-    @rate_key(
+    @quarter_key(
         "ϑ' 2nd",
         "nutation, quarter before u2",
         equation="§5",

@@ -34,7 +34,13 @@ class Textbook(Over[R]):
         with ar.working():
             self.ratio = ar.convert(ratio_of(exact))
 
-    @elementary_key("λ", "stability factor C²r0²/(4Amgs)", equation="b²/2a", formula="b**2/(2*a)")
+    @elementary_key(
+        "λ",
+        "stability factor C²r0²/(4Amgs)",
+        equation="b²/2a",
+        formula="b**2/(2*a)",
+        absent="without torque",
+    )
     def stability_factor(self) -> R | None:
         """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
         return self.b * self.b / (2 * self.a) if self.exact.a else None
@@ -54,6 +60,7 @@ class Textbook(Over[R]):
         "slow steady precession",
         equation="ϑ'' = 0",
         formula="m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
+        absent="if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees",
     )
     def steady_rate_slow(self) -> R | None:
         """The root of smaller size of A cos(theta) Omega^2 - C r0 Omega + mgs = 0."""
@@ -64,6 +71,7 @@ class Textbook(Over[R]):
         "fast steady precession",
         equation="ϑ'' = 0",
         formula="m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
+        absent="if |r0| < r0_steady_min, or at 90 degrees",
     )
     def steady_rate_fast(self) -> R | None:
         """The root of larger size of this equation; None at 90 degrees, where it is infinite."""
@@ -90,14 +98,23 @@ class Textbook(Over[R]):
         return self.ratio * self.ar.sqrt(2 * self.a * self.cos)
 
     @rate_key(
-        "ψ' elementary", "precession of a fast top", equation="mgs/(C r0)", formula="m*g*s/(C*r0)"
+        "ψ' elementary",
+        "precession of a fast top",
+        equation="mgs/(C r0)",
+        formula="m*g*s/(C*r0)",
+        absent="if r0 = 0",
     )
     def precession_rate_elementary(self) -> R | None:
         """The precession rate mgs/(C r0) of a fast top; None if r0 = 0."""
         return self.a / (2 * self.b) if self.exact.b else None
 
     @elementary_key(
-        "T elementary", "nutation of a fast top", "time", "2πA/(C r0)", formula="2*pi*A/(C*abs(r0))"
+        "T elementary",
+        "nutation of a fast top",
+        "time",
+        "2πA/(C r0)",
+        formula="2*pi*A/(C*abs(r0))",
+        absent="if r0 = 0",
     )
     def T_nutation_elementary(self) -> R | None:
         """The nutation period 2 pi A/(C |r0|) of a fast top; None if r0 = 0."""

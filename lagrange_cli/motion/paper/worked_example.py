@@ -14,7 +14,9 @@ from ...arithmetic.numbers import R
 from ..quantity import key, quantity, unit_name
 from .quarters import Quarters
 
-step_key = partial(key, "Steps of section 8")
+step_key = partial(
+    key, "Steps of section 8", absent="unless the top nutates after release from rest"
+)
 
 
 class WorkedExample(Quarters[R]):
