@@ -166,7 +166,7 @@ class Judge:
             return float((abs(away) / gap).abs_upper())
 
     def away(self, key: str, computed: Fraction, digits: int) -> arb:
-        """Return the distance of a number of so many digits from the exact value, for sure."""
+        """Return a bound of the distance of a number with `digits` digits from the exact value."""
         bits = 4 * digits + FIRST_BITS
 
         def good(exact: arb | None) -> bool:

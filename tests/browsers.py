@@ -1,6 +1,6 @@
 """A headless browser for the tests of the page, and the questions they ask of it.
 
-Run as a script it prints how long frames take, and makes the picture of the README anew:
+Run as a script it prints how long frames take, and draws the picture of the README again:
 `python tests/browsers.py`.
 """
 
@@ -36,7 +36,7 @@ class Browser:
         height: int = 800,
         dark: bool = False,
     ) -> None:
-        """Open a page anew, paused, on a screen of this size."""
+        """Reload a page, paused, on a screen of this size."""
         screen = {"width": width, "height": height, "mobile": width < 500}
         self.command("Emulation.setDeviceMetricsOverride", screen | {"deviceScaleFactor": 1})
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}

@@ -18,7 +18,7 @@ from lagrange_cli.motion.solve import solve
 
 
 def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]:
-    """Return the record of a top with so many digits."""
+    """Return the record of a top with `digits` digits."""
     record: dict[str, Any] = solve(top).record(digits=digits, radians=radians)
     return record
 
@@ -26,7 +26,7 @@ def record_of(top: Top, digits: int, *, radians: bool = False) -> dict[str, Any]
 def rows_of(
     top: Top, times: Sequence[Any], digits: int, *, wrap: bool = False, radians: bool = False
 ) -> list[list[Any]]:
-    """Return rows of t and the three angles with so many digits."""
+    """Return rows of t and the three angles with `digits` digits."""
     table = ProvedTable(solve(top), DEFAULT_COLUMNS, digits, wrap=wrap, radians=radians)
     return [[number.value for number in table.row(Fraction(t))] for t in times]
 

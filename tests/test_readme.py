@@ -1,4 +1,4 @@
-"""Each README does what it shows.  `python tests/test_readme.py` writes outputs and tables anew."""
+"""Each README does what it shows.  `python tests/test_readme.py` rewrites outputs and tables."""
 
 from __future__ import annotations
 

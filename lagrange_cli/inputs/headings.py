@@ -64,7 +64,7 @@ def column_of(heading: str) -> tuple[str, str]:
     return (name, unit) if name in {*INPUTS, TILT} else (heading, "")
 
 
-_TILTS = ("ϑ", "θ", "tilt", "elevation")
+_TILTS = ("theta", "tilt", "elevation")
 """Names of the tilt in trajectories, or of 90 degrees less the tilt, which no top is given by."""
 
 
@@ -81,7 +81,7 @@ def check_spelling(carried: Sequence[str], named: Collection[str], name: str) ->
 
 def _plain(column: str) -> str:
     """Return a name without easily mistaken parts: case, underscores, the 0 of theta0, the unit."""
-    bare = re.split(r"[\s(\[]", column.strip().lower())[0]
+    bare = name_and_unit(column)[0].lower()
     return re.sub("_|0|deg$|rad$", "", bare) or column
 
 

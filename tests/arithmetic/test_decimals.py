@@ -63,7 +63,7 @@ def test_small_arguments_of_sinh_and_sin_keep_their_digits(digits: int) -> None:
 
 @pytest.mark.parametrize("digits", [30, 200])
 def test_asinh(digits: int) -> None:
-    """The error is absolute: so many digits behind the point."""
+    """The error is absolute: it counts digits behind the point."""
     rng, ar = random.Random(5), decimals(digits)
     with ar.working(), mpmath.workdps(digits + 20):
         for _ in range(60):

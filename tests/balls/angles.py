@@ -138,7 +138,7 @@ class Moving(Constants):
         return self._state(halves, (below, above), swing, time - periods * self.T)
 
     def _phase(self, time: arb) -> tuple[int, arb]:
-        """Return the half periods passed at a time, and what is left of w."""
+        """Return the half periods passed at a time, and the rest of w."""
         w = self.w0 + self.speed * time
         turns = nearest(w / (2 * self.K))
         return turns, w - 2 * turns * self.K

@@ -118,7 +118,7 @@ def rational(value: Fraction) -> fmpq:
 
 @contextmanager
 def arb_bits(bits: int) -> Iterator[None]:
-    """Let Arb work with so many bits for a while."""
+    """Set the precision of Arb, in bits, within a block."""
     before, ctx.prec = ctx.prec, bits
     try:
         yield

@@ -79,7 +79,7 @@ def test_help_that_nobody_reads(line: str) -> None:
 
 
 def test_closed_standard_error_and_a_file(tmp_path: Path) -> None:
-    """No file that is opened later becomes standard error: what is written there is lost."""
+    """No file that is opened later becomes standard error: messages are lost."""
     line = "sweep --r0 40,x -o out.csv"
     assert run(line, "2>&-", tmp_path).returncode == 2
     assert os.listdir(tmp_path) == []

@@ -53,7 +53,7 @@ def on_terminal(
 
 
 def chunks(terminal: int) -> Iterator[bytes]:
-    """Yield what is written until nobody has the terminal open any more."""
+    """Yield the output until no process has the terminal open."""
     try:
         while chunk := os.read(terminal, 65536):
             yield chunk

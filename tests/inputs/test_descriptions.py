@@ -1,4 +1,4 @@
-"""Files that describe themselves: what is written above CSV and into Parquet, and read back."""
+"""Descriptions above CSV and in Parquet, written and read back."""
 
 from __future__ import annotations
 

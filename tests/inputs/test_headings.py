@@ -173,3 +173,10 @@ def test_a_tilt_of_trajectories_is_no_input_of_tops(lagtop: Lagtop, heading: str
     assert wrong.exit_code == 65
     assert wrong.stdout == ""
     assert "must be spelt theta0_deg" in wrong.stderr
+
+
+@pytest.mark.parametrize("heading", ["A comment", "s note", "tilt of the table"])
+def test_a_column_of_remarks_is_carried(lagtop: Lagtop, heading: str) -> None:
+    carried = lagtop("sweep", "-", "--keys", "a", input=f"r0,{heading}\n50,good\n")
+    assert (carried.exit_code, carried.stderr) == (0, "")
+    assert carried.stdout.startswith(f"{heading},a,error\ngood,")

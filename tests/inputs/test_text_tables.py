@@ -1,4 +1,4 @@
-"""The one grammar of tables as text: what each reader makes of delimiters, marks and headings."""
+"""The one grammar of tables as text: delimiters, decimal marks and headings in each reader."""
 
 from __future__ import annotations
 

@@ -195,7 +195,7 @@ def records(text: str, fmt: str) -> list[dict[str, Any]]:
 
 
 def of_tops(rng: random.Random, count: int, folder: Path, counts: Counter[str]) -> Iterator[str]:
-    """Yield the faults of sweeps of so many rows in each dialect, and as JSON lines."""
+    """Yield the faults of sweeps of `count` rows in each dialect, and as JSON lines."""
     for dialect in (*DIALECTS, None):
         rows = [csv_row(rng, i, dialect) if dialect else json_row(rng, i) for i in range(count)]
         path = folder / f"tops{'.csv' if dialect else '.ndjson'}"
