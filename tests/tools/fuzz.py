@@ -10,7 +10,7 @@ start.  The report is the worst error of every kind, in units of `Judge.errors`;
 `solve` that is not the double nearest to the exact value; with --sweep, every key of `sweep` beyond
 10 eps, and angles of all scenes at once (`sweep_angles`), up to 1e5 periods from the start.  What
 exceeds the bounds is listed with a command that shows it, and the exit code is 1.
-A third of the scenes are judged as decimals of twenty to sixty digits, and printed in 5 to 40. 
+A third of the scenes are judged as decimals of twenty to sixty digits, and printed in 5 to 40.
 About 20 to 40 scenes a second and core; with --numbers, without times, more.
 """
 
