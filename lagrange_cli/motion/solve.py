@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.ball import Ball
 from ..arithmetic.balls import balls
-from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounding_of, settled
+from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounded, rounding_of, settled
 from ..errors import LagtopError, OutOfRangeError, OutOfRangeWarning
 from ..inputs.top import Top
+from .kinds import Nutating
 from .numbers import Numbers
 from .quantity import unit_name
 from .record import NUMBER_KEYS, all_keys, record_keys, requested_keys
-from .regime import exact
+from .regime import Regime, exact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from ..arithmetic.types import Array
     from .notebook import Document
     from .over_time.samplers import Angles
+    from .over_time.series_constants import Swing
 
 
 def solve(top: Top) -> Motion:
@@ -53,6 +55,38 @@ class Motion(Numbers):
     def remark_in(self, *, radians: bool = False) -> str | None:
         """Return the remark, with angles in degrees or `radians`."""
         return self.decide("remark", lambda kind: kind.remark(radians=radians))
+
+    @property
+    def phase(self) -> float | None:
+        """Nutation periods from the nearest highest point of the axis to t = 0: w/2K (4,22).
+
+        The phase is in (-1/2, 1/2], and negative if the axis rises.  It is correctly rounded.  None
+        if the tilt has no period.
+        """
+        if not issubclass(self.kind_class, Nutating):
+            return None
+        from .over_time.series_constants import phase_at_start  # start-up: not for a record
+
+        kind: Callable[[int], Any] = self.kind
+        return rounded("phase", lambda digits: phase_at_start(kind(digits)))
+
+    @property
+    def swing(self) -> Swing[float] | None:
+        """The only swing on the separatrix, with its `rate` and its `lowest` point; else None.
+
+        The cosine of the tilt is u = u2 + (1 - u2) tanh^2(rate (t - lowest)).  The rate, in radians
+        per unit of time, and the time `lowest` are correctly rounded.
+        """
+        if self.regime is not Regime.SEPARATRIX:
+            return None
+        from .over_time.series_constants import Swing, swing_of  # start-up: not for a record
+
+        kind: Callable[[int], Any] = self.kind
+
+        def number(name: str) -> float:
+            return rounded(name, lambda digits: getattr(swing_of(kind(digits)), name))
+
+        return Swing(number("rate"), number("lowest"))
 
     def __dir__(self) -> Sequence[str]:
         """Return the public names: methods, and the keys of the record and on request."""

@@ -2,14 +2,13 @@
 
 Curves are sampled evenly in the amplitude am(w), with w counted from the lowest point, and not in
 time.  Cusps and fast passes are therefore smooth, and the turning points are among the samples.
-Only this file depends on how a motion is solved.  Equation numbers are Chrapan's.
+Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from ..arithmetic.types import Array
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.complete import complete_k
 from ..errors import LagtopError
-from ..motion.over_time.series_constants import periods_since_top, separatrix_constants
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 
@@ -49,32 +47,6 @@ def tilt_period(motion: Motion) -> float | None:
     return None if same or motion.regime is Regime.STEADY else motion.T_nutation
 
 
-def periods_since_highest(motion: Motion) -> float:
-    """Return the nutation periods from a highest point of the axis to t = 0, in [-1/2, 1/2].
-
-    The sign is the sign of the tilt rate at the start.  The tilt must have a period.
-    """
-    kind: Any = motion.middle()
-    with kind.ar.working():
-        return float(periods_since_top(kind))
-
-
-class SeparatrixSwing(NamedTuple):
-    """The one swing of a top on the separatrix: u = u2 + (1 - u2) tanh^2(speed (t - lowest))."""
-
-    speed: float
-    lowest: float
-    """Time at which the axis is lowest."""
-
-
-def separatrix_swing(motion: Motion) -> SeparatrixSwing:
-    """Return the swing of a motion whose regime is the separatrix (u1 = u3 = 1)."""
-    kind: Any = motion.middle()
-    with kind.ar.working():
-        speed = kind.argument_rate
-        return SeparatrixSwing(float(speed), float(-separatrix_constants(kind).offset / speed))
-
-
 def swings_in_a_plane(motion: Motion) -> bool:
     """Return whether the top is a plane pendulum, whose axis returns along the same arc."""
     top = motion.top
@@ -102,9 +74,8 @@ def span(motion: Motion, periods: float) -> float:
     On the separatrix it is the time of the swing.  For a constant tilt it is one turn of the
     precession or of the spin.
     """
-    if motion.regime is Regime.SEPARATRIX:
-        swing = separatrix_swing(motion)
-        return max(6.0 / swing.speed, 2.0 * swing.lowest)
+    if swing := motion.swing:
+        return max(6.0 / swing.rate, 2.0 * swing.lowest)
     if nutation := tilt_period(motion):
         return periods * nutation
     return motion.T_precession or motion.T_spin or 1.0
@@ -150,10 +121,9 @@ def checked_span(motion: Motion, t_max: Number | None) -> float | None:
 
 def highest_times(motion: Motion, t_max: float) -> Array:
     """Return the times in [0, t_max] at which the axis is highest: its cusps, if it has any."""
-    T = tilt_period(motion)
-    if not T:
+    T, before = tilt_period(motion), motion.phase
+    if not T or before is None:
         return np.empty(0)
-    before = periods_since_highest(motion)
     whole = np.arange(math.ceil(before - 1e-9), math.floor(t_max / T + before + 1e-9) + 1)
     times: Array = np.clip((whole - before) * T, 0.0, t_max)
     return times
@@ -176,12 +146,11 @@ def phase_times(motion: Motion, t_max: float) -> Array:
 
     They are even in am(w) if the tilt swings, and even in time if it is constant.
     """
-    if motion.regime is Regime.SEPARATRIX:
-        return _separatrix_times(motion, t_max)
-    T = tilt_period(motion)
-    if not T:
+    if motion.swing:
+        return _separatrix_times(*motion.swing, t_max)
+    T, before = tilt_period(motion), motion.phase
+    if not T or before is None:
         return np.linspace(0.0, t_max, 4 * PHASES + 1)
-    before = periods_since_highest(motion)
     half = _half_period(1.0 if motion.k_prime is None else float(motion.k_prime))
     whole = np.concatenate([half[:-1], 1.0 - half[:0:-1]])
     first, last = math.floor(before), math.ceil(t_max / T + before) + 1
@@ -202,11 +171,10 @@ def _half_period(k_prime: float) -> Array:
     return 0.5 - fraction[::-1]
 
 
-def _separatrix_times(motion: Motion, t_max: float) -> Array:
+def _separatrix_times(rate: float, lowest: float, t_max: float) -> Array:
     """Return times that are even in the amplitude, the Gudermannian of w on the separatrix."""
     amplitude = np.linspace(-1.0, 1.0, 8 * PHASES + 1)[1:-1] * math.pi / 2
-    swing = separatrix_swing(motion)
-    return _between(np.arcsinh(np.tan(amplitude)) / swing.speed + swing.lowest, t_max)
+    return _between(np.arcsinh(np.tan(amplitude)) / rate + lowest, t_max)
 
 
 def _between(t: Array, t_max: float) -> Array:

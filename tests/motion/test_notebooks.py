@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+import math
+from fractions import Fraction
+from typing import Any
+
+import mpmath
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Top, compare, fit, solve
+from lagrange_cli.arithmetic.types import Array
 
 MOTION = solve(Top(theta0_deg=30, psidot0=3))
+SEPARATRIX: dict[str, Any] = {
+    "m": 1,
+    "A": 2,
+    "C": 1,
+    "s": 1,
+    "g": 1,
+    "r0": 0,
+    "theta0_deg": 90,
+    "thetadot0": 1,
+}
 TIMES = np.array([0.0, 0.1, 1.7])
 
 
@@ -26,6 +43,74 @@ def test_the_axis_is_the_body_axis_in_space() -> None:
     assert MOTION.axis(TIMES) == pytest.approx(MOTION.rotation(TIMES).apply([0, 0, 1]), abs=1e-14)
     assert MOTION.axis(0.1).shape == (3,)
     assert MOTION.axis([TIMES, TIMES]).shape == (2, 3, 3)
+
+
+def time_from_top(top: Top) -> tuple[float, float]:
+    """Return the time from the last highest point of the axis to t = 0, and half the period.
+
+    Both are integrals of du/sqrt(f(u)), by mpmath from the roots of Euler's cubic.
+    """
+    with mpmath.workdps(30):
+        r0, fall, turn = (mpmath.mpf(float(x)) for x in (top.r0, top.thetadot0, top.psidot0))
+        a, b = 2 * mpmath.mpf(top.m) * top.g * top.s / top.A, mpmath.mpf(top.C) * r0 / top.A
+        u = mpmath.cos(mpmath.radians(top.theta0_deg))
+        alpha = fall**2 + turn**2 * (1 - u * u) + a * u
+        beta = turn * (1 - u * u) + b * u
+        cubic = [a, -alpha - b * b, 2 * b * beta - a, alpha - beta * beta]
+
+        def f(u: mpmath.mpf) -> mpmath.mpf:
+            return ((cubic[0] * u + cubic[1]) * u + cubic[2]) * u + cubic[3]
+
+        near = sorted(np.roots([float(x) for x in cubic]).real)
+        u2, u1, u3 = (mpmath.findroot(f, x) for x in near)
+
+        def since(low: mpmath.mpf) -> mpmath.mpf:
+            """Return the time from u1 down to a cosine, u = u1 - (u1 - u2) sin^2(x)."""
+            end = mpmath.asin(mpmath.sqrt((u1 - low) / (u1 - u2)))
+            return mpmath.quad(
+                lambda x: 2 / mpmath.sqrt(a * (u3 - u1 + (u1 - u2) * mpmath.sin(x) ** 2)), [0, end]
+            )
+
+        return float(since(u)), float(since(u2))
+
+
+@pytest.mark.parametrize("fall", [-8.0, -0.5, 0.5, 8.0])
+@pytest.mark.parametrize("tilt", [31.0, 60.0, 73.0])
+def test_the_phase_counts_periods_from_the_highest_point(fall: float, tilt: float) -> None:
+    top = Top(theta0_deg=tilt, psidot0=10.0, thetadot0=fall)
+    since, half = time_from_top(top)
+    expected = math.copysign(since / (2 * half), fall)
+    assert solve(top).phase == pytest.approx(expected, rel=1e-15, abs=0)
+
+
+def test_the_phase_at_turning_points_is_exact() -> None:
+    assert solve(Top()).phase == 0
+    assert solve(Top(theta0_deg=73.9, psidot0=14.2)).phase == 0.5
+    for top in (Top(theta0_deg=0), Top(r0=60, psidot0="steady"), Top(**SEPARATRIX)):
+        assert solve(top).phase is None
+
+
+@pytest.mark.parametrize("fall", [Fraction(1), Fraction(-1), Fraction(4, 5), Fraction(-4, 5)])
+def test_the_swing_is_that_of_an_integrated_top(fall: Fraction) -> None:
+    """Here a = 1, beta = b = psi0' and alpha = 1: the separatrix from 90 degrees."""
+    turn = Fraction(3, 5) if abs(fall) < 1 else Fraction(0)
+    motion = solve(Top(**SEPARATRIX | {"thetadot0": fall, "psidot0": turn, "r0": 2 * turn}))
+    swing, b = motion.swing, float(turn)
+    assert swing is not None
+
+    def slopes(_: float, y: Array) -> list[float]:
+        sin, cos = np.sin(y[0]), np.cos(y[0])
+        psi_rate = b / (1 + cos)
+        return [y[1], sin * (cos * psi_rate**2 - b * psi_rate + 0.5)]
+
+    t = np.linspace(0, 4, 9)
+    tight = {"rtol": 1e-12, "atol": 1e-12}
+    found = solve_ivp(slopes, (0, 4), [np.pi / 2, float(fall)], "DOP853", t, **tight)
+    u2 = b * b - 1  # the roots 1, 1 and u2 have the sum (alpha + b^2)/a
+    u = u2 + (1 - u2) * np.tanh(swing.rate * (t - swing.lowest)) ** 2
+    assert u == pytest.approx(np.cos(found.y[0]), abs=1e-9)
+    assert swing.lowest * fall > 0
+    assert solve(Top()).swing is None
 
 
 def test_a_motion_draws_on_axes() -> None:

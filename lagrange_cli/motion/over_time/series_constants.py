@@ -66,6 +66,13 @@ def periods_since_top(motion: Nutating[R]) -> R:
     return half - place(ar, m=m, k_prime=k_prime, sn=sn, cn2=gaps.u1_u / gaps.u1_u2) / ar.pi
 
 
+def phase_at_start(motion: Nutating[R]) -> R:
+    """Return the periods from the nearest passage of u1 to t = 0, in (-1/2, 1/2]."""
+    with motion.ar.working():
+        since = periods_since_top(motion)
+        return since - 1 if motion.state.theta_rate < 0 < since else since
+
+
 def direction(motion: Nutating[R] | Separatrix[R]) -> int:
     """Return the sign of the nutation rate at t = 0, or 1 if the rate is 0."""
     return -1 if motion.state.theta_rate < 0 else 1
@@ -117,6 +124,22 @@ def separatrix_constants(motion: Separatrix[Any]) -> SeparatrixConstants[Any]:
     x, y = ar.sqrt(gaps.below_u2 / 2), ar.sqrt(gaps.above_u2 / 2)
     side = ar.sinh(offset) / ar.cosh(offset) if offset or x else -falls  # on the lower pole
     return SeparatrixConstants(offset, x, y, sign, ar.atan2(sign * y * side, x))
+
+
+class Swing(NamedTuple, Generic[R]):
+    """The motion of the tilt on the separatrix: u = u2 + (1 - u2) tanh^2(rate (t - lowest))."""
+
+    rate: R
+    """Rate of the argument, in radians per unit of time."""
+    lowest: R
+    """Time at which the axis is lowest."""
+
+
+def swing_of(motion: Separatrix[Any]) -> Swing[Any]:
+    """Return the swing of a motion on the separatrix."""
+    with motion.ar.working():
+        rate = motion.argument_rate
+        return Swing(rate, -separatrix_constants(motion).offset / rate)
 
 
 class Pose(NamedTuple, Generic[R]):
