@@ -100,7 +100,11 @@ def solve_command(
     if found.stds:
         record = uncertainty.with_stds(found, motion, record, out.fmt == "table" and not bare)
     if keys is not None:
-        values = {key: _number(motion, record, key) for key in keys}
+        values = {}
+        for key in keys:
+            values[key] = _number(motion, record, key)
+            if radius := record.get(f"{key}_radius"):
+                values[f"{key}_radius"] = radius
         if out.fmt == "table":
             out.values(values.values())
         else:

@@ -14,6 +14,7 @@ from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
 from .names import ANGLES
 from .top import INPUTS, Top
+from .value import STEADY_WORDS
 
 if TYPE_CHECKING:
     from .units import System
@@ -62,7 +63,12 @@ def scene_in(description: Description, name: str) -> Top | None:
     try:
         if not pairs or not pairs.keys() <= {*INPUTS}:
             raise LagtopError("it must have inputs by key")
-        return Top(**{key: float(parse_number(text)) for key, text in pairs.items()})
+        return Top(
+            **{
+                key: text if text in STEADY_WORDS else float(parse_number(text))
+                for key, text in pairs.items()
+            }
+        )
     except LagtopError as error:
         raise DataError(f"{name}: the scene in its description is invalid: {error}") from None
 

@@ -137,8 +137,10 @@ class Top(Values):
         return ar.convert(_known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
 
     def texts(self) -> dict[str, str]:
-        """Return the inputs by key as decimals with all digits of a double."""
-        return {key: _shown(x) for key, x in self.as_dict().items() if x is not None}
+        """Return the inputs by key, as words or as decimals with all digits of a double."""
+        given = {key: x for key, x in self.as_dict().items() if x is not None}
+        words = {"psidot0": self.steady_word} if self.steady_word else {}
+        return {key: _shown(x) for key, x in given.items()} | words
 
     def tilt(self, ar: Arithmetic[R]) -> Tilt[R]:
         """Return sines and cosines of theta0 and theta0/2, each with full *relative* accuracy."""

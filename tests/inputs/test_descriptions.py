@@ -20,7 +20,9 @@ TOP = Top(m=0.35, A=8.5e-4, C=4e-4, s=0.03, g=9.81, r0=200.0, theta0_deg=20.0)
 
 
 def test_a_scene_is_read_back_as_it_was() -> None:
-    for top in (TOP, TOP.replace(theta0_rad=0.1), Top(r0=1e-99, psidot0=-1 / 3)):
+    steady = Top(r0=60.0, psidot0="steady-fast")
+    assert steady.texts()["psidot0"] == "steady-fast"
+    for top in (TOP, TOP.replace(theta0_rad=0.1), Top(r0=1e-99, psidot0=-1 / 3), steady):
         told = describe("0.1", top.texts(), None, radians=False)
         again = description_in(f"# {key}: {text}".strip("# ") for key, text in told.items())
         assert again == told
