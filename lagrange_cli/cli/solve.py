@@ -93,18 +93,13 @@ def solve_command(
     record = _record(motion, digits, top.radians, wanted, certify)
     if found.system is not None and record.get("remark"):
         record["remark"] = found.system.in_words(record["remark"])
-    summed = {}
-    if wanted is None and out.fmt != "csv":
-        summed = _summary(record, motion.exact.facts, found.system)
+    is_summed = wanted is None and out.fmt != "csv"
+    summed = _summary(record, motion.exact.facts, found.system) if is_summed else {}
     bare = keys is not None and not on_command_line("fmt")
     if found.stds:
         record = uncertainty.with_stds(found, motion, record, out.fmt == "table" and not bare)
     if keys is not None:
-        values = {}
-        for key in keys:
-            values[key] = _number(motion, record, key)
-            if radius := record.get(f"{key}_radius"):
-                values[f"{key}_radius"] = radius
+        values = _numbers(motion, record, keys)
         if out.fmt == "table":
             out.values(values.values())
         else:
@@ -175,11 +170,15 @@ def _record(
     return record
 
 
-def _number(motion: Motion, record: dict[str, Any], key: str) -> Any:
-    """Return a value of the record.  Raises AbsentError if the regime has none."""
-    if record[key] is None:
-        raise AbsentError(f"{key} is undefined {motion.absence(key)}")
-    return record[key]
+def _numbers(motion: Motion, record: dict[str, Any], keys: list[str]) -> dict[str, Any]:
+    """Return values of the record, each with its radius, if any.
+
+    Raises AbsentError if the motion has no such number.
+    """
+    for key in keys:
+        if record[key] is None:
+            raise AbsentError(f"{key} is undefined {motion.absence(key)}")
+    return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
 
 
 def _steps(motion: Motion, radians: bool) -> list[str]:
