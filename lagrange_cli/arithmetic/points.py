@@ -104,7 +104,8 @@ class EvenPoints(Points):
             rest += error + i * step.low + start.low
             margin = 2.0**-100 * max(map(abs, self.bounds())) + 1e-300
             values: Array = total + (rest + margin)
-            unsure = np.flatnonzero(values != total + (rest - margin))
+            split = np.isinf(rest)  # next to the largest double, parts of a product overflow
+            unsure = np.flatnonzero(split | (values != total + (rest - margin)))
         values[unsure] = [float(self.start + int(i) * self.step) for i in index[unsure]]
         return values
 

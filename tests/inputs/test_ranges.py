@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import Lagtop
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from lagrange_cli import LagtopError, Top, solve
@@ -33,6 +33,7 @@ numbers = st.one_of(
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # no test is timed
 @given(numbers, numbers, st.integers(2, 40))
+@example(Fraction(0), Fraction(1.797e308), 33)
 def test_every_point_is_rounded_once(first: Fraction, last: Fraction, count: int) -> None:
     points = EvenPoints(first, (last - first) / (count - 1), count)
     values = points.at(np.arange(count)).tolist()
