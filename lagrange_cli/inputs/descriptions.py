@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.text import parse_number
 from ..errors import DataError, LagtopError
@@ -63,12 +63,11 @@ def scene_in(description: Description, name: str) -> Top | None:
     try:
         if not pairs or not pairs.keys() <= {*INPUTS}:
             raise LagtopError("it must have inputs by key")
-        return Top(
-            **{
-                key: text if text in STEADY_WORDS else float(parse_number(text))
-                for key, text in pairs.items()
-            }
-        )
+        inputs: dict[str, Any] = {
+            key: text if text in STEADY_WORDS else float(parse_number(text))
+            for key, text in pairs.items()
+        }
+        return Top(**inputs)
     except LagtopError as error:
         raise DataError(f"{name}: the scene in its description is invalid: {error}") from None
 
