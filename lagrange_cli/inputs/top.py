@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Self
+from functools import partial, wraps
+from typing import TYPE_CHECKING, Any, ParamSpec, Self
 
 from ..arithmetic.decimals import own_context
 from ..arithmetic.exact_cosine import Cosine, Tilt, below_quarters
@@ -19,12 +20,34 @@ from .input_keys import EXAMPLE, NINE, TILT, from_example, one_of_each, overridd
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
+_P = ParamSpec("_P")
 _EPS = Fraction(1, 1 << 52)
 _LEAST_TILT, _SMALLEST = Fraction(1, 10**150), Fraction(1, 10**100)  # decimals, and below doubles
 _LARGEST = 1e100
 _UNITS = "choose other units"
 _DIGITS_SHOWN = own_context(50, [])
 """Decimal context of this module, so that messages do not depend on the caller's context."""
+
+
+def _known_names(init: Callable[_P, None]) -> Callable[_P, None]:
+    """Let a constructor raise TypeError for an unknown input with the name that was meant."""
+
+    @wraps(init)
+    def checked(*top: _P.args, **inputs: _P.kwargs) -> None:
+        for name in inputs.keys() - set(INPUTS):
+            from .names import suggestion  # start-up: for a misspelt name only
+
+            raise TypeError(f"a top has no input {name!r}{suggestion(name, INPUTS)}")
+        init(*top, **inputs)
+
+    return checked
+
+
+class Parts(Values):
+    """The inputs of a top by key: m, A, C, s and g of its body, and the others of its start."""
+
+    body: dict[str, Number]
+    start: dict[str, Number]
 
 
 class Top(Values):
@@ -48,7 +71,13 @@ class Top(Values):
 
     A and r0 computed from A_cm and phidot0 are rounded once, to the nearest double.  They stay
     exact if one of the inputs they depend on is a Fraction.  Raises LagtopError for a body or a
-    start that is impossible.
+    start that is impossible, TypeError for an unknown input.
+
+    >>> top = Top(r0=60, theta0_deg=45)
+    >>> top.parts.start
+    {'r0': 60.0, 'theta0_deg': 45.0, 'thetadot0': 0.0, 'psidot0': 0.0}
+    >>> top.replace(r0=50) == Top(**top.parts.body, theta0_deg=45)
+    True
     """
 
     m: Number
@@ -63,6 +92,7 @@ class Top(Values):
     theta0_rad: Number | None
     __slots__ = tuple(__annotations__)
 
+    @_known_names
     def __init__(
         self,
         *,
@@ -103,11 +133,11 @@ class Top(Values):
                 raise LagtopError(f"psidot0 = {word} needs r0 in place of phidot0", "phidot0")
             super().__init__(**self.as_dict() | {"psidot0": steady_rate_of(self, word)})
         if missing:
-            warn_of(missing, stacklevel=3)
+            warn_of(missing, stacklevel=4)
 
-    def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Top], tuple[dict[str, Any]]]:
-        """Return the inputs for copies and pickles, which are checked again."""
-        return _top_of, (self.as_dict(),)
+    def __reduce__(self) -> tuple[Callable[[], Top], tuple[()]]:
+        """Return the constructor with the inputs, so that copies and pickles are checked again."""
+        return partial(Top, **self.as_dict()), ()
 
     def replace(self, **changes: Any) -> Self:
         """Return the top with other values of some inputs, such as `replace(r0=60)`.
@@ -115,8 +145,13 @@ class Top(Values):
         A tilt in either unit replaces the present tilt, A_cm replaces A, and phidot0 replaces r0.
         Raises LagtopError.
         """
-        present = {name: value for name, value in self.as_dict().items() if value is not None}
-        return type(self)(**overridden(present, changes))
+        return type(self)(**overridden(self.parts.body | self.parts.start, changes))
+
+    @property
+    def parts(self) -> Parts:
+        """The inputs by key in two parts, `body` and `start`, such as for a sweep of one body."""
+        given = {name: x for name, x in self.as_dict().items() if x is not None}
+        return Parts({name: given.pop(name) for name in self.fields[:5]}, given)
 
     def inputs(self, *, radians: bool = False, ar: Arithmetic[Any] = DOUBLES) -> dict[str, Any]:
         """Return the nine inputs by record key, the tilt in degrees or in radians."""
@@ -134,7 +169,8 @@ class Top(Values):
             wanted, other = other, wanted
         if wanted is not None:
             return wanted
-        return ar.convert(_known(other)) * (ar.pi / 180 if radians else 180 / ar.pi)
+        assert other is not None
+        return ar.convert(other) * (ar.pi / 180 if radians else 180 / ar.pi)
 
     def texts(self) -> dict[str, str]:
         """Return the inputs by key, as words or as decimals with all digits of a double."""
@@ -200,15 +236,6 @@ class Top(Values):
 
 INPUTS = (*Top.fields, "A_cm", "phidot0")
 """The keys of all inputs of a top: its fields, and the alternatives to A and r0."""
-
-
-def _top_of(inputs: dict[str, Any]) -> Top:
-    return Top(**inputs)
-
-
-def _known(value: Number | None) -> Number:
-    assert value is not None
-    return value
 
 
 def _finite(name: str, value: Any) -> Number:

@@ -57,6 +57,32 @@ def test_what_is_refused(inputs: dict[str, Any], message: str) -> None:
     assert refused.value.key in (*inputs, "C")
 
 
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("theta0", "a top has no input 'theta0' (did you mean 'theta0_deg'?)"),
+        ("phidot", "a top has no input 'phidot' (did you mean 'phidot0'?)"),
+        ("mass", "a top has no input 'mass'"),
+    ],
+)
+def test_an_unknown_input_is_named(name: str, message: str) -> None:
+    for make in (Top, Top().replace):
+        with pytest.raises(TypeError) as refused:
+            make(**{name: 30.0})
+        assert str(refused.value) == message
+
+
+@pytest.mark.parametrize("tilt", [{"theta0_deg": 45}, {"theta0_rad": Fraction(1, 3)}])
+def test_parts_are_body_and_start(tilt: dict[str, Any]) -> None:
+    body: dict[str, Any] = {"m": 1, "A": 2, "C": 3, "s": 4, "g": Fraction(1, 3)}
+    start = {"r0": 50, **tilt, "thetadot0": -1, "psidot0": 0}
+    parts = Top(**body, **start).parts
+    assert parts.body == body
+    assert parts.start == start
+    steady = Top(r0=60, psidot0="steady")
+    assert Top(**steady.parts.body, **steady.parts.start) == steady
+
+
 @pytest.mark.parametrize("value", [3, 3.0, Fraction(3), Decimal(3), np.float32(3), np.int8(3)])
 def test_numbers_of_many_types(value: Any) -> None:
     assert Top(r0=value).r0 == 3
