@@ -13,7 +13,7 @@ from typing import NamedTuple
 from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .headings import name_and_unit
-from .names import suggestion
+from .names import ANGLES, suggestion
 
 ELEVATION = "elevation"
 """The convention of an angle measured from the horizontal."""
@@ -194,11 +194,14 @@ def numeric_columns(names: Sequence[str]) -> list[int]:
 
 
 def named_twice(names: Sequence[str], found: Mapping[str, FoundQuantity]) -> tuple[str, str] | None:
-    """Return two names of the same part of a quantity, or None."""
-    for i in (i for quantity in found.values() for i in quantity.columns):
-        for other in range(i + 1, len(names)):
-            if plain_name(names[other])[0] == plain_name(names[i])[0]:
-                return names[i], names[other]
+    """Return two names of the same part of a quantity, or of the same angle, or None."""
+    plain = [plain_name(name)[0] for name in names]
+    for key, quantity in found.items():
+        angle = {x.names[0] for x in QUANTITIES[key].spellings} if key in ANGLES else set()
+        for i in quantity.columns:
+            for other, word in enumerate(plain):
+                if other != i and word in {plain[i], *angle}:
+                    return names[i], names[other]
     return None
 
 

@@ -243,6 +243,8 @@ def test_every_quantity_can_be_named_as_a_whole() -> None:
         (b"t,theta\x00\n0,1\n", "line 1: a row must be text, got the character NUL"),
         (b"t,theta,note\n0,1,a\n1,2,b\x00\n", "line 3: a row must be text, got the character"),
         (b"t,theta,theta\n0,1,2\n", "must name each quantity once, got 'theta' and 'theta'"),
+        (b"t,tilt,theta\n0,1,2\n", "must name each quantity once, got 'theta' and 'tilt'"),
+        (b"t,theta,elevation\n0,1,2\n", "each quantity once, got 'theta' and 'elevation'"),
         (b"t,theta_deg,Theta [rad]\n0,1,2\n", "once, got 'theta_deg' and 'Theta [rad]'"),
         (b"t,qw,qx,qy,qz,qx\n0,1,0,0,0,1\n", "must name each quantity once, got 'qx' and 'qx'"),
         (b'{"t":0,"theta":1,"theta":2}\n', "must name each quantity once, got 'theta' and"),
