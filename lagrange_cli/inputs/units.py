@@ -143,7 +143,8 @@ def needs_unit(key: str, value: Value) -> bool:
     number = value.number
     if DIMENSIONS.get(key, TIME) == TIME or value.unit or key == TILT or isinstance(number, str):
         return False
-    return number.bounds() != [0.0, 0.0] if isinstance(number, Points) else number != 0
+    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
+    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array
 
 
 def factor_of(key: str, value: Value) -> Fraction:
@@ -217,11 +218,8 @@ class UnknownUnitError(Exception):
 
 
 def _units(dimensions: Dimensions, sizes: str, pi: int = 0, angles: int = 0) -> dict[str, Unit]:
-    pairs = (pair.split("=") for pair in sizes.split())
-    return {
-        name: Unit(Fraction(size), pi, dimensions, angles, dimensions == TIME)
-        for name, size in pairs
-    }
+    pairs, of_times = (pair.split("=") for pair in sizes.split()), dimensions == TIME
+    return {x: Unit(Fraction(size), pi, dimensions, angles, of_times) for x, size in pairs}
 
 
 UNITS = {

@@ -48,8 +48,8 @@ def sweep(
     """Return the records of many tops: arrays by key, in the shape of the inputs together.
 
     Inputs are those of `Top`, as numbers, arrays or pandas Series.  Also accepted are xarray
-    DataArrays (broadcast by the names of their dimensions) and pint quantities (converted to SI).
-    Single numbers may be ufloats, which add `KEY_std`.  If a regime has no value for a key, its
+    DataArrays, broadcast by the names of their dimensions, whose labels the results keep.  pint
+    quantities are converted to SI.  Single numbers may be ufloats, which add `KEY_std`.  If a regime has no value for a key, its
     number is NaN and its text None.  An invalid top has an `error` and no values.  If a number is
     beyond the range of doubles, it is NaN, and `error` says so.  Only `keys` are computed.  Raises
     LagtopError for an unknown input or key, or if shapes do not broadcast together.

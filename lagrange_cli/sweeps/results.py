@@ -127,7 +127,7 @@ def std_columns(
     columns: Mapping[str, ResultColumn],
     tops: TopArrays,
     given: Mapping[str, Array | float],
-    stds: dict[str, float],
+    stds: Mapping[str, float],
 ) -> dict[str, Array]:
     """Return `KEY_std` for each number of some records, NaN if there is none.
 

@@ -72,6 +72,47 @@ def test_labelled_inputs_are_broadcast_by_name() -> None:
     )
 
 
+def test_labels_of_inputs_become_labels_of_results() -> None:
+    spins = xarray.DataArray(SPINS, {"run": ["a", "b", "c"]}, "run")
+    tilts = xarray.DataArray([[10.0], [20.0]], {"angle": [1, 2]}, ("angle", "one"))
+    found = sweep(r0=spins, theta0_deg=tilts, keys=["T_nutation"])
+    at = found.to_xarray().sel(run="c", angle=2).T_nutation
+    assert at.dims == ("one",)
+    assert float(at[0]) == pytest.approx(period(r0=60.0, theta0_deg=20.0), rel=1e-14)
+    assert found.to_pandas().columns.tolist() == ["run", "angle", "r0", "theta0_deg", "T_nutation"]
+    assert found.to_polars()["run"].to_list() == ["a", "a", "b", "b", "c", "c"]
+
+
+@pytest.mark.parametrize("labels", [["a", "b", "d"], ["a", "c", "b"], ["a", "b"]])
+def test_inputs_with_different_labels_are_refused(labels: list[str]) -> None:
+    spins = xarray.DataArray(SPINS, {"run": ["a", "b", "c"]}, "run")
+    tilts = xarray.DataArray([10.0, 20.0, 30.0][: len(labels)], {"run": labels}, "run")
+    with pytest.raises(LagtopError) as refused:
+        sweep(r0=spins, g=981.0, theta0_deg=tilts)
+    assert str(refused.value) == (
+        "theta0_deg must have the labels of r0 along run (see xarray.align)"
+    )
+    assert refused.value.key == "theta0_deg"
+
+
+def test_an_input_of_another_name_is_refused() -> None:
+    with pytest.raises(LagtopError, match=r"got 'theta0' \(did you mean 'theta0_deg'\?\)"):
+        sweep(theta0=30.0)
+
+
+def test_a_tilt_keeps_its_unit_and_zeros_need_none() -> None:
+    unit: Any = pint.UnitRegistry()
+    tilts = unit.Quantity([0.25, 0.5], "rad")
+    body = {"m": unit.Quantity(1, "kg"), "s": np.zeros(2), "theta0_deg": tilts}
+    found = sweep(**body, r0=unit.Quantity(ufloat(10, 1), "1/s"), keys=["a", "r0", "theta0_deg"])
+    assert found["theta0_deg"] == pytest.approx(np.degrees([0.25, 0.5]), rel=1e-15)
+    assert found["a"].tolist() == [0, 0]
+    assert found["r0_std"].tolist() == [1, 1]
+    assert found.to_xarray().theta0_rad.attrs["units"] == "rad"
+    with pytest.raises(LagtopError, match="s must have a unit"):
+        sweep(**body | {"s": np.array([0.0, 1.0])})
+
+
 def test_an_array_without_names_does_not_go_with_labelled_ones() -> None:
     with pytest.raises(LagtopError, match=r"r0 must be a number or have named dimensions") as found:
         sweep(theta0_deg=xarray.DataArray([10.0, 20.0], dims="angle"), r0=SPINS[1:])
