@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import click
@@ -18,7 +19,8 @@ from published import published_table
 
 from lagrange_cli.cli.app import main
 from lagrange_cli.inputs.input_keys import DECLARED, TILT
-from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
+from lagrange_cli.motion.explanation import listed
+from lagrange_cli.motion.record import NUMBER_KEYS, number_key, requested_keys
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -96,11 +98,18 @@ def test_python_session(path: Path) -> None:
     assert result.failed == 0
 
 
-def requested_table() -> list[str]:
-    """Return the keys on request as a table in Markdown."""
-    lines = ["| key | symbol | meaning | equation |", "|---|---|---|---|"]
-    for name, key in requested_keys().items():
-        lines.append(f"| `{name}` | {key.symbol} | {key.meaning} | {key.equation} |")
+def keys_table(kind: str, heading: str) -> list[str]:
+    """Return the keys of a kind, or the columns, as a table in Markdown."""
+    lines = [
+        f"| {heading} | symbol | meaning | unit | formula | source | undefined |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in listed():
+        if row.kind == kind:
+            key = number_key(row.name) if kind != "column" else None
+            cells = [f"`{row.name}`", row.symbol, row.meaning, row.unit]
+            cells += [row.formula, row.equation, key.absent if key else ""]
+            lines.append(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |")
     return lines
 
 
@@ -115,11 +124,16 @@ def inputs_table() -> list[str]:
     return lines
 
 
-TABLES = [
+KINDS_OF_KEYS = {"record": "key", "on request": "key on request", "column": "column"}
+"""The headings of the tables of keys and columns."""
+TABLES: list[tuple[Callable[[], list[str]], str]] = [
     (inputs_table, "sample_inputs"),
     (errata_table, "tests"),
     (figures_table, "tests"),
-    (requested_table, "lagrange_cli/motion"),
+    *(
+        (partial(keys_table, kind, heading), "lagrange_cli/motion")
+        for kind, heading in KINDS_OF_KEYS.items()
+    ),
     (published_table, "sample_inputs"),
     *((table, "lagrange_cli/judge") for table in JUDGE_TABLES),
 ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,7 +12,7 @@ import click
 from ..arithmetic.text import value_text
 from ..inputs.scene_file import scene_names, scene_remark
 from ..output.report import Field, Report
-from ..output.terminal import spelt, view_of
+from ..output.terminal import View, spelt, view_of
 from .app import Command
 from .options import Parsed, output_options
 from .top import UNCERTAIN, TopOptions, motion_of, scene_among, top_options
@@ -52,32 +54,57 @@ def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> Non
     scene, names = scene_among(words)
     found = top.replace(scene=scene).given()
     named = found.system.named if found.system else str
-    if not names:
-        out.report(lambda: Report({}, _LISTED, listed(radians=top.radians, named=named), []))
-        return
-    rows = explanations(motion_of(found), names, radians=top.radians, named=named)
+    if names:
+        rows = explanations(motion_of(found), names, radians=top.radians, named=named)
+    else:
+        rows = listed(radians=top.radians, named=named)
     if out.fmt == "table":
         view = view_of(out.path)
-        out.text(spelt("\n".join(_block(row, view.width or 80) for row in rows), view))
+        out.text("\n".join((_block(row, view) for row in rows) if names else _lists(rows, view)))
     else:
-        out.report(lambda: Report({}, _EXPLAINED, rows, []))
+        out.report(lambda: Report({}, _EXPLAINED if names else _LISTED, rows, []))
 
 
-def _block(row: Explained, width: int) -> str:
-    """Return the lines of one key or column."""
+_HEADINGS = {
+    "record": "Keys of the record",
+    "on request": "Keys on request",
+    "column": "Columns of lagtop table",
+}
+
+
+def _lists(rows: Sequence[Explained], view: View) -> Iterator[str]:
+    """Yield the list of each kind: names, and beside them symbol, meaning, unit and equation."""
+    for kind, heading in _HEADINGS.items():
+        lines = [f"{heading}:"]
+        for row in rows:
+            if row.kind == kind:
+                meaning = f"{row.meaning} [{row.unit}]" if row.unit else row.meaning
+                text = ", ".join(filter(None, (row.symbol, meaning, row.equation)))
+                lines.append(_filled(row.name, text, view, 28))
+        yield "\n".join([*lines, ""])
+
+
+def _block(row: Explained, view: View) -> str:
+    """Return the lines of one key or column; each equation of a formula has a line of its own."""
     title = ", ".join(filter(None, (row.symbol, row.meaning, row.equation)))
-    lines = {
+    texts = {
         "formula": row.formula,
-        "numbers": row.numbers if row.numbers != row.formula else "",
+        "numbers": row.numbers,
         "value": "" if row.value is None else f"{value_text(row.value)} {row.unit}".rstrip(),
         "missing": row.missing,
     }
-    shown = [
-        fill(f"  {name:9}{text}", width, subsequent_indent=" " * 11, break_on_hyphens=False)
-        for name, text in lines.items()
-        if text
-    ]
-    return "\n".join([f"{row.name}: {title}", *shown, ""])
+    lines = [spelt(f"{row.name}: {title}", view)]
+    for name, text in texts.items():
+        for i, part in enumerate(re.split(r" where |, (?=\w+ = )", text)):
+            if part:
+                lines.append(_filled(name if not i else "", part, view, 9))
+    return "\n".join([*lines, ""])
+
+
+def _filled(name: str, text: str, view: View, width: int) -> str:
+    """Return a name and a text beside it, in lines that fit; names are `width` characters wide."""
+    line, indent = spelt(f"  {name:{width}}{text}", view), " " * (width + 2)
+    return fill(line, view.width or 80, subsequent_indent=indent, break_on_hyphens=False)
 
 
 def _text(key: str, heading: str) -> Field:

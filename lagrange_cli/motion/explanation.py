@@ -30,8 +30,6 @@ _WORDS = {
     "ellint_E": "E",
     "ellint_Pi": "Π",
     "integral": "∫",
-    "energy_constant": "α₄",
-    "momentum_constant": "β",
     "t1": "t₁",
 }
 """The printed forms of functions and constants."""
@@ -52,7 +50,7 @@ class Explained(NamedTuple):
     text: str
     """The formula as declared."""
     numbers: str = ""
-    """The formula with the numbers of a motion; empty if one of them is undefined."""
+    """The formula with the numbers of a motion; empty without numbers, or if one is undefined."""
     value: Any = None
     missing: str = ""
     """The numbers that the motion does not have, among the value and its formula, and why."""
@@ -127,7 +125,7 @@ def explanations(
         absent = [x for x in dict.fromkeys([*own, *used]) if record[x] is None]
         found.append(
             row._replace(
-                numbers="" if absent else _shown(row.text, texts, "·"),
+                numbers="" if absent or not used else _shown(row.text, texts, "·"),
                 value=record[row.name] if own else None,
                 missing=_reasons(motion, absent),
             )
@@ -156,11 +154,12 @@ def _bare(name: str) -> str:
 
 
 def _shown(formula: str, words: Mapping[str, str], times: str = " ") -> str:
-    """Return a formula with `words` for its names, `times` for `*`, and parentheses around (-1)."""
+    """Return a formula with `words` for its names, sums in parentheses, and `times` for `*`."""
 
     def word(match: re.Match[str]) -> str:
         text = words.get(match[0], match[0])
-        return f"({text})" if text.startswith("-") else text
+        is_sum = text.startswith("-") or re.search(r" [+-] ", re.sub(r"\(.*?\)", "", text))
+        return f"({text})" if is_sum else text
 
     text = re.sub(_NAME, word, formula)
     return text.replace("**2", "²").replace("*", times)

@@ -115,7 +115,14 @@ class Nutation(Over[R]):
         """The nome q (2,4)."""
         return nome(self.ar, m=self.m, k_prime=self.k_prime)
 
-    @key("Moduli and integrals", "K", "first kind, k", "", "(5,1)", formula="ellint_F(pi/2, k)")
+    @key(
+        "Moduli and integrals",
+        "K",
+        "integral, first kind, k",
+        "",
+        "(5,1)",
+        formula="ellint_F(pi/2, k)",
+    )
     def K(self) -> R:
         """The quarter period: the complete integral of the first kind."""
         return complete_k(self.ar, self.k_prime)
@@ -123,7 +130,7 @@ class Nutation(Over[R]):
     @key(
         "Moduli and integrals",
         "K'",
-        "first kind, k'",
+        "integral, first kind, k'",
         "",
         "(2,4)",
         formula="ellint_F(pi/2, k_prime)",
@@ -135,7 +142,14 @@ class Nutation(Over[R]):
             return None
         return complete_k(self.ar, self.k)
 
-    @key("Moduli and integrals", "E", "second kind, k", "", "(7,3)", formula="ellint_E(pi/2, k)")
+    @key(
+        "Moduli and integrals",
+        "E",
+        "integral, second kind, k",
+        "",
+        "(7,3)",
+        formula="ellint_E(pi/2, k)",
+    )
     def E(self) -> R:
         """The complete integral of the second kind, by Legendre's relation if k > 0.
 

@@ -73,6 +73,8 @@ def has_colours(stream: TextIO) -> bool:
 
 _ASCII = str.maketrans(
     {"ϑ": "theta", "φ": "phi", "ψ": "psi", "α": "alpha", "²": "^2", "⁴": "^4", "§": "sec. "}
+    | {"Δ": "Delta", "λ": "lambda", "Π": "Pi", "π": "pi", "Ω": "Omega", "₁": "1", "₄": "4"}
+    | {"√": "sqrt", "∫": "integral", "·": "*", "°": " deg"}
     | {"β": "beta", "δ": "delta", "γ": "gamma", "σ": "sigma", "η": "eta", "τ": "tau"}
 )
 

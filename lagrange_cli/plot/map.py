@@ -170,8 +170,7 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
 
 def _title(key: Key, unit: str) -> str:
     """Return the quantity, its symbol, its equation and its unit."""
-    kind = "integral of the " if key.meaning.endswith(("kind, k", "kind, k'")) else ""
-    named = f"{key.symbol}: {kind}{key.meaning} {key.equation}".rstrip()
+    named = f"{key.symbol}: {key.meaning} {key.equation}".rstrip()
     return f"{named}, in {unit}" if unit else named
 
 

@@ -291,7 +291,7 @@ def test_maps_that_cannot_be() -> None:
         ("T_precession", "Tψ: mean precession period (§8), in time"),
         ("mean_precession_rate", "ψ' mean: mean precession rate (7,3), in rad/time"),
         ("precession_rate_half", "ψ'(T/2): precession rate at T/2 (4,7), in rad/time"),
-        ("K_prime", "K': integral of the first kind, k' (2,4)"),
+        ("K_prime", "K': integral, first kind, k' (2,4)"),
         ("theta_max_deg", "ϑ max: greatest tilt (4,9), in deg"),
     ],
 )

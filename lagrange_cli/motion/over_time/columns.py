@@ -40,7 +40,7 @@ class ScalarColumn(NamedTuple):
     symbol: str = ""
     equation: str = ""
     formula: str = ""
-    """The formula in names of columns and keys; t counts from a passage of u1."""
+    """The formula in names of columns and keys; t1 is the time of a passage of u1."""
 
 
 class Column(NamedTuple):
@@ -92,13 +92,13 @@ COLUMNS: dict[str, Column] = {
         formula="psi - mean_precession_rate*t",
     ),
     "u": _one(
-        "cos(theta)",
+        "cos ϑ",
         MODULI,
         "cosine",
         "u",
         symbol="u",
         equation="(4,30)",
-        formula="u2 + (u1 - u2)*sn(K + 2*K*t/T_nutation, k)**2",
+        formula="u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2",
     ),
     "thetadot": _one(
         "nutation rate",

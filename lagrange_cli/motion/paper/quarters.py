@@ -39,8 +39,8 @@ class EnergyMomentum(Generic[R]):
 
     @constant_key(
         "c1",
-        "energy but for that of the spin",
-        "energy",
+        "energy without the spin part",
+        "mass len²/time²",
         "(4,2)",
         formula="A*(thetadot0**2 + psidot0**2*sin(theta0)**2)/2 + m*g*s*cos(theta0)",
     )
@@ -51,7 +51,7 @@ class EnergyMomentum(Generic[R]):
     @constant_key(
         "c2",
         "vertical angular momentum",
-        "momentum",
+        "mass len²/time",
         "(4,3)",
         formula="A*psidot0*sin(theta0)**2 + C*r0*cos(theta0)",
     )
@@ -60,13 +60,13 @@ class EnergyMomentum(Generic[R]):
         return self.ar.convert(Fraction(self.exact.top.A)) * self.momentum_constant
 
     @constant_key(
-        "α (4,4)", "energy constant over A/2", "1/time²", "(4,4)", formula="2*energy_without_spin/A"
+        "α₄", "energy constant over A/2", "1/time²", "(4,4)", formula="2*energy_without_spin/A"
     )
     def energy_constant(self) -> R:
         """The constant alpha = 2 c1/A (4,4), distinct from the parameter alpha of (1,6)."""
         return self.state.energy + self.state.a * self.state.cos
 
-    @constant_key("β (4,5)", "momentum over A", "1/time", "(4,5)", formula="Lz/A")
+    @constant_key("β", "momentum over A", "1/time", "(4,5)", formula="Lz/A")
     def momentum_constant(self) -> R:
         """The constant beta = c2/A (4,5)."""
         return self.state.momentum + self.state.b * self.state.cos
@@ -99,7 +99,7 @@ class EnergyMomentum(Generic[R]):
         """The slope of (4,9) at u1, -a (u1 - u2)(u3 - u1); -a sin^2 theta0 after rest."""
         return 0 - self.gaps.a_u3_u1 * self.gaps.u1_u2
 
-    @constant_key("a u2 u3", "has the sign of u2", "1/time²", "(4,12)", formula="a*u2*u3")
+    @constant_key("a u2 u3", "criterion for the sign of u2", "1/time²", "(4,12)", formula="a*u2*u3")
     def u2_criterion(self) -> R | None:
         """The number a u2 u3, which is b^2 u1 - a (4,12) after rest; None without a u3."""
         if "u3" in self.kind.lacks:
@@ -208,7 +208,7 @@ class Quarters(EnergyMomentum[R]):
 
     @quarter_key(
         "ϑ' 1st",
-        "nutation, quarter after u1",
+        "mean rate, quarter after u1",
         equation="§5",
         formula="4*(acos(U) - theta_min)/T_nutation where U = u1 - (u1 - u2)*k_prime/(1 + k_prime)",
     )
@@ -220,7 +220,7 @@ class Quarters(EnergyMomentum[R]):
 
     @quarter_key(
         "ϑ' 2nd",
-        "nutation, quarter before u2",
+        "mean rate, quarter before u2",
         equation="§5",
         formula="4*(theta_max - acos(U))/T_nutation where U = u1 - (u1 - u2)*k_prime/(1 + k_prime)",
     )
@@ -232,7 +232,7 @@ class Quarters(EnergyMomentum[R]):
 
     @rate_key(
         "φ' 1st",
-        "spin, quarters next to u1",
+        "mean rate, quarters at u1",
         equation="§6",
         formula="4*integral(phidot, t1, t1 + T_nutation/4)/T_nutation",
     )
@@ -242,7 +242,7 @@ class Quarters(EnergyMomentum[R]):
 
     @rate_key(
         "φ' 2nd",
-        "spin, quarters next to u2",
+        "mean rate, quarters at u2",
         equation="§6",
         formula="2*mean_spin_rate - spin_rate_upper",
     )
@@ -254,7 +254,7 @@ class Quarters(EnergyMomentum[R]):
 
     @rate_key(
         "ψ' 1st",
-        "precession, next to u1",
+        "mean rate, quarters at u1",
         equation="§7",
         formula="4*integral(psidot, t1, t1 + T_nutation/4)/T_nutation",
     )
@@ -264,7 +264,7 @@ class Quarters(EnergyMomentum[R]):
 
     @rate_key(
         "ψ' 2nd",
-        "precession, next to u2",
+        "mean rate, quarters at u2",
         equation="§7",
         formula="2*mean_precession_rate - precession_rate_upper",
     )

@@ -53,19 +53,19 @@ class WorkedExample(Quarters[R]):
             return None
         return self.roots_sum * self.state.cos - 1
 
-    @step_key("(u3 + u2)²", "square of the sum", equation="§8", formula="roots_sum**2")
+    @step_key("(u3 + u2)²", "square of the roots' sum", equation="§8", formula="roots_sum**2")
     def roots_sum_squared(self) -> R | None:
         """The square of the sum of the roots."""
         return None if self.roots_sum is None else self.roots_sum * self.roots_sum
 
-    @step_key("-4 u3 u2", "product times -4", equation="§8", formula="-4*roots_product")
+    @step_key("-4 u3 u2", "-4 times the product", equation="§8", formula="-4*roots_product")
     def roots_product_fourfold(self) -> R | None:
         """The product of the roots times -4."""
         return None if self.roots_product is None else -4 * self.roots_product
 
     @step_key(
         "(u3 - u2)²",
-        "sum of the last two",
+        "square of the distance",
         equation="§8",
         formula="roots_sum_squared + roots_product_fourfold",
     )
@@ -73,18 +73,18 @@ class WorkedExample(Quarters[R]):
         """The square of the distance of the roots, D/a^2."""
         return None if self.roots_gap is None else self.roots_gap * self.roots_gap
 
-    @step_key("u3 - u2", "its root", equation="§8", formula="sqrt(roots_gap_squared)")
+    @step_key("u3 - u2", "distance of the roots", equation="§8", formula="sqrt(roots_gap_squared)")
     def roots_gap(self) -> R | None:
         """The distance of the roots u3 and u2."""
         return self.gaps.a_u3_u2 / self.state.a if self.follows else None
 
-    @step_key("2 u3", "sum and distance", equation="§8", formula="roots_sum + roots_gap")
+    @step_key("2 u3", "roots' sum + distance", equation="§8", formula="roots_sum + roots_gap")
     def u3_twice(self) -> R | None:
         """Twice the root u3."""
         u3 = self.kind.u3 if self.follows else None
         return None if u3 is None else 2 * u3
 
-    @step_key("2 u2", "sum less distance", equation="§8", formula="roots_sum - roots_gap")
+    @step_key("2 u2", "roots' sum - distance", equation="§8", formula="roots_sum - roots_gap")
     def u2_twice(self) -> R | None:
         """Twice the root u2."""
         return 2 * self.kind.u2 if self.follows else None
@@ -103,7 +103,7 @@ class WorkedExample(Quarters[R]):
 
     @step_key(
         "E(am, k')",
-        "second kind, to am α",
+        "integral, second kind",
         equation="(7,1)",
         formula="ellint_E(amplitude, k_prime)",
     )
