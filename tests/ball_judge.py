@@ -97,11 +97,11 @@ class Judge:
         return self._raised(Motion.half_parts, good, 2 * FIRST_BITS)
 
     def at(self, t: float | Fraction) -> State:
-        """Return the motion at a time, each angle within 2^-12 of its unit."""
+        """Return the motion at a time, each angle within 2^-12 of its unit without whole turns."""
         time = Fraction(t)
 
         def good(state: State) -> bool:
-            return all(_narrow(*pair) for pair in _with_units(state))
+            return all(_narrow(*pair) for pair in _with_units(state, wrapped=True))
 
         periods = abs(time) * Fraction(_size(self.scene))
         far = max(0, math.ceil(math.log2(periods + 1)))
@@ -196,11 +196,14 @@ class Judge:
             return float((away / (EPS * size)).abs_upper())
 
 
-def _with_units(state: State) -> list[tuple[arb, arb]]:
-    """Return each judged value and eps (max(1, |value|) + |tau rate|)."""
+def _with_units(state: State, *, wrapped: bool = False) -> list[tuple[arb, arb]]:
+    """Return each judged value and eps (max(1, |value|) + |tau rate|).
+
+    For `wrapped` angles, whose whole turns do not count, it is eps (1 + |tau rate|).
+    """
     rates = (state.theta_rate, state.phi_rate, state.psi_rate)
     pairs = [
-        (value, EPS * (arb.max(arb(1), abs(value)) + abs(state.tau * rate)))
+        (value, EPS * (arb.max(arb(1), arb(0) if wrapped else abs(value)) + abs(state.tau * rate)))
         for value, rate in zip((state.theta, state.phi, state.psi), rates, strict=True)
     ]
     spread = EPS * (1 + abs(state.tau * state.quaternion_rate))

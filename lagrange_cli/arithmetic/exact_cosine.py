@@ -114,13 +114,18 @@ class Cosine(Values):
         return self._clear_sign(P) is None and self._vanishes(P)
 
     def fraction(self, P: Polynomial) -> Fraction | None:
-        """Return the value of a polynomial if it is known to be a fraction, else None."""
-        constant, *others = P.coefficients
-        if not any(others):
-            return Fraction(constant)
+        """Return the value of a polynomial if it is a fraction, else None.
+
+        A fraction is its own mean over the conjugates of this cosine.
+        """
+        coefficients = _trimmed(P)
+        if len(coefficients) < 2:
+            return coefficients[0] if coefficients else Fraction(0)
         if self.rational is not None:
             return Fraction(P(self.rational))
-        return Fraction(0) if self.vanishes(P) else None
+        n = self._order(len(coefficients) - 1)
+        mean = None if n is None else _mean_at_roots_of_unity(coefficients, n)
+        return mean if mean is not None and self.vanishes(P - mean) else None
 
     def sign(self, P: Polynomial) -> int:
         """Return the sign of a polynomial, -1, 0 or 1."""
@@ -145,18 +150,19 @@ class Cosine(Values):
         return 1 if value > 0 else -1
 
     def _vanishes(self, P: Polynomial) -> bool:
-        coefficients = [Fraction(x) for x in P.coefficients]
-        while coefficients and not coefficients[-1]:
-            coefficients.pop()
+        coefficients = _trimmed(P)
         if not coefficients:
             return True
         if self.rational is not None:
             return not P(self.rational)
-        if self.degrees is None or len(coefficients) == 1:
-            return False
-        n, degree = (self.degrees / 360).denominator, len(coefficients) - 1
+        n = self._order(len(coefficients) - 1)
+        return n is not None and _vanishes_at_root_of_unity(coefficients, n)
+
+    def _order(self, degree: int) -> int | None:
+        """Return n for k/n turns, or None if no polynomial of a degree has a rational value."""
+        n = 0 if self.degrees is None else (self.degrees / 360).denominator
         # phi(n) >= sqrt(n/2): for larger n, the degree of the cosine is too high
-        return n <= 8 * degree * degree and _vanishes_at_root_of_unity(coefficients, n)
+        return n if 0 < n <= 8 * degree * degree else None
 
     def at(self, ar: Balls, P: Polynomial) -> Ball:
         """Return the value of a polynomial in balls."""
@@ -208,16 +214,43 @@ def _below_quarters(ar: Arithmetic[R], quarters: int, theta: Fraction) -> R:
     return ar.widened(gap, lambda: (gap,), lambda gap: gap * ar.eps)
 
 
-def _vanishes_at_root_of_unity(coefficients: Sequence[Fraction], n: int) -> bool:
-    """Return whether P((z + 1/z)/2) is 0 for a primitive n-th root of unity z.
+def _trimmed(P: Polynomial) -> list[Fraction]:
+    """Return the coefficients without leading zeros."""
+    coefficients = [Fraction(x) for x in P.coefficients]
+    while coefficients and not coefficients[-1]:
+        coefficients.pop()
+    return coefficients
 
-    Modulo z^n - 1, the value is one number for each power of z.  For the primes p that divide n,
-    the factors z^(n/p) - 1 vanish at all n-th roots of unity except the primitive ones.
-    """
+
+def _powers(coefficients: Sequence[Fraction], n: int) -> list[Fraction]:
+    """Return the coefficients of P((z + 1/z)/2) modulo z^n - 1."""
     cyclic = [Fraction(0)] * n
     for degree, coefficient in enumerate(coefficients):
         for i in range(degree + 1):
             cyclic[(degree - 2 * i) % n] += coefficient * Fraction(math.comb(degree, i), 2**degree)
+    return cyclic
+
+
+def _mean_at_roots_of_unity(coefficients: Sequence[Fraction], n: int) -> Fraction:
+    """Return the mean of P((z + 1/z)/2) over the primitive n-th roots of unity z.
+
+    The sum of a power of these roots is an integer (Ramanujan's sum).
+    """
+    primitive = [j for j in range(n) if math.gcd(j, n) == 1]
+    total = Fraction(0)
+    for i, coefficient in enumerate(_powers(coefficients, n)):
+        if coefficient:
+            total += coefficient * round(sum(math.cos(math.tau * i * j / n) for j in primitive))
+    return total / len(primitive)
+
+
+def _vanishes_at_root_of_unity(coefficients: Sequence[Fraction], n: int) -> bool:
+    """Return whether P((z + 1/z)/2) is 0 for a primitive n-th root of unity z.
+
+    For the primes p that divide n, the factors z^(n/p) - 1 vanish at all n-th roots of unity except
+    the primitive ones.
+    """
+    cyclic = _powers(coefficients, n)
     for p in range(2, n + 1):
         if n % p == 0 and all(p % q for q in range(2, p)):
             cyclic = [cyclic[i - n // p] - x for i, x in enumerate(cyclic)]

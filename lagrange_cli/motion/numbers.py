@@ -91,16 +91,12 @@ class Numbers:
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
         if name not in NUMBER_KEYS:
-            from .paper.requested import (  # start-up: not for a record
-                by_rational_u1,
-                requested_fractions,
-            )
+            from .paper.requested import BY_U1, fraction_by_u1, requested_fractions  # start-up
 
             found = requested_fractions(self.exact).get(name)
-            if found is not None or name not in {"f_slope_u1", "u2_criterion", "discriminant"}:
+            if found is not None or name not in BY_U1:
                 return found
-            u1 = self.fraction("u1", digits)
-            return None if u1 is None else by_rational_u1(self.exact, u1)[name]
+            return fraction_by_u1(self.exact, name, self.fraction("u1", digits))
         from .exact.rational_keys import known_fraction, rational_u  # start-up: for few tops
 
         known = known_fraction(self.exact, name, radians=radians)

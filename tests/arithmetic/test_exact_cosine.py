@@ -146,3 +146,24 @@ def test_polynomials_add_and_multiply() -> None:
     p = (1 + U) * (1 - U) - Fraction(1, 3)
     assert tuple(p.coefficients) == (Fraction(2, 3), 0, -1)
     assert tuple((2 - U).coefficients) == (2, -1)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "coefficients", "value"),
+    [
+        (45, [0, 0, 1], "1/2"),
+        (30, [Fraction(1, 3), 0, 4], "10/3"),
+        (36, [0, Fraction(-1, 2), 1], "1/4"),  # cos 36 = (1 + sqrt 5)/4
+        (20, [7, -3, 0, 4], "15/2"),  # cos 3x = 4 cos^3 x - 3 cos x
+        (18, [0, 0, -20, 0, 16], "-5"),  # cos 5x / cos x
+        (50, [7, -3, 0, 4], None),
+        (45, [0, 1, 1], None),
+        (Fraction(1, 7), [0, 0, 1], None),
+    ],
+)
+def test_polynomials_with_rational_values(
+    degrees: Fraction | int, coefficients: list[Fraction | int], value: str | None
+) -> None:
+    cosine = Cosine(Fraction(degrees), None)
+    expected = None if value is None else Fraction(value)
+    assert cosine.fraction(Polynomial(*coefficients, 0)) == expected

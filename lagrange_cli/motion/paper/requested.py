@@ -46,21 +46,28 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
     return keys
 
 
-def by_rational_u1(exact: Exact, u1: Fraction) -> dict[str, Fraction | None]:
-    """Return the keys that are polynomials in the root u1 (4,9), for a u1 that is a fraction.
+BY_U1 = ("f_slope_u1", "u2_criterion", "discriminant")
+"""The keys that are polynomials in the root u1."""
 
-    The cubic is a u^3 - (alpha + b^2) u^2 + (2 beta b - a) u + alpha - beta^2.
+
+def fraction_by_u1(exact: Exact, name: str, rational: Fraction | None) -> Fraction | None:
+    """Return a key that is a polynomial in the root u1 (4,9), if it is a fraction.
+
+    The root is a `rational` number or the cosine of the start, else the result is None.  The cubic
+    is a u^3 - (alpha + b^2) u^2 + (2 beta b - a) u + alpha - beta^2.
     """
+    if rational is None and not starts_at_u1(exact):
+        return None
+    u1 = U if rational is None else Polynomial(rational)
     square = exact.alpha + exact.b * exact.b
     pairs = 2 * exact.b * exact.beta - exact.a
-    criterion = pairs - u1 * square + exact.a * u1 * u1
+    if name == "f_slope_u1":
+        return exact.cosine.fraction((3 * exact.a * u1 - 2 * square) * u1 + pairs)
+    criterion = pairs + (exact.a * u1 - square) * u1
+    if name == "u2_criterion":
+        return exact.cosine.fraction(criterion)
     total = square - exact.a * u1
-    polynomials = {
-        "f_slope_u1": 3 * exact.a * u1 * u1 - 2 * u1 * square + pairs,
-        "u2_criterion": criterion,
-        "discriminant": total * total - 4 * exact.a * criterion,
-    }
-    return {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
+    return exact.cosine.fraction(total * total - 4 * exact.a * criterion)
 
 
 def _constants(exact: Exact) -> dict[str, Fraction]:
