@@ -1,8 +1,8 @@
-"""Display in notebooks: the record of a motion as a table, and documents in a frame."""
+"""Display in notebooks: tables, the record of a motion, and documents in a frame."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -40,22 +40,30 @@ class HasRecord:
 
     def _repr_html_(self) -> str:
         """Return the results as a table for a notebook, without keys that have none."""
-        left = 'style="text-align: left"'
-        rows = "".join(
-            f"<tr><td {left}>{escape(name)}</td><td>{escape(str(value))}</td></tr>"
-            for name, value in self.record().items()
-            if value is not None
-        )
-        return f"<table><caption>{escape(str(self.verdict))}</caption>{rows}</table>"
+        record = self.record()
+        return html_table(self.verdict, (x for x in record.items() if x[1] is not None))
 
 
 def record_html(record: Mapping[str, Any]) -> str:
-    """Return the record of a motion as an HTML table: symbol, meaning, value and unit."""
-    rows = "".join(
-        f'<tr title="{name}"><td>{KEYS[name].symbol}</td><td style="text-align: left">'
-        f"{escape(KEYS[name].meaning or name)}</td><td>{escape(str(value))}</td>"
-        f'<td style="text-align: left">{escape(KEYS[name].unit)}</td></tr>'
+    """Return the record of a motion as an HTML table: key, symbol, meaning, value and unit."""
+    rows = (
+        (name, KEYS[name].symbol, KEYS[name].meaning or name, value, KEYS[name].unit)
         for name, value in record.items()
         if value is not None
     )
-    return f"<table><caption>{escape(record['regime'])}</caption>{rows}</table>"
+    return html_table(record["regime"], rows)
+
+
+def html_table(caption: str, rows: Iterable[Sequence[Any]], head: Sequence[str] = ()) -> str:
+    """Return rows as an HTML table, texts to the left and numbers to the right."""
+
+    def line(cells: Sequence[Any], tag: str) -> str:
+        texts = (
+            f'<{tag} style="text-align: {"left" if isinstance(x, str) else "right"}">'
+            f"{'' if x is None else escape(str(x))}</{tag}>"
+            for x in cells
+        )
+        return f"<tr>{''.join(texts)}</tr>"
+
+    lines = [*([line(head, "th")] if head else []), *(line(cells, "td") for cells in rows)]
+    return f"<table><caption>{escape(caption)}</caption>{''.join(lines)}</table>"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from html import escape
 from importlib import import_module
 from typing import Any
 
@@ -14,6 +13,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..inputs.top import Top
 from ..inputs.units import System
+from ..motion.notebook import html_table
 from ..motion.record import KEYS, TEXT_KEYS, requested_keys
 from .top_arrays import TopArrays
 
@@ -100,14 +100,9 @@ class Results(dict[str, ResultColumn]):
         """Return the first rows as a table for a notebook."""
         rows = self._rows()
         count = max((len(x) for x in rows.values()), default=0)
-        head = "".join(f"<th>{escape(name)}</th>" for name in rows)
         lines = zip(*(x[:_ROWS_SHOWN].tolist() for x in rows.values()), strict=True)
-        body = "".join(
-            f"<tr>{''.join(f'<td>{escape(str(x))}</td>' for x in line)}</tr>" for line in lines
-        )
         more = f" of {count}" if count > _ROWS_SHOWN else ""
-        caption = f"<caption>{min(count, _ROWS_SHOWN)}{more} rows</caption>"
-        return f"<table>{caption}<tr>{head}</tr>{body}</table>"
+        return html_table(f"{min(count, _ROWS_SHOWN)}{more} rows", lines, list(rows))
 
 
 def _library(name: str) -> Any:

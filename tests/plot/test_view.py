@@ -6,6 +6,7 @@ import re
 import webbrowser
 from html import unescape
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from conftest import ROOT, Lagtop, assert_one_line
@@ -128,9 +129,11 @@ def test_a_notebook_shows_the_page_in_a_frame() -> None:
 
 def test_a_notebook_shows_the_record_with_symbols_and_units() -> None:
     motion = solve(Top())
-    shown = motion._repr_html_()
-    rows = re.findall(r'<tr title="(\w+)">', shown)
-    assert rows == [key for key, value in motion.record().items() if value is not None]
-    assert f"<td>{motion.T_nutation}</td>" in shown
-    assert "<td>φ&#x27; mean</td>" in shown or "<td>φ' mean</td>" in shown
-    assert "rad/time" in shown
+    table = ElementTree.fromstring(motion._repr_html_())
+    rows = {row[0].text: [cell.text for cell in row[1:]] for row in table.iter("tr")}
+    record = motion.record()
+    assert list(rows) == [key for key, value in record.items() if value is not None]
+    assert [row[2] for row in rows.values()] == [str(record[str(key)]) for key in rows]
+    assert rows["mean_spin_rate"] == [
+        *("φ' mean", "mean spin rate", str(motion.mean_spin_rate), "rad/time")
+    ]

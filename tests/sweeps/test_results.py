@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pandas
@@ -173,10 +174,14 @@ def test_shapes_that_do_not_go_together_are_named() -> None:
 
 
 def test_a_notebook_shows_the_first_rows() -> None:
-    shown = sweep(r0=np.linspace(1, 50, 100), keys=["T_nutation"])._repr_html_()
-    assert "20 of 100 rows" in shown
-    assert shown.count("<tr>") == 21
-    assert sweep(keys=["regime"])._repr_html_().count("<td>regular</td>") == 1
+    found = sweep(r0=np.linspace(1, 50, 100), keys=["T_nutation", "regime"])
+    table = ElementTree.fromstring(found._repr_html_())
+    assert [x.text for x in table.iter("caption")] == ["20 of 100 rows"]
+    head, *rows = [[x.text for x in row] for row in table.iter("tr")]
+    assert head == ["r0", "T_nutation", "regime"]
+    assert rows[0] == ["1.0", str(found["T_nutation"][0]), "regular"]
+    assert len(rows) == 20
+    assert sweep(keys=["regime"])._repr_html_().count(">regular</td>") == 1
 
 
 @pytest.mark.parametrize("library", ["pandas", "polars", "xarray"])
