@@ -93,11 +93,11 @@ def _found(
     from ..fits.search import search_of
 
     search, given = search_of(top.by_key(), conditions, scene=top.scene, radians=top.radians)
-    found = find_tops(search, count, with_progress)
+    motions, looked = find_tops(search, count, with_progress)
     warn_missing(given)
     warn_unused(given.stds)
-    complain(f"{len(found.motions)} found; {found.looked}")
-    return found.motions, given.system
+    complain(f"{len(motions)} found; {looked}")
+    return motions, given.system
 
 
 def _inverted(top: TopOptions, conditions: list[str]) -> tuple[list[Motion], System | None]:

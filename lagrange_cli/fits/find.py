@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Integral
 from types import NoneType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -40,14 +40,6 @@ _BITS = 4.0
 """Permitted error of a number, in last bits of the unknowns and of the number itself."""
 _STEP = 1e-5
 """Steps over the range of an unknown: the error of a central difference is about their square."""
-
-
-class FoundTops(NamedTuple):
-    """The tops that were found, and a description of the search."""
-
-    motions: list[Motion]
-    looked: str
-    """One sentence on the scan."""
 
 
 class Found(Results):
@@ -87,13 +79,15 @@ def find(
     if found.missing:
         warn_of(found.missing, stacklevel=3)
     try:
-        return Found(find_tops(search, scan).motions, radians=radians)
+        return Found(find_tops(search, scan)[0], radians=radians)
     except AbsentError:
         return Found([], radians=radians)
 
 
-def find_tops(search: Search, count: int | None, progress: Progress = silent) -> FoundTops:
-    """Return the tops that keep the conditions.
+def find_tops(
+    search: Search, count: int | None, progress: Progress = silent
+) -> tuple[list[Motion], str]:
+    """Return the tops that keep the conditions, and one sentence on the scan.
 
     Raises AbsentError if there is none; its message has the nearest point of the scan.
     """
@@ -110,7 +104,7 @@ def find_tops(search: Search, count: int | None, progress: Progress = silent) ->
     looked = _looked(search, grid)
     if not motions:
         raise AbsentError(f"no top found: {_why(search, grid, len(points), broken)}; {looked}")
-    return FoundTops(motions, looked)
+    return motions, looked
 
 
 def _roots(search: Search, grid: Scan) -> list[list[float]]:
