@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ...inputs.names import ANGLES, check_names
 
@@ -27,6 +27,33 @@ MODULI = Needs(moduli=True)
 ATTITUDE, SWING = MODULI | TURN, MODULI | Needs(rate=True)
 
 
+_FORMULAS = {
+    "theta": "acos(u)",
+    "phi": "integral(phidot, 0, t)",
+    "psi": "integral(psidot, 0, t)",
+    "dphi": "phi - mean_spin_rate*t",
+    "dpsi": "psi - mean_precession_rate*t",
+    "u": "u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2",
+    "thetadot": "thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)",
+    "phidot": "r0 - psidot*u",
+    "psidot": "(momentum_constant - b*u)/(1 - u**2)",
+    "p": "thetadot*cos(phi) + psidot*sin(theta)*sin(phi)",
+    "q": "psidot*sin(theta)*cos(phi) - thetadot*sin(phi)",
+    "r": "r0",
+    "moment": "m*g*s*sin(theta)",
+    "axis_x": "sin(theta)*sin(psi)",
+    "axis_y": "-sin(theta)*cos(psi)",
+    "axis_z": "u",
+    "quaternion_w": "cos(theta/2)*cos((psi + phi)/2)",
+    "quaternion_x": "sin(theta/2)*cos((psi - phi)/2)",
+    "quaternion_y": "sin(theta/2)*sin((psi - phi)/2)",
+    "quaternion_z": "cos(theta/2)*sin((psi + phi)/2)",
+    "energy": "(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
+    "Lz": "A*psidot*sin(theta)**2 + C*r0*u",
+}
+"""The formula of each column in names of columns and keys; t1 is the time of a passage of u1."""
+
+
 class ScalarColumn(NamedTuple):
     """One column."""
 
@@ -39,8 +66,11 @@ class ScalarColumn(NamedTuple):
     """A unit such as `rad/time`, unless the column is an angle."""
     symbol: str = ""
     equation: str = ""
-    formula: str = ""
-    """The formula in names of columns and keys; t1 is the time of a passage of u1."""
+
+    @property
+    def formula(self) -> str:
+        """The formula; empty for the time."""
+        return _FORMULAS.get(name_of(self), "")
 
 
 class Column(NamedTuple):
@@ -50,167 +80,54 @@ class Column(NamedTuple):
     parts: Sequence[ScalarColumn]
 
 
-def _one(
-    meaning: str, needs: Needs, method: str, heading: str, unit: str = "", **shown: str
-) -> Column:
-    return Column(meaning, [ScalarColumn(heading, method, needs, unit, **shown)])
+def _one(meaning: str, *column: Any) -> Column:
+    return Column(meaning, [ScalarColumn(*column)])
 
 
+_RATE, _ENERGY, _MOMENTUM = "rad/time", "mass len²/time²", "mass len²/time"
+_WAVE = "less its mean rate times t, a wave"
+_ABOUT = "angular velocity about the"
+_CONSTANT = "constant except for rounding"
 COLUMNS: dict[str, Column] = {
-    "t": _one("time", NOTHING, "times", "t", "time", symbol="t"),
-    "theta": _one(
-        "tilt", TILT, "theta", "theta_*", symbol="ϑ", equation="(4,9)", formula="acos(u)"
-    ),
-    "phi": _one(
-        "spin", TURN, "phi", "phi_*", symbol="φ", equation="(6,1)", formula="integral(phidot, 0, t)"
-    ),
-    "psi": _one(
-        "precession",
-        TURN,
-        "psi",
-        "psi_*",
-        symbol="ψ",
-        equation="(7,1)",
-        formula="integral(psidot, 0, t)",
-    ),
-    "dphi": _one(
-        "spin less its mean rate times t, a wave",
-        TURN,
-        "phi_remainder",
-        "dphi_*",
-        symbol="Δφ",
-        equation="(6,4)",
-        formula="phi - mean_spin_rate*t",
-    ),
-    "dpsi": _one(
-        "precession less its mean rate times t, a wave",
-        TURN,
-        "psi_remainder",
-        "dpsi_*",
-        symbol="Δψ",
-        equation="(7,4)",
-        formula="psi - mean_precession_rate*t",
-    ),
-    "u": _one(
-        "cos ϑ",
-        MODULI,
-        "cosine",
-        "u",
-        symbol="u",
-        equation="(4,30)",
-        formula="u2 + (u1 - u2)*sn(K + 2*K*(t - t1)/T_nutation, k)**2",
-    ),
-    "thetadot": _one(
-        "nutation rate",
-        SWING,
-        "nutation_rate",
-        "thetadot",
-        "rad/time",
-        symbol="ϑ'",
-        equation="(4,2)",
-        formula="thetadot**2 = energy_constant - a*u - psidot**2*(1 - u**2)",
-    ),
-    "phidot": _one(
-        "spin rate",
-        MODULI,
-        "phi_rate",
-        "phidot",
-        "rad/time",
-        symbol="φ'",
-        equation="(4,8)",
-        formula="r0 - psidot*u",
-    ),
-    "psidot": _one(
-        "precession rate",
-        MODULI,
-        "psi_rate",
-        "psidot",
-        "rad/time",
-        symbol="ψ'",
-        equation="(4,7)",
-        formula="(momentum_constant - b*u)/(1 - u**2)",
-    ),
-    "p": _one(
-        "angular velocity about the body's x axis",
-        SWING | TURN,
-        "p",
-        "p",
-        "rad/time",
-        symbol="p",
-        equation="(4,1)",
-        formula="thetadot*cos(phi) + psidot*sin(theta)*sin(phi)",
-    ),
-    "q": _one(
-        "angular velocity about the body's y axis",
-        SWING | TURN,
-        "q",
-        "q",
-        "rad/time",
-        symbol="q",
-        equation="(4,1)",
-        formula="psidot*sin(theta)*cos(phi) - thetadot*sin(phi)",
-    ),
-    "r": _one(
-        "angular velocity about the figure axis",
-        NOTHING,
-        "r",
-        "r",
-        "rad/time",
-        symbol="r",
-        equation="(4,1)",
-        formula="r0",
-    ),
+    "t": _one("time", "t", "times", NOTHING, "time", "t"),
+    "theta": _one("tilt", "theta_*", "theta", TILT, "", "ϑ", "(4,9)"),
+    "phi": _one("spin", "phi_*", "phi", TURN, "", "φ", "(6,1)"),
+    "psi": _one("precession", "psi_*", "psi", TURN, "", "ψ", "(7,1)"),
+    "dphi": _one(f"spin {_WAVE}", "dphi_*", "phi_remainder", TURN, "", "Δφ", "(6,4)"),
+    "dpsi": _one(f"precession {_WAVE}", "dpsi_*", "psi_remainder", TURN, "", "Δψ", "(7,4)"),
+    "u": _one("cos ϑ", "u", "cosine", MODULI, "", "u", "(4,30)"),
+    "thetadot": _one("nutation rate", "thetadot", "nutation_rate", SWING, _RATE, "ϑ'", "(4,2)"),
+    "phidot": _one("spin rate", "phidot", "phi_rate", MODULI, _RATE, "φ'", "(4,8)"),
+    "psidot": _one("precession rate", "psidot", "psi_rate", MODULI, _RATE, "ψ'", "(4,7)"),
+    "p": _one(f"{_ABOUT} body's x axis", "p", "p", SWING | TURN, _RATE, "p", "(4,1)"),
+    "q": _one(f"{_ABOUT} body's y axis", "q", "q", SWING | TURN, _RATE, "q", "(4,1)"),
+    "r": _one(f"{_ABOUT} figure axis", "r", "r", NOTHING, _RATE, "r", "(4,1)"),
     "moment": _one(
-        "moment of the weight about the line of nodes",
-        MODULI,
-        "moment",
-        "moment",
-        "mass len²/time²",
-        symbol="M",
-        formula="m*g*s*sin(theta)",
+        "moment of the weight about the line of nodes", "moment", "moment", MODULI, _ENERGY, "M"
     ),
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
         [
-            ScalarColumn("axis_x", "axis_x", ATTITUDE, formula="sin(theta)*sin(psi)"),
-            ScalarColumn("axis_y", "axis_y", ATTITUDE, formula="-sin(theta)*cos(psi)"),
-            ScalarColumn("axis_z", "cosine", MODULI, formula="u"),
+            ScalarColumn("axis_x", "axis_x", ATTITUDE),
+            ScalarColumn("axis_y", "axis_y", ATTITUDE),
+            ScalarColumn("axis_z", "cosine", MODULI),
         ],
     ),
     "quaternion": Column(
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
-        [
-            ScalarColumn(f"quaternion_{part}", f"quaternion_{part}", ATTITUDE, formula=formula)
-            for part, formula in {
-                "w": "cos(theta/2)*cos((psi + phi)/2)",
-                "x": "sin(theta/2)*cos((psi - phi)/2)",
-                "y": "sin(theta/2)*sin((psi - phi)/2)",
-                "z": "cos(theta/2)*sin((psi + phi)/2)",
-            }.items()
-        ],
+        [ScalarColumn(f"quaternion_{x}", f"quaternion_{x}", ATTITUDE) for x in "wxyz"],
     ),
-    "energy": _one(
-        "energy; constant except for rounding",
-        SWING,
-        "energy",
-        "energy",
-        "mass len²/time²",
-        symbol="E",
-        equation="(4,2)",
-        formula="(A*(p**2 + q**2) + C*r**2)/2 + m*g*s*u",
-    ),
+    "energy": _one(f"energy; {_CONSTANT}", "energy", "energy", SWING, _ENERGY, "E", "(4,2)"),
     "Lz": _one(
-        "vertical angular momentum; constant except for rounding",
-        MODULI,
-        "vertical_momentum",
+        f"vertical angular momentum; {_CONSTANT}",
         "Lz",
-        "mass len²/time",
-        symbol="c2",
-        equation="(4,3)",
-        formula="A*psidot*sin(theta)**2 + C*r0*u",
+        "vertical_momentum",
+        MODULI,
+        _MOMENTUM,
+        "c2",
+        "(4,3)",
     ),
 }
-
 DEFAULT_COLUMNS = ("t", *ANGLES)
 
 _SINGLE = {
