@@ -5,13 +5,15 @@ Equation numbers in parentheses are Chrapan's.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.numbers import R
 from ..arithmetic.values import Over
 from ..elliptic.complete import complete_e, complete_k, first_kind, nome, period_mean
 from .gaps import Gaps, State
-from .quantity import key, quantity
+from .quantity import V, key, quantity
 from .regime import Facts
 
 if TYPE_CHECKING:
@@ -21,6 +23,20 @@ if TYPE_CHECKING:
 _STARTED = "unless the top is released from rest"
 
 
+constant_key = partial(key, "Constants")
+modulus_key = partial(key, "Moduli and integrals")
+period_key = partial(key, "Periods", unit="time")
+turning_key = partial(key, "Turning points")
+
+
+def root_key(
+    u: str, meaning: str, equation: str, absent: str = ""
+) -> Callable[[Callable[[Any], V]], quantity[V]]:
+    """Make a method the key of a root u of the cubic (4,9)."""
+    formula = f"(energy_constant - a*{u})*(1 - {u}**2) = (momentum_constant - b*{u})**2"
+    return key("Roots", u, meaning, equation, formula, absent=absent)
+
+
 class Nutation(Over[R]):
     """The numbers of sections 4 and 5 by key; None if the motion has no such number."""
 
@@ -28,12 +44,12 @@ class Nutation(Over[R]):
         self.ar, self.facts, self.state, self.gaps = ar, facts, state, gaps
         self.r0 = state.r0
 
-    @key("Constants", "a", "2mgs/A", "1/time²", "(4,4)", formula="2*m*g*s/A")
+    @constant_key("a", "2mgs/A", "(4,4)", "2*m*g*s/A", unit="1/time²")
     def a(self) -> R:
         """The torque 2mgs/A (4,4)."""
         return self.state.a
 
-    @key("Constants", "b", "C r0/A", "1/time", "(4,5)", formula="C*r0/A")
+    @constant_key("b", "C r0/A", "(4,5)", "C*r0/A", unit="1/time")
     def b(self) -> R:
         """The spin momentum C r0/A (4,5)."""
         return self.state.b
@@ -43,40 +59,18 @@ class Nutation(Over[R]):
         """One degree in radians."""
         return self.ar.pi / 180
 
-    @key(
-        "Roots",
-        "u1",
-        "cos ϑ, highest",
-        "",
-        "(4,9)",
-        formula="(energy_constant - a*u1)*(1 - u1**2) = (momentum_constant - b*u1)**2",
-    )
+    @root_key("u1", "cos ϑ, highest", "(4,9)")
     def u1(self) -> R:
         """The upper turning point (4,9)."""
         return self.state.cos + self.gaps.u1_u
 
-    @key(
-        "Roots",
-        "u2",
-        "cos ϑ, lowest",
-        "",
-        "(4,11)",
-        formula="(energy_constant - a*u2)*(1 - u2**2) = (momentum_constant - b*u2)**2",
-    )
+    @root_key("u2", "cos ϑ, lowest", "(4,11)")
     def u2(self) -> R:
         """The lower turning point (4,11), computed from its distance to the nearer pole."""
         below, above = self.gaps.below_u2, self.gaps.above_u2
         return self.ar.where(self.ar.either(above < below), 1 - above, below - 1)
 
-    @key(
-        "Roots",
-        "u3",
-        "third root",
-        "",
-        "(4,11)",
-        formula="(energy_constant - a*u3)*(1 - u3**2) = (momentum_constant - b*u3)**2",
-        absent="without torque",
-    )
+    @root_key("u3", "third root", "(4,11)", absent="without torque")
     def u3(self) -> R | None:
         """The third root (4,11); None without torque, as it is then infinite."""
         return None if self.facts.free else (self.a + self.gaps.a_u3_above) / self.a
@@ -86,55 +80,35 @@ class Nutation(Over[R]):
         """The parameter k^2 (4,19); 0 if the tilt does not change."""
         return 0 * self.a if self.facts.steady else self.a * self.gaps.u1_u2 / self.gaps.a_u3_u2
 
-    @key("Moduli and integrals", "k", "modulus", "", "(4,19)", formula="sqrt((u1 - u2)/(u3 - u2))")
+    @modulus_key("k", "modulus", "(4,19)", "sqrt((u1 - u2)/(u3 - u2))")
     def k(self) -> R:
         """The modulus (4,19)."""
         return self.ar.sqrt(self.m)
 
-    @key(
-        "Moduli and integrals",
-        "k'",
-        "complementary modulus",
-        "",
-        "(4,21)",
-        formula="sqrt((u3 - u1)/(u3 - u2))",
-    )
+    @modulus_key("k'", "complementary modulus", "(4,21)", "sqrt((u3 - u1)/(u3 - u2))")
     def k_prime(self) -> R:
         """The complementary modulus (4,21), from its own numerator."""
         if self.facts.steady:
             return 0 * self.a + 1
         return self.ar.sqrt(self.gaps.a_u3_u1 / self.gaps.a_u3_u2)
 
-    @key("Moduli and integrals", "arcsin k", "modular angle", "angle", "(4,19)", formula="asin(k)")
+    @modulus_key("arcsin k", "modular angle", "(4,19)", "asin(k)", unit="angle")
     def modular_angle_deg(self) -> R:
         """The angle arcsin k, in degrees."""
         return self.ar.atan2(self.k, self.k_prime) / self.degree
 
-    @key("Moduli and integrals", "q", "nome", "", "(2,4)", formula="exp(-pi*K_prime/K)")
+    @modulus_key("q", "nome", "(2,4)", "exp(-pi*K_prime/K)")
     def nome(self) -> R:
         """The nome q (2,4)."""
         return nome(self.ar, m=self.m, k_prime=self.k_prime)
 
-    @key(
-        "Moduli and integrals",
-        "K",
-        "integral, first kind, k",
-        "",
-        "(5,1)",
-        formula="ellint_F(pi/2, k)",
-    )
+    @modulus_key("K", "integral, first kind, k", "(5,1)", "ellint_F(pi/2, k)")
     def K(self) -> R:
         """The quarter period: the complete integral of the first kind."""
         return complete_k(self.ar, self.k_prime)
 
-    @key(
-        "Moduli and integrals",
-        "K'",
-        "integral, first kind, k'",
-        "",
-        "(2,4)",
-        formula="ellint_F(pi/2, k_prime)",
-        absent="if k = 0",
+    @modulus_key(
+        "K'", "integral, first kind, k'", "(2,4)", "ellint_F(pi/2, k_prime)", absent="if k = 0"
     )
     def K_prime(self) -> R | None:
         """The quarter period of the complementary modulus; None if k = 0."""
@@ -142,14 +116,7 @@ class Nutation(Over[R]):
             return None
         return complete_k(self.ar, self.k)
 
-    @key(
-        "Moduli and integrals",
-        "E",
-        "integral, second kind, k",
-        "",
-        "(7,3)",
-        formula="ellint_E(pi/2, k)",
-    )
+    @modulus_key("E", "integral, second kind, k", "(7,3)", "ellint_E(pi/2, k)")
     def E(self) -> R:
         """The complete integral of the second kind, by Legendre's relation if k > 0.
 
@@ -165,26 +132,16 @@ class Nutation(Over[R]):
         """The rate dw/dt of the argument w = sqrt(a (u3 - u2)) t/2 (4,30)."""
         return self.ar.sqrt(self.gaps.a_u3_u2) / 2
 
-    @key(
-        "Periods",
-        "T",
-        "nutation period",
-        "time",
-        "(5,1)",
-        formula="4*K/sqrt(a*(u3 - u2))",
-        absent="if nothing moves",
-    )
+    @period_key("T", "nutation period", "(5,1)", "4*K/sqrt(a*(u3 - u2))", absent="if nothing moves")
     def T_nutation(self) -> R:
         """The period T = 2K/(dw/dt) (5,1)."""
         return 2 * self.K / self.argument_rate
 
-    @key(
-        "Turning points",
+    @turning_key(
         "u(T/4)",
         "cos ϑ at T/4",
-        "",
         "(5,2)",
-        formula="u1 - (u1 - u2)*k_prime/(1 + k_prime)",
+        "u1 - (u1 - u2)*k_prime/(1 + k_prime)",
         absent="unless the start is at u1",
     )
     def u_quarter(self) -> R | None:
@@ -195,12 +152,12 @@ class Nutation(Over[R]):
             return None
         return self.ar.where(starts_at_u1, value, self.ar.nan)
 
-    @key("Turning points", "ϑ min", "least tilt", "angle", "(4,9)", formula="acos(u1)")
+    @turning_key("ϑ min", "least tilt", "(4,9)", "acos(u1)", unit="angle")
     def theta_min_deg(self) -> R:
         """The tilt at u1, in degrees."""
         return self._tilt_deg(self.gaps.above_u1, self.gaps.below_u1)
 
-    @key("Turning points", "ϑ max", "greatest tilt", "angle", "(4,9)", formula="acos(u2)")
+    @turning_key("ϑ max", "greatest tilt", "(4,9)", "acos(u2)", unit="angle")
     def theta_max_deg(self) -> R:
         """The tilt at u2, in degrees."""
         return self._tilt_deg(self.gaps.above_u2, self.gaps.below_u2)
@@ -208,13 +165,12 @@ class Nutation(Over[R]):
     def _tilt_deg(self, above: R, below: R) -> R:
         return 2 * self.ar.atan2(self.ar.sqrt(above), self.ar.sqrt(below)) / self.degree
 
-    @key(
-        "Moduli and integrals",
+    @modulus_key(
         "am α",
         "amplitude of α",
-        "angle",
         "(7,2)",
-        formula="atan(sqrt((u3 - u2)/(1 + u2)))",
+        "atan(sqrt((u3 - u2)/(1 + u2)))",
+        unit="angle",
         absent=_STARTED,
     )
     def amplitude_deg(self) -> R | None:
@@ -224,15 +180,7 @@ class Nutation(Over[R]):
         sine, cosine = self.ar.sqrt(self.gaps.a_u3_u2), self.ar.sqrt(self.a * self.gaps.below_u2)
         return self.ar.atan2(sine, cosine) / self.degree
 
-    @key(
-        "Moduli and integrals",
-        "α",
-        "parameter",
-        "",
-        "(1,6)",
-        formula="ellint_F(amplitude, k_prime)",
-        absent=_STARTED,
-    )
+    @modulus_key("α", "parameter", "(1,6)", "ellint_F(amplitude, k_prime)", absent=_STARTED)
     def alpha(self) -> R | None:
         """The parameter alpha = F(amplitude, k') (1,6), after release from rest only."""
         return self.eta_minus if self.facts.at_rest else None

@@ -32,10 +32,10 @@ def key(
     group: str,
     symbol: str,
     meaning: str,
-    unit: str = "",
-    equation: str = "",
+    equation: str,
+    formula: str,
     *,
-    formula: str = "",
+    unit: str = "",
     absent: str = "",
 ) -> Callable[[Callable[[Any], V]], quantity[V]]:
     """Make a method a quantity that is a key of the record; see `Key` for the arguments."""

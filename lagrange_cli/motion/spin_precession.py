@@ -11,23 +11,27 @@ Equation numbers in parentheses are Chrapan's.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ..arithmetic.numbers import R, absolute
 from ..elliptic.complete import period_mean
-from .nutation import Nutation
+from .nutation import Nutation, period_key
 from .quantity import key, quantity
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
 
 
+mean_rate_key = partial(key, "Mean rates", unit="rad/time")
+rate_key = partial(key, "Rates", unit="rad/time")
+
 _POLES = (
-    "P = (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2), "
+    "where P = (momentum_constant - b)*ellint_Pi((u1 - u2)/(1 - u2), k)/(1 - u2), "
     "Q = (momentum_constant + b)*ellint_Pi((u2 - u1)/(1 + u2), k)/(1 + u2)"
 )
 """The means of (beta - b)/(1 - u) and (beta + b)/(1 + u), times K."""
-_HALF = "U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
+_HALF = "where U = u2 + (u1 - cos(theta0))*(u3 - u2)/(u3 - cos(theta0))"
 """Definition of the cosine of the tilt half a period after the start."""
 _ON_A_POLE = "if the axis leaves the vertical at the start"
 HALF_OVER_POLE = "if the axis is vertical half a period after the start"
@@ -85,14 +89,7 @@ class SpinPrecession(Nutation[R]):
         gaps = self.gaps
         return self._mean(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
 
-    @key(
-        "Mean rates",
-        "φ' mean",
-        "mean spin rate",
-        "rad/time",
-        "(6,3)",
-        formula=f"r0 - b - (P - Q)/(2*K) where {_POLES}",
-    )
+    @mean_rate_key("φ' mean", "mean spin rate", "(6,3)", f"r0 - b - (P - Q)/(2*K) {_POLES}")
     def mean_spin_rate(self) -> R:
         """The mean spin rate; after release from rest (6,3), a drift plus one turn per nutation.
 
@@ -108,66 +105,45 @@ class SpinPrecession(Nutation[R]):
             return self.state.pole_drift + self._south - self._north
         return self.r0 + self._whole_south - self._whole_north
 
-    @key(
-        "Mean rates",
-        "ψ' mean",
-        "mean precession rate",
-        "rad/time",
-        "(7,3)",
-        formula=f"(P + Q)/(2*K) where {_POLES}",
-    )
+    @mean_rate_key("ψ' mean", "mean precession rate", "(7,3)", f"(P + Q)/(2*K) {_POLES}")
     def mean_precession_rate(self) -> R:
         """The mean precession rate (7,3)."""
         if self.facts.free or self._meets_a_pole:
             return self._south + self._north
         return self._whole_south + self._whole_north
 
-    @key(
-        "Periods",
+    @period_key(
         "Tφ",
         "mean spin period",
-        "time",
         "§8",
-        formula="2*pi/abs(mean_spin_rate)",
+        "2*pi/abs(mean_spin_rate)",
         absent="if the mean spin rate is 0",
     )
     def T_spin(self) -> R | None:
         """The time of one turn at the mean spin rate (section 8)."""
         return turn_time(self.ar, self.mean_spin_rate)
 
-    @key(
-        "Periods",
+    @period_key(
         "Tψ",
         "mean precession period",
-        "time",
         "§8",
-        formula="2*pi/abs(mean_precession_rate)",
+        "2*pi/abs(mean_precession_rate)",
         absent="if the mean precession rate is 0",
     )
     def T_precession(self) -> R | None:
         """The time of one turn at the mean precession rate (section 8)."""
         return turn_time(self.ar, self.mean_precession_rate)
 
-    @key(
-        "Rates",
-        "φ'(0)",
-        "spin rate at start",
-        "rad/time",
-        "(6,2)",
-        formula="r0 - psidot0*cos(theta0)",
-        absent=_ON_A_POLE,
-    )
+    @rate_key("φ'(0)", "spin rate at start", "(6,2)", "r0 - psidot0*cos(theta0)", absent=_ON_A_POLE)
     def spin_rate_start(self) -> R | None:
         """The spin rate at the start (4,8); None on the vertical."""
         return None if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
 
-    @key(
-        "Rates",
+    @rate_key(
         "φ'(T/2)",
         "spin rate at T/2",
-        "rad/time",
         "(6,2)",
-        formula=f"r0 - U*precession_rate_half where {_HALF}",
+        f"r0 - U*precession_rate_half {_HALF}",
         absent=HALF_OVER_POLE,
     )
     def spin_rate_half(self) -> R | None:
@@ -177,26 +153,16 @@ class SpinPrecession(Nutation[R]):
         below, above = self._half
         return self.r0 - (below - above) / 2 * self.precession_rate_half
 
-    @key(
-        "Rates",
-        "ψ'(0)",
-        "precession rate at start",
-        "rad/time",
-        "(4,7)",
-        formula="psidot0",
-        absent=_ON_A_POLE,
-    )
+    @rate_key("ψ'(0)", "precession rate at start", "(4,7)", "psidot0", absent=_ON_A_POLE)
     def precession_rate_start(self) -> R | None:
         """The precession rate at the start, as given; None on the vertical."""
         return None if self.facts.pole else self.state.psi_rate
 
-    @key(
-        "Rates",
+    @rate_key(
         "ψ'(T/2)",
         "precession rate at T/2",
-        "rad/time",
         "(4,7)",
-        formula=f"(momentum_constant - b*U)/(1 - U**2) where {_HALF}",
+        f"(momentum_constant - b*U)/(1 - U**2) {_HALF}",
         absent=HALF_OVER_POLE,
     )
     def precession_rate_half(self) -> R | None:

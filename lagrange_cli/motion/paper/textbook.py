@@ -35,22 +35,13 @@ class Textbook(Over[R]):
             self.ratio = ar.convert(ratio_of(exact))
 
     @elementary_key(
-        "λ",
-        "stability factor C²r0²/(4Amgs)",
-        equation="b²/2a",
-        formula="b**2/(2*a)",
-        absent="without torque",
+        "λ", "stability factor C²r0²/(4Amgs)", "b²/2a", "b**2/(2*a)", absent="without torque"
     )
     def stability_factor(self) -> R | None:
         """The stability factor lambda = C^2 r0^2/(4 A mgs) = b^2/2a; None without torque."""
         return self.b * self.b / (2 * self.a) if self.exact.a else None
 
-    @rate_key(
-        "r0 sleeping",
-        "least r0 of a stable upright top",
-        equation="2√(Amgs)/C",
-        formula="2*sqrt(A*m*g*s)/C",
-    )
+    @rate_key("r0 sleeping", "least r0 of a stable upright top", "2√(Amgs)/C", "2*sqrt(A*m*g*s)/C")
     def r0_sleeping(self) -> R:
         """The least total spin rate 2 sqrt(A mgs)/C of a stable upright top."""
         return self.ratio * self.ar.sqrt(2 * self.a)
@@ -58,8 +49,8 @@ class Textbook(Over[R]):
     @rate_key(
         "Ω slow",
         "slow steady precession",
-        equation="ϑ'' = 0",
-        formula="m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
+        "ϑ'' = 0",
+        "m*g*s = C*r0*steady_rate_slow - A*cos(theta0)*steady_rate_slow**2",
         absent="if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees",
     )
     def steady_rate_slow(self) -> R | None:
@@ -69,8 +60,8 @@ class Textbook(Over[R]):
     @rate_key(
         "Ω fast",
         "fast steady precession",
-        equation="ϑ'' = 0",
-        formula="m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
+        "ϑ'' = 0",
+        "m*g*s = C*r0*steady_rate_fast - A*cos(theta0)*steady_rate_fast**2",
         absent="if |r0| < r0_steady_min, or at 90 degrees",
     )
     def steady_rate_fast(self) -> R | None:
@@ -85,8 +76,8 @@ class Textbook(Over[R]):
     @rate_key(
         "r0 steady",
         "least r0 of steady precession",
-        equation="2√(Amgs u0)/C",
-        formula="2*sqrt(A*m*g*s*max(cos(theta0), 0))/C",
+        "2√(Amgs u0)/C",
+        "2*sqrt(A*m*g*s*max(cos(theta0), 0))/C",
     )
     def r0_steady_min(self) -> R:
         """The least total spin rate 2 sqrt(A mgs cos(theta))/C of a steady precession at the tilt.
@@ -100,8 +91,8 @@ class Textbook(Over[R]):
     @rate_key(
         "ψ' elementary",
         "precession of a fast top",
-        equation="mgs/(C r0)",
-        formula="m*g*s/(C*r0)",
+        "mgs/(C r0)",
+        "m*g*s/(C*r0)",
         absent="if r0 = 0",
     )
     def precession_rate_elementary(self) -> R | None:
@@ -111,9 +102,9 @@ class Textbook(Over[R]):
     @elementary_key(
         "T elementary",
         "nutation of a fast top",
-        "time",
         "2πA/(C r0)",
-        formula="2*pi*A/(C*abs(r0))",
+        "2*pi*A/(C*abs(r0))",
+        unit="time",
         absent="if r0 = 0",
     )
     def T_nutation_elementary(self) -> R | None:
