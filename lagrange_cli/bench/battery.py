@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
 
-from ..arithmetic.numbers import DOUBLES
 from ..arithmetic.points import ListedPoints
 from ..arithmetic.types import Array
 from ..errors import LagtopError
@@ -26,8 +24,9 @@ from ..motion.over_time.table import rows
 from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
 from .hard_scenes import STRATA, Scene, in_doubles, signed, ten_to
+from .integrators import problem_of
 from .measure import check_scene
-from .reference import EPS, ExactAngles, Reference, angle_units, key_ulps, quaternion_units
+from .reference import EPS, Reference, angle_units, key_ulps, quaternion_units
 
 CONTRACT = 4.0
 """Promised bound of the errors of angles and of the quaternion, in units."""
@@ -38,14 +37,14 @@ DIGITS, MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
 """Least digits of the reference, additional digits of its check, and units by which both may
 differ.
 """
-CONSERVED = ("energy", "Lz")
-"""Columns whose changes are reported."""
+COLUMNS = ("theta", "phi", "psi", "quaternion", "energy", "Lz")
+"""Columns of `lagtop table` that are judged."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Errors:
-    """The worst errors of one scene, or of all the scenes of a stratum."""
+class Case(NamedTuple):
+    """The worst errors of lagtop in one scene, and their times."""
 
+    top: Top
     theta_units: float
     phi_units: float
     psi_units: float
@@ -53,10 +52,16 @@ class Errors:
     key_ulps: float
     """Worst error of a key, in gaps between doubles."""
     worst_key: str
-    energy_eps: float
-    """Change of the energy since t = 0, in eps of the sum of its terms."""
-    Lz_eps: float
-    """Change of the vertical angular momentum, in eps of the sum of its terms."""
+    energy: float
+    """Change of the energy since t = 0, over the sum of its terms."""
+    Lz: float
+    """Change of the vertical angular momentum, over the sum of its terms."""
+    worst_time: float
+    """Time of the worst angle."""
+    worst_attitude_time: float
+    """Time of the worst quaternion."""
+    agreement: float
+    """Greatest difference between references at two precisions, in units."""
 
     @property
     def angle_units(self) -> float:
@@ -74,19 +79,6 @@ class Errors:
         """The worst of the excesses."""
         return max(self.excesses)
 
-
-@dataclass(frozen=True, kw_only=True)
-class Case(Errors):
-    """One scene: its errors, their times, and the errors of other methods."""
-
-    top: Top
-    worst_time: float
-    """Time of the worst angle."""
-    worst_attitude_time: float
-    """Time of the worst quaternion."""
-    agreement: float
-    """Greatest difference between references at two precisions, in units."""
-
     def command(self) -> str:
         """Return a command line that shows the worst number of the scene."""
         options, (angle, attitude, key) = self.top.options(), self.excesses
@@ -99,32 +91,28 @@ class Case(Errors):
 
 
 def case_of(
-    top: Top,
+    motion: Motion,
     times: Sequence[float],
-    units: Sequence[Sequence[float]],
-    key: tuple[float, str],
-    conserved: tuple[float, float],
-    *,
+    units: Callable[[float, Sequence[float]], Sequence[float]],
+    key_error: Callable[[str, float | None], float],
     agreement: float = 0.0,
 ) -> Case:
-    """Return a case from its errors; `units` has a row (three angles, quaternion) per time.
+    """Return the worst errors of a motion, at times and of its record.
 
-    `key` is the worst error of a key and its name, `conserved` the changes of energy and Lz.
+    `units` judges a row of COLUMNS at a time: the three angles and the quaternion.  `key_error`
+    judges a number of the record, in gaps between doubles.
     """
-    theta, phi, psi, attitude = (max(errors) for errors in zip(*units, strict=True))
+    points = ListedPoints([Fraction(t) for t in (0.0, *times)])
+    _, blocks = rows(motion, points, COLUMNS, radians=True)
+    values = np.concatenate(list(blocks))
+    errors = np.array([units(t, row) for t, row in zip(times, values[1:].tolist(), strict=True)])
+    theta, phi, psi, attitude = errors.max(axis=0).tolist()
+    worst_angle, worst_attitude = errors[:, :3].max(axis=1).argmax(), errors[:, 3].argmax()
+    key = max((key_error(key, getattr(motion, key)), key) for key in NUMBER_KEYS)
     return Case(
-        theta_units=theta,
-        phi_units=phi,
-        psi_units=psi,
-        quaternion_units=attitude,
-        key_ulps=key[0],
-        worst_key=key[1],
-        energy_eps=conserved[0],
-        Lz_eps=conserved[1],
-        top=top,
-        worst_time=times[int(np.argmax([max(errors[:3]) for errors in units]))],
-        worst_attitude_time=times[int(np.argmax([errors[3] for errors in units]))],
-        agreement=agreement,
+        *(motion.top, theta, phi, psi, attitude, *key),
+        *conserved_changes(motion.top, values[:, -2:]),
+        *(times[int(worst_angle)], times[int(worst_attitude)], agreement),
     )
 
 
@@ -177,25 +165,22 @@ def judged_inputs(stratum: str, rng: random.Random) -> Scene:
 
 def judged_case(scene: HardScene, settled: tuple[Reference, float] | None = None) -> Case:
     """Return the errors of one scene; its `settled_reference` may be passed."""
-    top = Top(**scene.inputs)
-    motion = solve(top)
-    reference, agreement = settled or settled_reference(top)
-    times = np.array(scene.times(reference.T))
-    exact = [reference.at(t) for t in times.tolist()]
-    angles = _angle_errors(list(zip(*motion.angles(times), strict=True)), exact)
-    values = tabulated(motion, times.tolist(), ("quaternion", *CONSERVED))
-    attitudes = [
-        quaternion_units(parts[:4], true)
-        for parts, true in zip(values[1:].tolist(), exact, strict=True)
-    ]
-    return case_of(
-        top,
-        times.tolist(),
-        [(*errors, attitude) for errors, attitude in zip(angles, attitudes, strict=True)],
-        worst_key(motion, reference),
-        conserved_changes(top, values[:, -2:]),
-        agreement=agreement,
-    )
+    motion = solve(Top(**scene.inputs))
+    reference, agreement = settled or settled_reference(motion.top)
+    record = reference.record()
+
+    def units(t: float, row: Sequence[float]) -> Sequence[float]:
+        exact = reference.at(t)
+        return *angle_units(row[:3], exact), quaternion_units(row[3:7], exact)
+
+    def key_error(key: str, value: float | None) -> float:
+        """Return the error of a key; it is infinite if only one of record and motion has it."""
+        exact = record[key]
+        if value is None or exact is None:
+            return 0.0 if value is exact else math.inf
+        return key_ulps(value, exact, reference.digits)
+
+    return case_of(motion, scene.times(reference.T), units, key_error, agreement)
 
 
 def settled_reference(top: Top) -> tuple[Reference, float]:
@@ -219,47 +204,11 @@ def settled_reference(top: Top) -> tuple[Reference, float]:
         digits *= 2
 
 
-def tabulated(motion: Motion, times: Sequence[float], columns: Sequence[str]) -> Array:
-    """Return columns of `lagtop table`, angles in radians: a row for the start and one per time."""
-    points = ListedPoints([Fraction(t) for t in (0.0, *times)])
-    _, blocks = rows(motion, points, columns, radians=True)
-    return np.concatenate(list(blocks))
-
-
-def worst_key(motion: Motion, reference: Reference) -> tuple[float, str]:
-    """Return the worst error of the numbers of a record, in gaps between doubles, and its key.
-
-    The error is infinite if only one of record and motion has a number.
-    """
-    exact, errors = reference.record(), []
-    for key in NUMBER_KEYS:
-        value, true = getattr(motion, key), exact[key]
-        if value is None or true is None:
-            errors.append((0.0 if value is true else math.inf, key))
-        else:
-            errors.append((key_ulps(value, true, reference.digits), key))
-    return max(errors)
-
-
 def conserved_changes(top: Top, values: Array) -> tuple[float, float]:
     """Return the changes of energy and Lz, the columns of `values`, since its first row, t = 0.
 
-    The changes are in eps of the sum of the terms.
+    The changes are over the sum of the terms.
     """
-    tilt = top.tilt(DOUBLES)
-    a = 2 * float(top.m) * float(top.g) * float(top.s) / float(top.A)
-    around = float(top.psidot0) * tilt.sin
-    swing = float(top.thetadot0) ** 2 + around**2 + a * (1 + abs(tilt.cos))
-    momentum = float(top.C) * abs(float(top.r0))
-    sizes = (
-        float(top.A) * swing / 2 + momentum * abs(float(top.r0)) / 2,
-        float(top.A) * abs(around) * tilt.sin + 2 * momentum,
-    )
-    energy, Lz = (np.max(abs(values - values[0]), axis=0) / (EPS * np.array(sizes))).tolist()
+    sizes = float(top.A) * np.array(problem_of(top).sizes)
+    energy, Lz = (np.max(abs(values - values[0]), axis=0) / sizes).tolist()
     return energy, Lz
-
-
-def _angle_errors(
-    computed: Sequence[Sequence[Any]], exact: Sequence[ExactAngles]
-) -> list[tuple[float, float, float]]:
-    return [angle_units(angles, true) for angles, true in zip(computed, exact, strict=True)]

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
-from ..inputs.names import ANGLES
+import numpy as np
+
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
-from ..output.report import Field, Report, short
+from ..output.report import Field, Report, fields_of, short
 from .integrators import STEPS_PER_SECOND
 from .measure import (
     DIGITS,
     FEWER_DIGITS,
+    JUDGED,
     RUNS,
     SECONDS_OF_RUNS,
     Task,
@@ -23,26 +26,29 @@ from .measure import (
 )
 from .method import OURS, Method, MethodRow, is_done, is_out
 
+PERIODS = 20.3
+"""Default span in nutation periods."""
 SPANS = [10.0**power + 0.3 for power in range(7)]
-"""Spans in nutation periods; none ends at a turning point, at which approximations are best."""
+"""Growing spans; like the default one, none ends at a turning point, at which approximations are
+best.
+"""
 _JUDGED_IN_A_SPAN = 21
 
 ROUNDING, LOST = 1e-11, 0.1
 """Errors (rad) between which the order of a method is measured."""
 VARIABLE_ORDER = ("LSODA", "Taylor")
 """Methods with variable order."""
-METHOD_FIELDS = [
+METHOD_FIELDS = fields_of(
+    MethodRow._fields,
+    Field("scene", "scene", is_text=True, names_the_row=True),
     Field("method", "method", is_text=True, names_the_row=True),
     Field("setting", "setting", names_the_row=True),
-    Field("periods"),
-    *(Field(f"{angle}_max") for angle in ANGLES),
-    *(Field(f"{angle}_end") for angle in ANGLES),
+    Field("periods", "periods", lambda periods: f"{periods:.0e}"),
     Field("error_rad", "max error", short),
     Field("error_end", "at the end", short),
     Field("units_max", "units", short),
     Field("evaluations", "evaluations"),
     Field("steps", "steps"),
-    Field("jacobians"),
     Field("order", "order", lambda order: f"{order:.1f}"),
     Field("setup_s", "set-up ms", lambda seconds: f"{1000 * seconds:.1f}"),
     Field("ns_min", "ns/sample", lambda ns: f"{ns:.0f}"),
@@ -50,55 +56,94 @@ METHOD_FIELDS = [
     Field("runs", "runs"),
     Field("front", "front", lambda front: "*" if front else ""),
     Field("remark", "remark", is_text=True),
-]
-
-
-SPAN_KEYS = "method setting error_rad error_end units_max evaluations ns_min runs remark".split()
-SPAN_FIELDS = [
-    Field("periods", "periods", lambda periods: f"{periods:.0e}")
-    if field.key == "periods"
-    else field._replace(heading=field.heading if field.key in SPAN_KEYS else "")
-    for field in METHOD_FIELDS
-]
-"""Fields of the report over spans, with the span and fewer other columns."""
+)
+_ONLY_OF_ONE_SPAN = {"steps", "order", "setup_s", "ns_median", "front"}
+"""Columns of a table that the report over growing spans leaves out."""
 
 
 def compare_methods(
-    motion: Motion,
-    t_max: float,
-    count: int,
+    scenes: Mapping[str | None, Motion],
     methods: dict[str, Method],
+    count: int,
     *,
+    t_max: float | None = None,
     limit: float,
+    is_long: bool = False,
     progress: Progress = silent,
 ) -> Report:
-    """Return the report on every method at every setting.  Raises LagtopError as `task` does."""
-    work = task(motion, t_max, count, progress=progress)
-    runs = [(name, method, x) for name, method in methods.items() for x in method.settings]
-    found: list[MethodRow] = []
-    for name, method, setting in progress(runs, "methods"):
-        if not (found and found[-1].method == name and is_out(found[-1])):  # one warning is enough
-            found.append(measure(work, name, method, setting))
-    rows = with_front(with_order(found))
-    return Report(conditions(work, limit), METHOD_FIELDS, rows, list(conclusions(rows, methods)))
+    """Return the report on every method at every setting, or at its tightest one over long spans.
+
+    Raises LagtopError as `task` does.
+    """
+    spans, judged = (SPANS, _JUDGED_IN_A_SPAN) if is_long else ([PERIODS], JUDGED)
+    how: dict[str, Any] = {"judged": judged, "progress": progress}
+    tasks = []
+    for scene, motion in scenes.items():
+        ends = [x * reference_period(motion) for x in spans] if t_max is None else [t_max]
+        tasks.append([task(motion, end, count, scene=scene, **how) for end in ends])
+    rows, lines, hidden = [], [], _ONLY_OF_ONE_SPAN if is_long else {"periods"}
+    for scene, of_scene in zip(scenes, tasks, strict=True):
+        found = _rows(of_scene, methods, is_long, progress)
+        if not is_long:
+            found = with_front(with_order(found))
+        rows += found
+        said = _growth(found) if is_long else conclusions(found, methods)
+        lines += [line if len(scenes) == 1 else f"{scene}: {line}" for line in said]
+    if len(scenes) == 1:
+        hidden = {*hidden, "scene"}
+    fields = [x._replace(heading="") if x.key in hidden else x for x in METHOD_FIELDS]
+    return Report(conditions([of_scene[-1] for of_scene in tasks], limit), fields, rows, lines)
 
 
-def conditions(work: Task, limit: float) -> dict[str, str]:
-    """Return all conditions that the figures depend on."""
-    motion = work.motion
+def _rows(
+    tasks: Sequence[Task], methods: dict[str, Method], is_long: bool, progress: Progress
+) -> list[MethodRow]:
+    """Return the measured rows of a scene; a method that fails in a span is run in no longer one.
+
+    A method that does not apply has one row.
+    """
+    runs = [
+        (name, work, setting)
+        for name, method in methods.items()
+        for work in tasks
+        for setting in (method.settings[-1:] if is_long else method.settings)
+    ]
+    rows: list[MethodRow] = []
+    for name, work, setting in progress(runs, "methods"):
+        before = rows[-1] if rows and rows[-1].method == name else None
+        if before and is_out(before):
+            continue
+        if is_long and before and not is_done(before):
+            row = MethodRow(work.scene, name, setting, work.periods)
+            rows.append(row._replace(remark="not run: it failed over a shorter span"))
+        else:
+            rows.append(measure(work, name, methods[name], setting))
+    return rows
+
+
+def conditions(tasks: Sequence[Task], limit: float) -> dict[str, str]:
+    """Return all conditions that the figures depend on, from the last task of each scene."""
+
+    def each(text: Callable[[Task], str]) -> str:
+        named = len(tasks) > 1
+        return "; ".join(f"{x.scene}: {text(x)}" if named else text(x) for x in tasks)
+
     return common_conditions() | {
-        "scene": motion.top.options(),
-        "regime": f"{motion.regime.value}, nutation period {motion.T_nutation}",
-        "times": f"{work.times.size} from 0 to {float(work.times[-1])} "
-        f"({work.periods:.6g} nutation periods)",
+        "scene": each(lambda x: x.motion.top.options()),
+        "regime": each(lambda x: f"{x.motion.regime.value}, nutation period {x.motion.T_nutation}"),
+        "times": each(
+            lambda x: (
+                f"{x.times.size} from 0 to {float(x.times[-1])} ({x.periods:.6g} nutation periods)"
+            )
+        ),
         "reference": f"Legendre's third integral by mpmath, {DIGITS} digits; with {FEWER_DIGITS} "
-        f"digits it differs by {work.agreement:.0e} rad at most",
+        f"digits it differs by {max(x.agreement for x in tasks):.0e} rad at most",
         "setting": "rtol = atol, in radians and in the units of the scene; of RK4 and of engines "
         "without error control, steps per nutation period",
         "order": "fall of the error with the evaluations, between the last two settings with an "
         f"error of {ROUNDING:g} to {LOST:g} rad; none of a method that varies its order",
-        "error": f"radians, greatest of the three angles at {len(work.exact)} of the times, the "
-        "last among them",
+        "error": f"radians, greatest of the three angles at {len(tasks[0].exact)} of the times, "
+        "the last among them",
         "units": "the same over eps (max(1, |angle|) + |tau rate|), tau the time since the nearest "
         "whole period",
         "turns": "compared unwrapped, but modulo 2 pi for quaternion forms",
@@ -110,53 +155,20 @@ def conditions(work: Task, limit: float) -> dict[str, str]:
     }
 
 
-def compare_spans(
-    motion: Motion, count: int, methods: dict[str, Method], *, limit: float, progress: Progress
-) -> Report:
-    """Return the report on each method, at its tightest setting, over increasing spans.
-
-    Raises LagtopError as `task` does.
-    """
-    spans = [
-        task(motion, span * reference_period(motion), count, judged=_JUDGED_IN_A_SPAN)
-        for span in SPANS
-    ]
-    runs = [(name, work) for name in methods for work in spans]
-    rows: list[MethodRow] = []
-    for name, work in progress(runs, "methods and spans"):
-        rows.append(_measure(work, name, methods[name], rows))
-    last = conditions(spans[-1], limit)
-    last["times"] = f"{count} over each span"
-    last["reference"] += " over the longest span"
-    return Report(last, SPAN_FIELDS, rows, _conclusions(rows))
-
-
-def _measure(work: Task, name: str, method: Method, before: list[MethodRow]) -> MethodRow:
-    """Return the measured row; a method that failed over a shorter span is not run again."""
-    setting = method.settings[-1]
-    if before and before[-1].method == name and not is_done(before[-1]):
-        if is_out(before[-1]):
-            return before[-1]._replace(periods=work.periods)
-        remark = "not run: it failed over a shorter span"
-        return MethodRow(name, setting, work.periods, remark=remark)
-    return measure(work, name, method, setting)
-
-
-def _conclusions(rows: list[MethodRow]) -> list[str]:
-    """Return the growth of error and time over the spans of each method, and missing methods."""
-    lines = []
+def _growth(rows: Sequence[MethodRow]) -> Iterator[str]:
+    """Yield the growth of error and time over the spans of each method, and missing methods."""
     for name in dict.fromkeys(row.method for row in rows):
         done = [row for row in rows if row.method == name and is_done(row)]
         if done:
             first, last = done[0], done[-1]
             growth = growth_of([(row.periods, row.error_rad or 0) for row in done])
-            lines.append(
+            yield (
                 f"{name}: error in units {first.units_max:.1e} over {first.periods:.0e} periods, "
                 f"{last.units_max:.1e} over {last.periods:.0e}"
                 + ("" if growth is None else f"; in radians it grows as t^{growth:.1f}")
                 + f"; time a sample {(last.ns_min or 0) / (first.ns_min or 1):.1f} times as long"
             )
-    return [*lines, *not_compared(rows)]
+    yield from not_compared(rows)
 
 
 def growth_of(errors: Sequence[tuple[float, float]]) -> float | None:
@@ -164,12 +176,8 @@ def growth_of(errors: Sequence[tuple[float, float]]) -> float | None:
 
     Each element is a time and an error; errors of 0 or beyond 0.1 rad do not count.
     """
-    known = [(math.log(t), math.log(error)) for t, error in errors if 0 < error < LOST]
-    if len(known) < 2:
-        return None
-    middle = sum(x for x, _ in known) / len(known)
-    square = sum((x - middle) ** 2 for x, _ in known)
-    return sum((x - middle) * y for x, y in known) / square
+    known = np.log([(t, error) for t, error in errors if 0 < error < LOST])
+    return float(np.polyfit(known[:, 0], known[:, 1], 1)[0]) if len(known) > 1 else None
 
 
 def with_order(rows: Sequence[MethodRow]) -> list[MethodRow]:

@@ -72,7 +72,7 @@ def ordinary(rng: random.Random) -> Scene:
 
 
 def generic(rng: random.Random) -> Scene:
-    """Return a top with nothing special: any body, a sphere, a disc or a needle."""
+    """Return any start of any body: a sphere, a disc, a needle."""
     scene = ordinary(rng) | _body(rng)
     return scene | {"psidot0": rng.choice([0, scene["psidot0"], scene["psidot0"]])}
 
@@ -84,7 +84,7 @@ def from_rest(rng: random.Random) -> Scene:
 
 
 def units(rng: random.Random) -> Scene:
-    """Return masses, lengths and times of 1e-20 to 1e20, and rates of any size."""
+    """Return masses, lengths and times of 1e-20 to 1e20."""
     scene, (mass, length, second) = generic(rng), (ten_to(rng, -20, 20) for _ in range(3))
     scene |= {"m": mass, "s": length, "g": length / second**2}
     scene |= {key: scene[key] * mass * length**2 for key in ("A", "C")}
@@ -95,7 +95,7 @@ def units(rng: random.Random) -> Scene:
 
 
 def stiff(rng: random.Random) -> Scene:
-    """Return a fast spin, 10 to 1e15 times the pace of the precession, or other large rates."""
+    """Return a fast spin, or other rates, of 10 to 1e15."""
     scene = generic(rng)
     for key in rng.choice([["r0"], ["r0"], rng.sample(_RATES, rng.choice([1, 2, 3]))]):
         scene[key] = signed(rng, ten_to(rng, 1, 15))
@@ -177,9 +177,9 @@ def no_spin(rng: random.Random) -> Scene:
 
 
 def tiny_tilt(rng: random.Random) -> Scene:
-    """Return a start next to the vertical, upright or hanging, with a spin next to the threshold.
+    """Return a tilt of 1e-30 to 1 degree from the vertical.
 
-    The tilt is 1e-30 to 1 degree, and the threshold that above which an upright top sleeps.
+    The spin is next to the threshold above which an upright top sleeps.
     """
     tilt = rng.choice([ten_to(rng, -12, 0), ten_to(rng, -30, 0), 180 - ten_to(rng, -12, 0)])
     scene = generic(rng) | {"theta0_deg": tilt}
@@ -192,9 +192,9 @@ def tiny_tilt(rng: random.Random) -> Scene:
 
 
 def tiny_tilt_with_rates(rng: random.Random) -> Scene:
-    """Return a start with rates at 1e-150 to 0.1 degrees, or 1e-300 to 0.1 degrees below 180.
+    """Return rates at 1e-150 to 0.1 degrees, or next to 180.
 
-    Smaller tilts are refused; the latter are decimals.
+    Smaller tilts are refused; those next to 180, 1e-300 to 0.1 degrees below, are decimals.
     """
     tilt: float | Fraction = ten_to(rng, -150, -1)
     if rng.random() < 0.4:
@@ -206,7 +206,7 @@ def tiny_tilt_with_rates(rng: random.Random) -> Scene:
 
 
 def radians(rng: random.Random) -> Scene:
-    """Return a tilt in radians, most within 1e-30 to 0.1 of 0, pi/2 or pi."""
+    """Return a tilt in radians, mostly next to 0, pi/2 or pi."""
     scene, digits, quarters = generic(rng), rng.randrange(20, 60), rng.randrange(3)
     degrees = scene.pop("theta0_deg")
     if rng.random() < 0.2:
@@ -231,7 +231,7 @@ def any_spin(rng: random.Random) -> Scene:
 
 
 def thresholds(rng: random.Random) -> Scene:
-    """Return a start next to another kind of motion or of series: k = k', no torque, rest."""
+    """Return a start next to k = k', no torque or rest."""
     kind, miss = rng.randrange(3), 1 + signed(rng, ten_to(rng, -15, -3))
     if kind == 0:
         scene = _body(rng) | {"theta0_deg": rng.uniform(1, 85)}
@@ -243,12 +243,12 @@ def thresholds(rng: random.Random) -> Scene:
 
 
 def half_periods(rng: random.Random) -> Scene:
-    """Return an ordinary start; all times are next to half periods."""
+    """Return any ordinary start, at times next to half periods."""
     return ordinary(rng)
 
 
 def far_times(rng: random.Random) -> Scene:
-    """Return a start of another kind; the times are 1e11 to 1e14 periods away."""
+    """Return a start of another kind, 1e11 to 1e14 periods away."""
     return rng.choice([ordinary, stiff, slow, tiny_tilt, near_a_pole, near_steady])(rng)
 
 
@@ -282,8 +282,12 @@ STRATA: dict[str, Callable[[random.Random], Scene]] = {
 
 def words_of(stratum: str) -> str:
     """Return a line that describes the scenes of a stratum."""
-    first = (STRATA[stratum].__doc__ or "").partition("\n")[0]
-    return first.removeprefix("Return ").rstrip(".")
+    return (STRATA[stratum].__doc__ or "").partition("\n")[0].removeprefix("Return ").rstrip(".")
+
+
+def stratum_lines() -> list[str]:
+    """Return one aligned line per stratum, for the help of the command."""
+    return [f"{name:20}  {words_of(name)}" for name in STRATA]
 
 
 def in_doubles(scene: Scene) -> Scene:

@@ -22,6 +22,7 @@ from ..inputs.top import Top
 from ..motion.solve import solve
 from .method import (
     AngleFunction,
+    Drift,
     FailedError,
     Integration,
     Method,
@@ -49,6 +50,13 @@ class TopProblem(NamedTuple):
     theta_rate: float
     psi_rate: float
 
+    @property
+    def sizes(self) -> tuple[float, float]:
+        """The sums of the terms of energy and vertical momentum at the start, over A."""
+        sin, cos = math.sin(self.theta0), math.cos(self.theta0)
+        swing = self.theta_rate**2 + (self.psi_rate * sin) ** 2 + self.a * (1 + abs(cos))
+        return (swing + abs(self.b * self.r0)) / 2, abs(self.psi_rate) * sin**2 + 2 * abs(self.b)
+
 
 def problem_of(top: Top) -> TopProblem:
     """Return the problem of a top, in the units of its scene."""
@@ -72,12 +80,11 @@ class Form(NamedTuple):
     angles: Callable[[Array], SampledAngles]
     """Angles from an array with a row for each variable."""
     whole_turns: bool
-    drift: Callable[[TopProblem, Array], tuple[float, float]] | None = None
-    """Greatest changes of energy and vertical momentum, over the sum of their terms."""
+    drift: Callable[[TopProblem, Array], Drift] = lambda *_: (None, None)
 
     def integration(self, p: TopProblem, run: Callable[[Array], tuple[Array, Work]]) -> Integration:
         """Return a function that computes the angles from a run."""
-        return Integration(run, self.angles, partial(self.drift, p) if self.drift else None)
+        return Integration(run, self.angles, partial(self.drift, p))
 
 
 def _euler_start(p: TopProblem) -> Sequence[float]:
@@ -122,17 +129,16 @@ def _quaternion_slope(p: TopProblem, _: Any) -> Slope:
     return slope
 
 
-def _quaternion_drift(p: TopProblem, rows: Array) -> tuple[float, float]:
-    """Return changes of energy and Lz, both over A, from p, q and the quaternion."""
+def _quaternion_drift(p: TopProblem, rows: Array) -> Drift:
+    """Return the greatest changes of energy and Lz, from p, q and the quaternion."""
     whole = np.column_stack([_quaternion_start(p), rows])
     x, y, e0, e1, e2, e3 = whole
     cosine = e0 * e0 + e3 * e3 - e1 * e1 - e2 * e2
     swing = (x * x + y * y) / 2
     sideways = 2 * (x * (e1 * e3 - e0 * e2) + y * (e2 * e3 + e0 * e1))
     energy, Lz = swing + p.a / 2 * cosine, p.b * cosine + sideways
-    size = swing[0] + p.a / 2 * (1 + abs(cosine[0])) + abs(p.b * p.r0) / 2
-    around = abs(sideways[0]) + 2 * abs(p.b) or 1.0
-    return float(abs(energy - energy[0]).max() / size), float(abs(Lz - Lz[0]).max() / around)
+    changes = np.max(np.abs([energy - energy[0], Lz - Lz[0]]), axis=1) / p.sizes
+    return float(changes[0]), float(changes[1])
 
 
 def quaternion_angles(rows: Array) -> SampledAngles:

@@ -24,14 +24,14 @@ from .closed_forms import CLOSED_FORMS
 from .engines import FAMILIES, engines
 from .integrators import integrators
 from .method import (
-    NOT_APPLICABLE,
+    FAILURES,
     AngleFunction,
-    FailedError,
     Method,
     MethodRow,
-    NotApplicableError,
     SampledAngles,
     Work,
+    is_out,
+    remark_on,
 )
 from .reference import ExactAngles, Reference, angle_differences, angle_units
 
@@ -46,6 +46,8 @@ RUNS, SECONDS_OF_RUNS = 9, 0.3
 class Task(NamedTuple):
     """Times for one top, and the exact angles at some of them."""
 
+    scene: str | None
+    """The name of the scene, if it was given."""
     motion: Motion
     times: Array
     judged: NDArray[np.int64]
@@ -108,6 +110,7 @@ def task(
     t_max: float,
     count: int,
     *,
+    scene: str | None = None,
     judged: int = JUDGED,
     progress: Progress = silent,
 ) -> Task:
@@ -123,7 +126,7 @@ def task(
     references = [Reference(motion.top, digits) for digits in (DIGITS, FEWER_DIGITS)]
     pairs = [[r.at(t) for r in references] for t in progress(times[index].tolist(), "reference")]
     agreement = max(max(angle_differences(one[:3], other)) for one, other in pairs)
-    return Task(motion, times, index, [one for one, _ in pairs], agreement)
+    return Task(scene, motion, times, index, [one for one, _ in pairs], agreement)
 
 
 def check_scene(motion: Motion) -> None:
@@ -139,17 +142,16 @@ def check_scene(motion: Motion) -> None:
 
 def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
     """Return the errors and times of a run of one method; the remark states a failure."""
-    row = MethodRow(name, setting, work.periods)
+    row = MethodRow(work.scene, name, setting, work.periods)
     times = work.times[work.judged] if method.costly else work.times
     try:
         method.check_package()
         with np.errstate(all="ignore"):  # values that are not finite are reported below
             sample, setup = _set_up(method, work, setting)
             angles, seconds = _run(sample, times)
-    except NotApplicableError as reason:
-        return row._replace(setting="", remark=f"{NOT_APPLICABLE}: {reason}")
-    except (FailedError, ArithmeticError, ValueError) as reason:  # foreign formulas in doubles
-        return row._replace(remark=f"failed: {reason}")
+    except FAILURES as reason:
+        failed = row._replace(remark=remark_on(reason))
+        return failed._replace(setting="") if is_out(failed) else failed
     timed = row._replace(
         setup_s=setup,
         ns_min=min(seconds) / times.size * 1e9,

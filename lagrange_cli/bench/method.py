@@ -7,6 +7,8 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..arithmetic.types import Array
 from ..inputs.top import Top
 
@@ -18,6 +20,10 @@ SampledAngles = Sequence[Any]
 
 AngleFunction = Callable[[Array], SampledAngles]
 """A function that computes the angles at times with increasing distance from 0."""
+
+
+Drift = tuple[float | None, float | None]
+"""Changes of energy and vertical momentum in a run, over the sum of their terms."""
 
 
 class Work(NamedTuple):
@@ -36,19 +42,18 @@ class Integration:
         self,
         run: Callable[[Array], tuple[Array, Work]],
         angles: Callable[[Array], SampledAngles],
-        drift: Callable[[Array], tuple[float, float]] | None,
+        drift: Callable[[Array], Drift],
     ) -> None:
         """Take a function that integrates (a row for each variable), and functions of its rows."""
         self._run, self._angles, self._drift = run, angles, drift
         self.work = Work()
         """The work of the last run."""
-        self.drift: tuple[float, float] | None = None
-        """Changes of energy and vertical momentum in the last run, over the sum of their terms."""
+        self.drift: Drift = (None, None)
 
     def __call__(self, t: Array) -> SampledAngles:
         """Return the angles at times with increasing distance from 0."""
         rows, self.work = self._run(t)
-        self.drift = self._drift(rows) if self._drift else None
+        self.drift = self._drift(rows) if np.isfinite(rows).all() else (None, None)
         return self._angles(rows)
 
 
@@ -58,6 +63,10 @@ class NotApplicableError(Exception):
 
 class FailedError(Exception):
     """The run of a method has failed; the message states how."""
+
+
+FAILURES = (NotApplicableError, FailedError, ArithmeticError, ValueError)
+"""Errors of methods; foreign formulas in doubles raise the last two."""
 
 
 class Method(NamedTuple):
@@ -96,6 +105,8 @@ class Method(NamedTuple):
 class MethodRow(NamedTuple):
     """The errors and the times of one method at one setting."""
 
+    scene: str | None
+    """The name of the scene, if it was given."""
     method: str
     setting: float | str
     periods: float
@@ -124,6 +135,11 @@ class MethodRow(NamedTuple):
     front: bool = False
     """Whether no other row is both faster and more accurate."""
     remark: str | None = None
+
+
+def remark_on(error: Exception) -> str:
+    """Return the remark on an error of a method."""
+    return f"{NOT_APPLICABLE if isinstance(error, NotApplicableError) else 'failed'}: {error}"
 
 
 def is_done(row: MethodRow) -> bool:

@@ -15,13 +15,12 @@ import mpmath
 import numpy as np
 
 from ..arithmetic.types import Array
-from ..errors import LagtopError
 from ..inputs.top import Top
 from ..motion.sensitivity.angle_sensitivities import angle_sensitivities
 from .closed_forms import CLOSED_FORMS
 from .compare_methods import LOST, growth_of
 from .integrators import integrators
-from .method import FailedError, NotApplicableError
+from .method import FAILURES, NOT_APPLICABLE, Drift, FailedError, Work, remark_on
 from .reference import ExactAngles, Reference
 
 SPANS, LONG_SPAN = (5.0, 100.0), 1e4
@@ -55,17 +54,19 @@ class PeerRun(NamedTuple):
     """Times in periods, and errors at these times (rad), up to the end of the run."""
     bounds: Sequence[tuple[float, float]]
     """Times in periods, and conditions at these times (rad), over all spans."""
-    evaluations: int | None
-    drift: tuple[float, float] | None
-    """Changes of energy and Lz over the sum of their terms; None if a method has no rates."""
-    remark: str | None
+    evaluations: int | None = None
+    drift: Drift = (None, None)
+    remark: str | None = None
     """The reason why the run ended early, if it did."""
 
     def error(self, span: float) -> float | None:
-        """Return the greatest error in a span; infinite if the method gave up before its end."""
-        if self.is_missing:
+        """Return the greatest error in a span; infinite if the method gave up before its end.
+
+        It is None for a missing method, and for a span that was not compared.
+        """
+        if self.is_missing or not _reaches(self.bounds, span):
             return None
-        return _greatest(self.points, span) if self._came_to(span) else math.inf
+        return _greatest(self.points, span) if _reaches(self.points, span) else math.inf
 
     def condition(self, span: float) -> float:
         """Return the greatest condition in a span."""
@@ -74,10 +75,7 @@ class PeerRun(NamedTuple):
     @property
     def is_missing(self) -> bool:
         """Whether the package of the method is not installed."""
-        return (self.remark or "").startswith("needs ")
-
-    def _came_to(self, span: float) -> bool:
-        return bool(self.points) and self.points[-1][0] >= span * (1 - _HAIR)
+        return (self.remark or "").startswith(NOT_APPLICABLE)
 
     @property
     def growth(self) -> float | None:
@@ -102,6 +100,10 @@ class PeerRun(NamedTuple):
         return "accurate" if worst < _ACCURATE and steady else "drifting"
 
 
+def _reaches(points: Sequence[tuple[float, float]], span: float) -> bool:
+    return bool(points) and points[-1][0] >= span * (1 - _HAIR)
+
+
 def _greatest(points: Sequence[tuple[float, float]], span: float) -> float:
     return max((value for t, value in points if t <= span * (1 + _HAIR)), default=0.0)
 
@@ -119,7 +121,8 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
     for name in PEERS:
         method = known[name]
         points: list[tuple[float, float]] = []
-        sample, remark = None, None
+        sample: Any = None
+        remark = None
         try:
             method.check_package()
             with np.errstate(all="ignore"):
@@ -130,13 +133,10 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
                     if math.inf in errors:
                         raise FailedError("returned values that are not finite")
                     points += zip(grid.tolist(), errors, strict=True)
-        except NotApplicableError as reason:
-            remark = str(reason)
-        except (FailedError, ArithmeticError, ValueError, LagtopError) as reason:
-            remark = f"gave up: {reason}"
-        work = getattr(sample, "work", None)
-        evaluations = work.evaluations if work else None
-        yield PeerRun(name, points, bounds, evaluations, getattr(sample, "drift", None), remark)
+        except FAILURES as reason:
+            remark = remark_on(reason)
+        work, drift = getattr(sample, "work", Work()), getattr(sample, "drift", (None, None))
+        yield PeerRun(name, points, bounds, work.evaluations, drift, remark)
 
 
 def turn(angles: Sequence[Any], exact: ExactAngles) -> float:

@@ -8,7 +8,7 @@ methods in prints without colour.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,6 +21,7 @@ from .measure import all_methods
 from .method import OURS, is_done
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -44,89 +45,90 @@ HUES = {
 SHAPES = "os^Dv<>pP*Xhd"
 """Marks, used first filled, then empty."""
 
+_LABELS = {
+    "error_rad": "greatest error (rad)",
+    "ns_min": "time per sample (ns)",
+    "periods": "nutation periods",
+}
+_AT_ONCE, _OVER_SPANS = [("error_rad", "ns_min")], [("periods", "error_rad"), ("periods", "ns_min")]
+"""Columns on x and y of the panels of a scene."""
+_NOTE: dict[str, Any] = {"va": "top", "fontsize": "x-small", "linespacing": 1.1}
 
-def draw_work_precision(findings: Report, path: str) -> None:
-    """Draw error on x and time on y, both as logarithms, a line for each method, and the front."""
+
+def draw_methods(findings: Report, path: str, *, is_long: bool = False) -> None:
+    """Draw error and time against each other, with the front, or both against the span.
+
+    Each scene has a panel, or two.
+    """
+    from matplotlib.lines import Line2D
+
+    rows = sorted((row for row in findings.rows if is_done(row)), key=lambda row: row.error_rad)
+    scenes = dict.fromkeys(row.scene for row in findings.rows)
+    pairs = _OVER_SPANS if is_long else _AT_ONCE
+    panels = [(scene, *pair) for scene in scenes for pair in pairs]
+    front = Line2D([], [], color="0.85", lw=6, label="front: none is faster\nand more accurate")
     with styled(LIGHT, LETTERS):
-        figure, (axes,) = _figure(1)
-        rows = [row for row in findings.rows if is_done(row)]
-        front = sorted((row.error_rad, row.ns_min) for row in rows if row.front)
-        if front:
-            x, y = _drawable(front)
-            label = "front: none is faster\nand more accurate"
-            axes.step(x, y, where="post", color="0.85", lw=6, zorder=1, label=label)
-        for name, look in method_looks(row.method for row in sorted(rows, key=_by_error)).items():
-            points = sorted((row.error_rad, row.ns_min) for row in rows if row.method == name)
-            _line(axes, name, look, points)
-        axes.set(xlabel="greatest error (rad)", ylabel="time per sample (ns)")
-        _save(figure, path, "Error against run time", findings)
-
-
-def draw_long_spans(findings: Report, path: str) -> None:
-    """Draw error and time against the span."""
-    with styled(LIGHT, LETTERS):
-        figure, (above, below) = _figure(2)
-        rows = [row for row in findings.rows if is_done(row)]
-        for name, look in method_looks(row.method for row in rows).items():
-            mine = [row for row in rows if row.method == name]
-            _line(above, name, look, [(row.periods, row.error_rad) for row in mine])
-            _line(below, name, look, [(row.periods, row.ns_min) for row in mine])
-        above.set(xlabel="nutation periods", ylabel="greatest error (rad)")
-        below.set(xlabel="nutation periods", ylabel="time per sample (ns)")
-        _save(figure, path, "Error and time against the span", findings)
+        figure, grid = _panels(len(panels), min(2, len(panels)), (5.5, 4.5), kinds=len(pairs))
+        looks = method_looks(row.method for row in rows)
+        for axes, (scene, x, y) in zip(grid, panels, strict=True):
+            mine = [row for row in rows if row.scene == scene]
+            best = [(row.error_rad, row.ns_min) for row in mine if row.front]
+            if best:
+                axes.step(*_drawable(best), where="post", color="0.85", lw=6, zorder=1)
+            for name, look in looks.items():
+                points = [(getattr(r, x), getattr(r, y)) for r in mine if r.method == name]
+                _line(axes, look, sorted(points))
+            title = scene if len(scenes) > 1 else f"times: {findings.conditions['times']}"
+            axes.set_title(title, fontsize="small", color=LIGHT.quiet)
+            axes.grid(True, which="major", linewidth=0.4, color="0.85")
+            axes.set(xlabel=_LABELS[x], ylabel=_LABELS[y])
+        title = "Error and time against the span" if is_long else "Error against run time"
+        _save(figure, path, title, findings, looks, *([] if is_long else [front]))
 
 
 def draw_stability(findings: Report, path: str) -> None:
     """Draw error against time, a panel for each stratum, with the condition as a grey band."""
-    import numpy as np
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
+    strata = list(dict.fromkeys(row.stratum for row in findings.rows))
     with styled(LIGHT, LETTERS):
-        strata = list(dict.fromkeys(row.stratum for row in findings.rows))
-        columns = min(len(strata), 3)
-        lines = -(-len(strata) // columns)
-        figure = Figure(figsize=(3.2 * columns + 1, 2.4 * lines + 1.4), layout="constrained")
-        grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).flat
+        figure, grid = _panels(len(strata), min(3, len(strata)), (3.2, 2.4))
         looks = method_looks(dict.fromkeys(row.method for row in findings.rows))
-        for axes, name in zip(grid, strata, strict=False):
-            runs = [x.run for x in findings.rows if x.stratum == name and x.run]
+        for axes, name in zip(grid, strata, strict=True):
+            runs = [row.run for row in findings.rows if row.stratum == name and row.run]
             for run in runs:
-                points = [(t, min(max(x, LEAST_ERROR), MOST_ERROR)) for t, x in run.points]
-                if points:
-                    axes.plot(*zip(*points, strict=True), **looks[run.method].look())
+                _line(axes, looks[run.method], [(t, min(x, MOST_ERROR)) for t, x in run.points])
             if runs:
                 t, bound = zip(*runs[0].bounds, strict=True)
-                axes.fill_between(t, LEAST_ERROR, np.minimum(bound, MOST_ERROR), color="0.85")
-            axes.set(xscale="log", yscale="log", ylim=(LEAST_ERROR, 2 * MOST_ERROR))
+                most = [min(x, MOST_ERROR) for x in bound]
+                axes.fill_between(t, LEAST_ERROR, most, color="0.85")
+            lost = [_stem(run.method) for run in runs if run.verdict == "lost"]
+            words = "\n".join(["lost:", *lost]) if lost else ""
+            axes.text(0.03, 0.96, words, transform=axes.transAxes, **_NOTE)
             axes.set_title(name, fontsize="medium")
-        for i, axes in enumerate(figure.axes):
-            axes.set_visible(i < len(strata))
-            if i >= len(strata) - columns:
-                axes.set_xlabel("nutation periods")
-                axes.tick_params(labelbottom=True)
-        lines_of = [Line2D([], [], label=name, **look.look()) for name, look in looks.items()]
-        band = Patch(color="0.85", label="condition")
-        figure.legend(handles=[*lines_of, band], loc="outside lower center", ncols=4)
+            axes.set(ylim=(LEAST_ERROR, 2 * MOST_ERROR), xlabel=_LABELS["periods"])
         figure.supylabel("error of the attitude (rad)")
-        _save(figure, path, "Error against time by stratum", findings)
+        band = Patch(color="0.85", label="condition")
+        _save(figure, path, "Error against time by stratum", findings, looks, band)
 
 
-def _by_error(row: Any) -> float:
-    """Return the error by which methods are sorted within their family."""
-    return float(row.error_rad)
+def _panels(
+    count: int, columns: int, size: tuple[float, float], *, kinds: int = 1
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure with panels of a size (inches), with logarithmic axes.
 
-
-def _figure(panels: int) -> tuple[Figure, Any]:
+    Every panel shares its axes with those of its kind; kinds take turns.
+    """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 1 + 4 * panels), layout="constrained")
-    axes = figure.subplots(panels, 1, squeeze=False)[:, 0]
-    for each in axes:
-        each.set(xscale="log", yscale="log")
-        each.grid(True, which="major", linewidth=0.4, color="0.85")
-    return figure, axes
+    lines = -(-count // columns)
+    figure = Figure(figsize=(size[0] * columns + 2.5, size[1] * lines + 1), layout="constrained")
+    grid: list[Axes] = []
+    for i in range(count):
+        first = grid[i % kinds] if i >= kinds else None
+        grid.append(figure.add_subplot(lines, columns, i + 1, sharex=first, sharey=first))
+        grid[-1].set(xscale="log", yscale="log")
+    return figure, grid
 
 
 def _drawable(points: Sequence[tuple[float, float]]) -> list[list[float]]:
@@ -134,10 +136,10 @@ def _drawable(points: Sequence[tuple[float, float]]) -> list[list[float]]:
     return [[max(value, LEAST_ERROR) for value in axis] for axis in zip(*points, strict=True)]
 
 
-def _line(axes: Axes, name: str, look: MethodLook, points: Sequence[tuple[float, float]]) -> None:
+def _line(axes: Axes, look: MethodLook, points: Sequence[tuple[float, float]]) -> None:
     """Draw the line of a method; errors beyond the left edge are written at the edge."""
-    x, y = _drawable(points)
-    axes.plot(x, y, label=name, **look.look())
+    if points:
+        axes.plot(*_drawable(points), **look.look())
     beyond = [point for point in points if point[0] < LEAST_ERROR]
     if beyond:
         errors = ", ".join(f"{error:.0e}" for error, _ in sorted(beyond))
@@ -146,13 +148,20 @@ def _line(axes: Axes, name: str, look: MethodLook, points: Sequence[tuple[float,
         axes.annotate(f"← {errors}: beyond this edge", place, (-6, 7), **how)
 
 
-def _save(figure: Figure, path: str, title: str, findings: Report) -> None:
+def _save(
+    figure: Figure,
+    path: str,
+    title: str,
+    findings: Report,
+    looks: Mapping[str, MethodLook],
+    *others: Artist,
+) -> None:
     """Write the figure with its legend; the same findings give the same file."""
+    from matplotlib.lines import Line2D
+
     head(figure, title)
-    if times := findings.conditions.get("times"):
-        axes = figure.axes[0]
-        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1, 1))
-        axes.set_title(f"times: {times}", fontsize="small", color=LIGHT.quiet)
+    lines = [Line2D([], [], label=name, **look.look()) for name, look in looks.items()]
+    figure.legend(handles=[*lines, *others], loc="outside right upper", fontsize="small")
     text = "; ".join(f"{name}: {line}" for name, line in findings.conditions.items())
     about = About(f"lagtop: {title}", text)
     write_bytes(path, lambda: figure_bytes(figure, Path(path).suffix.lower()[1:], 150, about))

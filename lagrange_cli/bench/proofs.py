@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 
 import mpmath
 
@@ -19,12 +20,9 @@ from ..arithmetic.balls import balls
 from ..arithmetic.rounding import decided
 from ..inputs.top import Top
 from ..motion.over_time.proved_table import BallSample, ProvedTable
-from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
-from .battery import CONSERVED, Case, HardScene, case_of, conserved_changes, tabulated
-from .reference import Many
+from .battery import COLUMNS, Case, HardScene, case_of
 
-_COLUMNS = ("theta", "phi", "psi", "quaternion")
 _NARROW = 2**10
 """Inverse of the radius of a ball, in units, that gives an error to three digits."""
 _DIGITS = 40
@@ -33,37 +31,25 @@ _DIGITS = 40
 
 def prove(scene: HardScene) -> Case:
     """Return proved upper bounds of the errors of a scene."""
-    top = Top(**scene.inputs)
-    motion = solve(top)
-    proofs = ProvedTable(motion, _COLUMNS)
+    motion = solve(Top(**scene.inputs))
+    proofs = ProvedTable(motion, COLUMNS[:4])
+    period = motion.number("T_nutation", _DIGITS)
+    assert period is not None
     with mpmath.workdps(_DIGITS):
-        times = scene.times(_period(motion))
-    values = tabulated(motion, times, (*_COLUMNS, *CONSERVED))
-    units = []
-    for t, row in zip(times, values[1:].tolist(), strict=True):
+        times = scene.times(mpmath.mpf(period.value))
+
+    def units(t: float, row: Sequence[float]) -> Sequence[float]:
         *angles, w, x, y, z = bounds_at(proofs, t, row[:7])
-        units.append((*angles, max(w, x, y, z)))
-    changes = conserved_changes(top, values[:, -2:])
-    return case_of(top, times, units, worst_bound(motion), changes)
+        return *angles, max(w, x, y, z)
 
-
-def _period(motion: Motion) -> Many:
-    """Return the nutation period in many digits."""
-    found = motion.number("T_nutation", _DIGITS)
-    assert found is not None
-    return mpmath.mpf(found.value)
-
-
-def worst_bound(motion: Motion) -> tuple[float, str]:
-    """Return the worst bound of a key, in gaps between doubles, and the key.
-
-    The bound is infinite if only one of record and motion has a number.
-    """
-    return max((key_bound(motion, key, getattr(motion, key)), key) for key in NUMBER_KEYS)
+    return case_of(motion, times, units, partial(key_bound, motion))
 
 
 def key_bound(motion: Motion, key: str, value: float | None) -> float:
-    """Return a bound of the error of a key, in gaps between doubles, from fresh enclosures."""
+    """Return a bound of the error of a key, in gaps between doubles, from fresh enclosures.
+
+    It is infinite if only one of record and motion has the key.
+    """
 
     def bound(digits: int) -> float:
         try:

@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass, fields
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
+from ..arithmetic.rounding import FIRST_DIGITS
 from ..inputs.names import ANGLES, check_names
 from ..inputs.top import Top
 from ..output.progress import Progress
-from ..output.report import Field, Report, short
+from ..output.report import Field, Report, fields_of, short
 from ..sweeps.jobs import in_order
 from .battery import (
     CONTRACT,
@@ -24,7 +24,6 @@ from .battery import (
     KEY_CONTRACT,
     MORE_DIGITS,
     Case,
-    Errors,
     hard_scene,
     judged_case,
     settled_reference,
@@ -33,26 +32,25 @@ from .hard_scenes import STRATA, words_of
 from .measure import common_conditions
 from .method import OURS
 from .peers import EVALUATIONS, LONG_EVALUATIONS, LONG_SPAN, SPANS, VERDICTS, PeerRun, peer_runs
-from .reference import EPS
 
 TIMES = 2
 """Random times per scene for lagtop; six more are next to half, quarter and whole periods."""
 FINE, EXCEEDED = "fine", "EXCEEDED"
 PROVED = (
-    "enclosures in balls (Arb): every error is an upper bound that is proved; `proved` is the "
-    "worst of the angles and the quaternion"
+    f"lagtop's own balls of {FIRST_DIGITS} digits or more, which Arb has checked in the tests: "
+    "every error is a proved upper bound; `proved` is the worst of the angles and the quaternion"
 )
 Judged = tuple[Case, list[PeerRun]]
 """The results of a scene: errors of lagtop, and the runs of all methods."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class StratumRow:
-    """One method in one stratum, with the worst results of its scenes."""
+class StratumRow(NamedTuple):
+    """One method in one stratum: its run in its worst scene, and the worst errors of lagtop."""
 
     stratum: str
     method: str
     scenes: int
+    verdict: str
     error_5_rad: float | None = None
     """Greatest error over 5 periods (rad); infinite if the method gave up earlier."""
     error_100_rad: float | None = None
@@ -72,7 +70,6 @@ class StratumRow:
     quaternion_units: float | None = None
     key_ulps: float | None = None
     worst_key: str | None = None
-    verdict: str
     proved_units: float | None = None
     """The worst of the angles and the quaternion, if errors are proved bounds."""
     worst_case: str | None = None
@@ -90,33 +87,29 @@ def _hundredths(error: float) -> str:
     return f"{error:.2f}" if error < 1000 else short(error)
 
 
-STRATUM_FIELDS = [
-    Field("stratum", "stratum", is_text=True, names_the_row=True),
-    Field("method", "method", is_text=True, names_the_row=True),
-    Field("scenes"),
+_UNITS = [f"{name}_units" for name in (*ANGLES, "quaternion")]
+_WORST = [*_UNITS, "key_ulps", "energy", "Lz"]
+"""Errors of lagtop that a row has from the worst of all scenes, each for itself."""
+_ALWAYS = [
+    Field(name, name, is_text=True, names_the_row=name != "verdict")
+    for name in ("stratum", "method", "verdict")
+]
+_COMPARED = [
     Field("error_5_rad", "5 periods", _error),
     Field("error_100_rad", "100", _error),
-    Field("error_10000_rad"),
     Field("condition_rad", "condition", short),
     Field("growth", "growth", lambda growth: f"t^{growth:.1f}"),
     Field("energy", "energy", short),
     Field("Lz", "Lz", short),
-    Field("evaluations"),
-    *(Field(f"{angle}_units") for angle in ANGLES),
-    Field("quaternion_units"),
-    Field("key_ulps"),
-    Field("worst_key"),
-    Field("verdict", "verdict", is_text=True),
-    Field("proved_units"),
-    Field("worst_case"),
-    Field("remark"),
 ]
-_OF_SPANS = {"error_5_rad", "error_100_rad", "condition_rad", "growth", "energy", "Lz"}
-_OF_PROOFS = {
-    **{f"{angle}_units": angle for angle in ANGLES},
-    "quaternion_units": "quat.",
-    "key_ulps": "keys",
-}
+_LONG = Field("error_10000_rad", f"{LONG_SPAN:.0e}", _error)
+_PROVED = [
+    *(
+        Field(name, heading, _hundredths)
+        for name, heading in zip(_WORST, (*ANGLES, "quat.", "keys"), strict=False)
+    ),
+    Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}"),
+]
 
 
 def chosen_strata(names: Sequence[str] | None) -> list[str]:
@@ -145,23 +138,12 @@ def run_battery(
     with closing(in_order(work, scenes, jobs)) as results:
         for name, _, _ in progress(scenes, "scenes"):
             found[name].append(next(results))
-    rows = [row for name, x in found.items() for row in stratum_rows(name, x, certify=certify)]
+    rows = [row for name, x in found.items() for row in stratum_rows(name, x)]
     agreement = max(case.agreement for of_stratum in found.values() for case, _ in of_stratum)
     conditions = _conditions(strata, samples, seed, None if certify else agreement, is_long)
-    return Report(conditions, _fields(certify, is_long), rows, _conclusions(rows))
-
-
-def _fields(certify: bool, is_long: bool) -> list[Field]:
-    """Return the fields, with headings if the table shows them."""
-    changed: dict[str, Field] = {}
-    if certify:
-        changed = {key: Field(key, heading, _hundredths) for key, heading in _OF_PROOFS.items()}
-        changed |= {key: Field(key) for key in _OF_SPANS}
-        bound = Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}")
-        changed["proved_units"] = bound
-    elif is_long:
-        changed["error_10000_rad"] = Field("error_10000_rad", f"{LONG_SPAN:.0e}", _error)
-    return [changed.get(field.key, field) for field in STRATUM_FIELDS]
+    shown = _PROVED if certify else [*_COMPARED, _LONG] if is_long else _COMPARED
+    fields = fields_of(StratumRow._fields[:-1], *_ALWAYS, *shown)
+    return Report(conditions, fields, rows, _conclusions(rows))
 
 
 def judged(scene: tuple[str, int, int], spans: Sequence[float] = SPANS) -> Judged:
@@ -179,47 +161,29 @@ def proved(scene: tuple[str, int, int]) -> Judged:
     return prove(hard_scene(*scene, TIMES)), []
 
 
-def stratum_rows(name: str, found: Sequence[Judged], *, certify: bool = False) -> list[StratumRow]:
-    """Return the rows of a stratum, one per method, from its scenes."""
+def stratum_rows(stratum: str, found: Sequence[Judged]) -> list[StratumRow]:
+    """Return the rows of a stratum, one per method, or one of proved bounds if none was run."""
     cases = [case for case, _ in found]
-    worst = {field.name: max(getattr(x, field.name) for x in cases) for field in fields(Errors)}
-    worst["worst_key"] = max(cases, key=lambda case: case.key_ulps).worst_key
-    energy, Lz = (EPS * worst.pop(f"{x}_eps") for x in ("energy", "Lz"))
-    worst_case = max(cases, key=lambda case: case.excess)
-    ours: dict[str, Any] = {**worst, "worst_case": worst_case.command()}
-    kept = worst_case.excess <= 1
-    if certify:
-        units = max(value for key, value in worst.items() if key.endswith("_units"))
-        verdict = FINE if kept else EXCEEDED
-        ours |= {"proved_units": units, "verdict": verdict, "energy": energy, "Lz": Lz}
-        return [StratumRow(stratum=name, method=OURS, scenes=len(cases), **ours)]
+    worst = max(cases, key=lambda case: case.excess)
+    ours: dict[str, Any] = {name: max(getattr(x, name) for x in cases) for name in _WORST}
+    ours["worst_key"] = max(cases, key=lambda case: case.key_ulps).worst_key
+    ours["worst_case"] = worst.command()
+    if worst.excess > 1:
+        ours["verdict"] = EXCEEDED
     rows = []
     for runs in zip(*(runs for _, runs in found), strict=True):
         run = max(runs, key=_badness)
-        shown: dict[str, Any] = {"verdict": run.verdict, "energy": None, "Lz": None}
-        if run.method == OURS:
-            shown = ours | {"energy": energy, "Lz": Lz}
-            shown["verdict"] = run.verdict if kept else EXCEEDED
-        elif run.drift and all(map(math.isfinite, run.drift)):
-            shown |= {"energy": run.drift[0], "Lz": run.drift[1]}
-        errors = {f"error_{span:.0f}_rad": run.error(span) for span in (*SPANS, LONG_SPAN)}
-        if run.bounds[-1][0] < LONG_SPAN / 2:
-            del errors[f"error_{LONG_SPAN:.0f}_rad"]
-        rows.append(
-            StratumRow(
-                stratum=name,
-                method=run.method,
-                scenes=len(cases),
-                condition_rad=run.condition(SPANS[1]),
-                growth=run.growth,
-                evaluations=run.evaluations,
-                remark=run.remark,
-                run=run,
-                **errors,
-                **shown,
-            )
+        energy, Lz = run.drift
+        row = StratumRow(
+            *(stratum, run.method, len(cases), run.verdict),
+            *(run.error(SPANS[0]), run.error(SPANS[1]), run.error(LONG_SPAN)),
+            *(run.condition(SPANS[1]), run.growth, energy, Lz, run.evaluations),
+            remark=run.remark,
+            run=run,
         )
-    return rows
+        rows.append(row._replace(**ours) if run.method == OURS else row)
+    ours = {"verdict": FINE, "proved_units": max(ours[name] for name in _UNITS)} | ours
+    return rows or [StratumRow(stratum, OURS, len(cases), **ours)]
 
 
 def _badness(run: PeerRun) -> tuple[int, float]:
@@ -267,6 +231,6 @@ def _conclusions(rows: Sequence[StratumRow]) -> list[str]:
     ours = [row for row in rows if row.method == OURS]
     bad = [row.stratum for row in ours if row.verdict == EXCEEDED]
     verdict = f"Exceeded in: {', '.join(bad)}." if bad else "All strata are within the contract."
-    missing = dict.fromkeys(f"{row.method} {row.remark}" for row in rows if row.verdict == "")
+    missing = dict.fromkeys(f"{row.method} ({row.remark})" for row in rows if not row.verdict)
     cases = (f"{row.stratum}: {row.worst_case}" for row in ours)
     return [verdict, *(f"Not compared: {x}." for x in missing), "", "Worst cases:", *cases]

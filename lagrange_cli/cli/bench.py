@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from ..bench.hard_scenes import stratum_lines
 from ..errors import LagtopError
 from .app import Command, fail_for, write_report
 from .options import (
@@ -22,20 +24,29 @@ from .options import (
     seed_option,
 )
 from .progress import with_progress
-from .top import INPUT, TopOptions, top_options
+from .top import INPUT, SCENE, TopOptions, top_options
 
 if TYPE_CHECKING:
     from ..output.destination import Output
     from ..output.report import Report
 
 SAMPLES, LONG_SAMPLES = 10_000, 1000
-PERIODS = 20.3
-"""Default end in periods, not at a turning point, at which approximations are best."""
 MOST_TIMES = 10_000_000
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Environment variables for the number of threads of linear algebra packages."""
 SCENES, MOST_SCENES = 1, 100_000
 SEED = 1952
+STABILITY = """Compare methods in random stiff and extreme scenes, in radians.
+
+Compare errors with the condition of a scene: the change that half a unit in the last place of its
+inputs makes.  The strata of scenes are:
+
+\b
+{strata}
+
+The row of lagtop tests it in 80 digits or more, up to 1e14 periods away.  It must round every key
+correctly, and be within 4 units.  The exit code is 1 if a bound is exceeded.
+"""
 
 
 def _methods() -> list[str]:
@@ -49,11 +60,12 @@ def _methods() -> list[str]:
     cls=Command,
     examples="""
         lagtop bench --methods lagtop,DOP853-quaternion --n 1000
-        lagtop bench stiff-top --methods lagtop,theta-series --n 100 --plot p.svg
+        lagtop bench chrapan-1952 stiff-top near-separatrix slow-top --plot p.svg
         lagtop bench --long --methods lagtop,theta-series --n 100
     """,
 )
-@top_options(INPUT)
+@click.argument("scenes", nargs=-1, type=SCENE, metavar="[SCENE]...")
+@top_options(INPUT, scene=False)
 @click.option("--t-max", type=NUMBER, help="Last time.  [default: 20.3 nutation periods]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 1e4; 1e3 with --long]")
 @click.option(
@@ -74,6 +86,7 @@ def _methods() -> list[str]:
 @plot_option
 @output_options("table", "csv", "json", "ndjson", "markdown")
 def bench_command(
+    scenes: Sequence[str],
     top: TopOptions,
     t_max: Fraction | None,
     count: int | None,
@@ -88,14 +101,14 @@ def bench_command(
     The methods are closed forms, integrators and physics engines, each on one thread.  The
     reference has 80 digits and shares no formula with lagtop.  The setting of an engine is steps
     per nutation period, or a tolerance.  A * marks the Pareto front: no other run is both faster
-    and more accurate.
+    and more accurate.  Several scenes make one table and one picture.
 
     Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method heyoka.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
-    from ..bench.compare_methods import compare_methods, compare_spans
-    from ..bench.measure import check_scene, chosen_methods, reference_period
-    from ..bench.pictures import draw_long_spans, draw_work_precision
+    from ..bench.compare_methods import compare_methods
+    from ..bench.measure import check_scene, chosen_methods
+    from ..bench.pictures import draw_methods
     from ..plot.files import check_plot
 
     exclude({"--long": is_long, "--t-max": t_max})
@@ -107,18 +120,23 @@ def bench_command(
         raise LagtopError(f"--timeout must be > 0, got {float(timeout)}")
     check_plot(plot, out.path)
     chosen = chosen_methods(methods, float(timeout))
-    motion = top.solved()
-    check_scene(motion)
-    how: dict[str, Any] = {"limit": float(timeout), "progress": with_progress}
-    end = float(PERIODS * reference_period(motion) if t_max is None else t_max)
+    names: Sequence[str | None] = scenes or [None]
+    motions = {name: top.replace(scene=name).solved() for name in names}
+    for motion in motions.values():
+        check_scene(motion)
 
     def find() -> Report:
-        if is_long:
-            report = compare_spans(motion, count or LONG_SAMPLES, chosen, **how)
-        else:
-            report = compare_methods(motion, end, count or SAMPLES, chosen, **how)
+        report = compare_methods(
+            motions,
+            chosen,
+            count or (LONG_SAMPLES if is_long else SAMPLES),
+            t_max=None if t_max is None else float(t_max),
+            limit=float(timeout),
+            is_long=is_long,
+            progress=with_progress,
+        )
         if plot:
-            (draw_long_spans if is_long else draw_work_precision)(report, plot)
+            draw_methods(report, plot, is_long=is_long)
         return report
 
     write_report(out, find)
@@ -127,6 +145,7 @@ def bench_command(
 @click.command(
     "stability",
     cls=Command,
+    help=STABILITY.format(strata="\n".join(stratum_lines())),
     examples="""
         lagtop stability --strata slow,thresholds --samples 1
         lagtop stability --strata slow --samples 2 --seed 7 -o battery.csv
@@ -161,15 +180,7 @@ def stability_command(
     plot: str | None,
     out: Output,
 ) -> None:
-    """Compare methods in random stiff and extreme scenes, and test lagtop there in 80 digits.
-
-    Errors are in radians.  Compare them with the condition of the scene: the change that half a
-    unit in the last place of its inputs makes.
-
-    lagtop must round every key of the record correctly.  Its angles and its quaternion must be
-    within 4 units, at times up to 1e14 periods before and after the start.  Some times are next to
-    half, quarter and whole periods.  The exit code is 1 if a bound is exceeded.
-    """
+    """Compare methods in random scenes; STABILITY is the help."""
     exclude({"--certify": certify, "--long": is_long})
     if not 1 <= samples <= MOST_SCENES:
         raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {samples}")

@@ -35,6 +35,12 @@ class Field(NamedTuple):
         return "" if value is None else self.show(value)
 
 
+def fields_of(keys: Sequence[str], *shown: Field) -> list[Field]:
+    """Return a field for each key, in this order; only the `shown` ones are columns of a table."""
+    named = {field.key: field for field in shown}
+    return [named.get(key, Field(key)) for key in keys]
+
+
 class Report(NamedTuple):
     """Conditions, rows and conclusions, in every format."""
 

@@ -9,7 +9,6 @@ import math
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
 from itertools import pairwise
@@ -31,7 +30,7 @@ from lagrange_cli.bench.compare_methods import METHOD_FIELDS, conclusions, with_
 from lagrange_cli.bench.integrators import FORMS, integrators, problem_of
 from lagrange_cli.bench.measure import Task, measure, reference_period, task
 from lagrange_cli.bench.method import MethodRow
-from lagrange_cli.bench.pictures import draw_long_spans, draw_work_precision
+from lagrange_cli.bench.pictures import draw_methods
 from lagrange_cli.output.report import Report
 
 LOOPING = Top(psidot0=-4)
@@ -111,7 +110,9 @@ def test_one_time_is_the_last_and_may_lie_before_the_start() -> None:
 
 
 def row(method: str, error_rad: float | None, ns_min: float | None, **more: Any) -> MethodRow:
-    return MethodRow(method, "", 1.0, error_rad=error_rad, ns_min=ns_min, units_max=9.0, **more)
+    return MethodRow(
+        None, method, "", 1.0, error_rad=error_rad, ns_min=ns_min, units_max=9.0, **more
+    )
 
 
 def test_front_and_what_it_says() -> None:
@@ -307,17 +308,13 @@ def test_what_cannot_be_written_is_known_before_the_work(lagtop: Lagtop, tmp_pat
 def test_pictures_are_the_same_twice(lagtop: Lagtop, tmp_path: Path) -> None:
     rows = with_front([row("lagtop", 1e-15, 2.0), row("x-euler", 1e-3, 9.0), row("y", None, None)])
     found = Report({"times": "5", "scenes": "3"}, METHOD_FIELDS, rows, [])
-    draws: dict[str, Callable[[Report, str], None]] = {
-        "work": draw_work_precision,
-        "drift": draw_long_spans,
-    }
-    for name, draw in draws.items():
-        pair = [tmp_path / f"{name}{i}.svg" for i in range(2)]
+    for is_long in (False, True):
+        pair = [tmp_path / f"{is_long}{i}.svg" for i in range(2)]
         for path in pair:
-            draw(found, str(path))
+            draw_methods(found, str(path), is_long=is_long)
         assert pair[0].read_bytes() == pair[1].read_bytes()
         assert pair[0].read_text().count(">x-euler<") == 1
-        assert (">front" in pair[0].read_text()) == (name == "work")
+        assert (">front" in pair[0].read_text()) == (not is_long)
     target = tmp_path / "real.png"
     assert lagtop("bench", "--methods", "lagtop", "--n", 4, "--plot", target).exit_code == 0
     assert target.read_bytes().startswith(b"\x89PNG")
@@ -372,3 +369,21 @@ def test_sample_scenes(scene: str, lagtop: Lagtop) -> None:
     result = lagtop("bench", path, "--methods", "lagtop", "--n", 20, "--format", "json")
     (found,) = json.loads(result.stdout)["rows"]
     assert found["units_max"] < 4
+
+
+def test_scenes_make_one_report_and_one_picture(lagtop: Lagtop, tmp_path: Path) -> None:
+    """Front, sorting and verdict belong to a scene; an option changes every scene."""
+    scenes, picture = ["near-separatrix", "slow-top"], tmp_path / "x.svg"
+    line = ["bench", *scenes, "--methods", "theta-series,lagtop", "--n", 5, "--plot", picture]
+    found = json.loads(lagtop(*line, "--m", 1000, "--format", "json").stdout)
+    assert [x["scene"] for x in found["rows"]] == [scenes[0]] * 6 + [scenes[1]] * 6
+    first = [x for x in found["rows"] if x["method"] == "lagtop"]
+    assert [found["rows"].index(x) for x in first] == [0, 6]
+    assert all(x["front"] for x in first)
+    assert found["conditions"]["scene"].startswith("near-separatrix: --m 1000.0 --A 39032.0 ")
+    assert "; slow-top: --m 1000.0 " in found["conditions"]["scene"]
+    assert [line.partition(": ")[0] for line in found["conclusions"][::2]] == scenes
+    text = picture.read_text()
+    assert all(text.count(f">{word}<") == 1 for word in (*scenes, "theta-series"))
+    alone = lagtop("bench", "slow-top", "--methods", "lagtop", "--n", 2)
+    assert "slow-top" not in alone.stdout

@@ -14,7 +14,7 @@ from lagrange_cli.bench.compare_methods import METHOD_FIELDS, with_front
 from lagrange_cli.bench.measure import all_methods
 from lagrange_cli.bench.method import MethodRow
 from lagrange_cli.bench.peers import PeerRun
-from lagrange_cli.bench.pictures import HUES, draw_stability, draw_work_precision, method_looks
+from lagrange_cli.bench.pictures import HUES, draw_methods, draw_stability, method_looks
 from lagrange_cli.output.report import Report
 from lagrange_cli.plot.style import LIGHT
 
@@ -23,12 +23,12 @@ from lagrange_cli.plot.style import LIGHT
 def test_points_beyond_the_edge_have_their_errors_beside_it(tmp_path: Path) -> None:
     errors = {"lagtop-digits": [5e-48, 5e-18], "lagtop": [5e-14], "DOP853-euler": [1e-10]}
     rows = [
-        MethodRow(name, i, 20.3, error_rad=error, ns_min=10.0 * (i + 1))
+        MethodRow(None, name, i, 20.3, error_rad=error, ns_min=10.0 * (i + 1))
         for name, found in errors.items()
         for i, error in enumerate(found)
     ]
     path = tmp_path / "x.svg"
-    draw_work_precision(Report({"times": "9"}, METHOD_FIELDS, with_front(rows), []), str(path))
+    draw_methods(Report({"times": "9"}, METHOD_FIELDS, with_front(rows), []), str(path))
     text = path.read_text()
     assert text.count("beyond this edge") == 1
     assert ">← 5e-48, 5e-18: beyond this edge<" in text
@@ -41,8 +41,8 @@ def test_a_stratum_is_a_panel_with_its_condition(tmp_path: Path) -> None:
     rows = []
     for name in ("generic", "slow"):
         bounds = [(1.0, 1e-15), (10.0, 1e-14)]
-        run = PeerRun("lagtop", [(1.0, 1e-16), (10.0, 0.0)], bounds, None, None, None)
-        gone = PeerRun("RK4-quaternion", [], bounds, None, None, "gave up")
+        run = PeerRun("lagtop", [(1.0, 1e-16), (10.0, 0.0)], bounds)
+        gone = PeerRun("RK4-quaternion", [], bounds, remark="failed: slow")
         rows += [SimpleNamespace(stratum=name, method=run.method, run=run) for run in (run, gone)]
     path = tmp_path / "x.svg"
     draw_stability(Report({"scenes": "4 per stratum; odd"}, [], rows, []), str(path))
