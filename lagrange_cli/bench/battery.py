@@ -37,7 +37,7 @@ DIGITS, MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
 """Least digits of the reference, additional digits of its check, and units by which both may
 differ.
 """
-COLUMNS = ("theta", "phi", "psi", "quaternion", "energy", "Lz")
+JUDGED_COLUMNS = ("theta", "phi", "psi", "quaternion", "energy", "Lz")
 """Columns of `lagtop table` that are judged."""
 
 
@@ -99,11 +99,11 @@ def case_of(
 ) -> Case:
     """Return the worst errors of a motion, at times and of its record.
 
-    `units` judges a row of COLUMNS at a time: the three angles and the quaternion.  `key_error`
+    `units` judges a row of JUDGED_COLUMNS at a time, three angles and the quaternion.  `key_error`
     judges a number of the record, in gaps between doubles.
     """
     points = ListedPoints([Fraction(t) for t in (0.0, *times)])
-    _, blocks = rows(motion, points, COLUMNS, radians=True)
+    _, blocks = rows(motion, points, JUDGED_COLUMNS, radians=True)
     values = np.concatenate(list(blocks))
     errors = np.array([units(t, row) for t, row in zip(times, values[1:].tolist(), strict=True)])
     theta, phi, psi, attitude = errors.max(axis=0).tolist()

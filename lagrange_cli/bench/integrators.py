@@ -1,6 +1,6 @@
 """Numerical integration of Euler's equations, in two forms and by methods of other packages.
 
-Another method of scipy is one entry in SCIPY; another form of the equations is one in FORMS.
+Another method is one entry in WAYS; another form of the equations is one in FORMS.
 Angles are in radians and rates in the units of the scene; tolerances apply to these numbers.
 """
 
@@ -274,29 +274,25 @@ def heyoka_method(
     return form.integration(problem, run)
 
 
-SCIPY: dict[str, list[float]] = {
-    "RK45": [1e-3, 1e-5, 1e-7, 1e-9],
-    "DOP853": [1e-4, 1e-7, 1e-10, TIGHTEST],
-    "LSODA": [1e-4, 1e-7, 1e-10, 1e-12],
-    "Radau": [1e-3, 1e-5, 1e-7],
+_SCIPY = "scipy.integrate"
+WAYS: dict[str, tuple[Sequence[float], Any, str]] = {
+    "RK45": ([1e-3, 1e-5, 1e-7, 1e-9], partial(scipy_method, "RK45"), _SCIPY),
+    "DOP853": ([1e-4, 1e-7, 1e-10, TIGHTEST], partial(scipy_method, "DOP853"), _SCIPY),
+    "LSODA": ([1e-4, 1e-7, 1e-10, 1e-12], partial(scipy_method, "LSODA"), _SCIPY),
+    "Radau": ([1e-3, 1e-5, 1e-7], partial(scipy_method, "Radau"), _SCIPY),
+    "RK4": ([50, 200, 800], rk4_method, ""),
+    "Taylor": ([1e-5, 1e-8, 1e-12, 1e-16], heyoka_method, "heyoka"),
 }
-TAYLOR = [1e-5, 1e-8, 1e-12, 1e-16]
-STEPS = [50, 200, 800]
+"""Settings, set-up and package of each method."""
 
 
 def integrators(seconds: float, evaluations: float = math.inf) -> dict[str, Method]:
     """Return each method in each form by name, with limits on seconds and evaluations of a run."""
-    table = {}
     limits = seconds, evaluations
-    for shape, form in FORMS.items():
-        ways: dict[str, tuple[Sequence[float], Any, str]] = {
-            name: (tolerances, partial(scipy_method, name), "scipy.integrate")
-            for name, tolerances in SCIPY.items()
-        }
-        ways |= {"RK4": (STEPS, rk4_method, ""), "Taylor": (TAYLOR, heyoka_method, "heyoka")}
-        for name, (settings, way, package) in ways.items():
-            prepare = partial(way, form, limits=limits)
-            table[f"{name}-{shape}"] = Method(
-                settings, prepare, package, whole_turns=form.whole_turns
-            )
-    return table
+    return {
+        f"{name}-{shape}": Method(
+            settings, partial(way, form, limits=limits), package, whole_turns=form.whole_turns
+        )
+        for shape, form in FORMS.items()
+        for name, (settings, way, package) in WAYS.items()
+    }

@@ -7,6 +7,7 @@ import platform
 import statistics
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
@@ -30,8 +31,8 @@ from .method import (
     MethodRow,
     SampledAngles,
     Work,
+    failure_remark,
     is_out,
-    remark_on,
 )
 from .reference import ExactAngles, Reference, angle_differences, angle_units
 
@@ -67,23 +68,18 @@ def reference_period(motion: Motion) -> float:
     return float(motion.T_nutation or math.inf)
 
 
-def usual_methods(limit: float) -> dict[str, Method]:
-    """Return the methods of a plain comparison by name, with a time limit of a run in seconds."""
-    return CLOSED_FORMS | integrators(limit)
-
-
 def all_methods(limit: float) -> dict[str, Method]:
-    """Return every method by name, including engines."""
-    return usual_methods(limit) | engines(limit)
+    """Return every method by name, with a time limit of a run in seconds; engines are the last."""
+    return CLOSED_FORMS | integrators(limit) | engines(limit)
 
 
 def groups() -> dict[str, list[str]]:
     """Return the names of groups of methods: all engines, and each engine."""
-    found = {
-        family: [name for name, x in engines(1.0).items() if x.engine == family]
-        for family in FAMILIES
-    }
-    return {"engines": [name for names in found.values() for name in names]} | found
+    names: dict[str, list[str]] = {family: [] for family in ("engines", *FAMILIES)}
+    for name, method in engines(1.0).items():
+        names["engines"].append(name)
+        names[method.engine].append(name)
+    return names
 
 
 def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Method]:
@@ -92,9 +88,9 @@ def chosen_methods(names: Sequence[str] | None, limit: float) -> dict[str, Metho
     Raises LagtopError for an unknown name, and UnavailableError if none of the methods is
     installed.
     """
-    if names is None:
-        return usual_methods(limit)
     known, several = all_methods(limit), groups()
+    if names is None:
+        return {name: method for name, method in known.items() if not method.engine}
     check_names("methods", names, [*known, *(x for x in several if x not in known)])
     single = dict.fromkeys(x for name in names for x in several.get(name, [name]))
     chosen = {name: known[name] for name in single}
@@ -150,7 +146,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
             sample, setup = _set_up(method, work, setting)
             angles, seconds = _run(sample, times)
     except FAILURES as reason:
-        failed = row._replace(remark=remark_on(reason))
+        failed = row._replace(remark=failure_remark(reason))
         return failed._replace(setting="") if is_out(failed) else failed
     timed = row._replace(
         setup_s=setup,
@@ -206,31 +202,19 @@ def _judged(
     return row._replace(error_rad=max(worst), error_end=max(end), units_max=units, **each)
 
 
-def _machine() -> str:
-    """Return the processor and the system."""
-    return f"{_processor()}, {platform.system()} {platform.machine()}"
-
-
-def _processor() -> str:
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as lines:
-            names = [line.partition(":")[2].strip() for line in lines if "model name" in line]
-    except OSError:
-        names = []
-    return names[0] if names else platform.processor() or "unknown processor"
-
-
-def _versions() -> str:
-    """Return the versions of Python and of all packages that are used."""
-    parts = [f"Python {platform.python_version()}"]
+def common_conditions() -> dict[str, str]:
+    """Return the machine, and the versions of Python and of all packages that are used."""
+    names = []
+    with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8") as lines:
+        names = [line.partition(":")[2].strip() for line in lines if "model name" in line]
+    processor = names[0] if names else platform.processor() or "unknown processor"
+    versions = [f"Python {platform.python_version()}"]
     for name in ("lagtop", "numpy", "mpmath", "scipy", "heyoka"):
         try:
-            parts.append(f"{name} {version(name)}")
+            versions.append(f"{name} {version(name)}")
         except PackageNotFoundError:
-            parts.append(f"no {name}")
-    return ", ".join(parts)
-
-
-def common_conditions() -> dict[str, str]:
-    """Return the conditions that every report begins with."""
-    return {"machine": _machine(), "versions": _versions()}
+            versions.append(f"no {name}")
+    return {
+        "machine": f"{processor}, {platform.system()} {platform.machine()}",
+        "versions": ", ".join(versions),
+    }

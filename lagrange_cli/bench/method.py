@@ -137,7 +137,7 @@ class MethodRow(NamedTuple):
     remark: str | None = None
 
 
-def remark_on(error: Exception) -> str:
+def failure_remark(error: Exception) -> str:
     """Return the remark on an error of a method."""
     return f"{NOT_APPLICABLE if isinstance(error, NotApplicableError) else 'failed'}: {error}"
 

@@ -20,7 +20,7 @@ from ..motion.sensitivity.angle_sensitivities import angle_sensitivities
 from .closed_forms import CLOSED_FORMS
 from .compare_methods import LOST, growth_of
 from .integrators import integrators
-from .method import FAILURES, NOT_APPLICABLE, Drift, FailedError, Work, remark_on
+from .method import FAILURES, NOT_APPLICABLE, Drift, FailedError, Work, failure_remark
 from .reference import ExactAngles, Reference
 
 SPANS, LONG_SPAN = (5.0, 100.0), 1e4
@@ -134,7 +134,7 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
                         raise FailedError("returned values that are not finite")
                     points += zip(grid.tolist(), errors, strict=True)
         except FAILURES as reason:
-            remark = remark_on(reason)
+            remark = failure_remark(reason)
         work, drift = getattr(sample, "work", Work()), getattr(sample, "drift", (None, None))
         yield PeerRun(name, points, bounds, work.evaluations, drift, remark)
 

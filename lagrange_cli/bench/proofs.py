@@ -21,7 +21,7 @@ from ..arithmetic.rounding import decided
 from ..inputs.top import Top
 from ..motion.over_time.proved_table import BallSample, ProvedTable
 from ..motion.solve import Motion, solve
-from .battery import COLUMNS, Case, HardScene, case_of
+from .battery import JUDGED_COLUMNS, Case, HardScene, case_of
 
 _NARROW = 2**10
 """Inverse of the radius of a ball, in units, that gives an error to three digits."""
@@ -32,7 +32,7 @@ _DIGITS = 40
 def prove(scene: HardScene) -> Case:
     """Return proved upper bounds of the errors of a scene."""
     motion = solve(Top(**scene.inputs))
-    proofs = ProvedTable(motion, COLUMNS[:4])
+    proofs = ProvedTable(motion, JUDGED_COLUMNS[:4])
     period = motion.number("T_nutation", _DIGITS)
     assert period is not None
     with mpmath.workdps(_DIGITS):

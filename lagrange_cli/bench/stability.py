@@ -13,7 +13,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import FIRST_DIGITS
-from ..inputs.names import ANGLES, check_names
+from ..inputs.names import ANGLES
 from ..inputs.top import Top
 from ..output.progress import Progress
 from ..output.report import Field, Report, fields_of, short
@@ -28,7 +28,7 @@ from .battery import (
     judged_case,
     settled_reference,
 )
-from .hard_scenes import STRATA, words_of
+from .hard_scenes import words_of
 from .measure import common_conditions
 from .method import OURS
 from .peers import EVALUATIONS, LONG_EVALUATIONS, LONG_SPAN, SPANS, VERDICTS, PeerRun, peer_runs
@@ -110,11 +110,6 @@ _PROVED = [
     ),
     Field("proved_units", "proved", lambda bound: f"<= {_hundredths(bound)}"),
 ]
-
-
-def chosen_strata(names: Sequence[str] | None) -> list[str]:
-    """Return the names of strata, by default all.  Raises LagtopError for an unknown name."""
-    return list(STRATA) if names is None else check_names("strata", names, STRATA)
 
 
 def run_battery(

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..bench.hard_scenes import stratum_lines
+from ..bench.hard_scenes import STRATA, stratum_lines
 from ..errors import LagtopError
+from ..inputs.names import check_names
 from .app import Command, fail_for, write_report
 from .options import (
     COUNT,
@@ -189,7 +190,7 @@ def stability_command(
     from ..plot.files import check_plot
 
     check_plot(plot, out.path)
-    chosen = stability.chosen_strata(strata)
+    chosen = list(STRATA) if strata is None else check_names("strata", strata, STRATA)
 
     def find() -> Report:
         report = stability.run_battery(
