@@ -11,13 +11,17 @@ from collections.abc import Callable
 from ...errors import LagtopError
 from ...inputs.input_keys import DECLARED, EXAMPLE, NINE, TILT, Input
 from ...inputs.top import Top
-from ...motion.record import KEYS
+from ...motion.explanation import listed
+from ...motion.record import KEYS, requested_keys
 from ...motion.solve import Motion, solve
 
 SMALLEST, LARGEST = 1e-30, 1e30
 """Limits of the sizes of inputs; other sizes would leave the range of doubles."""
 LEAST_TILT = 9e-13
 """Least tilt (degrees) from the vertical; it allows the double next to 180 - 1e-12."""
+
+FACTOR = "stability_factor"
+"""The key on request that the page shows below a and b."""
 
 PageScene = dict[str, float]
 
@@ -103,7 +107,7 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
         "UNITS": {name: unit(name) for name in ("mass", "len", "time")},
         "EXAMPLES": EXAMPLES,
         "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
-        "KEYS": {name: key.as_dict() for name, key in KEYS.items()},
+        "KEYS": _keys(),
         "DESCRIPTIONS": DESCRIPTIONS,
         "LIMITS": {"least": SMALLEST, "largest": LARGEST, "tilt": LEAST_TILT},
     }
@@ -131,6 +135,20 @@ def page_scene(motion: Motion) -> PageScene:
 def _key(name: str) -> str:
     """Return the key of an input in a scene of the page."""
     return f"{name}_deg" if name == TILT else name
+
+
+def _keys() -> dict[str, dict[str, str]]:
+    """Return the declarations of the keys of the page, each with its formula in symbols.
+
+    They are the keys of a record and the stability factor.
+    """
+    formulas = {row.name: row.formula for row in listed()}
+    keys = KEYS | {FACTOR: requested_keys()[FACTOR].replace(group=KEYS["a"].group)}
+    groups = [key.group for key in keys.values()]
+    return {
+        name: key.replace(formula=formulas.get(name, "")).as_dict()
+        for name, key in sorted(keys.items(), key=lambda item: groups.index(item[1].group))
+    }
 
 
 def _input(declared: Input) -> dict[str, str]:

@@ -12,7 +12,7 @@ export class Camera {
     this.zoom = 1;
   }
 
-  /** Turn by so many degrees; the eye never passes over a pole. */
+  /** Turn by some degrees; the eye never passes over a pole. */
   turn(right, up) {
     this.azimuth = (this.azimuth - right) % 360;
     this.elevation = Math.max(-90, Math.min(90, this.elevation + up));

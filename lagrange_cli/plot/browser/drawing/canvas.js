@@ -70,7 +70,7 @@ export function even(from, until, count) {
   return [...Array(count + 1).keys()].map((i) => from + (until - from) * i / count);
 }
 
-/** A number as text, to so many digits. */
+/** A number as text, rounded to some significant digits. */
 export function textOf(x, digits = 10) {
   return String(Number(x.toPrecision(digits))).replace("e+", "e").replace(/-/g, "−");
 }

@@ -65,13 +65,13 @@ function nextToSeparatrix({ a, b, sin, above, psiRate, thetaRate }, gaps) {
   gaps.u1FromStart = above.minus(gaps.aboveU1);
 }
 
-/** Adds beta - b u1 and beta - b u2, counted from the pole where the root is next to one. */
+/** Adds beta - b u1 and beta - b u2, counted from the start or from the pole that is nearer. */
 function withMomenta({ b, sin, psiRate }, facts, gaps) {
   const momentum = psiRate.times(sin.squared());
   const stands = facts.cusp || facts.upperRoot === 1 || facts.separatrix;
-  const atU1 = gaps.aboveU1 < NEAR
+  const atU1 = gaps.aboveU1 < +gaps.u1FromStart
     ? gaps.betaMinusB.plus(b.times(gaps.aboveU1)) : momentum.minus(b.times(gaps.u1FromStart));
-  const atU2 = gaps.belowU2 < NEAR
+  const atU2 = gaps.belowU2 < +gaps.startFromU2
     ? gaps.betaPlusB.minus(b.times(gaps.belowU2)) : momentum.plus(b.times(gaps.startFromU2));
   return {
     ...gaps,

@@ -6,8 +6,8 @@ import { completeK, periodMean } from "./integrals.js";
 import { PI, pair } from "./pair.js";
 import { checkScene, factsOf, startOf } from "./start.js";
 
-/** Least mean rate over the parts that cancel in it, of which the record can tell ten digits. */
-const LEAST_RATE = 1e-20;
+/** A number over the parts that cancel in it is shown from here on: ten digits must be right. */
+const LEAST = 1e-20;
 
 /** The motion of a scene: its record, and `angles(t)`.  Raises RangeError for a bad input. */
 export function motionOf(scene) {
@@ -72,9 +72,10 @@ function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
   };
   const overTop = facts.upperRoot === 1;
   if (!facts.free && !overTop && !facts.overBottom) {
-    const south = mean(belowU1, belowU2, momentumU1, momentumU2);
-    const north = mean(aboveU1, aboveU2, momentumU1, momentumU2);
-    return rates(start.r0, south, north);
+    const momenta = [momentumU1, momentumU2];
+    const [south, north, southSize, northSize] = [momenta, momenta.map((x) => x.size())].flatMap(
+      (ends) => [mean(belowU1, belowU2, ...ends), mean(aboveU1, aboveU2, ...ends)]);
+    return rates(start.r0, south, north, southSize + northSize);
   }
   // apart, (beta + b)/(2 (1 + u)) and (beta - b)/(2 (1 - u)): each makes half a turn per period
   // without torque, and over its pole
@@ -86,8 +87,7 @@ function nutatingRates({ start, facts, gaps, kPrime }, halfTurn) {
 }
 
 /** Mean rates, and the sizes of the parts that cancel in them. */
-function rates(spin, south, north) {
-  const precessionSize = Math.abs(south) + Math.abs(north);
+function rates(spin, south, north, precessionSize = Math.abs(south) + Math.abs(north)) {
   return {
     spinRate: spin.plus(south).minus(north),
     precessionRate: south.plus(north),
@@ -109,16 +109,17 @@ function degreesOf(above, below) {
   return 2 * Math.atan2(Math.sqrt(above), Math.sqrt(below)) * 180 / Math.PI;
 }
 
-/** The numbers of the scene, as doubles, under the keys of `lagtop solve`. */
+/** The numbers of the scene as doubles, by key; null if undefined, NaN if digits are lost. */
 function recordOf(motion) {
   const { start, facts, gaps } = motion;
   const number = (x) => (x === undefined || x === null ? null : +x);
   const vanish = facts.vertical || facts.free || !(facts.spins || +start.psiRate);  // exactly 0
-  const known = (x, size = 0) => (+x ? Math.abs(x) > LEAST_RATE * size : vanish);
-  const rate = (x, size) => (x !== undefined && known(x, size) ? +x : null);
+  const known = (x, size, zero) => ((+x ? Math.abs(x) > LEAST * size : zero) ? +x : NaN);
+  const rate = (x, size) => (x === undefined ? null : known(x, size ?? 0, vanish));
   const spinRate = rate(motion.spinRate, motion.spinSize);
   const precessionRate = facts.vertical ? null : rate(motion.precessionRate, motion.precessionSize);
-  const turn = (x) => (x ? 2 * Math.PI / Math.abs(x) : null);
+  const turn = (x) => (x === null || x === 0 ? null : 2 * Math.PI / Math.abs(x));
+  const root = (u, gap) => known(u, 1, !(+gap || +start.cos));
   const u2 = +gaps.aboveU2 < +gaps.belowU2
     ? pair(1).minus(gaps.aboveU2) : gaps.belowU2.minus(1);
   const nome = motion.K && motion.KPrime ? Math.exp(-Math.PI * motion.KPrime / motion.K) : null;
@@ -126,8 +127,9 @@ function recordOf(motion) {
     regime: facts.regime,
     a: +start.a,
     b: +start.b,
-    u1: +start.cos.plus(gaps.u1FromStart),
-    u2: +u2,
+    stability_factor: facts.free ? null : start.b * start.b / (2 * start.a),
+    u1: root(start.cos.plus(gaps.u1FromStart), gaps.u1FromStart),
+    u2: root(u2, gaps.startFromU2),
     u3: facts.free || facts.vertical ? null : +gaps.aU3Above.over(start.a).plus(1),
     k: number(motion.k),
     k_prime: number(motion.kPrime),

@@ -84,9 +84,7 @@ class Page {
     copy.addEventListener("click", () => this.copyLink());
     theme.addEventListener("click", () => this.changeTheme());
     save.addEventListener("click", () => this.save(kind.value));
-    record.addEventListener("click", (event) => {
-      explained.textContent = event.target.closest("tr").title || explained.textContent;
-    });
+    record.addEventListener("focusin", (event) => { explained.textContent = event.target.title; });
     const scrub = (event) => {
       if (event.buttons) this.clock.set(this.field.timeAt(event.offsetX));
     };

@@ -7,16 +7,22 @@ import { textOf } from "../drawing/canvas.js";
 export function showRecord(table, record, units) {
   const rows = [];
   let last = "";
-  for (const [name, { group, symbol, meaning, unit, equation }] of Object.entries(KEYS)) {
+  for (const [name, key] of Object.entries(KEYS)) {
     const value = record[name];
     if (typeof value !== "number") continue;
-    if (group !== last) rows.push(rowOf([["th", group]]));
-    last = group;
-    const shown = `${textOf(value)} ${named(unit, units)}`;
-    const cells = [["th", symbol], ["td", meaning], ["td", shown]];
-    rows.push(rowOf(cells, `${name} ${equation}`));
+    if (key.group !== last) rows.push(rowOf([["th", key.group]]));
+    last = key.group;
+    const shown = Number.isNaN(value)
+      ? "ask lagtop solve" : `${textOf(value)} ${named(key.unit, units)}`;
+    rows.push(rowOf([["th", key.symbol], ["td", key.meaning], ["td", shown]], explained(name, key)));
   }
   table.tBodies[0].replaceChildren(...rows);
+}
+
+/** Symbol, meaning, formula, equation and name of a key, as in `lagtop explain`. */
+function explained(name, { symbol, meaning, formula, equation }) {
+  const equal = formula.includes(" = ") && !formula.includes("where") ? "" : `${symbol} = `;
+  return `${symbol}, ${meaning}: ${equal}${formula}  ${equation}  (key ${name})`;
 }
 
 /** A unit such as `rad/time` with the names of mass, len and time in `units`. */
@@ -39,7 +45,8 @@ function rowOf(cells, title = "") {
     return cell;
   }));
   row.firstChild.scope = title ? "row" : "rowgroup";
-  if (!title) row.firstChild.colSpan = 3;
+  if (title) row.tabIndex = 0;
+  else row.firstChild.colSpan = 3;
   return row;
 }
 
