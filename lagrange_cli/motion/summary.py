@@ -2,16 +2,47 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .regime import Facts, Regime
+from .regime import Facts
 
-_PATHS = {
-    "cusped": "its path has cusps",
-    "looping": "its path has loops",
-    "wavy": "its path is wavy",
+_ENDS = "between {least} and {most} {angle}"
+
+PHRASES: dict[str, list[tuple[dict[str, Any], str]]] = {
+    "sentence": [
+        ({"regime": "sleeping"}, "The axis stays upright, which is {stability}, and {rotates}."),
+        ({"regime": "hanging"}, "The axis hangs straight down and {rotates}."),
+        (
+            {"regime": "separatrix"},
+            "The axis rises to the vertical in infinite time; its tilt is at most {high} {angle}.",
+        ),
+        ({"constant": True}, "The axis keeps a tilt of {low} {angle} and {moves}."),
+        ({"turns_over": True}, "The axis turns over in a vertical plane {period}."),
+        ({"plane": True}, f"The axis swings {_ENDS} in a vertical plane {{period}}."),
+        ({}, f"The axis nutates {_ENDS} {{period}} and {{moves}} on average{{path}}."),
+    ],
+    "stability": [({"stable": True}, "stable"), ({}, "unstable")],
+    "rotates": [({"spins": True}, "the top spins at {spin}{rate}"), ({}, "the top does not spin")],
+    "moves": [({"precesses": True}, "precesses at {turns}{rate}"), ({}, "does not precess")],
+    "period": [({}, "every {nutation}{time}")],
+    "path": [
+        ({"precesses": False}, ""),
+        ({"path": "cusped"}, "; its path has cusps"),
+        ({"path": "looping"}, "; its path has loops"),
+        ({"path": "wavy"}, "; its path is wavy"),
+        ({}, ""),
+    ],
+    "time": [({"unit": "time"}, " time units"), ({}, " {unit}")],
+    "rate": [({"unit": "time"}, " rad per time unit"), ({}, " rad/{unit}")],
 }
+"""The sentence and its parts, by name.
+
+The first text whose facts are all true is chosen.  Names in braces are other parts or values.  The
+browser page receives this table and fills it in the same way.
+"""
+
 _MOST_DIGITS = 17
 
 
@@ -20,36 +51,35 @@ def summary(record: Mapping[str, Any], facts: Facts, named: Callable[[str], str]
 
     `named` gives the names of units of a system.  Raises TypeError if a number is missing.
     """
-    unit = "rad" if "theta_min_rad" in record else "deg"
-    time = " time units" if named("time") == "time" else f" {named('time')}"
-    rate = " rad per time unit" if named("time") == "time" else f" rad/{named('time')}"
-    low, high = (float(record[f"theta_{end}_{unit}"]) for end in ("min", "max"))
-    spin = float(record["r0"])
-    rotates = f"spins at {_figures(spin)}{rate}" if spin else "does not spin"
-    stability = "stable" if facts.stable else "unstable"
-    still = {
-        Regime.SLEEPING: f"stays upright, which is {stability}, and the top {rotates}",
-        Regime.HANGING: f"hangs straight down and the top {rotates}",
-        Regime.SEPARATRIX: "rises to the vertical in infinite time; its tilt is at most "
-        f"{_figures(high)} {unit}",
+    angle = "rad" if "theta_min_rad" in record else "deg"
+    low, high = (float(record[f"theta_{end}_{angle}"]) for end in ("min", "max"))
+    turns = record["mean_precession_rate"]
+    true = {
+        "regime": facts.regime.value,
+        "stable": bool(facts.stable),
+        "constant": low == high,
+        "turns_over": facts.plane and facts.upper_root == 1,
+        "plane": facts.plane,
+        "spins": facts.spins,
+        "precesses": turns is None or float(turns) != 0,
+        "path": record["path"],
+        "unit": named("time"),
     }
-    if facts.regime in still:
-        return f"The axis {still[facts.regime]}."
-    turns = float(record["mean_precession_rate"])
-    if low == high:
-        moves = f"precesses at {_figures(turns)}{rate}" if turns else "does not precess"
-        return f"The axis keeps a tilt of {_figures(low)} {unit} and {moves}."
-    least, most = _apart(low, high)
-    ends = f"between {least} and {most} {unit}"
-    period = f"every {_figures(float(record['T_nutation']))}{time}"
-    if facts.plane:
-        moves = "turns over" if facts.upper_root == 1 else f"swings {ends}"
-        return f"The axis {moves} in a vertical plane {period}."
-    swing = f"The axis nutates {ends} {period}"
-    if not turns:
-        return f"{swing} and does not precess on average."
-    path = f"; {_PATHS[record['path']]}" if record["path"] in _PATHS else ""
-    return f"{swing} and precesses at {_figures(turns)}{rate} on average{path}."
+    numbers = {"low": low, "high": high, "spin": record["r0"], "turns": turns}
+    numbers["nutation"] = record["T_nutation"]
+    words = dict(zip(("least", "most"), _apart(low, high), strict=True))
+    words |= {"angle": angle, "unit": named("time")}
+
+    def part(match: re.Match[str] | str) -> str:
+        name = match if isinstance(match, str) else match[1]
+        if name in words:
+            return words[name]
+        if name in numbers:
+            return _figures(float(numbers[name]))
+        text = next(text for when, text in PHRASES[name] if when.items() <= true.items())
+        return re.sub(r"\{(\w+)\}", part, text)
+
+    return part("sentence")
 
 
 def _figures(x: float, digits: int = 4) -> str:
@@ -57,6 +87,6 @@ def _figures(x: float, digits: int = 4) -> str:
 
 
 def _apart(low: float, high: float) -> tuple[str, str]:
-    """Return two different numbers with four digits, or with as many as distinguish them."""
-    texts = ((_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1))
-    return next((a, b) for a, b in texts if a != b)
+    """Return two numbers with four digits, or with as many as distinguish them."""
+    texts = [(_figures(low, n), _figures(high, n)) for n in range(4, _MOST_DIGITS + 1)]
+    return next(((a, b) for a, b in texts if a != b), texts[0])

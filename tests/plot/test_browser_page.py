@@ -22,6 +22,7 @@ from scenes import NAMED, SAMPLES, UNIT, random_scene
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Motion, Top, solve, view
+from lagrange_cli.motion.summary import summary
 from lagrange_cli.plot.browser.data import page_scene
 
 pytestmark = pytest.mark.slow
@@ -208,13 +209,17 @@ def test_attitudes_and_records_of_scenes_that_sliders_reach(browser: Browser) ->
                 for (const kind of ["input", "change"]) slider.dispatchEvent(new Event(kind));
             }
             const { scene, motion } = page;
+            const said = at.words.textContent;
             const times = parts.map((part) => part * (motion.record.T_nutation ?? 1));
-            return { scene, record: motion.record, angles: times.map(motion.angles) };
+            return { scene, said, record: motion.record, angles: times.map(motion.angles) };
         }))""",
         *(moves, times_of(solve(Top(g=0, theta0_deg=0)))),
     )
     known = [solve(Top(**page["scene"])) for page in found]
     assert len(known) == 300
+    for motion, page in zip(known, found, strict=True):
+        sentence = re.sub(r"e[+]?(-?)0", r"e\1", summary(motion.record(), motion.exact.facts))
+        assert page["said"].replace("−", "-") == sentence, page["scene"]
     assert check_motions(known, found) < 1e-11
 
 
@@ -360,8 +365,13 @@ def test_units_stand_beside_inputs_and_in_the_record(browser: Browser, tmp_path:
     assert names[0] == "mass (kg)"
     assert names[4:6] == ["gravity (m/s²)", "total spin rate (rad/s)"]
     assert "rad/s" in browser.ask("return at.record.textContent")
-    browser.ask("at.record.querySelector('tbody tr[title]:nth-child(2)').click()")
-    assert browser.ask("return at.explained.textContent") == "a (4,4)"
+    browser.ask("at.record.querySelector('tbody tr[tabindex]').focus()")
+    assert browser.ask("return at.explained.textContent") == (
+        "a, 2mgs/A: a = 2 m g s/A  (4,4)  (key a)"
+    )
+    assert browser.ask("return at.words.textContent").endswith(
+        "every 0.4293 s and precesses at 7.991 rad/s on average; its path has cusps."
+    )
 
 
 def luminance(colour: str) -> float:

@@ -106,6 +106,27 @@ def test_a_frame_over_the_background_is_the_whole_picture() -> None:
     assert len(set(ends)) == 2  # the axle is before the globe in some frames and behind in others
 
 
+def test_a_gif_shows_every_frame_in_63_colours() -> None:
+    """Pixels that do not change are transparent: a wrong one would stay in all frames after it."""
+    from PIL import Image
+
+    page, pace = Page(solve(Top()), ["sphere"], PlotRequest(), LIGHT), film.Pace(12, 0.5)
+    data = film.film_bytes(page, "x.gif", 40, pace)
+    with styled(LIGHT), Image.open(io.BytesIO(data)) as shown:
+        drawn = film.Film(page, pace)
+        drawn.show(6)
+        palette = drawn.figure.frame(40).quantize(63)
+        for i in range(pace.frames):
+            shown.seek(i)
+            drawn.show(i)
+            frame = (
+                drawn.figure.frame(40)
+                .quantize(palette=palette, dither=Image.Dither.NONE)
+                .convert("RGB")
+            )
+            assert np.array_equal(np.asarray(shown.convert("RGB")), np.asarray(frame)), i
+
+
 @pytest.mark.slow
 def test_a_film(lagtop: Lagtop, tmp_path: Path) -> None:
     from PIL import Image, ImageChops

@@ -43,6 +43,8 @@ def test_modules_of_the_page_are_small() -> None:
         assert len(lines) <= 300, path.name
         assert max(map(len, lines)) <= 100, path.name
         assert lines[0].startswith("// "), path.name
+    numerics = (FOLDER / "numerics").glob("*.js")
+    assert sum(len(path.read_text().splitlines()) for path in numerics) <= 800
 
 
 def test_numbers_do_not_draw() -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from typing import Any
 
 from ...errors import LagtopError
 from ...inputs.input_keys import DECLARED, EXAMPLE, NINE, TILT, Input
@@ -14,6 +15,7 @@ from ...inputs.top import Top
 from ...motion.explanation import listed
 from ...motion.record import KEYS, requested_keys
 from ...motion.solve import Motion, solve
+from ...motion.summary import PHRASES
 
 SMALLEST, LARGEST = 1e-30, 1e30
 """Limits of the sizes of inputs; other sizes would leave the range of doubles."""
@@ -47,53 +49,21 @@ EXAMPLES: dict[str, PageScene] = {
 }
 """Scenes offered as examples."""
 
-DESCRIPTIONS = {
-    "sleeping, stable": (
-        "Sleeping, stable: The top stands upright and stays: λ = b²/2a = {lambda} is at least 1."
-    ),
-    "sleeping, unstable": (
-        "Sleeping, unstable: The top stands upright, but any push fells it: λ = b²/2a = {lambda} "
-        "is less than 1."
-    ),
-    "hanging": "Hanging: The axis hangs straight down, which is stable whatever the spin.",
-    "torque-free, steady": (
-        "Without torque: No torque acts on the top: its axis is fixed or precesses at a constant "
-        "rate."
-    ),
-    "torque-free": (
-        "Without torque: No torque acts on the top: its axis moves along a tilted circle at a "
-        "constant rate."
-    ),
-    "separatrix": (
-        "Separatrix: The axis rises towards the vertical more and more slowly and never reaches it."
-    ),
-    "steady precession": (
-        "Steady precession: The tilt is constant, and the axis precesses at a constant rate."
-    ),
-    "no spin, plane": (
-        "Plane pendulum: Without spin the top is a pendulum. Here it swings in a plane."
-    ),
-    "no spin": (
-        "Spherical pendulum: Without spin the top is a pendulum. Here it circles the vertical."
-    ),
-    "regular, fast": (
-        "Pseudo-regular precession: Released at rest, with a spin so fast that the tilt nutates "
-        "by only {nutation}°. λ = b²/2a = {lambda}."
-    ),
-    "regular, cusped": (
-        "Regular motion with cusps: At its highest points the axis stops for a moment and falls "
-        "again, which makes cusps. λ = b²/2a = {lambda}."
-    ),
-    "regular, looping": (
-        "Regular motion with loops: Near its highest points the axis precesses backwards and "
-        "draws loops. λ = b²/2a = {lambda}."
-    ),
-    "regular, wavy": (
-        "Regular motion in waves: The precession never reverses, and the axis draws waves. "
-        "λ = b²/2a = {lambda}."
-    ),
-}
-"""A title and one or two sentences for each kind of motion, separated by a colon."""
+TITLES: list[tuple[dict[str, Any], str]] = [
+    ({"regime": "sleeping", "stable": True}, "Sleeping, stable"),
+    ({"regime": "sleeping"}, "Sleeping, unstable"),
+    ({"regime": "hanging"}, "Hanging"),
+    ({"regime": "torque-free"}, "Without torque"),
+    ({"regime": "separatrix"}, "Separatrix"),
+    ({"regime": "steady precession"}, "Steady precession"),
+    ({"plane": True}, "Plane pendulum"),
+    ({"regime": "no spin"}, "Spherical pendulum"),
+    ({"fast": True}, "Pseudo-regular precession"),
+    ({"path": "cusped"}, "Regular motion with cusps"),
+    ({"path": "looping"}, "Regular motion with loops"),
+    ({}, "Regular motion in waves"),
+]
+"""The title of each kind of motion, by the rules of `PHRASES`."""
 
 
 def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
@@ -108,7 +78,7 @@ def page_data(motion: Motion, unit: Callable[[str], str]) -> str:
         "EXAMPLES": EXAMPLES,
         "INPUTS": {_key(name): _input(DECLARED[name]) for name in NINE},
         "KEYS": _keys(),
-        "DESCRIPTIONS": DESCRIPTIONS,
+        "PHRASES": {"title": TITLES} | PHRASES,
         "LIMITS": {"least": SMALLEST, "largest": LARGEST, "tilt": LEAST_TILT},
     }
     return json.dumps(data, ensure_ascii=False).replace("</", "<\\/")

@@ -100,7 +100,7 @@ function rates(spin, south, north, precessionSize = Math.abs(south) + Math.abs(n
 function pathOf({ facts, gaps, start }) {
   if (facts.vertical || facts.steady) return null;
   if (facts.cusp || (facts.atRest && facts.spins)) return "cusped";
-  if (facts.overBottom && !facts.spins) return null;
+  if (facts.plane) return null;
   const loops = start.b * gaps.momentumU1 < 0 && start.b * gaps.momentumU2 > 0;
   return loops ? "looping" : "wavy";
 }

@@ -93,8 +93,11 @@ export function factsOf(start) {
     signMinus: minus || 1,
     stable: +start.sleep >= 0,
     cusp: standsAtU1(start, minus),
+    plane: !plus && !steady && !+b,
+    fast: still && !+psiRate && b * b >= 50 * a,
   };
-  return { ...facts, vertical, regime: regimeOf(facts, vertical) };
+  const turnsOver = facts.plane && facts.upperRoot === 1;
+  return { ...facts, vertical, turns_over: turnsOver, regime: regimeOf(facts, vertical) };
 }
 
 /** Whether the precession stands still at u1: beta/b is a root of the cubic, and not u3. */

@@ -131,7 +131,7 @@ class Page {
     if (anew) this.inputs.rescale(scene);
     else this.inputs.show(scene);
     this.inputs.nameUnits(this.units);
-    const [title, text] = wordsOf(this.motion);
+    const [title, text] = wordsOf(this.motion, this.units);
     if (this.at.title.textContent !== title) this.at.title.textContent = title;
     this.at.words.textContent = text;
     document.title = `${title} · lagtop`;

@@ -1,6 +1,6 @@
 // The motion in words, and the record of the scene: its numbers under the keys of `lagtop solve`.
 
-import { DESCRIPTIONS, KEYS } from "../data.js";
+import { KEYS, PHRASES } from "../data.js";
 import { textOf } from "../drawing/canvas.js";
 
 /** Fill the table; numbers to ten digits, units by their names in `units`. */
@@ -14,7 +14,8 @@ export function showRecord(table, record, units) {
     last = key.group;
     const shown = Number.isNaN(value)
       ? "ask lagtop solve" : `${textOf(value)} ${named(key.unit, units)}`;
-    rows.push(rowOf([["th", key.symbol], ["td", key.meaning], ["td", shown]], explained(name, key)));
+    const cells = [["th", key.symbol], ["td", key.meaning], ["td", shown]];
+    rows.push(rowOf(cells, explained(name, key)));
   }
   table.tBodies[0].replaceChildren(...rows);
 }
@@ -50,21 +51,34 @@ function rowOf(cells, title = "") {
   return row;
 }
 
-/** A title and one or two sentences on a motion. */
-export function wordsOf({ facts, record, start }) {
-  const fast = facts.atRest && start.b * start.b >= 50 * start.a;
-  const kinds = {
-    sleeping: facts.stable ? "stable" : "unstable",
-    "torque-free": facts.steady && "steady",
-    "no spin": facts.overBottom && "plane",
-    regular: fast ? "fast" : record.path ?? "wavy",
+/** The title of a motion and the sentence of `lagtop solve`. */
+export function wordsOf({ facts, record, scene }, units) {
+  const { theta_min_deg: low, theta_max_deg: high, mean_precession_rate: turns } = record;
+  const unit = units.time ?? "time";
+  const numbers = { low, high, turns, spin: scene.r0, nutation: record.T_nutation };
+  const words = { angle: "deg", unit, ...apart(low, high) };
+  const holds = {
+    ...facts, path: record.path, precesses: turns !== 0, constant: high - low <= 1e-15 * high, unit,
   };
-  const kind = kinds[record.regime];
-  const description = DESCRIPTIONS[kind ? `${record.regime}, ${kind}` : record.regime];
-  const [, title, text] = /^(.*?): (.*)$/.exec(description);
-  const numbers = {
-    lambda: start.b * start.b / (2 * start.a),
-    nutation: record.theta_max_deg - record.theta_min_deg,
+  const part = (name) => {
+    if (name in words) return words[name];
+    if (name in numbers) return figures(numbers[name]);
+    const fits = ([when]) => Object.entries(when).every(([fact, value]) => holds[fact] === value);
+    return PHRASES[name].find(fits)[1].replace(/\{(\w+)\}/g, (_, inner) => part(inner));
   };
-  return [title, text.replace(/\{(\w+)\}/g, (_, name) => textOf(numbers[name], 3))];
+  return [part("title"), part("sentence")];
+}
+
+/** A number of the sentence; a rate whose digits are lost is near 0. */
+function figures(x, digits = 4) {
+  if (Number.isNaN(x)) return "about 0";
+  const text = Math.abs(x) < 1e-4 && x ? x.toExponential(digits - 1) : x.toPrecision(digits);
+  return text.replace("e+", "e").replace(/-/g, "−");
+}
+
+/** Two numbers with four digits, or with as many as distinguish them. */
+function apart(low, high) {
+  const texts = [...Array(14).keys()].map((n) => [figures(low, n + 4), figures(high, n + 4)]);
+  const [least, most] = texts.find(([x, y]) => x !== y) ?? texts[0];
+  return { least, most };
 }
