@@ -3,7 +3,8 @@
 Each function here draws one kind of picture on your own axes, in your own style.  Pass an `Axes` of
 matplotlib, or a sequence with as many axes as the kind has; by default a new figure is made.
 `t_max` is the last time, `radians` the unit of angles, `dark` selects colours for dark paper.  The
-functions raise LagtopError for a time out of range, and if there is nothing to draw.
+functions raise LagtopError for a time out of range, if there is nothing to draw, and without
+matplotlib.
 
 matplotlib and NumPy are imported when a function is called, because every command loads this file.
 """
@@ -110,6 +111,9 @@ def _drawn(
     **wanted: Any,
 ) -> list[Axes]:
     """Draw a kind of picture on the given axes, or on new ones, and return the axes."""
+    from .files import require_matplotlib
+
+    require_matplotlib()
     from matplotlib.axes import Axes
 
     from ..errors import LagtopError

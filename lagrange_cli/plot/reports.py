@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import check_type
-from .files import About, figure_bytes
+from .files import About, figure_bytes, require_matplotlib
 from .style import LIGHT, scale, styled, symbol_and_colour
 
 if TYPE_CHECKING:
@@ -150,7 +150,8 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
 
 
 def new_figure() -> Figure:
-    """Return a new figure of pyplot, which a notebook shows."""
+    """Return a new figure of pyplot, which a notebook shows.  Raises UnavailableError."""
+    require_matplotlib()
     from matplotlib import pyplot  # only here: files need no pyplot
 
     return pyplot.figure(layout="constrained")

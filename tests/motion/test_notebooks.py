@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from fractions import Fraction
 from typing import Any
 from xml.etree import ElementTree
@@ -16,6 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Top, compare, fit, solve
 from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.errors import UnavailableError
 
 MOTION = solve(Top(theta0_deg=30, psidot0=3))
 SEPARATRIX: dict[str, Any] = {
@@ -120,6 +122,17 @@ def test_a_motion_draws_on_axes() -> None:
     assert axes.lines
     with pytest.raises(LagtopError, match="did you mean 'sphere'"):
         MOTION.plot("spheer")
+
+
+def test_without_matplotlib_a_plot_names_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    judgement = compare(MOTION, TIMES, theta=MOTION.angles(TIMES).theta)
+    for plot in (MOTION.plot, judgement.plot):
+        with pytest.raises(UnavailableError) as refused:
+            plot()
+        assert str(refused.value) == "pictures need matplotlib: pip install 'lagtop[plot]'"
 
 
 def test_a_misspelt_key_gets_a_suggestion() -> None:
