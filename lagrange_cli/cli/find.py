@@ -57,8 +57,9 @@ def find_command(
     """Find the inputs for which results take given values.
 
     An input given as a range from:to (or log:from:to) is unknown, up to three of them.  Give as
-    many conditions KEY=NUMBER as unknowns, in SI if inputs have units.  Conditions such as
-    regime=regular, path=looping or 'theta_max<120' restrict the solutions.
+    many conditions KEY=NUMBER as unknowns.  If inputs have units, numbers may have them too
+    (T_precession=500ms) and are in SI without.  Conditions such as regime=regular, path=looping or
+    'theta_max<120' restrict the solutions.
 
     With one unknown, every root that the scan brackets is found, to the last bit.  With several,
     Newton's method starts at the best points of the scan and can miss solutions.  The exit code is
@@ -103,15 +104,17 @@ def _found(
 def _inverted(top: TopOptions, conditions: list[str]) -> tuple[list[Motion], System | None]:
     from ..fits.implied_body import BODY_INPUTS
     from ..fits.invert import invert
+    from ..fits.search import system_asked
 
     for name in top.by_key():
         if name not in BODY_INPUTS:
             flag = name.removesuffix("_deg").removesuffix("_rad").replace("_", "-")
             raise LagtopError(f"no input is unknown: give a range, such as --{flag} 10:200")
-    found = top.given()
+    found = top.replace(units=system_asked(conditions)).given()
     known = {name: float(x) for name, x in found.inputs.items() if name in BODY_INPUTS}
     warn_unused(name for name in found.stds if name in known)
-    return invert(conditions, radians=top.radians, known=known), found.system
+    motions = invert(conditions, radians=top.radians, known=known, system=found.system)
+    return motions, found.system
 
 
 def _write(

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from ..motion.quantity import unit_name
 from ..motion.solve import Motion, solve
 from .implied_body import completed_body, determined_products
 from .search import read_conditions
+
+if TYPE_CHECKING:
+    from ..inputs.units import System
 
 _SEEN = ("theta_min_deg", "theta_max_deg", "T_nutation", "mean_precession_rate")
 _SPIN = "mean_spin_rate"
@@ -183,16 +186,21 @@ def top_of(nutation: TurningPoints, found: Candidates, mean_spin: float | None =
 
 
 def invert(
-    seen: Sequence[str], *, radians: bool = False, known: Mapping[str, float] | None = None
+    seen: Sequence[str],
+    *,
+    radians: bool = False,
+    known: Mapping[str, float] | None = None,
+    system: System | None = None,
 ) -> list[Motion]:
     """Return the motions with these numbers; they start at their least tilt.
 
     `seen` are texts KEY=NUMBER of theta_min, theta_max, T_nutation, mean_precession_rate and,
     optionally, mean_spin_rate.  They determine a and b in closed form, except for one root, and C/A
     if the spin is given.  `known` are inputs of the body; undetermined inputs are 1, or such that C
-    = A.  Raises LagtopError, AbsentError if no top has this motion.
+    = A.  Numbers with units are converted to a system.  Raises LagtopError, AbsentError if no top
+    has this motion.
     """
-    numbers = _numbers(seen, radians)
+    numbers = _numbers(seen, radians, system)
     unit = unit_in_radians(radians=radians)
     least, greatest, period, rate = (numbers[unit_name(key, radians=radians)] for key in _SEEN)
     nutation = TurningPoints(least * unit, greatest * unit, period).checked(radians=radians)
@@ -211,9 +219,9 @@ def invert(
     return [solve(_of_body(top, known, _SPIN in numbers)) for top in tops]
 
 
-def _numbers(seen: Sequence[str], radians: bool) -> Mapping[str, float]:
+def _numbers(seen: Sequence[str], radians: bool, system: System | None) -> Mapping[str, float]:
     """Return the numbers by key.  Raises LagtopError for a wrong set of keys."""
-    conditions = read_conditions(seen, radians=radians)
+    conditions = read_conditions(seen, radians=radians, system=system)
     needed = {unit_name(key, radians=radians) for key in _SEEN}
     given = set(conditions.numbers)
     if conditions.words or conditions.bounds or not needed <= given <= needed | {_SPIN}:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import ge, gt, le, lt
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.text import double_text, parse_number, quoted, shortened
+from ..arithmetic.text import double_text, quoted, shortened
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.given import Given, gather
@@ -17,20 +17,24 @@ from ..inputs.input_keys import overridden
 from ..inputs.names import check_names
 from ..inputs.ranges import Product, Span, parse_span
 from ..inputs.top import Top
-from ..inputs.value import Value, exact_number, parse_value, value_of
+from ..inputs.value import Value, exact_number, parse_value, split_unit, value_of
 from ..motion.quantity import unit_name
-from ..motion.record import all_keys
+from ..motion.record import all_keys, shown_keys
 from ..motion.regime import Regime
 from ..motion.solve import solve
 from ..output.progress import Progress
 from ..sweeps.plan import shared_inputs
 from ..sweeps.records import BLOCK_ROWS, sweep
 
+if TYPE_CHECKING:
+    from ..inputs.units import System
+
 COUNTS = {1: 1000, 2: 60, 3: 20}
 """Number of values of each unknown in a scan, by the number of unknowns."""
 MOST_TOPS = 10_000_000
 _WORDS = {"regime": [regime.value for regime in Regime], "path": ["cusped", "looping", "wavy"]}
 """Keys that hold a word, and the words."""
+_ANGLES = {"deg", "°", "rad", "degree", "radian"}
 _BOUNDS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 
@@ -71,10 +75,13 @@ class Conditions(NamedTuple):
         return next((str(bound) for bound in self.bounds if not bound.holds(record)), None)
 
 
-def read_conditions(texts: Iterable[str], *, radians: bool = False) -> Conditions:
+def read_conditions(
+    texts: Iterable[str], *, radians: bool = False, system: System | None = None
+) -> Conditions:
     """Parse conditions `KEY=VALUE` and `KEY<VALUE`; the key of an angle may omit its unit.
 
-    Raises LagtopError for an unknown key, and for an impossible value.
+    Values with units are converted to a system.  Raises LagtopError for an unknown key, and for an
+    impossible value.
     """
     numbers: dict[str, float] = {}
     words: dict[str, str] = {}
@@ -89,9 +96,9 @@ def read_conditions(texts: Iterable[str], *, radians: bool = False) -> Condition
         if key in _WORDS:
             words[key] = _word(key, relation, value)
         elif relation == "=":
-            numbers[key] = _number(key, value)
+            numbers[key] = _number(key, value, radians, system)
         else:
-            bounds.append(Inequality(key, relation, _number(key, value)))
+            bounds.append(Inequality(key, relation, _number(key, value, radians, system)))
     return Conditions(numbers, words, bounds)
 
 
@@ -108,20 +115,35 @@ def _word(key: str, relation: str, value: str) -> str:
     return value
 
 
-def _number(key: str, value: str) -> float:
+def _number(key: str, text: str, radians: bool, system: System | None) -> float:
     try:
-        return float(parse_number(value))
+        value = parse_value(text)
     except LagtopError as error:
         raise LagtopError(f"the value of {key} {error}") from None
+    if not value.unit:
+        return float(value.number)
+    from ..inputs.units import CGS, factor_of  # few searches have units
+
+    unit = shown_keys(radians=radians, requested=True)[key].unit
+    return float(value.number * factor_of(key, value, unit, system or CGS))
+
+
+def system_asked(conditions: Iterable[str]) -> str | None:
+    """Return `si` if a condition has a unit other than that of an angle, else None."""
+    units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions}
+    return "si" if units - {"", *_ANGLES} else None
 
 
 def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Sequence[str]:
     """Return conditions as texts KEY=VALUE.  Raises LagtopError for a value of another type."""
     if not isinstance(conditions, Mapping):
         return conditions
+    given = {key: x if isinstance(x, str) else value_of(key, x) for key, x in conditions.items()}
     return [
-        f"{key}={value if isinstance(value, str) else repr(float(exact_number(key, value)))}"
-        for key, value in conditions.items()
+        f"{key}={x}"
+        if isinstance(x, str)
+        else f"{key}={float(exact_number(key, x.number))!r} {x.unit}"
+        for key, x in given.items()
     ]
 
 
@@ -219,8 +241,8 @@ def search_of(
 
     An input is a number or a `Span`, or a `Value` of one of these.  Raises LagtopError.
     """
-    wanted = read_conditions(conditions, radians=radians)
-    given = gather(inputs, scene)
+    given = gather(inputs, scene, system=system_asked(conditions))
+    wanted = read_conditions(conditions, radians=radians, system=given.system)
     spans = {name: x for name, x in given.inputs.items() if isinstance(x, Span)}
     known = {name: x for name, x in given.inputs.items() if name not in spans}
     shared = shared_inputs(given.replace(inputs=known), varying=spans)

@@ -24,24 +24,22 @@ Dimensions = tuple[int, int, int]
 """The powers of mass, length and time."""
 RATE, TIME = (0, 0, -1), (0, 0, 1)
 _ROOTS = ("gram", "meter", "second")
-_KINDS: dict[str, tuple[Dimensions, str]] = {
-    "mass": ((1, 0, 0), "350g"),
-    "mass len²": ((1, 2, 0), "'3.9e-3 kg*m^2'"),
-    "len": ((0, 1, 0), "4cm"),
-    "len/time²": ((0, 1, -2), "'9.81 m/s^2'"),
-    "rad/time": (RATE, "'50 rad/s' or 480rpm"),
-    "time": (TIME, "2s"),
-    "angle": ((0, 0, 0), "30deg or 0.5rad"),
+_EXAMPLES = {
+    "mass": "350g",
+    "mass len²": "'3.9e-3 kg*m^2'",
+    "len": "4cm",
+    "len/time²": "'9.81 m/s^2'",
+    "rad/time": "'50 rad/s' or 480rpm",
+    "time": "2s",
+    **dict.fromkeys(("deg", "rad"), "30deg or 0.5rad"),
 }
-"""The dimensions of each unit of an input, and an example."""
+"""An example of each unit of an input."""
 _UNIT_OF = (
-    {name: x.unit for name, x in DECLARED.items()}
+    {name: x.unit.replace("angle", "rad") for name, x in DECLARED.items()}
     | dict.fromkeys(("t", "t_min", "t_max", "dt"), "time")
-    | dict.fromkeys((*ANGLES, "euler"), "angle")
+    | dict.fromkeys((*ANGLES, "euler"), "rad")
     | dict.fromkeys(("rates", "angle_rates"), "rad/time")
 )
-DIMENSIONS = {name: _KINDS[unit][0] for name, unit in _UNIT_OF.items()}
-"""The powers of mass, length and time in each input."""
 
 _NAME = r"(?:[^\W\d]\w*|°)(?:\s*(?:\*\*|\^)\s*-?\d(?!\d))?"
 _GRAMMAR = re.compile(rf"(?:1?\s*/\s*)?{_NAME}(?:\s*[*·/ ]\s*{_NAME})*")
@@ -53,23 +51,15 @@ _FIGURES = {figure: raised for raised, figure in _RAISED.items()}
 
 
 class System(Values):
-    """A system of units; mass and length are in grams and metres, and time is in seconds."""
+    """A system of units: the names of mass and length; time is in seconds."""
 
     mass: str
     length: str
-    grams: Fraction
-    metres: Fraction
-
-    def factor(self, dimensions: tuple[int, int, int]) -> Fraction:
-        """Return the size of the unit of these dimensions in grams, metres and seconds."""
-        return self.grams ** dimensions[0] * self.metres ** dimensions[1]
 
     def worked_example(self) -> dict[str, Number]:
         """Return the body of the worked example (CGS) in these units."""
-        return {
-            key: Fraction(value) * CGS.factor(DIMENSIONS[key]) / self.factor(DIMENSIONS[key])
-            for key, value in BODY.items()
-        }
+        given = {key: Value(Fraction(x), CGS.named(_UNIT_OF[key])) for key, x in BODY.items()}
+        return {key: x.number * factor_of(key, x, system=self) for key, x in given.items()}
 
     def named(self, unit: str) -> str:
         """Return a unit such as `mass len²` or `rad/time` with the names of this system."""
@@ -98,8 +88,9 @@ def _raised(name: str, power: Fraction) -> str:
     return name if power == 1 else name + str(power).translate(_FIGURES)
 
 
-CGS = System("g", "cm", Fraction(1), Fraction(1, 100))
-SYSTEMS = {"si": System("kg", "m", Fraction(1000), Fraction(1)), "cgs": CGS}
+GRAM_METRE = System("g", "m")
+CGS = System("g", "cm")
+SYSTEMS = {"si": System("kg", "m"), "cgs": CGS}
 """The systems of units by name; the first is the default."""
 
 
@@ -112,8 +103,8 @@ def system_of(inputs: Mapping[str, Value], name: str | None) -> System | None:
     bare = [x for x in inputs if needs_unit(x, inputs[x])]
     united = [x for x in inputs if inputs[x].unit and x != TILT]
     if bare and (united or name is not None):
-        why = f"as {united[0]} has" if united else "as a time or the output has"
-        number, example = inputs[bare[0]].number, _KINDS[_UNIT_OF[bare[0]]][1]
+        why = f"as {united[0]} has" if united else "as a time, a condition or the output has"
+        number, example = inputs[bare[0]].number, _EXAMPLES[_UNIT_OF[bare[0]]]
         if isinstance(number, Fraction) and number != 1:  # a heading of a file counts as 1
             example = re.sub(r"[\d.e-]*\d", f"{float(number):g}", example, count=1)
         raise LagtopError(f"{bare[0]} must have a unit such as {example}, {why}, got none", bare[0])
@@ -130,11 +121,11 @@ def converted(inputs: Mapping[str, Value], system: System | None) -> dict[str, V
         if not value.unit:
             found[key] = value
         elif key == TILT:
-            name, factor = _tilt(value)
-            found[name] = value.scaled(factor)
+            factor_of(key, value)  # refuses other dimensions
+            wanted = "deg" if _unit_in(key, value).power_of_pi else "rad"
+            found[f"{TILT}_{wanted}"] = value.scaled(factor_of(key, value, wanted))
         else:
-            size = factor_of(key, value)
-            found[key] = value.scaled(size / (system or CGS).factor(DIMENSIONS[key]))
+            found[key] = value.scaled(factor_of(key, value, system=system or CGS))
     return found
 
 
@@ -143,41 +134,46 @@ def needs_unit(key: str, value: Value) -> bool:
     number = value.number
     if DIMENSIONS.get(key, TIME) == TIME or value.unit or key == TILT or isinstance(number, str):
         return False
-    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
-    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array
+    return number.bounds() != [0.0, 0.0] if isinstance(number, Points) else number != 0
 
 
-def factor_of(key: str, value: Value) -> Fraction:
-    """Return the size of the unit of an input.  Raises LagtopError for wrong dimensions."""
-    unit = _unit_in(key, value)
-    is_angular = _UNIT_OF[key] in {"angle", "rad/time"}
-    if unit.dimensions != DIMENSIONS[key] or unit.angular != is_angular:
-        raise _refused(key, value, _HERTZ if is_angular and unit.dimensions == RATE else "")
-    return unit.size
+def factor_of(
+    key: str, value: Value, wanted: str | None = None, system: System = GRAM_METRE
+) -> Fraction:
+    """Return the factor from the unit of a value to `wanted` in the units of a system.
+
+    `wanted` is a unit such as `mass len²/time²`, `rad/time` or `deg`, by default that of the input
+    `key`.  Raises LagtopError for a unit of other dimensions.
+    """
+    wanted = _UNIT_OF[key] if wanted is None else wanted
+    target = unit_of_text(_with_powers(system.named(wanted)))
+    try:
+        unit = _unit_in(key, value)
+        if unit.dimensions != target.dimensions or (
+            not unit.angular if target.angles else unit.angles
+        ):
+            hertz = target.angles and unit.dimensions == target.dimensions
+            raise UnknownUnitError(_HERTZ if hertz else "")
+    except UnknownUnitError as error:
+        example = _EXAMPLES.get(wanted) or repr(f"2 {SYSTEMS['si'].named(wanted)}")
+        got, why = repr(value.unit)[:_MOST_CHARACTERS], f" ({error})" if str(error) else ""
+        must = f"have a unit as in {example}" if wanted else "have no unit"
+        raise LagtopError(f"{key} must {must}, got the unit {got}{why}", key) from None
+    powers_of_pi = unit.power_of_pi - target.power_of_pi
+    return unit.rational / target.rational * Fraction(pi_to(EXACT_DIGITS)) ** powers_of_pi
 
 
-def _tilt(value: Value) -> tuple[str, Fraction]:
-    """Return the key of a tilt, in degrees or radians, whichever is exact, and the factor."""
-    unit = _unit_in(TILT, value)
-    if unit.dimensions != DIMENSIONS[TILT] or not unit.angular:
-        raise _refused(TILT, value)
-    if unit.power_of_pi:
-        return f"{TILT}_deg", unit.rational * 180
-    return f"{TILT}_rad", unit.rational
-
-
-def _refused(key: str, value: Value, why: str = "") -> LagtopError:
-    unit, hint = repr(value.unit)[:_MOST_CHARACTERS], f" ({why})" if why else ""
-    wanted = f"{key} must have a unit as in {_KINDS[_UNIT_OF[key]][1]}"
-    return LagtopError(f"{wanted}, got the unit {unit}{hint}", key)
+def _with_powers(text: str) -> str:
+    """Return the name of a unit with `^2` for a raised 2."""
+    return re.sub("[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda x: f"^{x[0].translate(_RAISED)}", text.strip())
 
 
 def _unit_in(key: str, value: Value) -> Unit:
-    text = re.sub("[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda x: f"^{x[0].translate(_RAISED)}", value.unit.strip())
+    text = _with_powers(value.unit)
     if text in {"gr", "gr."}:  # a grain for pint, a gram for many people
-        raise _refused(key, value, "grain or gram? write grain or g")
+        raise UnknownUnitError("grain or gram? write grain or g")
     if len(text) > _MOST_CHARACTERS or not _GRAMMAR.fullmatch(text):
-        raise _refused(key, value)
+        raise UnknownUnitError
     try:
         return unit_of_text(f"1{text}" if text.startswith("/") else text)
     except ImportError:
@@ -187,7 +183,7 @@ def _unit_in(key: str, value: Value) -> Unit:
             key,
         ) from None
     except UnknownUnitError as error:
-        raise _refused(key, value, f"{error}{usual_spelling(text, UNITS)}") from None
+        raise UnknownUnitError(f"{error}{usual_spelling(text, UNITS)}") from None
 
 
 class Unit(NamedTuple):
@@ -206,11 +202,6 @@ class Unit(NamedTuple):
     def angular(self) -> bool:
         """Whether the unit contains a plane angle, or only times, which serves as a rate too."""
         return self.angles == 1 or (self.of_times and self.dimensions == RATE)
-
-    @property
-    def size(self) -> Fraction:
-        """The size, with pi in `EXACT_DIGITS` digits."""
-        return self.rational * (Fraction(pi_to(EXACT_DIGITS)) if self.power_of_pi else 1)
 
 
 class UnknownUnitError(Exception):
@@ -261,6 +252,13 @@ def _common_unit(text: str) -> Unit | None:
         sum(unit.angles * n for unit, n in units),
         all(unit.of_times for unit, _ in units),
     )
+
+
+DIMENSIONS = {
+    name: unit_of_text(_with_powers(GRAM_METRE.named(unit))).dimensions
+    for name, unit in _UNIT_OF.items()
+}
+"""The powers of mass, length and time in each input."""
 
 
 @lru_cache(maxsize=256)

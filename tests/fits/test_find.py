@@ -198,6 +198,49 @@ def test_inputs_that_were_not_given_are_said_where_find_is_called() -> None:
     assert [x.filename for x in said] == [__file__]
 
 
+LAB = ["--m", "0.35kg", "--A", "8.5e-4 kg m^2", "--C", "4e-4 kg m^2", "--s", "3cm"]
+LAB += ["--g", "9.81 m/s^2", "--theta0", "60deg", "--r0", "1000:20000 rpm"]
+
+
+@pytest.mark.parametrize(
+    ("united", "plain"),
+    [
+        ("T_precession=5000ms", "T_precession=5"),
+        ("mean_precession_rate=12rpm", f"mean_precession_rate={0.4 * math.pi}"),
+        ("theta_max=1.1rad", f"theta_max={math.degrees(1.1)}"),
+        ("discriminant=8e-4 1/ms^4", "discriminant=8e8"),
+        ("b=200/s", "b=200"),
+        ("Lz=0.06 kg m^2/s", "Lz=0.06"),
+    ],
+)
+def test_conditions_with_units(united: str, plain: str, lagtop: Lagtop) -> None:
+    found = [lagtop("find", *LAB, x, "--keys", "r0").stdout for x in (united, plain)]
+    rates = [float(text.splitlines()[1]) for text in found]
+    assert rates[0] == pytest.approx(rates[1], rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("condition", "message"),
+    [
+        ("T_nutation=50rad", "T_nutation must have a unit as in 2s, got the unit 'rad'"),
+        ("k=0.1s", "k must have no unit, got the unit 's'"),
+        ("a=2/m", "a must have a unit as in '2 1/s²', got the unit '/m'"),
+        ("r0_sleeping=3 Hz", "r0_sleeping must have a unit as in '50 rad/s' or 480rpm"),
+    ],
+)
+def test_a_condition_in_a_wrong_unit(condition: str, message: str, lagtop: Lagtop) -> None:
+    assert_one_line(lagtop("find", *LAB, condition), 2, message)
+
+
+def test_a_unit_of_a_condition_needs_those_of_the_inputs(lagtop: Lagtop) -> None:
+    words = ["find", "--r0", "10:200", "T_precession=500ms"]
+    message = "--r0 must have a unit such as '50 rad/s' or 480rpm, as a time, a condition or"
+    assert_one_line(lagtop(*words), 2, message)
+    seen = ["theta_min=3deg", "theta_max=6", "T_nutation=4ms", "mean_precession_rate=5000rpm"]
+    found = lagtop("find", *seen, "--keys", "T_nutation,mean_precession_rate").stdout
+    assert found.splitlines()[1].startswith("0.0040000000000000")
+
+
 def test_ranges_with_units(lagtop: Lagtop, tmp_path: Path) -> None:
     wanted = ("T_nutation=0.45", "--scan", 20, "--keys", "r0")
     plain = lagtop("find", "--r0", "10:60", *wanted)
@@ -492,6 +535,9 @@ def test_quantities_are_conditions_of_the_known_inputs() -> None:
     body = {"m": "1587 g", "A": "39032 g cm^2", "C": "17458 g cm^2", "s": "4 cm", "g": "981 cm/s^2"}
     known = {name: unit.Quantity(text) for name, text in body.items()}
     found = find({"T_precession": 2.0}, r0=unit.Quantity((100, 1900), "rpm"), **known)
+    period = {"T_precession": unit.Quantity(2000.0, "ms")}
+    same = find(period, r0=unit.Quantity((100, 1900), "rpm"), **known)
+    assert same["r0"].tolist() == pytest.approx(found["r0"].tolist(), rel=1e-14)
     expected = find({"T_precession": 2.0}, r0=(10, 200))
     assert found["r0"] == pytest.approx(expected["r0"], rel=1e-12)
     assert found["m"].tolist() == [1.587]

@@ -62,7 +62,8 @@ def test_turns_have_pi_in_all_digits(unit: str, turns: str) -> None:
     found = unit_of_text(unit)
     assert (found.rational, found.power_of_pi) == (2 * Fraction(turns), 1)
     with mpmath.workdps(1150):
-        size = mpmath.mpf(found.size.numerator) / found.size.denominator
+        factor = factor_of("r0", Value(Fraction(1), unit))
+        size = mpmath.mpf(factor.numerator) / factor.denominator
         exact = 2 * mpmath.pi * mpmath.mpf(Fraction(turns).numerator) / Fraction(turns).denominator
         assert abs(size - exact) < mpmath.mpf(10) ** -1098
 
@@ -323,7 +324,7 @@ def test_wrong_headings(header: str, options: list[str], message: str, lagtop: L
         ("--theta0 1m", "--theta0 must have a unit as in 30deg or 0.5rad, got the unit 'm'"),
         ("--theta0 1ppm", "--theta0 must have a unit"),
         ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
-        ("--units cgs --m 1", "--m must have a unit such as 350g, as a time or the output has"),
+        ("--units cgs --m 1", "--m must have a unit such as 350g, as a time, a condition or"),
     ],
 )  # fmt: skip
 def test_bad_units(options: str, message: str, lagtop: Lagtop) -> None:
