@@ -184,7 +184,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
     """Return the theta series of motions whose series all use the same nome."""
     motion = motions.motion
     with PAIRS.working():
-        c = theta_constants(motion, 0 * motion.K)
+        c = theta_constants(motion)
         series = (hyperbolic_series if hyperbolic else circular_series)(PAIRS, c)
         phase, lower, *args = _at_start(motions, series)
         count, steps = phase.size, 2 / c.period

@@ -58,8 +58,6 @@ def constants(ar: Balls, k2: str, s_plus: str, s_minus: str) -> ThetaConstants:
         y_size=one,
         sign_plus=1,
         sign_minus=-1,
-        offset=0 * one,
-        rises=1,
         nutation=one,
     )
 

@@ -25,7 +25,7 @@ from ...arithmetic.types import Array
 from ..degenerate import Constant, Separatrix
 from .attitude import Attitude, Growths, Spinor, Times, growths
 from .columns import TILT, TURN, Needs
-from .series_constants import separatrix_constants
+from .series_constants import SeparatrixConstants, separatrix_constants
 from .times import check_times
 
 
@@ -40,6 +40,7 @@ class Angles(NamedTuple):
     """Precession."""
 
 
+@dataclass(frozen=True)
 class Sampler:
     """The angles of one motion as functions of time, with precomputed constants."""
 
@@ -81,11 +82,8 @@ class Sampler:
 class ConstantSampler(Sampler):
     """A constant tilt and constant rates of spin and precession."""
 
-    tilt: float
     x: float
     y: float
-    growths: Growths
-    max_time: float
 
     def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
         """Return the attitude at a block of times; there is no phase."""
@@ -99,24 +97,16 @@ class ConstantSampler(Sampler):
 class SeparatrixSampler(Sampler):
     """The single swing from the upright position down and up again: k = 1, T infinite."""
 
-    tilt: float
     speed: float
-    offset: float
-    x: float
-    """cos(theta_max/2)."""
-    y: float
-    """sin(theta_max/2)."""
-    sign: int
-    growths: Growths
-    max_time: float
+    swing: SeparatrixConstants[float]
 
     def attitude(self, t: Array, needs: Needs, farthest: float, space: Array) -> Attitude:
         """Return the attitude: 1 - u = (1 - u2)/cosh^2 h, with h = 0 at the lowest point."""
-        h = t * self.speed + self.offset
+        swing, h = self.swing, t * self.speed + self.swing.offset
         shrink = np.exp(-np.abs(h))
         sech, tanh = 2.0 * shrink / (1.0 + shrink * shrink), np.tanh(h)
-        real, imag = np.full_like(h, self.x), self.y * self.sign * tanh
-        x2, y = real * real + imag * imag, self.y * sech
+        real, imag = np.full_like(h, swing.x), swing.y * swing.sign * tanh
+        x2, y = real * real + imag * imag, swing.y * sech
         arg_x, zero = np.arctan2(imag, real), np.zeros_like(h)
         falling = -4.0 * self.speed * y * y * tanh
         spinor = Spinor(tilt_of(x2, y * y), x2, y * y, arg_x, zero, falling)
@@ -146,10 +136,7 @@ def separatrix_sampler(motion: Separatrix[Decimal]) -> SeparatrixSampler:
         return SeparatrixSampler(
             tilt=start_tilt(motion),
             speed=float(speed),
-            offset=float(swing.offset),
-            x=float(swing.x),
-            y=float(swing.y),
-            sign=swing.sign,
+            swing=SeparatrixConstants(*map(float, swing)),
             growths=growths(ar, rates, (swing.start, 0 * swing.start)),
             max_time=_reach(max(map(abs, (*rates, speed)))),
         )

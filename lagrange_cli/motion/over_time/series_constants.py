@@ -14,12 +14,18 @@ from ...arithmetic.protocol import Numeric, SeriesArithmetic
 from ...elliptic.complete import place
 from ..degenerate import Constant, Separatrix
 from ..kinds import Kind, Nutating
-from .theta_series import Component, Frame, Series, SquaredRatio, ThetaConstants, theta_series
+from .theta_series import (
+    TERMS,
+    Component,
+    Frame,
+    Series,
+    SquaredRatio,
+    ThetaConstants,
+    theta_series,
+)
 
 
-def theta_constants(
-    motion: Nutating[R], offset: R, rises: int = 1, *, rates: bool = False
-) -> ThetaConstants:
+def theta_constants(motion: Nutating[R], *, rates: bool = False) -> ThetaConstants:
     """Return the constants of the theta series of a nutating top.
 
     The parameter of X, with modulus k', has `sn^2 = (1 + u2)/(1 + u1)` and `cn^2 = (u1 - u2)/(1 +
@@ -42,8 +48,6 @@ def theta_constants(
             y_size=ar.sqrt(motion.k_prime * gaps.above_u2 / 2),
             sign_plus=facts.sign_plus,
             sign_minus=facts.sign_minus,
-            offset=offset,
-            rises=rises,
             nutation=8 * squares * gaps.u1_u2 / (ar.pi * motion.T_nutation) if rates else None,
         )
 
@@ -98,6 +102,39 @@ def evaluate(
     return *polar(frame.x, -rises), *polar(frame.y, rises)
 
 
+class SeriesFromStart(NamedTuple):
+    """The theta series of a motion, counted from the turning point nearest to its start."""
+
+    constants: ThetaConstants
+    series: Series
+    frames: list[Frame]
+    """The series about that turning point and about the other one."""
+    first_is_upper: bool
+    """Whether that turning point is u1."""
+    offset: Numeric
+    """Steps of half a period from that turning point to the start, from -1/2 to 1/2."""
+    starts: tuple[Numeric, Numeric]
+    """The arguments of X and Y at the start."""
+
+
+def series_from_start(
+    motion: Nutating[Any], *, proved: bool = False, rates: bool = False
+) -> SeriesFromStart:
+    """Return the series of a motion, counted from the turning point nearest to its start.
+
+    The series have the terms that doubles need or, if `proved`, all digits.
+    """
+    ar: Any = motion.ar
+    c = theta_constants(motion, rates=rates)
+    series = theta_series(ar, c, _terms(ar, c) if proved else TERMS)
+    steps = periods_since_top(motion) * 2
+    nearest = ar.nint(steps)
+    offset = steps - nearest
+    frames = [series.frames[(nearest + i) % 2] for i in range(2)]
+    _, x_start, _, y_start = evaluate(ar, series, frames[0], offset, direction(motion))
+    return SeriesFromStart(c, series, frames, nearest % 2 == 0, offset, (x_start, y_start))
+
+
 class SeparatrixConstants(NamedTuple, Generic[R]):
     """The constants of a motion on the separatrix, about its lowest point."""
 
@@ -107,7 +144,7 @@ class SeparatrixConstants(NamedTuple, Generic[R]):
     """cos(theta_max/2)."""
     y: R
     """sin(theta_max/2)."""
-    sign: int
+    sign: float
     """Sign of b."""
     start: R
     """arg X at t = 0."""
@@ -168,30 +205,22 @@ def nutating_pose(motion: Nutating[R]) -> Callable[[R], Pose[R]]:
     """Return the attitude of a nutating top by its theta series."""
     ar: Any = motion.ar
     with ar.working():
-        constants = theta_constants(motion, periods_since_top(motion), direction(motion))
-        series = theta_series(ar, constants, _terms(ar, constants))
-
-    def position(t: R) -> tuple[int, R, tuple[R, R, R, R]]:
-        passed = (t / constants.period + constants.offset) * 2
-        step = ar.nint(passed)
-        phase = passed - step
-        odd = step % 2
-        return odd, phase, evaluate(ar, series, series.frames[odd], phase, constants.rises)
-
-    with ar.working():
-        _, since_first, (_, x_start, _, y_start) = position(0 * motion.K)
-        rates = motion.mean_spin_rate, motion.mean_precession_rate
+        found = series_from_start(motion, proved=True)
+        series, (x_start, y_start) = found.series, found.starts
 
     def pose(t: R) -> Pose[R]:
         with ar.working():
-            odd, phase, (x, arg_x, y, arg_y) = position(t)
-            within = phase - since_first
-            plus, minus = arg_x - x_start, arg_y - y_start
-            phi = t * rates[0] + within * series.spin_slope + (plus - minus)
-            psi = t * rates[1] + within * series.precession_slope + (plus + minus)
+            passed = t / motion.T_nutation * 2 + found.offset
+            step = ar.nint(passed)
+            phase, frame = passed - step, found.frames[step % 2]
+            x, arg_x, y, arg_y = evaluate(ar, series, frame, phase, direction(motion))
+            within, plus, minus = phase - found.offset, arg_x - x_start, arg_y - y_start
+            phi = t * motion.mean_spin_rate + within * series.spin_slope + (plus - minus)
+            psi = t * motion.mean_precession_rate + within * series.precession_slope + plus + minus
             if motion.facts.plane:
                 phi, psi = _half_turns(ar, phi), _half_turns(ar, psi)
-            return Pose(x, y, phi, psi, -phase if odd else phase)
+            about_u1 = found.first_is_upper == (step % 2 == 0)
+            return Pose(x, y, phi, psi, phase if about_u1 else -phase)
 
     return pose
 

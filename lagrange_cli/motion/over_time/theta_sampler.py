@@ -14,30 +14,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ...arithmetic.arrays import order_by_parity, placed, taken
 from ...arithmetic.double_double import Period, period_of, whole_periods
 from ...arithmetic.points import MAX_PERIODS
-from ...arithmetic.protocol import Numeric
 from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
 from ..degenerate import Separatrix
 from ..kinds import Kind, Nutating
-from .attitude import Attitude, Growths, Spinor, Times, growths
+from .attitude import Attitude, Spinor, Times, growths
 from .columns import NOTHING, Needs
 from .samplers import Sampler, constant_sampler, separatrix_sampler, start_tilt, tilt_of
-from .series_constants import direction, evaluate, periods_since_top, theta_constants
-from .theta_series import (
-    Coefficients,
-    Component,
-    Frame,
-    Series,
-    ThetaConstants,
-    theta_series,
-)
+from .series_constants import series_from_start
+from .theta_series import Coefficients, Component, Frame, Series
 
 _GREATEST = 340.0
 """Greatest argument: the square of its hyperbolic sine does not overflow in later products."""
@@ -53,12 +45,10 @@ ARGUMENTS = ("arg_x", "arg_y")
 class ThetaSampler(Sampler):
     """Sampler of a nutating top, by its theta series."""
 
-    tilt: float
     step: Period
     """Half the period of the nutation."""
     offset: float
     """The phase at t = 0, in steps."""
-    max_time: float
     scale: float
     """Argument of the functions per step."""
     speed: float
@@ -70,7 +60,6 @@ class ThetaSampler(Sampler):
     """The series about the turning points of the even and of the odd steps."""
     slopes: Sequence[float]
     """Slopes per unit of the argument that are added to arg X and arg Y to make them periodic."""
-    growths: Growths
 
     @cached_property
     def over_a_pole(self) -> bool:
@@ -205,30 +194,6 @@ def _write_polynomial(coefficients: Sequence[float], x: Array, value: Array) -> 
     value += coefficients[0]
 
 
-class SeriesFromStart(NamedTuple):
-    """The theta series of a motion, counted from the turning point nearest to its start."""
-
-    series: Series
-    frames: list[Frame]
-    """The series about that turning point and about the other one."""
-    first_is_upper: bool
-    """Whether that turning point is u1."""
-    offset: Numeric
-    """Steps of half a period from that turning point to the start, from -1/2 to 1/2."""
-    starts: tuple[Numeric, Numeric]
-    """The arguments of X and Y at the start."""
-
-
-def series_from_start(ar: Any, c: ThetaConstants) -> SeriesFromStart:
-    """Return the series of some constants, counted from the turning point nearest to the start."""
-    series = theta_series(ar, c)
-    nearest = ar.nint(c.offset * 2)
-    offset = c.offset * 2 - nearest
-    frames = [series.frames[(nearest + i) % 2] for i in range(2)]
-    _, x_start, _, y_start = evaluate(ar, series, frames[0], offset, c.rises)
-    return SeriesFromStart(series, frames, nearest % 2 == 0, offset, (x_start, y_start))
-
-
 def greatest_argument(ar: Any, series: Series) -> Any:
     """Return the greatest s, sin^2 or sinh^2: at the end of a step, half of `scale` from 0."""
     return ar.exp(series.scale) / 4 if series.hyperbolic else ar.convert(0.5)
@@ -247,9 +212,8 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     """Return the sampler of a nutating top."""
     ar: Any = motion.ar
     with ar.working():
-        c = theta_constants(motion, periods_since_top(motion), direction(motion), rates=True)
-        found = series_from_start(ar, c)
-        series = found.series
+        found = series_from_start(motion, rates=True)
+        c, series = found.constants, found.series
         steps, spin, precession = 2 / c.period, series.spin_slope, series.precession_slope
         slopes = (precession + spin) / 2, (precession - spin) / 2
         x, y = (

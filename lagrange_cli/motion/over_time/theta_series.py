@@ -84,10 +84,6 @@ class ThetaConstants(NamedTuple):
     """|Y| at u2, sin(theta_max/2), times sqrt(k'), the ratio of theta3 at u2 and at u1."""
     sign_plus: Numeric
     sign_minus: Numeric
-    offset: Numeric
-    """Periods since the nearest passage of u1, at t = 0."""
-    rises: int
-    """Sign of the nutation rate at t = 0; +1 if the rate is 0."""
     nutation: Numeric
     """-du/dt over the phase x near a passage of u1; None if it is not needed."""
 

@@ -24,13 +24,8 @@ from ...elliptic.jacobi import jacobi
 from ...elliptic.modulus import Modulus
 from ..kinds import Nutating
 from ..over_time.attitude import Growths, Times, growths
-from ..over_time.series_constants import direction, periods_since_top, theta_constants
-from ..over_time.theta_sampler import (
-    SeriesFromStart,
-    count_needed,
-    greatest_argument,
-    series_from_start,
-)
+from ..over_time.series_constants import SeriesFromStart, series_from_start
+from ..over_time.theta_sampler import count_needed, greatest_argument
 from ..over_time.theta_series import Coefficients, Component
 from .neighbourhood import PARAMETERS
 
@@ -80,17 +75,14 @@ class SeriesDerivatives:
         """Take the constants from a motion, and the mean rates from `means`."""
         ar: Any = motion.ar
         with ar.working():
-            constants = theta_constants(
-                motion, periods_since_top(motion), direction(motion), rates=True
-            )
-            found = series_from_start(ar, constants)
+            found = series_from_start(motion, rates=True)
             series, (x_start, y_start) = found.series, found.starts
             self.hyperbolic = series.hyperbolic
             self.frames, self.rates_of_tilt = _in_doubles(ar, found)
             self.about_means = RatesAboutMeans.of(
                 motion, means, first_is_upper=found.first_is_upper
             )
-            speed, step = 2 / constants.period, constants.period.value / 2
+            speed, step = 2 / motion.T_nutation, motion.T_nutation.value / 2
             rates = means.mean_spin_rate, means.mean_precession_rate
             slopes = series.spin_slope, series.precession_slope
             self.speed = float(speed.value)
@@ -105,7 +97,7 @@ class SeriesDerivatives:
                 ]
             )
             self.growths: Growths = growths(ar.plain, (rates[0].value, rates[1].value))
-            self.max_time = float(int(MAX_PERIODS) * constants.period.value)
+            self.max_time = float(int(MAX_PERIODS) * motion.T_nutation.value)
 
     def at(self, t: Array) -> tuple[Array, Array, Array]:
         """Return tilt, spin and precession at times, and their derivatives by the parameters.
