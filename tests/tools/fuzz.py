@@ -226,10 +226,11 @@ def decimal_text(x: Fraction) -> str:
 
 
 def inputs_of(judges: Sequence[tuple[Scene, Judge]]) -> dict[str, list[float]]:
-    """Return scenes as inputs of many tops."""
+    """Return scenes, all with tilts in degrees or all in radians, as inputs of many tops."""
     inputs = {
-        key: [float(scene.get(key, np.nan)) for scene, _ in judges]
+        key: [float(scene[key]) for scene, _ in judges]
         for key in ("m", "A", "C", "s", "g", "r0", "theta0_deg", "theta0_rad")
+        if key in judges[0][0]
     }
     for key in ("thetadot0", "psidot0"):
         inputs[key] = [float(scene.get(key, 0)) for scene, _ in judges]
@@ -319,9 +320,10 @@ def run_chunk(task: Task) -> tuple[str, Tally]:
             tally.counts["undecided scenes"] += 1
             continue
         judges.append((scene, judge))
-    if what == "sweep" and judges:
-        judge_sweep(tally, judges)
-        judge_many(tally, judges, random.Random(f"{seed} {kind} {first} many"))
+    for tilt in ("theta0_deg", "theta0_rad") if what == "sweep" else ():
+        if some := [(scene, judge) for scene, judge in judges if tilt in scene]:
+            judge_sweep(tally, some)
+            judge_many(tally, some, random.Random(f"{seed} {kind} {first} many"))
     return kind, tally
 
 
