@@ -227,7 +227,7 @@ def decimal_text(x: Fraction) -> str:
 
 def inputs_of(judges: Sequence[tuple[Scene, Judge]]) -> dict[str, list[float]]:
     """Return scenes, all with tilts in degrees or all in radians, as inputs of many tops."""
-    inputs = {
+    inputs: dict[str, list[float]] = {
         key: [float(scene[key]) for scene, _ in judges]
         for key in ("m", "A", "C", "s", "g", "r0", "theta0_deg", "theta0_rad")
         if key in judges[0][0]
