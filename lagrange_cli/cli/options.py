@@ -69,7 +69,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         before, comma, begun = incomplete.rpartition(",")
         known = self.names() if self.names else ()
         found = [CompletionItem(before + comma + x) for x in known if x.startswith(begun)]
-        is_file = param.param_type_name == "argument" or self is FILE
+        is_file = param.param_type_name == "argument" or self in (FILE, FOLDER)
         return found or ([CompletionItem(incomplete, type="file")] if is_file else [])
 
 
@@ -103,7 +103,7 @@ def names_type(
 
 
 _all_keys = late("motion.record", "all_keys")
-FILE = Parsed("FILE", str)
+FILE, FOLDER = Parsed("FILE", str), Parsed("DIR", str)
 NUMBER = Parsed("X", parse_number)
 COUNT = Parsed("N", _parse_count)
 RANGE = Parsed("X", late("inputs.ranges", "parse_values"))
@@ -127,7 +127,7 @@ def digits_option(most: int) -> Callable[[Command], Command]:
 
 rad_option = click.option("--rad", is_flag=True, help="Use radians for all angles, in and out.")
 certify_option = click.option(
-    "--certify", is_flag=True, help="Print KEY_radius too, a proved bound of the error."
+    "--certify", is_flag=True, help="Also print KEY_radius, a proven bound on the error."
 )
 keys_option = click.option(
     "--keys", type=KEY_NAMES, help="Compute and print only these keys (see lagtop explain)."
@@ -139,11 +139,11 @@ def seed_option(**how: Any) -> Callable[[Command], Command]:
     return click.option("--seed", type=COUNT, **how)
 
 
-plot_option = click.option("--plot", type=FILE, help="Draw the report too: FILE.svg or FILE.png.")
+plot_option = click.option("--plot", type=FILE, help="Also draw the report: FILE.svg or FILE.png.")
 jobs_option = click.option(
     "--jobs",
     type=Parsed("N|auto", late("sweeps.jobs", "parse_jobs")),
-    help="Processes that share the work; auto: one per core.  [default: 1]",
+    help="Number of processes; auto: one per core.  [default: 1]",
 )
 
 
@@ -229,7 +229,7 @@ def text_options(command: Command) -> Command:
         decorated = click.option(
             f"--{name}",
             type=Parsed("MARK", _mark(marks), lambda marks=marks: marks),  # type: ignore[misc]
-            help=f"{', '.join(marks)}.  [default: found]",
+            help=f"{', '.join(marks)}.  [default: detected]",
         )(decorated)
     return decorated  # type: ignore[no-any-return]
 
@@ -253,7 +253,7 @@ def is_described(out: Output, header_comments: bool) -> bool:
 
 def reading_options(quaternion: str | None) -> Callable[[Command], Command]:
     """Add the options for the columns of a trajectory; `quaternion` is the default order."""
-    order = quaternion or "by the first row"
+    order = quaternion or "from the first row"
 
     def decorate(command: Command) -> Command:
         command = click.option(
@@ -261,7 +261,7 @@ def reading_options(quaternion: str | None) -> Callable[[Command], Command]:
             type=Parsed("SEQ", late("inputs.seen", "euler_sequence")),
             default="xyz",
             show_default=True,
-            help="Axes of `euler` as in scipy: xyz about those of space, XYZ of the body.",
+            help="Axes of `euler` as in scipy: xyz for space axes, XYZ for body axes.",
         )(command)
         command = click.option(
             "--quaternion-order",

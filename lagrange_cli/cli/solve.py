@@ -43,14 +43,16 @@ if TYPE_CHECKING:
 )
 @top_options(UNCERTAIN)
 @click.option(
-    "--get", "keys", type=KEY_NAMES, help="Print values of these keys, bare, one per line."
+    "--get", "keys", type=KEY_NAMES, help="Print only the values of these keys, one per line."
 )
 @click.option(
-    "--derivation", is_flag=True, help="The steps of the paper's worked example (section 8)."
+    "--derivation", is_flag=True, help="Print the steps of the paper's worked example (section 8)."
 )
 @digits_option(MOST_RECORD_DIGITS)
 @certify_option
-@click.option("--budget", type=KEY, help="Uncertainty budget of KEY: the share of each input.")
+@click.option(
+    "--budget", type=KEY, help="Print the uncertainty budget of KEY: the share of each input."
+)
 @click.option("--samples", type=COUNT, help="Check linear propagation with N random tops.")
 @seed_option(help="Seed of the random tops.")
 @output_options("table", "json", "csv", "ndjson", "markdown")
@@ -67,10 +69,12 @@ def solve_command(
 ) -> None:
     """Compute the periods, turning points and mean rates of one top.
 
-    Every number is correctly rounded, or has N correct digits with --digits N.  Quantities that a
-    regime does not have are null in JSON and empty in CSV.  lagtop explain lists all keys.
+    The results are called the record, and their names keys; lagtop explain lists all keys.  Every
+    number is correctly rounded, or has N correct digits with --digits N.  A quantity that a regime
+    does not have is null in JSON and empty in CSV.
 
-    An input may have a unit ('480 rpm') if all have one, and an uncertainty ('1587(2)').
+    Inputs may have units ('480 rpm'): give units for all inputs that you set, or for none.  An
+    input may have an uncertainty ('1587(2)').
     """
     exclude({"--get": keys, "--derivation": derivation, "--budget": budget, "--samples": samples})
     if keys is not None:

@@ -12,7 +12,7 @@ from ..arithmetic.text import quoted
 from ..errors import LagtopError
 from .app import Command, complain
 from .options import (
-    FILE,
+    FOLDER,
     Parsed,
     exclude,
     header_comments_option,
@@ -57,9 +57,11 @@ def _parse_shard(text: str) -> tuple[int, int]:
 @keys_option
 @click.option("--fail-fast", is_flag=True, help="Stop at the first top that cannot be solved.")
 @jobs_option
-@click.option("--parts", "folder", type=FILE, help="Write a file per part into this folder.")
+@click.option("--parts", "folder", type=FOLDER, help="Write one file per part into this folder.")
 @click.option(
-    "--shard", type=Parsed("I/N", _parse_shard), help="Compute only every N-th part, from the I-th."
+    "--shard",
+    type=Parsed("I/N", _parse_shard),
+    help="Compute only every N-th part, starting with the I-th.",
 )
 @click.option(
     "--dask", "cluster", metavar="ADDRESS", help="Use a Dask cluster, or `local` for this machine."
@@ -80,16 +82,16 @@ def sweep_command(
     header_comments: bool,
     out: Output,
 ) -> None:
-    """Compute the record of solve for each top of a grid or of a file.
+    """Solve each top of a grid or of a file.
 
     An input is a number, a list 1,2,3 or a range [log:]start:stop:count, with its unit at the end:
-    --r0 '1e3:9e3:5 rpm'.  The grid is the product of all; the last option varies fastest.
+    --r0 '1e3:9e3:5 rpm'.  The grid has every combination of values; the last option varies fastest.
 
-    A file is CSV with a header or JSON lines, with keys of a record as names.  Options and the
-    scene complete its rows, and other columns are copied.  A heading may have a unit: m [g].  A top
-    that cannot be solved has its error in its row; the exit code is then 1.
+    A file of tops is CSV with a header, or JSON lines, and names inputs by key.  Options and the
+    scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
+    unit: m [g].  If a top cannot be solved, its row shows the error, and the exit code is 1.
 
-    The folder of --parts belongs to one sweep: the same command resumes a run that was killed.
+    A folder of --parts holds one sweep; repeat the command to resume a run that was killed.
     """
     from ..output.rows import check_parquet
     from ..sweeps.cluster import computed, connected

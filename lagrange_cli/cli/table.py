@@ -66,7 +66,9 @@ _DRAWN = ("table", "markdown")
     """,
 )
 @top_options(UNCERTAIN)
-@click.option("--t-max", type=TIME, help="Last time.  [default: one nutation period, or 1]")
+@click.option(
+    "--t-max", type=TIME, help="Last time.  [default: one nutation period; 1 without nutation]"
+)
 @click.option("--t-min", type=TIME, help="First time.  [default: 0]")
 @click.option("--n", "count", type=COUNT, help="Number of times.  [default: 101]")
 @click.option("--dt", type=TIME, help="Time step, instead of --n.")
@@ -103,8 +105,9 @@ def table_command(
 ) -> None:
     """Tabulate tilt, spin and precession, or other columns, over time.
 
-    Angles are within 4 units of 2^-52 max(1 rad, |angle|), and more next to a pole, at times up to
-    2^50 nutation periods.  Uncertain inputs add the uncertainties of the angles as last columns.
+    Errors of angles are at most 4 units at times up to 2^50 nutation periods.  A unit is 2^-52
+    max(1 rad, |angle|), or more if the axis passes near the vertical.  If inputs are uncertain, the
+    last columns are the uncertainties of the angles.
     """
     from ..motion.over_time.columns import DEFAULT_COLUMNS
     from ..motion.over_time.times import DEFAULT_ROWS, TableRequest

@@ -107,12 +107,12 @@ def top_options(
 
         decorated: Any = run
         if units:
-            text = "si or cgs, if inputs have units.  [default: si]"
+            text = "Output in si or cgs if inputs have units.  [default: si]"
             choice = click.Choice(["si", "cgs"])
             decorated = click.option("--units", type=choice, metavar="SYSTEM", help=text)(decorated)
         decorated = rad_option(decorated)
         for name in reversed(names):
-            text = _help_of(DECLARED[name], shows_default=whole)
+            text = _help_of(DECLARED[name], shows_default=whole, one_top=one_top)
             flag = f"--{name.replace('_', '-')}"
             read = steady if name == "psidot0" else kind
             decorated = click.option(flag, name, type=read, help=text)(decorated)
@@ -125,10 +125,14 @@ def top_options(
     return decorate
 
 
-def _help_of(declared: Input, *, shows_default: bool) -> str:
-    """Return the help of an input, with its unit if it is a rate, its bounds and its default."""
+def _help_of(declared: Input, *, shows_default: bool, one_top: bool) -> str:
+    """Return the help of an input, with its unit if it is a rate, its bounds and its default.
+
+    The words that stand for a rate are left out of commands that do not solve one top.
+    """
     rate = "rad per unit of time" if declared.unit == "rad/time" else ""
-    text = ", ".join(filter(None, (declared.meaning, declared.bound, rate)))
+    bound = declared.bound if one_top or "word" not in declared.bound else ""
+    text = ", ".join(filter(None, (declared.meaning, rate, bound)))
     ending = f"  [default: {declared.default:g}]" if declared.default is not None else ""
     return f"{text[0].upper()}{text[1:]}.{ending if shows_default else ''}"
 

@@ -40,16 +40,16 @@ A_cm | A_cm | moment about the mass centre
     | equatorial moment about the mass centre: A = A_cm + m s^2 | | mass len² |
 C | C | polar moment | polar moment of inertia | positive, at most 2A | mass len² | 17458
 s | s | pivot to mass centre | distance from the pivot to the mass centre | 0 or more | len | 4
-g | g | gravity | gravity | 0 or more | len/time² | 981
+g | g | gravity | gravitational acceleration | 0 or more | len/time² | 981
 r0 | r0 | total spin rate
     | total rate about the axis, phi' + psi' cos(theta) | | rad/time | 50
 phidot0 | φ'0 | spin rate at start
-    | spin rate at start, in place of r0 = phidot0 + psidot0 cos(theta0) | | rad/time |
+    | spin rate at start | instead of r0 = phidot0 + psidot0 cos(theta0) | rad/time |
 theta0 | ϑ0 | tilt at the start
     | tilt from the upward vertical | 0 to 180 degrees | angle | 30
 thetadot0 | ϑ'0 | nutation rate at start | nutation rate at start | | rad/time | 0
 psidot0 | ψ'0 | precession rate at start
-    | precession rate at start; steady or steady-fast for one top | | rad/time | 0
+    | precession rate at start | or the word steady or steady-fast | rad/time | 0
 """
 
 
