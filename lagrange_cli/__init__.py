@@ -1,4 +1,7 @@
-"""Lagrange top in closed form: `solve(Top(theta0_deg=30)).angles([0.0, 0.1])`."""
+"""Lagrange top in closed form: `solve(Top(theta0_deg=30)).angles([0.0, 0.1])`.
+
+Examples in docstrings follow `from lagtop import *`, `import numpy as np` and `import warnings`.
+"""
 
 from typing import TYPE_CHECKING, Any
 
@@ -63,7 +66,11 @@ _MODULES = {
     "sweep_angles": "sweeps.angles",
     "view": "plot.browser",
 }
-"""The module of each public name; it is imported when the name is first used."""
+"""The module of each public name; it is imported when the name is first used.
+
+Methods that draw, such as `Motion.plot`, take their functions from here: only this table may name a
+subpackage above theirs.
+"""
 
 
 def __getattr__(name: str) -> Any:

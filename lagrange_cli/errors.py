@@ -21,6 +21,10 @@ class LagtopError(ValueError):
 
     `key` is the name of the argument at fault, if there is one.  A message about an argument begins
     with its name in Python; the command line converts it to the name of the option.
+
+    >>> Top(m=-1)
+    Traceback (most recent call last):
+    lagrange_cli.errors.LagtopError: m must be > 0, got -1.0
     """
 
     exit_code = 2
@@ -68,7 +72,13 @@ class OutOfRangeWarning(UserWarning):
 
 
 class MixedBodyWarning(UserWarning):
-    """Only some of m, A, C, s and g were given; the others come from the worked example."""
+    """Only some of m, A, C, s and g were given; the others come from the worked example.
+
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     top = Top(m=1500)
+    >>> str(caught[0].message)[:46]
+    'A, C, s and g default to the worked example, i'
+    """
 
 
 class NothingToDrawError(LagtopError):

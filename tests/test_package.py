@@ -2,24 +2,65 @@
 
 from __future__ import annotations
 
+import doctest
 import os
 import re
 import subprocess
 import sys
 import tarfile
+import warnings
 from functools import partial
 from pathlib import Path
 from zipfile import ZipFile
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
 import lagrange_cli
+from lagrange_cli import Judgement, Top
+from lagrange_cli.fits.record import Outcome
+from lagrange_cli.motion.numbers import Numbers
+from lagrange_cli.sweeps.results import Results
 
 
 @pytest.mark.parametrize("name", dir(lagrange_cli))
 def test_every_public_name_is_there(name: str) -> None:
     assert getattr(lagrange_cli, name) is not None
+
+
+EXAMPLES = {
+    name: getattr(lagrange_cli, name) for name in dir(lagrange_cli) if name != "__version__"
+} | {"Results": Results}
+NAMES = {"np": np, "warnings": warnings, **EXAMPLES}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_in_docstrings_run(name: str) -> None:
+    text = EXAMPLES[name].__doc__
+    (test,) = doctest.DocTestFinder(recurse=False).find(EXAMPLES[name], name, globs=dict(NAMES))
+    assert test.examples, text
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", lagrange_cli.MixedBodyWarning)
+        assert doctest.DocTestRunner().run(test).failed == 0
+
+
+INSIDE = {
+    Top: {"tilt", "cosine", "texts", "pole", "steady_word", "options"},
+    Outcome: {"unit", "scale", "found", "products", "derived", "failure"},
+}
+"""Methods that other modules use: no user needs them."""
+
+
+@pytest.mark.parametrize("owner", [Top, lagrange_cli.Motion, Results, Outcome, Judgement])
+def test_examples_use_every_method(owner: type) -> None:
+    parents = {x for x in owner.__mro__ if x.__module__.startswith("lagrange_cli")} - {Numbers}
+    members = {name: x for parent in parents for name, x in vars(parent).items()}
+    methods = {name for name, x in members.items() if callable(x) or isinstance(x, property)}
+    public = {name for name in methods if name[0] != "_"} - INSIDE.get(owner, set())
+    examples = "".join(re.findall(r">>> .*", "".join(x.__doc__ or "" for x in EXAMPLES.values())))
+    assert len(public) >= 3
+    assert {name for name in public if not re.search(rf"\.{name}\b", examples)} == set()
 
 
 def test_an_unknown_name_is_no_attribute() -> None:

@@ -69,8 +69,12 @@ def find(
     `regime=`, `path=` and bounds KEY<NUMBER discard tops.  The search starts from `scan` values of
     each unknown.  With one unknown, the solution is the double whose number is nearest to the
     target.  If the number hardly changes, other doubles are equally good.  The result may have no
-    tops.  Quantities of pint are converted to SI, and uncertainties are ignored.  Raises
-    LagtopError, also if the number has its target value in a whole range.
+    tops.  Its angles, and those of conditions, are in degrees or `radians`.  Quantities of pint are
+    converted to SI, and uncertainties are ignored.  Raises LagtopError, also if the number has its
+    target value in a whole range.
+
+    >>> find({"T_precession": 2.0}, r0=(10, 200), theta0_deg=30).motions[0].top.r0
+    119.38669907271795
     """
     check_type("scan", scan, Integral, NoneType)
     check_names("inputs", list(inputs) or ["m"], INPUTS)

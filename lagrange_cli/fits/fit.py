@@ -138,6 +138,20 @@ def fit(
     default it is estimated from the residuals.  `known` are known inputs by key.  Texts such as
     `"0.070(5)"`, and numbers of uncertainties, are uncertain; units are converted to SI.  Raises
     LagtopError, DataError for a recording that cannot be fitted.
+
+    >>> t = np.linspace(0, 2, 200)
+    >>> noise = np.random.default_rng(2).normal(scale=1e-3, size=(3, 200))
+    >>> theta, phi, psi = solve(Top()).angles(t) + noise
+    >>> outcome = fit(t, theta=theta, phi=phi, psi=psi, known={"C": 17458})
+    >>> outcome.verdict, outcome.failures(), outcome.warnings(), outcome.notes()
+    ('good', [], [], [])
+    >>> [(key, round(x, 1)) for key, x, *_ in outcome.numbers()][:3]
+    [('a', 319.1), ('b', 22.4), ('r0', 50.0)]
+    >>> outcome.undetermined(), round(outcome.inputs()["A"], -2), round(outcome.chi2_dof, 1)
+    (['m, s and g are known only as m*s*g'], 39000.0, 1.0)
+    >>> list(outcome.correlations())[0][:2], outcome.record()["dof"], list(outcome.angles(t))
+    (('a', 'b'), 592, ['theta', 'phi', 'psi'])
+    >>> figure, record = outcome.plot(), outcome.to_dict()
     """
     check_type("known", known, Mapping, NoneType)
     angles = {"theta": theta, "phi": phi, "psi": psi, "axis": axis, "quaternion": quaternion}

@@ -119,6 +119,9 @@ def read_scene(
     Numbers are rounded to doubles, or kept as `exact` decimals.  Numbers with units are converted
     to SI.  A MixedBodyWarning names the defaults if only some of the body is given.  Raises
     SceneError for a bad file, LagtopError for a bad given input.
+
+    >>> read_scene("hanging-top", {"r0": 20}).r0
+    20.0
     """
     check_type("given", given, Mapping, NoneType)
     found = gather(given or {}, os.fsdecode(path))

@@ -78,6 +78,8 @@ class Top(Values):
     {'r0': 60.0, 'theta0_deg': 45.0, 'thetadot0': 0.0, 'psidot0': 0.0}
     >>> top.replace(r0=50) == Top(**top.parts.body, theta0_deg=45)
     True
+    >>> top.is_released, top.caveat(), top.inputs()["m"], top.as_dict()["m"]
+    (True, None, 1587.0, 1587.0)
     """
 
     m: Number

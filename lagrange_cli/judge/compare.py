@@ -76,6 +76,12 @@ def compare(
     in the judgement, for the `convergence` of several trajectories.
 
     Raises LagtopError for a bad argument, and for times that are not finite or not monotonic.
+
+    >>> motion, t = solve(Top()), np.linspace(0, 1, 50)
+    >>> judgement = compare(motion, t, theta=motion.angles(t).theta + 1e-4)
+    >>> judgement.verdict, f"{judgement.error_max:.0e}", judgement.record()["rows"]
+    ('fine', '1e-04', 50)
+    >>> figure, keys = judgement.plot(), judgement.to_dict().keys()
     """
     arrays = {
         **{"quaternion": quaternion, "matrix": matrix, "theta": theta, "phi": phi, "psi": psi},

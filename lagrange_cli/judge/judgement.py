@@ -45,7 +45,11 @@ def _field(meaning: str, default: Any = None) -> Any:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Judgement(HasRecord):
-    """The judgement of one trajectory; angles are in radians, and an unknown number is None."""
+    """The judgement of one trajectory; angles are in radians, and an unknown number is None.
+
+    >>> compare(Top(), [0.0], theta=[0.5]).verdict
+    'off from the start'
+    """
 
     file: str | None = _field("the file, `-` for standard input")
     step: float | None = _field("step size of the trajectory (--step-sizes)")

@@ -21,7 +21,11 @@ B = TypeVar("B", bound=Any)
 
 
 class Regime(StrEnum):
-    """Kind of motion; each member compares equal to its text."""
+    """Kind of motion; each member compares equal to its text.
+
+    >>> solve(Top(theta0_deg=0)).regime == "sleeping"
+    True
+    """
 
     REGULAR = "regular"
     STEADY = "steady precession"

@@ -30,7 +30,11 @@ if TYPE_CHECKING:
 
 
 def solve(top: Top) -> Motion:
-    """Return the motion of a top.  Raises LagtopError for an impossible start."""
+    """Return the motion of a top.  Raises LagtopError for an impossible start.
+
+    >>> solve(Top(theta0_deg=30)).T_nutation
+    0.4292501244785477
+    """
     return Motion(exact(top))
 
 
@@ -40,6 +44,17 @@ class Motion(Numbers):
     Each number is correctly rounded, as proved by an enclosure on first use.  It is None if the
     regime has no such number.  The attributes are named like the keys of `lagtop solve`: a, b, u1,
     u2, u3, k, T_nutation, mean_precession_rate ... `record` returns all of them.
+
+    >>> motion = solve(Top(theta0_deg=30))
+    >>> motion.regime, motion.path, motion.remark, motion.phase, motion.swing
+    (<Regime.REGULAR: 'regular'>, 'cusped', None, 0.0, None)
+    >>> motion.numbers()["k"], motion.record(digits=20, keys=["K"]), motion.top.r0
+    (0.7623941363992914, {'K': '1.9298038860786499602'}, 50.0)
+    >>> motion.angles([0.0, 0.1]).theta.shape, motion.axis([0.0, 0.1]).shape
+    ((2,), (2, 3))
+    >>> float(motion.rotation(0.0).magnitude()), list(motion.table(0.1, ["u", "phidot"]))
+    (0.5235987755982988, ['u', 'phidot'])
+    >>> axes, page = motion.plot("cubic"), motion.view()
     """
 
     @property
@@ -50,11 +65,7 @@ class Motion(Numbers):
     @property
     def remark(self) -> str | None:
         """One line on special properties of the motion, or None."""
-        return self.remark_in()
-
-    def remark_in(self, *, radians: bool = False) -> str | None:
-        """Return the remark, with angles in degrees or `radians`."""
-        return self.decide("remark", lambda kind: kind.remark(radians=radians))
+        return self.decide("remark", lambda kind: kind.remark())
 
     @property
     def phase(self) -> float | None:
@@ -260,7 +271,7 @@ def record_in_range(
     if "path" in wanted:
         values["path"] = motion.path
     if "remark" in wanted:
-        values["remark"] = motion.remark_in(radians=radians)
+        values["remark"] = motion.decide("remark", lambda kind: kind.remark(radians=radians))
     record = {name: values[name] for name in names if name in wanted}
     if radii:
         known = {name: found[name] for name in record if name in found}

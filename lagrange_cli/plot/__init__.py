@@ -81,6 +81,9 @@ def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any
 
     The options are those of the function of the kind, such as `draw_sphere`.  Raises LagtopError
     for an unknown kind.
+
+    >>> len(draw(solve(Top()), "angles", t_max=1.0))
+    3
     """
     from ..errors import check_type
     from ..inputs.names import check_names

@@ -138,7 +138,16 @@ def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
 
 
 def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
-    """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure."""
+    """Draw data, motion and residuals of a fit, on a figure or a new one, and return the figure.
+
+    Angles are in degrees, or in radians if the fit was made so.  Raises UnavailableError without
+    matplotlib.
+
+    >>> t = np.linspace(0, 2, 100)
+    >>> theta, phi, psi = solve(Top()).angles(t)
+    >>> len(draw_outcome(fit(t, theta=theta, psi=psi)).axes)
+    4
+    """
     from ..fits.record import Outcome
     from ..fits.report import curves_of
 

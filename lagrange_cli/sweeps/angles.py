@@ -35,6 +35,9 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Re
     the shape (*inputs, n), and `error` has the shape of the inputs.  If a top has an `error`, its
     angles are NaN.  The angles are as exact as those of `Motion.angles`.  Raises LagtopError for an
     unknown input, or if shapes do not broadcast together.
+
+    >>> sweep_angles([0.0, 0.1], r0=[50.0, 60.0], theta0_deg=30.0)["theta"].shape
+    (2, 2)
     """
     together = Together(inputs)
     if together.stds:
@@ -43,7 +46,8 @@ def sweep_angles(t: ArrayLike, *, wrap: bool = False, **inputs: ArrayLike) -> Re
     tops, shape = together.part(slice(None)), together.shape
     times = doubles_of("t", t)
     if times.ndim > 1 and times.shape[:-1] != shape:
-        raise LagtopError(f"t must have the shape {(*shape, 'n')} or (n,), got {times.shape}", "t")
+        wanted = f"({', '.join(map(str, shape))}, n) or (n,)"
+        raise LagtopError(f"t must have the shape {wanted}, got {times.shape}", "t")
     whole = times.shape if times.ndim > 1 else shape + times.shape
     count = whole[-1] if times.ndim else 1
     rows = times.reshape(-1, count) if count else np.empty((1, 0))

@@ -50,10 +50,10 @@ def sweep(
     Inputs are those of `Top`, as numbers, arrays or pandas Series.  Also accepted are xarray
     DataArrays, broadcast by the names of their dimensions; the results keep their labels.
     Quantities of pint are converted to SI.  Single numbers may be ufloats, which add `KEY_std`.
-    Only `keys` are computed.  If a regime has no value for a key, its number is NaN and its text
-    None.  An invalid top has an `error` and no values.  If a number is beyond the range of doubles,
-    it is NaN, and `error` says so.  Raises LagtopError for an unknown input or key, for labels that
-    differ, or if shapes do not broadcast together.
+    Only `keys` are computed; angles are in degrees or `radians`.  If a regime has no value for a
+    key, its number is NaN and its text None.  An invalid top has an `error` and no values.  If a
+    number is beyond the range of doubles, it is NaN, and `error` says so.  Raises LagtopError for
+    an unknown input or key, for labels that differ, or if shapes do not broadcast together.
 
     >>> sweep(r0=[[50.0], [60.0]], theta0_deg=[30.0, 90.0], keys=["T_nutation"]).to_xarray().sizes
     Frozen({'r0': 2, 'theta0_deg': 2})

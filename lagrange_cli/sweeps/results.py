@@ -29,6 +29,12 @@ class Results(dict[str, ResultColumn]):
 
     The first dimensions are those of the broadcast inputs; the times of `sweep_angles` are the
     last.
+
+    >>> found = sweep(r0=[50.0, 60.0], keys=["T_nutation", "regime"])
+    >>> found.dimensions, found["T_nutation"].shape, list(found.coordinates)
+    (('r0',), (2,), ['r0'])
+    >>> found.to_pandas().columns.tolist(), found.to_polars().shape, dict(found.to_xarray().sizes)
+    (['r0', 'T_nutation', 'regime'], (2, 3), {'r0': 2})
     """
 
     def __init__(

@@ -71,8 +71,11 @@ def angle_sensitivities(
     Angles are in radians, unwrapped; a derivative by `theta0_deg` is per degree.  The error of a
     derivative is at most 1e-12 times the condition number of the angle.  This is 1 rad plus the sum
     of each input times its derivative, in size.  Times that need high precision take some
-    milliseconds each.  Derivatives that do not exist are NaN. Raises LagtopError for an unknown
+    milliseconds each.  Derivatives that do not exist are NaN.  Raises LagtopError for an unknown
     input or a time out of range.
+
+    >>> angle_sensitivities(Top(), [0.0, 0.1], ["r0", "theta0_deg"]).theta.shape
+    (2, 2)
     """
     scene = exact(top)
     chain = by_inputs(scene)

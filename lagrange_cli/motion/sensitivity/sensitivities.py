@@ -63,7 +63,10 @@ def sensitivities(top: Top, keys: Collection[str] | None = None) -> Sensitivitie
     Keys of elementary theory have derivatives if they are named.  Each derivative is correctly
     rounded, as proved by an enclosure.  Angles are in degrees, also in derivatives by `theta0_rad`.
     In steady precession, over a pole or on the separatrix some numbers have a kink or a jump: their
-    derivatives are NaN. Raises LagtopError for an unknown key.
+    derivatives are NaN.  Raises LagtopError for an unknown key.
+
+    >>> sensitivities(Top(), ["T_nutation"]).derivatives["T_nutation"]["r0"]
+    -0.0047282954028118425
     """
     chosen = check_names("keys", list(NUMBER_KEYS if keys is None else keys), DIFFERENTIABLE)
     slopes = Slopes(exact(top))

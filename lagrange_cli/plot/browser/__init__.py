@@ -28,6 +28,9 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
     `unit` names mass, len and time in the units of the inputs; the default is any consistent units.
     The inputs are rounded to doubles, because sliders need them.  Raises LagtopError for inputs out
     of the range of the page.
+
+    >>> view(solve(Top()))[:15]
+    '<!DOCTYPE html>'
     """
     check_type("motion", motion, Motion)
     parts = {
