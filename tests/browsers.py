@@ -35,13 +35,16 @@ class Browser:
         width: int = 1280,
         height: int = 800,
         dark: bool = False,
+        still: bool = True,
+        zoom: int = 1,
     ) -> None:
-        """Reload a page, paused, on a screen of this size."""
-        screen = {"width": width, "height": height, "mobile": width < 500}
-        self.command("Emulation.setDeviceMetricsOverride", screen | {"deviceScaleFactor": 1})
+        """Reload a page on a screen of this size; it is paused if `still`."""
+        screen = {"width": width // zoom, "height": height // zoom, "mobile": width < 500}
+        self.command("Emulation.setDeviceMetricsOverride", screen | {"deviceScaleFactor": zoom})
+        self.command("Emulation.setFocusEmulationEnabled", {"enabled": True})
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        still = {"name": "prefers-reduced-motion", "value": "reduce"}
-        self.command("Emulation.setEmulatedMedia", {"features": [scheme, still]})
+        calm = {"name": "prefers-reduced-motion", "value": "reduce" if still else "no-preference"}
+        self.command("Emulation.setEmulatedMedia", {"features": [scheme, calm]})
         self.driver.get("about:blank")
         self.driver.get(path.as_uri() + fragment)
         self.settle()

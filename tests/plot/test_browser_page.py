@@ -14,7 +14,7 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
-from browsers import README_FRAGMENT, README_PICTURE, Browser, chromium
+from browsers import README_FRAGMENT, README_PICTURE, Browser
 from exact_scenes import KINDS
 from numpy.typing import NDArray
 from pictures import REGIMES, sample_motion
@@ -48,25 +48,6 @@ CLOSE = {
     for r0 in (0.0, 1.0)
 }
 """Scenes whose first and third roots all but touch."""
-
-
-@pytest.fixture(scope="module")
-def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("view") / "top.html"
-    view(solve(Top())).save(path)
-    return path
-
-
-@pytest.fixture(scope="module")
-def session() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def browser(session: Browser, page_file: Path) -> Browser:
-    session.open(page_file)
-    return session
 
 
 def test_the_page_complains_of_nothing_and_asks_nobody(session: Browser, page_file: Path) -> None:
@@ -316,6 +297,41 @@ def test_a_bad_input_is_said_and_changes_nothing(browser: Browser) -> None:
         assert browser.ask("return getComputedStyle(at.record.parentElement).opacity") == "0.55"
         assert browser.ask("return page.scene") == before
     assert browser.complaints() == []
+
+
+def test_inputs_of_any_size_are_computed_or_refused(browser: Browser) -> None:
+    """From 1e-30 to 1e30: an answer, or a refusal, for 4,000 scenes; and no NaN or infinity."""
+    rng = random.Random(30)
+
+    def size() -> float:
+        return rng.choice([*[10 ** rng.uniform(-29.9, 29.9)] * 6, 1e-30, 1e30])
+
+    scenes = []
+    for _ in range(4000):
+        near = 10 ** rng.uniform(-12, 2)
+        tilt = rng.choice([0, 90, 180, near, 180 - near, 179.999999999999, 1e-12])
+        A = size()
+        scene = {"m": size(), "A": A, "C": min(max(1e-30, A * rng.random()), 2 * A)}
+        scene |= {name: rng.choice([0.0, *[size()] * 7]) for name in ("s", "g")}
+        for name in ("r0", "thetadot0", "psidot0"):
+            scene[name] = rng.choice([0.0, size(), -size()])
+        still = {"psidot0": 0.0} if tilt in (0, 180) else {}
+        scenes.append(scene | {"theta0_deg": tilt} | still)
+    found = browser.ask(
+        """return arguments[0].map((scene) => {
+            try {
+                const { angles, record, period } = motionOf(scene);
+                const times = [0, 0.3, 50, 100].map((part) => part * (period ?? 1));
+                const all = times.flatMap((t) => Object.values(angles(t)));
+                const endless = Object.values(record).some((x) => Math.abs(x) === Infinity);
+                return all.every(Number.isFinite) && !endless ? "" : "NaN";
+            } catch (error) { return `${error.constructor.name} ${error.message}`; }
+        })""",
+        scenes,
+    )
+    refused = [said for said in found if said]
+    assert all(re.match("RangeError .*: ask lagtop solve$", said) for said in refused), set(refused)
+    assert len(refused) < len(found) / 20
 
 
 def test_rates_in_turns_per_minute(browser: Browser) -> None:
@@ -607,5 +623,7 @@ def test_the_picture_is_that_of_the_readme(browser: Browser, page_file: Path) ->
 
 
 def test_inputs_that_a_page_cannot_take() -> None:
-    with pytest.raises(LagtopError, match="r0 must be from 1e-30 to 1e30"):
-        view(solve(Top(r0=1e40)))
+    for r0 in (1e40, 1e-40):
+        with pytest.raises(LagtopError, match="r0 must be from 1e-30 to 1e30"):
+            view(solve(Top(r0=r0)))
+    assert page_scene(solve(Top(theta0_deg=179.999999999999)))["theta0_deg"] == 179.999999999999

@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 import tempfile
 import webbrowser
+from base64 import b64encode
 from collections.abc import Callable
+from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
 
@@ -38,7 +40,13 @@ def view(motion: Motion, unit: Callable[[str], str] = str) -> Document:
         "units": _units_in_words(*map(unit, ("mass", "len", "time"))),
         "script": joined_script(page_data(motion, unit)),
     }
-    return Document(_filled(_text_of("index.html"), parts))
+    hashes = {f"{name}_hash": _hash(parts[name]) for name in ("style", "script")}
+    return Document(_filled(_text_of("index.html"), parts | hashes))
+
+
+def _hash(text: str) -> str:
+    """Return the source of a content policy that permits only this style or script."""
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
 def _units_in_words(mass: str, length: str, time: str) -> str:

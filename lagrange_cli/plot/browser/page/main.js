@@ -98,7 +98,7 @@ class Page {
 
   /** Keys that hold wherever no control takes them. */
   key(event) {
-    if (event.target.closest("input, select, button") || event.ctrlKey || event.metaKey) return;
+    if (event.target.closest("input, select, button, tr") || event.ctrlKey || event.metaKey) return;
     const keys = {
       " ": () => this.clock.play(!this.clock.playing),
       ArrowLeft: () => this.clock.step(-1, event.shiftKey),
@@ -174,6 +174,7 @@ class Page {
 
   /** Save the picture in space, the curves of the window, or the scene as a file. */
   save(kind) {
+    if (!this.fresh) this.draw();
     const { motion, curves, scene } = this;
     const download = (blob, name) => {
       const link = document.createElement("a");
