@@ -93,15 +93,7 @@ class Decimals(Scalars, Unenclosed):
         tangent = y / x if y else y
         return 16 * self._odd_powers(tangent, -tangent * tangent)
 
-    @staticmethod
-    def exp(x: Decimal) -> Decimal:
-        """Return e to the power x."""
-        return x.exp()
-
-    @staticmethod
-    def log(x: Decimal) -> Decimal:
-        """Return the natural logarithm of x > 0."""
-        return x.ln()
+    exp, log = staticmethod(Decimal.exp), staticmethod(Decimal.ln)
 
     def log1p(self, x: Decimal) -> Decimal:
         """Return the natural logarithm of 1 + x; near 0 it is 2 artanh x/(2 + x)."""

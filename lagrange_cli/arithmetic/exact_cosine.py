@@ -35,14 +35,15 @@ _SMALL = 1e-250
 
 
 class Polynomial:
-    """A polynomial with rational coefficients, lowest power first.
+    """A polynomial with rational coefficients, or with polynomials as coefficients.
 
-    The other operand of a sum or product is a polynomial or a rational number.
+    The lowest power is first.  The other operand of a sum or product is a polynomial or a rational
+    number.
     """
 
     __slots__ = ("coefficients",)
 
-    def __init__(self, *coefficients: Fraction | int) -> None:
+    def __init__(self, *coefficients: Any) -> None:
         self.coefficients = coefficients
 
     def __call__(self, x: Any, convert: Callable[[Fraction], Any] = Fraction) -> Any:
@@ -54,7 +55,7 @@ class Polynomial:
 
     def __mul__(self, other: object) -> Polynomial:
         terms = _terms(other)
-        product: list[Fraction | int] = [0] * (len(self.coefficients) + len(terms) - 1)
+        product: list[Any] = [0] * (len(self.coefficients) + len(terms) - 1)
         for i, x in enumerate(self.coefficients):
             for j, y in enumerate(terms):
                 product[i + j] += x * y
@@ -73,7 +74,7 @@ U = Polynomial(0, 1)
 """The cosine itself."""
 
 
-def _terms(value: object) -> tuple[Fraction | int, ...]:
+def _terms(value: object) -> tuple[Any, ...]:
     """Return the coefficients of a polynomial or of a rational number."""
     if isinstance(value, Polynomial):
         return value.coefficients

@@ -89,25 +89,6 @@ class Arithmetic(Protocol[R]):
         """Return x as a constant, without derivatives."""
 
 
-class SeriesArithmetic(Arithmetic[R], Protocol[R]):
-    """Further operations, for the theta series and the separatrix."""
-
-    def exp(self, x: R, /) -> R:
-        """Return e to the power x."""
-
-    def sinh(self, x: R, /) -> R:
-        """Return the hyperbolic sine of x."""
-
-    def cosh(self, x: R, /) -> R:
-        """Return the hyperbolic cosine of x."""
-
-    def asinh(self, x: R, /) -> R:
-        """Return the inverse hyperbolic sine of x."""
-
-    def nint(self, x: R, /) -> int:
-        """Return the integer nearest to x."""
-
-
 Numeric = Any
 """A real or complex number, or an array of them, of a `FunctionArithmetic`; mpmath has no types."""
 
@@ -115,8 +96,9 @@ Numeric = Any
 FunctionArithmetic = Any
 """The arithmetic of Jacobi's, the theta and Omega functions: balls, arrays of doubles, or mpmath.
 
-It is a `SeriesArithmetic` with inf, expm1, log, log1p, tanh, sech, atanh, sign, re and im.  Its
-numbers may be complex and mix with floats.  It has no static type, because mpmath has none.
+It is an `Arithmetic` with inf, exp, expm1, log, log1p, sinh, cosh, tanh, sech, asinh, atanh, sign,
+nint (the nearest integer), re and im.  Its numbers may be complex and mix with floats.  It has no
+static type, because mpmath has none.
 """
 
 ComplexArithmetic = Any

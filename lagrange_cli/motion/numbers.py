@@ -62,7 +62,10 @@ class Numbers:
     def __getattr__(self, name: str) -> Any:
         """Return a number by its key: a float, or None if the motion has no such number."""
         if number_key(name) is None:
-            raise AttributeError(f"a motion has no {name!r}")
+            from ..inputs.names import suggestion  # start-up: for a misspelt name only
+
+            hint = "" if name.startswith("_") else suggestion(name, dir(self))
+            raise AttributeError(f"a motion has no {name!r}{hint}", name=name, obj=self)
         found = self.number(name)
         return None if found is None else found.value
 

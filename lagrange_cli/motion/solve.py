@@ -104,19 +104,6 @@ class Motion(Numbers):
         methods = [name for name in vars(Motion) if not name.startswith("_")]
         return [*methods, "top", "regime", *NUMBER_KEYS, *requested_keys()]
 
-    def __getattr__(self, name: str) -> Any:
-        """Return a number by its key: a float, or None if the motion has no such number."""
-        try:
-            return super().__getattr__(name)
-        except AttributeError:
-            if name.startswith("_"):
-                raise
-            from ..inputs.names import suggestion  # start-up: for a misspelt name only
-
-            raise AttributeError(
-                f"a motion has no {name!r}{suggestion(name, dir(self))}", name=name, obj=self
-            ) from None
-
     def __eq__(self, other: object) -> bool:
         """Return whether `other` is the motion of the same top."""
         return isinstance(other, Motion) and other.top == self.top

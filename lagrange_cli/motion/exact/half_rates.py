@@ -1,4 +1,4 @@
-"""Decide in fractions which rates at T/2 are exactly 0, after a start that is not at rest.
+"""Decide in fractions which rates at T/2 are exactly 0.
 
 Half a period on, sn^2 becomes cn^2/dn^2, so that u(T/2) = (u3 (u1 + u2) - u1 u2 - u0 u3)/(u3 - u0).
 By the sums and products of the roots of (4,9) this is N(x)/M(x) with x = u3.  A rate (4,7), (4,8)
@@ -28,22 +28,18 @@ InU3 = Polynomial
 
 @lru_cache(maxsize=8)
 def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are 0 for a top with torque that does not start at rest."""
-    if exact.facts.free or exact.facts.at_rest or exact.facts.steady or exact.facts.pole:
+    """Return the rates at T/2 that are 0 for a nutating top with torque that starts off a pole."""
+    if exact.facts.free or exact.facts.steady or exact.facts.pole:
         return {}
     a, beta = exact.a, exact.beta
     pairs, total = 2 * exact.b * beta - a, exact.alpha + exact.b * exact.b
-    cubic = _in_u3(exact.alpha - beta * beta, pairs, -1 * total, Polynomial(a))
-    N = _in_u3(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
-    M = _in_u3(-a * U, Polynomial(a))
-    momentum = _in_u3(beta) * M + N * -exact.b  # M (beta - b u)
+    cubic = Polynomial(exact.alpha - beta * beta, pairs, -1 * total, Polynomial(a))
+    N = Polynomial(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
+    M = Polynomial(-a * U, Polynomial(a))
+    momentum = Polynomial(beta) * M + N * -exact.b  # M (beta - b u)
     spin = (M * M - N * N) * exact.r0 - N * momentum
     found = zip(HALF_RATES, (spin, momentum), strict=True)
     return {key: Fraction(0) for key, P in found if _is_zero_at_u3(exact, P, cubic)}
-
-
-def _in_u3(*coefficients: Any) -> InU3:
-    return Polynomial(*coefficients)
 
 
 def _is_zero_at_u3(exact: Exact, P: InU3, cubic: InU3) -> bool:

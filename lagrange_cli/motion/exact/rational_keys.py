@@ -186,19 +186,7 @@ def _half_rates(exact: Exact) -> dict[str, Fraction]:
         return {"precession_rate_half": Fraction(0)}
     if facts.free:
         return _free_half_rates(exact)
-    return _half_rates_after_rest(exact) if facts.at_rest and facts.spins else {}
-
-
-def _half_rates_after_rest(exact: Exact) -> dict[str, Fraction]:
-    """Return psi'(T/2) = a/b (4,7), and phi'(T/2) = r0 - (a/b) u2 if it is 0."""
-    a, b = exact.a, exact.b
-    keys = {"precession_rate_half": a / b}
-    level = exact.r0 * b / a  # the u2 at which phi' is 0
-    if abs(level) <= 1 and exact.cosine.vanishes(
-        level * level - b * b / a * level + b * b / a * U - 1
-    ):
-        keys["spin_rate_half"] = Fraction(0)
-    return keys
+    return {"precession_rate_half": exact.a / exact.b} if facts.at_rest and facts.spins else {}
 
 
 def _free_half_rates(exact: Exact) -> dict[str, Fraction]:

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ...arithmetic.ball import Ball
-from ...arithmetic.balls import Balls
+from ...arithmetic.balls import Balls, balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
@@ -114,8 +114,8 @@ class ProvedTable:
         psi_rate = Fraction(scene.top.psidot0) if scene.psi_rate is None else scene.psi_rate
         rates = (scene.b, scene.r0, scene.theta_rate, psi_rate)
         self._speed = sum(map(abs, rates)) + scene.a + 1
-        self._poses: dict[int, Callable[[Ball], Pose[Ball]]] = {}
-        self._constants: dict[int, ColumnConstants[Ball]] = {}
+        self._pose = cache(lambda digits: pose_of(motion.kind(digits)))
+        self._constants = cache(lambda digits: column_constants(motion.kind(digits), scene))
 
     def row(self, time: Fraction) -> list[Settled]:
         """Return the numbers of the columns at an exact time.
@@ -130,18 +130,11 @@ class ProvedTable:
 
         Raises TooFewDigitsError if they do not separate the roots or the half periods.
         """
-        kind = self.motion.kind(digits)
-        if digits not in self._constants:
-            self._constants[digits] = column_constants(kind, self.motion.exact)
-        t = kind.ar.convert(time)
+        t, state = balls(digits).convert(time), self.motion.kind(digits).state
+        at = Pose(state.cos_half, state.sin_half, t, t, state.theta_rate)
         if time:
-            if digits not in self._poses:
-                self._poses[digits] = pose_of(kind)
-            at = self._poses[digits](t)
-        else:
-            state = kind.state
-            at = Pose(state.cos_half, state.sin_half, t, t, state.theta_rate)
-        return BallSample(self.motion, digits, self._constants[digits], t, at)
+            at = self._pose(digits)(t)
+        return BallSample(self.motion, digits, self._constants(digits), t, at)
 
     def _number(
         self, part: ScalarColumn, time: Fraction, sample: Callable[[int], BallSample]

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Generic, NamedTuple
 
 from ...arithmetic.numbers import R, polynomial
-from ...arithmetic.protocol import Numeric, SeriesArithmetic
+from ...arithmetic.protocol import FunctionArithmetic, Numeric
 from ...elliptic.complete import place
 from ..degenerate import Constant, Separatrix
 from ..kinds import Kind, Nutating
@@ -83,7 +83,7 @@ def direction(motion: Nutating[R] | Separatrix[R]) -> int:
 
 
 def evaluate(
-    ar: SeriesArithmetic[Any], series: Series, frame: Frame, phase: Numeric, rises: int
+    ar: FunctionArithmetic, series: Series, frame: Frame, phase: Numeric, rises: int
 ) -> tuple[Numeric, Numeric, Numeric, Numeric]:
     """Return |X|, arg X, |Y| and arg Y about a turning point, in many digits.
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...arithmetic.protocol import Arithmetic, Numeric, SeriesArithmetic
+from ...arithmetic.protocol import Arithmetic, FunctionArithmetic, Numeric
 from ...elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine, nome
 
 Coefficients = list[Any]
@@ -100,7 +100,7 @@ class Series(NamedTuple):
     precession_slope: Numeric
 
 
-def theta_series(ar: SeriesArithmetic[Any], c: ThetaConstants, terms: int = TERMS) -> Series:
+def theta_series(ar: FunctionArithmetic, c: ThetaConstants, terms: int = TERMS) -> Series:
     """Return the series in the smaller nome."""
     hyperbolic = c.quarter_prime is not None and ar.either(c.quarter > c.quarter_prime)
     return (hyperbolic_series if hyperbolic else circular_series)(ar, c, terms)

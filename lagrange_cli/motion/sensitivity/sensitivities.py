@@ -8,8 +8,8 @@ the reason.  Equation numbers are Chrapan's.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
-from functools import cached_property
+from collections.abc import Callable, Collection, Mapping
+from functools import cache, cached_property, partial
 from typing import Any
 
 from ...arithmetic.ball import Ball, UndefinedError
@@ -85,16 +85,8 @@ class Slopes:
 
     def __init__(self, scene: Exact) -> None:
         self.exact, self.chain = scene, by_inputs(scene)
-        self._partials: dict[int, Partials] = {}
-
-    def at(self, digits: int) -> Partials:
-        """Return the derivatives by the parameters of the neighbourhood, with `digits` digits.
-
-        Raises TooFewDigitsError if they do not separate the roots.
-        """
-        if digits not in self._partials:
-            self._partials[digits] = Partials(self.exact, digits)
-        return self._partials[digits]
+        self.at: Callable[[int], Partials] = cache(partial(Partials, scene))
+        """Returns the derivatives by the parameters of the neighbourhood in a number of digits."""
 
     def has(self, key: str) -> bool:
         """Return whether the motion has a key."""
