@@ -201,7 +201,9 @@ def _known(
             check_names("fix", [name], [*Top.fields, "theta0"])
             raise LagtopError(f"--fix {name} needs {name}: give it as an option or in a scene")
         names.append(matching[0])
-    stds = {name: found.stds[name] for name in names if name in found.stds}
+    stds = found.stds.only(names)
+    if stds.correlations:
+        complain("Warning: the correlations of known inputs are not used")
     return (*known_inputs({name: present[name] for name in names}, stds), found.system)
 
 

@@ -120,7 +120,12 @@ def _budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
         for line in uncertain.budget(key, given)
     ]
     shown = f"{key} = {uncertain_text(value, whole)} {units.get(key, '')}".rstrip()
-    conclusions = [f"{shown}, to first order; inputs are taken as independent."]
+    independent = sum(line.share or 0.0 for line in lines)
+    relation = "inputs are taken as independent"
+    if found.stds.correlations and independent:
+        times = f"{1 / independent:.3g} times"
+        relation = f"inputs are correlated: the variance is {times} that of independent inputs"
+    conclusions = [f"{shown}, to first order; {relation}."]
     fields = [
         _names("quantity", units),
         _Measured("value", "value"),

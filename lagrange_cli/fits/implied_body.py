@@ -51,8 +51,10 @@ def determined_products(
 ) -> list[DeterminedProduct]:
     """Return the unknown inputs that are determined, single or as products.
 
-    `seen` are a, b and, if the spin is recorded, r0; none of them is 0.
+    `seen` are a, b and, if the spin is recorded, r0; if one of them is 0, none is determined.
     """
+    if not all(seen.values()):
+        return []
     unknown = [name for name in BODY_INPUTS if name not in known]
     others = [*seen, *known]
     rows = []

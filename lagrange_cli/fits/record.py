@@ -66,9 +66,7 @@ class Outcome(HasRecord):
         exact, spins = self.known.keys() - self.stds.keys(), found.solution.parameters.spins
         shown = {"a", "b", "b/a", *["r0"] * spins} - exact
         self.shown = {x: y for x, y in self.values.items() if x in shown}
-        self.determined = (
-            determined_products(self.shown, self.known) if all(self.shown.values()) else []
-        )
+        self.determined = determined_products(self.shown, self.known)
         self.residuals_by_row = found.solution.residuals[index]
         self.residuals = {x: residual_of(values) for x, values in self.residuals_by_row.items()}
 
@@ -270,13 +268,18 @@ class Outcome(HasRecord):
 
     def inputs(self) -> dict[str, float]:
         """Return inputs of `Top` with this motion; undetermined ones are 1, or such that C = A."""
-        known = {name: x for name, x in self.known.items() if name in BODY_INPUTS}
-        body = completed_body(self.shown, known, self.determined)
+        return self.inputs_at(self.values)
+
+    def inputs_at(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Return inputs for some values of the quantities."""
+        known = {x: values.get(x, y) for x, y in self.known.items() if x in BODY_INPUTS}
+        shown = {x: values[x] for x in self.shown}
+        body = completed_body(shown, known, determined_products(shown, known))
         return {
             **body,
-            "theta0_deg": math.degrees(self.values["theta0"]),
-            "thetadot0": self.values["thetadot0"],
-            "psidot0": self.values["psidot0"],
+            "theta0_deg": math.degrees(values["theta0"]),
+            "thetadot0": values["thetadot0"],
+            "psidot0": values["psidot0"],
         }
 
     def angles(self, t: Array) -> dict[str, Array]:

@@ -172,16 +172,35 @@ def scene_text(outcome: Outcome, source: str) -> str:
         *(f"# {text}: one of them is assumed." for text in outcome.undetermined()),
         *(f"# Warning: {text}." for text in outcome.warnings()),
     ]
-    spread = {
-        **{"theta0_deg" if x == "theta0" else x: (y, z) for x, y, z in outcome.found()},
-        **{product.name: (product.value, deviation) for product, deviation in outcome.products()},
-    }
+    stds, correlations = _spread_of_inputs(outcome)
     for name, value in outcome.inputs().items():
-        found, deviation = spread.get(name, (0.0, 0.0))
-        scale = per_radian(radians=name != "theta0_deg")
-        told = f"  # {uncertain_text(found * scale, deviation * scale)}" if deviation else ""
-        lines.append(f"{name} = {value!r}{told}")
+        shown = f'"{value!r} +/- {stds[name]!r}"' if name in stds else repr(value)
+        lines.append(f"{name} = {shown}")
+    lines += ["", "[correlations]"] if len(stds) > 1 else []
+    for i, (name, row) in enumerate(zip(stds, correlations.tolist(), strict=True)):
+        others = [f"{x} = {r!r}" for x, r in list(zip(stds, row, strict=True))[i + 1 :]]
+        lines += [f"{name} = {{ {', '.join(others)} }}"] if others else []
     return "".join(f"{line}\n" for line in lines)
+
+
+def _spread_of_inputs(outcome: Outcome) -> tuple[dict[str, float], Array]:
+    """Return the standard deviations of uncertain inputs, and the matrix of correlations.
+
+    Each input is a product of powers of the quantities: a doubled quantity shows its power.
+    """
+    inputs = {name: x for name, x in outcome.inputs().items() if x}
+    slopes = np.zeros((len(inputs), len(outcome.labels)))
+    for i, (name, value) in enumerate(outcome.values.items()):
+        if value and outcome.deviations[name]:
+            twice = outcome.inputs_at(outcome.values | {name: 2 * value})
+            powers = np.log2([twice[x] / y for x, y in inputs.items()])
+            slopes[:, i] = powers * [*inputs.values()] / value
+    covariance = slopes @ outcome.covariance @ slopes.T
+    known = np.flatnonzero(np.diag(covariance))
+    deviations = np.sqrt(np.diag(covariance))[known]
+    stds = {[*inputs][i]: std for i, std in zip(known, deviations.tolist(), strict=True)}
+    correlations = covariance[np.ix_(known, known)] / np.outer(deviations, deviations)
+    return stds, np.clip(correlations, -1.0, 1.0)
 
 
 def curves_of(outcome: Outcome) -> Iterator[Curve]:

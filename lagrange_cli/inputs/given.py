@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Mapping
+from fractions import Fraction
 from types import MappingProxyType, NoneType
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from ..arithmetic.values import Values
 from ..errors import LagtopError, check_type
 from .input_keys import BODY, TILT, from_example, one_of_each, overridden, warn_of
 from .top import Top
-from .value import STEADY_WORDS, Value, value_of
+from .value import STEADY_WORDS, InputPair, Stds, Value, value_of
 
 if TYPE_CHECKING:
     from .scene_file import SceneFile
@@ -35,7 +36,7 @@ class Given(Values):
     """The body inputs taken from the worked example, in CGS, if only some of the body was given."""
     blame: Callable[[LagtopError], LagtopError]
     """Adds the file and the line to an error about an input of a scene file."""
-    stds: Mapping[str, float] = MappingProxyType({})
+    stds: Stds = Stds({})
     """Standard uncertainties of the inputs that have one, in these units."""
     empty: str | None = None
     """The name of the scene file if it has no inputs, else None."""
@@ -76,11 +77,15 @@ def gather(
     read = {name: value_of(name, x) for name, x in given.items()}
     inputs = {TILT if x.unit and name.startswith(TILT) else name: x for name, x in read.items()}
     file: SceneFile | None = None
+    correlations: dict[InputPair, Fraction] = {}
     if path is not None:
         from .scene_file import SceneFile
 
         file = SceneFile(path)
+        own = file.inputs.keys() - inputs.keys()
         inputs = overridden(file.inputs, inputs)
+        own &= inputs.keys()
+        correlations = {pair: r for pair, r in file.correlations.items() if pair <= own}
 
     def blame(error: LagtopError) -> LagtopError:
         return error if file is None or error.key in given else file.error(error)
@@ -97,7 +102,11 @@ def gather(
             body = units.worked_example() if units else BODY
     except LagtopError as error:
         raise blame(error) from None
-    stds = {name: float(x.std) for name, x in inputs.items() if x.std is not None}
+    tilt = next((name for name in inputs if name.startswith(f"{TILT}_")), TILT)
+    stds = Stds(
+        {name: float(x.std) for name, x in inputs.items() if x.std is not None},
+        {InputPair(tilt if x == TILT else x for x in pair): r for pair, r in correlations.items()},
+    )
     numbers, known = ({name: x.number for name, x in values.items()} for values in (inputs, others))
     missing = from_example(
         dict.fromkeys(varying) | {name: _if_one(x) for name, x in numbers.items()}

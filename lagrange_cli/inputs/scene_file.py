@@ -13,13 +13,15 @@ from .files import reading, shown_path
 from .input_keys import TILT
 from .names import suggestion
 from .top import INPUTS
-from .value import STEADY_WORDS, Value, parse_value
+from .value import STEADY_WORDS, InputPair, Stds, Value, parse_value
 
 _MOST_BYTES = 1 << 16
 _MOST_DOTS = 20
 """Most dots in one line: the run time of `tomllib` grows with the square of the parts of a key."""
 SCENE_KEYS = (*INPUTS, TILT)
 _ENDING = ".toml"
+_CORRELATIONS = "correlations"
+"""The table of the correlations of uncertain inputs."""
 
 
 def _shipped() -> str:
@@ -54,7 +56,7 @@ def is_scene_file(word: str) -> bool:
 
 
 class SceneFile:
-    """The contents of a scene file: its inputs and their line numbers."""
+    """The contents of a scene file: its inputs, their correlations, and their line numbers."""
 
     def __init__(self, path: str) -> None:
         """Read a file, or standard input for `-`.  Raises SceneError."""
@@ -73,10 +75,37 @@ class SceneFile:
         except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, too many digits
             why = f"{error}{_remedy(str(error), self.text)}"
             raise SceneError(f"{self.name}: not a TOML file: {why}") from None
+        correlated = table.pop(_CORRELATIONS, {})
         found = {key: self._value(key, value) for key, value in table.items()}
         # A tilt without a unit is in degrees, as on the command line.
         degrees = {TILT: f"{TILT}_deg"}
         self.inputs = {x if y.unit else degrees.get(x, x): y for x, y in found.items()}
+        try:
+            self.correlations = self._correlations(correlated)
+        except LagtopError as error:
+            raise self.error(LagtopError(f"correlations {error}", _CORRELATIONS)) from None
+
+    def _correlations(self, table: object) -> dict[InputPair, Fraction]:
+        """Return correlations by pair of inputs, from tables such as `A = { C = 0.5 }`."""
+        if not isinstance(table, dict) or not all(isinstance(x, dict) for x in table.values()):
+            raise LagtopError(f"must be tables such as A = {{ C = 0.5 }}, got {quoted(table)}")
+        uncertain = {name: 1.0 for name, x in self.inputs.items() if x.std is not None}
+        found: dict[InputPair, Fraction] = {}
+        for x, y, r in ((x, y, r) for x, row in table.items() for y, r in row.items()):
+            if lost := [name for name in (x, y) if name not in uncertain]:
+                meant = suggestion(lost[0], uncertain)
+                raise LagtopError(f"must be of uncertain inputs, got {quoted(lost[0])}{meant}")
+            if not isinstance(r, int | Fraction) or not -1 <= r <= 1 or isinstance(r, bool):
+                shown = float(r) if isinstance(r, Fraction) else r
+                raise LagtopError(f"must be in [-1, 1], got {quoted(shown)} for {x} and {y}")
+            if x == y:
+                raise LagtopError(f"must be between two inputs, got {x} twice")
+            if r != (other := found.setdefault(InputPair((x, y)), Fraction(r))):
+                both = f"{float(other)} and {float(r)} for {x} and {y}"
+                raise LagtopError(f"must be symmetric, got {both}")
+        if not Stds(uncertain, found).are_possible():
+            raise LagtopError("must be positive semidefinite: some contradict others")
+        return found
 
     def _value(self, key: str, value: object) -> Value:
         if key not in SCENE_KEYS:

@@ -1,4 +1,4 @@
-"""Input values as users write them: a number, its standard uncertainty and its unit.
+"""Input values as users write them: numbers, units, standard uncertainties, correlations.
 
 `1587(2)`, `1587+/-2`, `1587+-2`, `1587±2` and `1587 +/- 0.1 %` are uncertain numbers.
 """
@@ -6,9 +6,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Collection, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from functools import cached_property
+from itertools import product
 from typing import Any
 
 from ..arithmetic.text import is_decimal, parse_number, quoted
@@ -49,6 +52,63 @@ class Value(Values):
         else:  # arrays have doubles
             number = self.number * (factor if isinstance(self.number, Fraction) else float(factor))
         return Value(number, "", None if self.std is None else self.std * abs(factor))
+
+
+InputPair = frozenset[str]
+"""The keys of two inputs."""
+_ROUNDING = Fraction(1, 10**14)
+"""A variance up to this size, of variables with variance 1, counts as 0."""
+_TOLERANCE = 1e-6
+"""Largest error of a correlation, because files have rounded ones."""
+
+
+class Stds(dict[str, float]):
+    """Standard uncertainties of inputs by key, and the correlations of some pairs of them.
+
+    Other pairs are not correlated.  Correlations of inputs without an uncertainty are left out.
+    """
+
+    def __init__(
+        self, stds: Mapping[str, float], correlations: Mapping[InputPair, Fraction] | None = None
+    ) -> None:
+        super().__init__(stds)
+        pairs = correlations or {}
+        self.correlations = {pair: r for pair, r in pairs.items() if pair <= self.keys() and r}
+
+    def only(self, names: Collection[str]) -> Stds:
+        """Return the uncertainties of some inputs."""
+        return Stds({x: std for x, std in self.items() if x in names}, self.correlations)
+
+    @cached_property
+    def sources(self) -> Sequence[tuple[Fraction, Mapping[str, Fraction]]]:
+        """The independent sources of all uncertainties: their variances and shares by input.
+
+        A source changes each input by its share of the standard uncertainty.  The shares are the
+        columns of L in the factors L D L^T of the matrix of correlations, the variances are D.
+        """
+        left = {(x, y): self._correlation(x, y) for x in self for y in self}
+        sources: list[tuple[Fraction, dict[str, Fraction]]] = []
+        names = list(self)
+        for i, name in enumerate(names):
+            if (variance := left[name, name]) > _ROUNDING:
+                shares = {x: left[name, x] / variance for x in names[i:] if left[name, x]}
+                sources.append((variance, shares))
+                for x, y in product(shares, repeat=2):
+                    left[x, y] -= shares[x] * shares[y] * variance
+        return sources
+
+    def _correlation(self, x: str, y: str) -> Fraction:
+        return Fraction(x == y) or self.correlations.get(InputPair((x, y)), Fraction(0))
+
+    def are_possible(self) -> bool:
+        """Return whether the matrix of correlations is positive semidefinite, up to rounding."""
+        made: dict[tuple[str, str], Fraction] = defaultdict(Fraction)
+        for variance, shares in self.sources:
+            for x, y in product(shares, repeat=2):
+                made[x, y] += variance * shares[x] * shares[y]
+        return all(
+            abs(made[x, y] - self._correlation(x, y)) < _TOLERANCE for x in self for y in self
+        )
 
 
 def value_of(name: str, given: Any) -> Value:

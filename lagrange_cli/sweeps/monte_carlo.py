@@ -1,6 +1,6 @@
 """Monte Carlo propagation of uncertainties (GUM supplement 1), through `sweep`.
 
-Inputs are normal and independent.  A tilt beyond a pole is reflected at the pole.  Invalid samples,
+Inputs are normal.  A tilt beyond a pole is reflected at the pole.  Invalid samples,
 such as s < 0, are counted and left out.
 """
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.value import Stds
 from ..motion.quantity import unit_name
 from ..output.progress import Progress, silent
 from .records import sweep
@@ -86,7 +87,7 @@ def propagate(
         raise LagtopError(f"samples must be in {limits}, got {samples}", "samples")
     if seed is not None and seed < 0:
         raise LagtopError(f"seed must be >= 0, got {seed}", "seed")
-    rng = np.random.default_rng(seed)
+    rng, spread = np.random.default_rng(seed), stds if isinstance(stds, Stds) else Stds(stds)
     keys = [unit_name(key, radians=radians) for key in numbers]
     columns: dict[str, list[Array]] = {key: [] for key in keys}
     regimes: Counter[str] = Counter()
@@ -94,7 +95,7 @@ def propagate(
         range(0, samples, SAMPLES_AT_ONCE), "samples", samples, lambda _: SAMPLES_AT_ONCE
     ):
         count = min(SAMPLES_AT_ONCE, samples - first)
-        drawn = {name: _drawn(rng, name, inputs[name], std, count) for name, std in stds.items()}
+        drawn = _drawn(rng, inputs, spread, count)
         wanted = [*keys, "regime", "remark", "error"]
         tops: dict[str, Any] = {**inputs, **drawn}
         found = sweep(keys=wanted, radians=radians, **tops)
@@ -110,12 +111,20 @@ def propagate(
     return Propagated(spreads, shares)
 
 
-def _drawn(rng: np.random.Generator, name: str, value: float, std: float, count: int) -> Array:
-    drawn = rng.normal(value, std, count)
-    if name not in _HALF_TURN:
-        return drawn
-    half = _HALF_TURN[name]
-    return half - np.abs(half - np.abs(drawn) % (_TURN * half))
+def _drawn(
+    rng: np.random.Generator, inputs: Mapping[str, float], stds: Stds, count: int
+) -> dict[str, Array]:
+    """Return samples of the uncertain inputs."""
+    drawn = {name: np.zeros(count) for name in stds}
+    for variance, shares in stds.sources:
+        normal = rng.normal(0.0, math.sqrt(variance), count)
+        for name, share in shares.items():
+            drawn[name] += normal * float(share)
+    drawn = {name: inputs[name] + stds[name] * x for name, x in drawn.items()}
+    for name, half in _HALF_TURN.items():
+        if name in drawn:
+            drawn[name] = half - np.abs(half - np.abs(drawn[name]) % (_TURN * half))
+    return drawn
 
 
 def _regime(regime: str | None, remark: str | None) -> str:

@@ -25,7 +25,7 @@ from ..inputs.scene_file import is_scene_file
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
-from ..inputs.value import Value, value_of
+from ..inputs.value import Stds, Value, value_of
 from ..output.formats import Header, block_text
 from ..output.rows import Columns
 from .records import BLOCK_ROWS, check_keys, column_keys, records
@@ -67,8 +67,8 @@ class Sweep(NamedTuple):
     fmt: str
     until_error: bool = False
     """Whether the rows of a part end before the first top that has an error."""
-    stds: Sequence[tuple[str, float]] = ()
-    """Standard uncertainties of inputs that all tops share, by name."""
+    stds: Stds = Stds({})
+    """Standard uncertainties of inputs that all tops share."""
     system: System | None = None
     """The units of the output, if inputs have units; remarks name them."""
     is_described: bool = False
@@ -95,7 +95,7 @@ class Sweep(NamedTuple):
         rows = slice(errors[0][0] if errors and self.until_error else given.size)
         carried = [column[rows] for column in given.carried]
         if self.stds:
-            columns |= std_columns(columns, tops, given.inputs, dict(self.stds))
+            columns |= std_columns(columns, tops, given.inputs, self.stds)
         computed = runs_of([columns[key][rows] for key in self.computed_keys])
         text = block_text([*carried, *computed], self.header, self.fmt)
         return Part(number, text, given.size, len(errors), errors[0][1] if errors else "")
@@ -150,7 +150,7 @@ def plan(
     file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream, dialect)
     found, source = file.among(axes, scene, system)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
-    stds = {name: std for name, std in found.stds.items() if name not in file.named}
+    stds = found.stds.only(found.stds.keys() - {*file.named})
     wanted = wanted._replace(keys=list(dict.fromkeys([*chosen, "error"])))
     sweep = _with_inputs(wanted, found, shared, stds, varying=file.named, carried=source.carried)
     blocks = (block._replace(file=source) for block in lines)
@@ -176,13 +176,13 @@ def _with_inputs(
     wanted: Sweep,
     found: Given,
     shared: Mapping[str, float],
-    stds: Mapping[str, float],
+    stds: Stds,
     *,
     varying: Collection[str],
     carried: Sequence[str] = (),
 ) -> Sweep:
     """Return a sweep with the inputs that all tops share, and the columns that are copied."""
-    sweep = wanted._replace(shared=shared, stds=tuple(stds.items()), system=found.system)
+    sweep = wanted._replace(shared=shared, stds=stds, system=found.system)
     header = [*carried, *sweep.computed_keys]
     if not sweep.is_described:
         return sweep._replace(header=header)
@@ -197,6 +197,8 @@ def _described(sweep: Sweep, **decides: Any) -> dict[str, Any]:
     told |= {"keys": sweep.keys, **decides}
     told |= {"header_comments": True} if sweep.is_described and sweep.fmt == "csv" else {}
     told |= {"uncertainties": dict(sweep.stds)} if sweep.stds else {}
+    if pairs := sweep.stds.correlations:
+        told["correlations"] = {" ".join(sorted(pair)): float(r) for pair, r in pairs.items()}
     return told | ({"units": [sweep.system.mass, sweep.system.length]} if sweep.system else {})
 
 

@@ -9,6 +9,7 @@ import math
 import random
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import Lagtop, assert_one_line
 
@@ -196,6 +197,160 @@ def test_scene_files_may_be_uncertain(lagtop: Lagtop, tmp_path: object) -> None:
         file.write('m = "1587(2)"\nA = 39032\nC = 17458\ns = 4\ng = 981\n')
     assert lagtop("solve", scene, "--get", "m,m_std").stdout == "1587.0\n2.0\n"
     assert lagtop("solve", scene, "--m", 1500, "--get", "m").stdout == "1500.0\n"
+
+
+CORRELATED = """
+m = "1587(2)"
+A = 39032
+C = 17458
+s = "4.00(1)"
+g = 981
+r0 = "50.0(3)"
+theta0_deg = "30(1)"
+"""
+
+
+def correlated(path: Path, table: str) -> Path:
+    """Write a scene with correlations."""
+    path.write_text(CORRELATED + table)
+    return path
+
+
+def test_correlated_inputs_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path) -> None:
+    """J C J^T with differences for J, as `uncertainties` propagates correlated numbers."""
+    table = "[correlations]\nm = { s = 0.7, r0 = -0.4 }\nr0 = { theta0_deg = 0.5, m = -0.4 }\n"
+    scene = correlated(tmp_path / "scene.toml", table)
+    keys = "T_nutation", "mean_precession_rate", "theta_max_deg", "a"
+    inputs = {"m": 1587.0, "s": 4.0, "r0": 50.0, "theta0_deg": 30.0}
+    matrix = [[1, 0.7, -0.4, 0], [0.7, 1, 0, 0], [-0.4, 0, 1, 0.5], [0, 0, 0.5, 1]]
+    numbers = dict(
+        zip(
+            inputs,
+            uncertainties.correlated_values_norm(
+                [*zip(inputs.values(), (2, 0.01, 0.3, 1), strict=True)], matrix
+            ),
+            strict=True,
+        )
+    )
+    record = json.loads(lagtop("solve", scene, "--format", "json").stdout)
+    independent = json.loads(
+        lagtop("solve", correlated(tmp_path / "plain.toml", ""), "--format", "json").stdout
+    )
+    for key in keys:
+
+        def number(*values: float, key: str = key) -> float:
+            return float(getattr(solve(Top(**dict(zip(inputs, values, strict=True)))), key))
+
+        judge = uncertainties.wrap(number)(*numbers.values())
+        assert record[f"{key}_std"] == pytest.approx(judge.s, rel=1e-5)
+        assert independent[f"{key}_std"] != pytest.approx(judge.s, rel=0.02)
+    samples = ["--samples", "20000", "--seed", "3", "--format", "csv"]
+    rows = csv.DictReader(io.StringIO(lagtop("solve", scene, *samples).stdout))
+    for row in rows:
+        if row["key"] in keys and row["key"] != "theta_max_deg":
+            assert float(row["sampled_std"]) == pytest.approx(record[f"{row['key']}_std"], rel=0.02)
+    swept = lagtop("sweep", scene, "--keys", ",".join(keys)).stdout.splitlines()
+    assert swept[1].split(",")[len(keys) :] == [str(record[f"{key}_std"]) for key in keys]
+    budget = lagtop("solve", scene, "--budget", "T_nutation").stdout
+    times = (record["T_nutation_std"] / independent["T_nutation_std"]) ** 2
+    assert f"inputs are correlated: the variance is {times:.3g} times" in budget
+
+
+def test_correlated_angles_by_the_full_covariance(lagtop: Lagtop, tmp_path: Path) -> None:
+    table = "[correlations]\nr0 = { theta0_deg = 0.9 }\n"
+    scene = correlated(tmp_path / "scene.toml", table)
+    inputs = {"m": 1587.0, "s": 4.0, "r0": 50.0, "theta0_deg": 30.0}
+    stds = np.array([2, 0.01, 0.3, 1])
+    matrix = np.eye(4)
+    matrix[2, 3] = matrix[3, 2] = 0.9
+    times = np.array([0.3, 1.7])
+    slopes = []
+    for i, name in enumerate(inputs):
+        ends = [
+            np.degrees(solve(Top(**(inputs | {name: inputs[name] + h}))).angles(times))
+            for h in (-1e-4 * stds[i], 1e-4 * stds[i])
+        ]
+        slopes.append((ends[1] - ends[0]) / 2e-4)
+    wanted = np.sqrt(np.einsum("iat,ij,jat->ta", slopes, matrix, slopes))
+    options = ["--times", tmp_path / "t.txt", "--columns", "theta,phi,psi"]
+    (tmp_path / "t.txt").write_text("0.3\n1.7\n")
+    rows = lagtop("table", scene, *options).stdout.splitlines()[1:]
+    found = [[float(x) for x in row.split(",")[3:]] for row in rows]
+    assert np.array(found) == pytest.approx(wanted, rel=1e-4)
+
+
+def test_a_common_scale_cancels(lagtop: Lagtop, tmp_path: Path) -> None:
+    """m, A and C in units of one reference mass: the motion does not depend on its size.
+
+    The uncertainty 1/64 is a double, so that the contributions cancel exactly.
+    """
+    scene = tmp_path / "scene.toml"
+    names = "m = { A = 1, C = 1.0 }\nA.C = 1\n"
+    scene.write_text(
+        'm = "1587 +- 1.5625 %"\nA = "39032 +- 1.5625 %"\nC = "17458 +- 1.5625 %"\ns = 4\ng = 981\n'
+        f"[correlations]\n{names}"
+    )
+    record = json.loads(lagtop("solve", scene, "--format", "json").stdout)
+    assert (record["T_nutation_std"], record["theta_max_deg_std"]) == (0, 0)
+    assert record["m_std"] == 1587 / 64
+
+
+def test_a_given_input_is_not_correlated(lagtop: Lagtop, tmp_path: Path) -> None:
+    table = "[correlations]\nr0 = { theta0_deg = 0.9, m = 0.2 }\n"
+    plain = correlated(tmp_path / "plain.toml", "[correlations]\nr0.m = 0.2\n")
+    scene = correlated(tmp_path / "scene.toml", table)
+    for options in (
+        ["--theta0", "30(1)"],
+        ["--theta0", "0.5(1)rad"],
+        ["--rad", "--theta0", "1(1)"],
+    ):
+        found = lagtop("solve", scene, *options, "--format", "json")
+        assert found.stdout == lagtop("solve", plain, *options, "--format", "json").stdout
+        assert found.exit_code == 0
+
+
+def test_a_tilt_with_a_unit_is_correlated(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene, found = tmp_path / "scene.toml", []
+    for key, value in (("theta0", '"30(1) deg"'), ("theta0_deg", '"30(1)"'), ("theta0", '"30(1)"')):
+        table = f"[correlations]\nr0.{key} = 0.9\n"
+        scene.write_text(f'r0 = "50.0(3)"\n{key} = {value}\n{table}')
+        result = lagtop("solve", scene, "--get", "T_nutation_std")
+        found.append(result.stdout)
+        if value == '"30(1)"' and key == "theta0":
+            assert result.exit_code == 65  # a tilt needs a unit, or a key with one
+    assert found[0] == found[1] != ""
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ("correlations = 3", "correlations must be tables such as A = { C = 0.5 }, got 3"),
+        ("[correlations]\nm = 3", "correlations must be tables"),
+        ("[correlations]\nm.A = 0.1", "correlations must be of uncertain inputs, got 'A'"),
+        (
+            "[correlations]\nr0.theta0 = 0.1",
+            "correlations must be of uncertain inputs, got 'theta0'",
+        ),
+        ("[correlations]\nm.s = 1.01", "correlations must be in [-1, 1], got 1.01 for m and s"),
+        ("[correlations]\nm.s = nan", "correlations must be in [-1, 1], got 'nan' for m and s"),
+        ("[correlations]\nm.s = true", "correlations must be in [-1, 1], got True for m and s"),
+        ("[correlations]\nm.m = 1", "correlations must be between two inputs, got m twice"),
+        (
+            "[correlations]\nm.s = 0.5\ns.m = 0.6",
+            "correlations must be symmetric, got 0.5 and 0.6 for s and m",
+        ),
+        (
+            "[correlations]\nm = { s = 0.9, r0 = 0.9 }\ns.r0 = -0.9",
+            "correlations must be positive semidefinite: some contradict others",
+        ),
+    ],
+)
+def test_bad_correlations_are_a_line(
+    lagtop: Lagtop, tmp_path: Path, table: str, message: str
+) -> None:
+    scene = correlated(tmp_path / "scene.toml", table)
+    line = 1 + scene.read_text().splitlines().index(table.split("\n", maxsplit=1)[0])
+    assert_one_line(lagtop("solve", scene), 65, f"{scene}, line {line}: {message}")
 
 
 def test_a_table_carries_the_uncertainties_of_the_angles(lagtop: Lagtop) -> None:

@@ -251,8 +251,52 @@ def test_the_scene_is_read_by_other_commands(lagtop: Lagtop, tmp_path: Path) -> 
     assert motion.a == pytest.approx(truth.a, rel=2e-3)
     assert motion.b == pytest.approx(truth.b, rel=2e-3)
     assert "# m, s and A are known only as m*s/A" in path.read_text()
-    assert re.search(r"^r0 = 49.99\d+  # 49.997\(4\)$", path.read_text(), re.M)
+    assert re.search(r'^r0 = "49.99\d+ \+/- 0.004\d+"$', path.read_text(), re.M)
     assert set(tomllib.loads(path.read_text())) >= {"m", "A", "C", "s", "g", "r0", "theta0_deg"}
+
+
+DERIVED = (
+    *("T_nutation", "T_precession", "mean_precession_rate", "mean_spin_rate"),
+    *("theta_min_deg", "theta_max_deg", "stability_factor"),
+)
+
+
+@pytest.mark.parametrize(
+    "known",
+    [
+        "--m 1.587 --g 9.81 --s 0.04",
+        "--g 9.81",
+        "--m 1.587(2) --g 9.81 --s 0.04",
+        "--m 1.6(2) --g 9.81 --s 0.040(5) --A-cm 0.00137(3)",
+        "--C 1.7458e-3 --r0 50.0(2) --theta0 41.0(1)",
+    ],
+)
+def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: str) -> None:
+    """The uncertainties of solve are those of the fit; without correlations they are not."""
+    path, sigma = tmp_path / "fitted.toml", ["--sigma", "theta=0.3,psi=0.5,phi=1"]
+    shown = lagtop("fit", SAMPLE, *known.split(), *sigma, "--format", "json", "-o", path)
+    fitted = json.loads(shown.stdout)
+    solved = json.loads(lagtop("solve", path, "--format", "json").stdout)
+    keys = [*DERIVED, "a", "b", "r0", "theta0_deg", "thetadot0", "psidot0"]
+    keys += [x for x in ("m", "s", "A", "C") if f"{x}_std" in fitted]
+    more = ["--get", "stability_factor,stability_factor_std", "--format", "json"]
+    solved |= json.loads(lagtop("solve", path, *more).stdout)
+    for key in keys:
+        assert solved[key] == pytest.approx(fitted[key], rel=1e-9), key
+        assert solved[f"{key}_std"] == pytest.approx(fitted[f"{key}_std"], rel=1e-6), key
+    path.write_text(path.read_text().partition("[correlations]")[0])
+    plain = json.loads(lagtop("solve", path, "--format", "json").stdout)
+    for key in DERIVED[:3]:
+        assert plain[f"{key}_std"] > 1.5 * fitted[f"{key}_std"], key
+
+
+def test_priors_with_correlations_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text('m = "1.587(2)"\ns = "0.0400(1)"\ng = 9.81\n[correlations]\nm.s = 0.5\n')
+    found = lagtop("fit", SAMPLE, scene, "--fix", "m,s,g")
+    assert found.exit_code == 0
+    assert found.stderr == "Warning: the correlations of known inputs are not used\n"
+    assert lagtop("fit", SAMPLE, scene, "--fix", "m,g").stderr == ""
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from uncertainties import ufloat
 
 from lagrange_cli.errors import LagtopError
 from lagrange_cli.inputs.ranges import parse_values
-from lagrange_cli.inputs.value import Value, parse_value, split_unit, value_of
+from lagrange_cli.inputs.value import Stds, Value, parse_value, split_unit, value_of
 
 
 @pytest.mark.parametrize(
@@ -155,3 +155,45 @@ def test_objects_without_a_finite_number_are_refused(given: Any, wrong: str) -> 
     with pytest.raises(LagtopError) as found:
         value_of("m", given)
     assert (str(found.value), found.value.key) == (wrong, "m")
+
+
+def test_sources_are_factors_of_the_correlations() -> None:
+    """Random matrices of any rank: the sources add up to them, as NumPy multiplies."""
+    rng, names = np.random.default_rng(1), ["m", "A", "C", "s", "r0"]
+    for rank in (1, 2, 4, 5, 5):
+        vectors = rng.normal(size=(5, rank))
+        vectors /= np.linalg.norm(vectors, axis=1, keepdims=True)
+        matrix = vectors @ vectors.T
+        pairs = {
+            frozenset((names[i], names[j])): Fraction(float(matrix[i, j]))
+            for i in range(5)
+            for j in range(i)
+        }
+        stds = Stds(dict.fromkeys(names, 1.0), pairs)
+        assert len(stds.sources) == rank
+        columns = np.array(
+            [
+                [float(shares.get(x, 0)) * float(d) ** 0.5 for x in names]
+                for d, shares in stds.sources
+            ]
+        ).T
+        assert columns @ columns.T == pytest.approx(matrix, abs=1e-6 if rank < 5 else 1e-14)
+        assert stds.are_possible()
+        some = stds.only(["s", "m"])
+        assert (list(some), list(some.correlations)) == (["m", "s"], [frozenset("ms")])
+
+
+def test_correlations_are_possible_if_no_eigenvalue_is_negative() -> None:
+    rng, names = np.random.default_rng(2), ["m", "A", "C", "s"]
+    found = []
+    for _ in range(200):
+        low = np.tril(rng.uniform(-1, 1, size=(4, 4)), -1)
+        least = np.linalg.eigvalsh(low + low.T + np.eye(4))[0]
+        pairs = {
+            frozenset((names[i], names[j])): Fraction(float(low[i, j]))
+            for i in range(4)
+            for j in range(i)
+        }
+        assert Stds(dict.fromkeys(names, 1.0), pairs).are_possible() == (least > 0)
+        found.append(least > 0)
+    assert 20 < sum(found) < 180

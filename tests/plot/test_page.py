@@ -22,6 +22,7 @@ from pictures import NUTATING, REGIMES, drawn, regime_motion, sample_motion
 from lagrange_cli import LagtopError, Motion, Regime, Top, solve
 from lagrange_cli.arithmetic.types import Array
 from lagrange_cli.errors import NothingToDrawError
+from lagrange_cli.inputs.value import Stds
 from lagrange_cli.motion.sensitivity.angle_sensitivities import AngleStds
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
 from lagrange_cli.plot.curves import tilt_period
@@ -112,7 +113,7 @@ def test_no_title_is_cut_off(
 
     monkeypatch.setattr("lagrange_cli.plot.page.figure_bytes", keep)
     motion = solve(Top())
-    stds = AngleStds(motion.exact, {"theta0_deg": 1.0}, ["theta0_deg"])
+    stds = AngleStds(motion.exact, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
     request = PlotRequest(x=X, y=Y, stds=stds, key="precession_rate_start")
     page_bytes(Page(motion, kinds, request, LIGHT, size), "png", 150)
     (figure,) = figures

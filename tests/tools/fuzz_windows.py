@@ -114,14 +114,15 @@ def judged(seed: int) -> Judged:
     """Return what the fit makes of the recording of a seed."""
     case = drawn(seed)
     found = fitted(case)
-    record, decay = found.record(), found.decay
+    outcome, decay = found.windows[0].outcome, found.decay
+    ((ratio, ratio_std),) = (pair for pair in outcome.products() if pair[0].name == "C/A")
     good = sum(window.verdict == "good" for window in found.windows) / len(found.windows)
     pulls = [
-        (record["a"] - case.a) / record["a_std"],
-        (record["C/A"] - case.ratio) / record["C/A_std"],
+        (outcome.values["a"] - case.a) / outcome.deviations["a"],
+        (ratio.value - case.ratio) / ratio_std,
     ]
     pull = (decay.rate - 1 / DECAY) / decay.rate_std
-    return Judged(seed, pull, pulls, record["chi2_dof"], good)
+    return Judged(seed, pull, pulls, outcome.chi2_dof, good)
 
 
 def main() -> int:

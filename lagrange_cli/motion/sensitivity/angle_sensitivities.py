@@ -10,7 +10,8 @@ loss of digits, and a derivative that loses too many is computed in high precisi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
@@ -27,6 +28,7 @@ from ...arithmetic.rounding import decided
 from ...arithmetic.types import Array
 from ...inputs.names import ANGLES, check_names
 from ...inputs.top import Top
+from ...inputs.value import Stds
 from ..kinds import Nutating
 from ..numbers import Numbers, middle_of
 from ..over_time.samplers import Angles
@@ -262,18 +264,19 @@ class Spinning:
 
 
 class AngleStds:
-    """Uncertainties of tilt, spin and precession of a top with uncorrelated inputs."""
+    """Uncertainties of tilt, spin and precession of a top."""
 
-    def __init__(self, scene: Exact, stds: Mapping[str, float], given: Collection[str]) -> None:
+    def __init__(self, scene: Exact, stds: Stds, given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as given, and the names of all given inputs."""
         self.neighbours, solved = AngleDerivatives(scene, _FEW_DIGITS), by_inputs(scene)
         inputs = by_given(DOUBLES, scene.top, given)
-        self.moved = np.zeros((len(stds), len(PARAMETERS)))
-        """The change of each parameter by one standard uncertainty of each input."""
-        for row, (name, std) in zip(self.moved, stds.items(), strict=True):
-            for one, slope in inputs[name].items():
-                for i, by in enumerate(PARAMETERS):
-                    row[i] += std * slope * float(solved[one].get(by, 0))
+        self.moved = np.zeros((len(stds.sources), len(PARAMETERS)))
+        """The change of each parameter by one standard deviation of each source."""
+        for row, (variance, shares) in zip(self.moved, stds.sources, strict=True):
+            for name, share in shares.items():
+                change = stds[name] * float(share) * math.sqrt(variance)
+                for one, slope in inputs[name].items():
+                    row += [change * slope * float(solved[one].get(x, 0)) for x in PARAMETERS]
         used = set(np.flatnonzero(self.moved.any(axis=0)).tolist())
         self.reason = None if used <= self.neighbours.known else self.neighbours.reason
         """The reason why uncertainties do not exist after the start, or None."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from decimal import Decimal
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
@@ -17,10 +18,13 @@ from ...arithmetic.numbers import R
 from ...arithmetic.protocol import Arithmetic
 from ...arithmetic.rounding import rounded
 from ...inputs.top import Top
+from ...inputs.value import Stds
 from ..numbers import Numbers
 from ..record import TEXT_KEYS
 from ..regime import exact
 from .sensitivities import DIFFERENTIABLE, Slopes
+
+_CANCELLED = Decimal("1e-20")
 
 
 class Contribution(NamedTuple):
@@ -40,17 +44,20 @@ class Contribution(NamedTuple):
 
 
 class FirstOrder:
-    """Standard uncertainties of the record of a top with uncorrelated inputs.
+    """Standard uncertainties of the record of a top.
 
-    A key in radians ends in `_rad`.
+    A key in radians ends in `_rad`.  Contributions of correlated inputs that cancel to 20 digits
+    count as 0.
     """
 
     def __init__(self, top: Top, stds: Mapping[str, float], given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as given, and the names of all given inputs.
 
-        Raises LagtopError for an impossible start.
+        Inputs are uncorrelated unless `stds` are `Stds` with correlations.  Raises LagtopError for
+        an impossible start.
         """
-        self.top, self.stds, self.given = top, stds, given
+        self.stds = stds if isinstance(stds, Stds) else Stds(stds)
+        self.top, self.given = top, given
         self.motion = Numbers(exact(top))
         self.slopes = Slopes(self.motion.exact)
 
@@ -92,8 +99,17 @@ class FirstOrder:
         return self.slope(key, name, digits) * balls(digits).convert(self.stds[name])
 
     def _variance(self, key: str, digits: int) -> Ball:
-        parts = [self._part(key, name, digits) for name in self.stds]
-        return sum((part * part for part in parts), balls(digits).convert(0))
+        ar, zero = balls(digits), balls(digits).convert(0)
+        parts = {name: self._part(key, name, digits) for name in self.stds}
+        variance = zero
+        for size, shares in self.stds.sources:
+            changes = [parts[name] * ar.convert(share) for name, share in shares.items()]
+            change = sum(changes, zero)
+            if len(changes) > 1 and not change.is_nan:
+                largest = max(x.greatest for x in changes)
+                change = change if change.greatest > _CANCELLED * largest else zero
+            variance += change * change * ar.convert(size)
+        return variance
 
     def budget(self, key: str, given: Mapping[str, float]) -> list[Contribution]:
         """Return the contributions of the uncertain inputs to a key, the greatest first.
