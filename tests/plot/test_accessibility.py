@@ -39,7 +39,7 @@ def tab_stops(browser: Browser) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("width", [1280, 390])
 def test_tab_reaches_every_control_in_order(browser: Browser, page_file: Path, width: int) -> None:
-    """In the order of the text, which on a phone is from top to bottom; each stop is outlined."""
+    """The order is that of the text, on a phone from top to bottom; each stop is outlined."""
     browser.open(page_file, width=width)
     stops = tab_stops(browser)
     assert [stop["name"] for stop in stops] == browser.ask(f"return {CONTROLS}.map({NAME})")
@@ -79,7 +79,7 @@ def test_keys_work_every_control(browser: Browser) -> None:
 
 
 def test_every_letter_of_the_record_is_explained(browser: Browser) -> None:
-    """In every example: symbol, meaning and formula or equation, on hover and on focus or tap."""
+    """Symbol, meaning and formula are shown on hover and on focus or tap, in every example."""
     rows = browser.ask(
         """return [...at.examples.options].flatMap((example) => {
             at.examples.value = example.value;
