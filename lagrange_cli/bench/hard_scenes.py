@@ -192,7 +192,7 @@ def tiny_tilt(rng: random.Random) -> Scene:
 
 
 def tiny_tilt_with_rates(rng: random.Random) -> Scene:
-    """Return rates at 1e-150 to 0.1 degrees, or next to 180.
+    """Return rates at a tilt of 1e-150 to 0.1 degrees, or next to 180.
 
     Smaller tilts are refused; those next to 180, 1e-300 to 0.1 degrees below, are decimals.
     """

@@ -230,7 +230,8 @@ def main(ctx: click.Context) -> None:
 
     theta is the tilt, phi the spin and psi the precession: most books swap phi and psi.  Inputs you
     omit default to the worked example of Chrapan (1952) in CGS units.  Rates are in rad per unit of
-    time.  A scene is a name of `lagtop scenes`, a TOML file with inputs, or - for standard input.
+    time.  A scene is a name that `lagtop scenes` lists, a TOML file with inputs, or - for standard
+    input.
 
     \b
     Exit codes:

@@ -37,16 +37,16 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 """Environment variables for the number of threads of linear algebra packages."""
 SCENES, MOST_SCENES = 1, 100_000
 SEED = 1952
-STABILITY = """Compare methods in random stiff and extreme scenes, in radians.
+STABILITY = """Compare the errors of methods in random stiff and extreme scenes.
 
-Compare errors with the condition of a scene: the change that half a unit in the last place of its
-inputs makes.  The strata of scenes are:
+Errors are in radians.  Compare them with the condition of a scene: the change caused by half a unit
+in the last place of its inputs.  The strata of scenes are:
 
 \b
 {strata}
 
-The row of lagtop tests it in 80 digits or more, up to 1e14 periods away.  It must round every key
-correctly, and be within 4 units.  The exit code is 1 if a bound is exceeded.
+lagtop itself is tested in 80 digits or more, at times up to 1e14 periods away.  Its keys must be
+correctly rounded, and its angles within 4 units.  The exit code is 1 if a bound is exceeded.
 """
 
 
@@ -104,7 +104,7 @@ def bench_command(
     per nutation period, or a tolerance.  A * marks the Pareto front: no other run is both faster
     and more accurate.  Several scenes make one table and one picture.
 
-    Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method heyoka.
+    Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method needs heyoka.
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.compare_methods import compare_methods
@@ -167,7 +167,7 @@ def bench_command(
     help="Only these kinds of scenes.  [default: all]",
 )
 @jobs_option
-@click.option("--certify", is_flag=True, help="Print only proved bounds of the errors of lagtop.")
+@click.option("--certify", is_flag=True, help="Print only proven bounds on the errors of lagtop.")
 @click.option("--long", "is_long", is_flag=True, help="Compare over 1e4 periods too.")
 @plot_option
 @output_options("table", "csv", "json", "ndjson", "markdown")

@@ -60,14 +60,16 @@ def _parse_step_sizes(text: str) -> list[float]:
 @click.option(
     "--align",
     type=names_type(late("judge.alignment", "WORDS"), "WORD,..."),
-    help="First set axis=y, up=y, or take start, body, space or time from the first row.",
+    help="Frames: axis=y, up=y, or start, body, space or time as in the first row.",
 )
 @click.option(
     "--step-sizes",
     type=Parsed("X,...", _parse_step_sizes),
-    help="Step sizes of the trajectories.",
+    help="Step sizes of the trajectories, for the order of convergence.",
 )
-@click.option("--max-error", type=NUMBER, help="Greatest error in rad.  [default: 0.001]")
+@click.option(
+    "--max-error", type=NUMBER, help="Largest error that is fine, in rad.  [default: 0.001]"
+)
 @click.option("--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine.")
 @text_options
 @plot_option

@@ -80,7 +80,7 @@ def _parse_distance(text: str) -> ExactComplex:
 @click.option(
     "--q",
     type=Parsed("X", _parse_distance),
-    help="Half the distance of the outer roots; 0.7i for the roots p +- 0.7i.",
+    help="Half the distance between the outer roots; 0.7i for the roots p +- 0.7i.",
 )
 @click.option("--gap-above", type=NUMBER, help="Distance from delta up to an outer root.")
 @click.option("--gap-below", type=NUMBER, help="Distance from delta* down to an outer root.")
@@ -89,7 +89,7 @@ def _parse_distance(text: str) -> ExactComplex:
 @click.option(
     "--columns",
     type=names_type(late("elliptic.eta_table", "ETA_COLUMNS")),
-    help="Columns beside tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
+    help="Columns besides tau: eta, etadot, h1, theta, xi_prime.  [default: eta]",
 )
 @rad_option
 @digits_option(MOST_TABLE_DIGITS)
@@ -108,17 +108,17 @@ def eta_command(
     digits: int | None,
     out: Output,
 ) -> None:
-    """Compute the oscillation of eta in Aksenov's section 3.2.
+    """Compute Aksenov's coordinate eta of a satellite (section 3.2).
 
-    Eta swings between delta* and delta:
-    (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2), the motion of a satellite
-    in latitude.
+    Eta oscillates between delta* and delta:
+    (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2).
 
-    Give the outer roots with --p and --q (0.7i for a complex pair), or with the gaps to them.  With
-    one gap, the other outer root is at infinity, as for Lagrange's top; without any, both are.
+    Give the outer roots of the right-hand side with --p and --q (0.7i for a complex pair), or by
+    their gaps from delta and delta*.  If you give one gap, the other root is at infinity, as for
+    Lagrange's top.  If you give neither, both roots are at infinity.
 
-    Without --tau the constants are printed.  At tau = 0, eta is delta*.  h1, theta and xi' are
-    those of (3.2.9) to (3.2.11).
+    Without --tau, the constants are printed.  At tau = 0, eta is delta*.  h1, theta and xi' are
+    defined in (3.2.9) to (3.2.11).
     """
     from ..elliptic.eta_table import record
 

@@ -45,9 +45,10 @@ def _names() -> list[str]:
 def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> None:
     """Explain keys and columns, with formulas and numbers.
 
-    Each formula is shown in symbols and with the numbers of the top.  Without a key, all keys of
-    the record, keys on request and columns are listed.  Pass keys to solve --get, sweep --keys,
-    find and plot --key, and columns to table --columns.
+    A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
+    top.  Without KEY, all keys and columns are listed.  The record of solve has most keys; others
+    are computed on request.  Pass keys to solve --get, sweep --keys, find and plot --key, and
+    columns to table --columns.
     """
     from ..motion.explanation import explanations, listed
 
@@ -148,9 +149,10 @@ class _Scene(NamedTuple):
 )
 @output_options(*_FORMATS)
 def scenes_command(out: Output) -> None:
-    """List the shipped scenes, whose names every command takes as a scene.
+    """List the built-in scenes.
 
-    A scene of your own is a TOML file with inputs by name, such as r0 = 40 or theta0 = "30 deg".
+    Every command accepts their names as SCENE.  You can write your own scene: a TOML file with
+    inputs by name, such as r0 = 40 or theta0 = "30 deg".
     """
     rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
     fields = [_NAME, _text("remark", "remark")]

@@ -43,7 +43,7 @@ CONDITION = Parsed("CONDITION", str, _beginnings)
 @click.option(
     "--scan",
     type=COUNT,
-    help="Values of each unknown in the scan.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
+    help="Number of values of each unknown.  [default: 1000, 60 or 20 for 1, 2 or 3 unknowns]",
 )
 @keys_option
 @output_options("csv", "ndjson", "json", "table", "markdown", on_terminal="table")
@@ -56,19 +56,18 @@ def find_command(
 ) -> None:
     """Find the inputs for which results take given values.
 
-    An input given as a range from:to (or log:from:to) is unknown, up to three of them.  Give as
-    many conditions KEY=NUMBER as unknowns.  If inputs have units, numbers may have them too
-    (T_precession=500ms) and are in SI without.  Conditions such as regime=regular, path=looping or
-    'theta_max<120' restrict the solutions.
+    An input given as a range from:to (or log:from:to) is an unknown; up to three are allowed.  Give
+    as many conditions KEY=NUMBER as unknowns.  If inputs have units, a condition may have a unit
+    too (T_precession=500ms); without one, it is in SI.  Conditions such as regime=regular,
+    path=looping or 'theta_max<120' restrict the solutions.
 
-    With one unknown, every root that the scan brackets is found, to the last bit.  With several,
-    Newton's method starts at the best points of the scan and can miss solutions.  The exit code is
-    1 if there is none.
+    With one unknown, every solution that the scan brackets is found, to the last bit.  With
+    several, Newton's method starts at the best points of the scan and can miss solutions.  The exit
+    code is 1 if no solution is found.
 
-    Without an unknown, theta_min, theta_max, T_nutation and mean_precession_rate (and
-    mean_spin_rate) determine a and b in closed form.  You may then give inputs of the body; those
-    that the numbers leave undetermined are 1, or such that C = A.  The tops start at their least
-    tilt.
+    Without an unknown, give theta_min, theta_max, T_nutation and mean_precession_rate (and
+    mean_spin_rate).  They determine a = 2mgs/A and b = C r0/A.  You may also give inputs of the
+    body.  Undetermined inputs are set to 1, or so that C = A.  The tops start at their least tilt.
     """
     from ..inputs.names import check_names
     from ..inputs.ranges import Span

@@ -82,10 +82,10 @@ def _parse_window(text: str) -> tuple[float, bool]:
 @click.option(
     "--window",
     type=Parsed("N|TIME", _parse_window),
-    help="Fit N windows, or windows of a duration with a decimal point, such as 1.5: one body, and "
-    "a spin rate that decays.",
+    help="Fit N windows, or windows of a duration with a decimal point, such as 1.5.  They have "
+    "one body; the spin may decay.",
 )
-@click.option("--by", metavar="COLUMN", help="Column that distinguishes several recordings.")
+@click.option("--by", metavar="COLUMN", help="Column that names the recording of each row.")
 @click.option("--together", is_flag=True, help="Fit one body to all recordings of --by.")
 @reading_options(quaternion="wxyz")
 @text_options

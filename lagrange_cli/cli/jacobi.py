@@ -147,14 +147,15 @@ def jacobi_command(
     digits: int | None,
     out: Output,
 ) -> None:
-    """Compute elliptic integrals, Jacobi's and theta functions.
+    """Compute elliptic integrals, Jacobi's functions and theta functions.
 
     Without --u and --phi, the constants of the modulus are printed.
 
-    Every value is within 4 units of 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), with v = --param.
-    Here u and a real v are reduced by whole periods; for k > 1 only in am, sn, cn and dn.  In small
-    tables every value is correctly rounded.  u and a real v go up to 2^50 periods, an imaginary v
-    up to K'.  An empty cell is a pole.
+    The error of a value f is at most 4 units, and in small tables every value is correctly rounded.
+    A unit is 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), where v = --param.  In this unit, whole
+    periods of u and of a real v do not count.  For k > 1 this holds only for am, sn, cn and dn.
+
+    u and a real v may be up to 2^50 periods, an imaginary v up to K'.  An empty cell is a pole.
 
     The modulus is read as an exact decimal, u and --param as doubles unless --digits is given.
     Complex results have columns that end in _re and _im.

@@ -80,7 +80,7 @@ AXIS = Parsed("RANGE", str, _axis_names)
     "words", nargs=-1, type=Parsed("KIND", str, _kinds_and_scenes), metavar="[SCENE] [KIND]..."
 )
 @top_options(UNCERTAIN, scene=False)
-@click.option("--t-max", type=TIME, help="Last time.  [default: some nutation periods]")
+@click.option("--t-max", type=TIME, help="Last time.  [default: a few nutation periods]")
 @click.option("--key", type=KEY, default=MAP_KEY, show_default=True, help="Key of `map`.")
 @click.option("--x", type=AXIS, help="Horizontal axis of `map`, INPUT=[log:]start:stop:count.")
 @click.option("--y", type=AXIS, help="Vertical axis of `map`.  [default: theta0]")
@@ -272,8 +272,8 @@ def _ends(text: str | None) -> tuple[float, float] | None:
 def view_command(top: TopOptions, opens: bool, output: str | None) -> None:
     """Write an interactive page for the browser.
 
-    It shows the top in space, its angles and its record.  Sliders change every input, and the page
-    computes the motion in closed form.  The file needs no network and no other file.
+    The page shows the top in space, its angles and its record.  Sliders change every input, and the
+    page computes the motion in closed form.  It works offline, as a single file.
     """
     if not (output or opens):
         raise LagtopError("nothing to do: give -o FILE.html or --open")
