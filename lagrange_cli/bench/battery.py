@@ -13,7 +13,6 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-import mpmath
 import numpy as np
 
 from ..arithmetic.points import ListedPoints
@@ -25,18 +24,14 @@ from ..motion.record import NUMBER_KEYS
 from ..motion.solve import Motion, solve
 from .hard_scenes import STRATA, Scene, in_doubles, signed, ten_to
 from .integrators import problem_of
-from .measure import check_scene
-from .reference import EPS, Reference, angle_units, key_ulps, quaternion_units
+from .measure import check_scene, settled_reference
+from .reference import Reference, angle_units, key_ulps, quaternion_units
 
 CONTRACT = 4.0
 """Promised bound of the errors of angles and of the quaternion, in units."""
 KEY_CONTRACT = 0.5 + 1e-9
 """Promised bound of the error of a key, in gaps between doubles: half, with a margin for ties."""
 
-DIGITS, MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
-"""Least digits of the reference, additional digits of its check, and units by which both may
-differ.
-"""
 JUDGED_COLUMNS = ("theta", "phi", "psi", "quaternion", "energy", "Lz")
 """Columns of `lagtop table` that are judged."""
 
@@ -181,27 +176,6 @@ def judged_case(scene: HardScene, settled: tuple[Reference, float] | None = None
         return key_ulps(value, exact, reference.digits)
 
     return case_of(motion, scene.times(reference.T), units, key_error, agreement)
-
-
-def settled_reference(top: Top) -> tuple[Reference, float]:
-    """Return the reference with sufficient digits for a top, and its difference from fewer digits.
-
-    The difference is the greatest of the angles after a quarter of a period, in units.
-    """
-    passes = [abs(float(mpmath.log10(x / y))) for x, y in Reference(top, DIGITS).gaps]
-    digits = DIGITS + math.ceil(max(passes))  # to find the side of a pole
-    while True:
-        few, more = Reference(top, digits), Reference(top, digits + MORE_DIGITS)
-        with suppress(TypeError, ValueError, ZeroDivisionError):  # digits lost by cancellation
-            t = float(more.T) / 4
-            exact = more.at(t)
-            agreement = max(angle_units(few.at(t)[:3], exact))
-            numbers = zip(few.record().values(), more.record().values(), strict=True)
-            if agreement < _AGREEMENT and all(
-                x is None or abs(x - y) <= _AGREEMENT * EPS * abs(y) for x, y in numbers
-            ):
-                return more, agreement
-        digits *= 2
 
 
 def conserved_changes(top: Top, values: Array) -> tuple[float, float]:

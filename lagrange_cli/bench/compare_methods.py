@@ -13,8 +13,6 @@ from ..output.progress import Progress, silent
 from ..output.report import Field, Report, fields_of, short
 from .integrators import STEPS_PER_SECOND
 from .measure import (
-    DIGITS,
-    FEWER_DIGITS,
     JUDGED,
     RUNS,
     SECONDS_OF_RUNS,
@@ -128,7 +126,7 @@ def conditions(tasks: Sequence[Task], limit: float) -> dict[str, str]:
         named = len(tasks) > 1
         return "; ".join(f"{x.scene}: {text(x)}" if named else text(x) for x in tasks)
 
-    return common_conditions() | {
+    return common_conditions(max(x.agreement for x in tasks)) | {
         "scene": each(lambda x: x.motion.top.options()),
         "regime": each(lambda x: f"{x.motion.regime.value}, nutation period {x.motion.T_nutation}"),
         "times": each(
@@ -136,8 +134,6 @@ def conditions(tasks: Sequence[Task], limit: float) -> dict[str, str]:
                 f"{x.times.size} from 0 to {float(x.times[-1])} ({x.periods:.6g} nutation periods)"
             )
         ),
-        "reference": f"Legendre's third integral by mpmath, {DIGITS} digits; with {FEWER_DIGITS} "
-        f"digits it differs by {max(x.agreement for x in tasks):.0e} rad at most",
         "setting": "rtol = atol, in radians and in the units of the scene; of RK4 and of engines "
         "without error control, steps per nutation period",
         "order": "fall of the error with the evaluations, between the last two settings with an "

@@ -272,10 +272,8 @@ _FUNCTIONS = (
     half_periods,
     far_times,
 )
-_NAMES = {"stiff": "stiff (fast spin)"}
 STRATA: dict[str, Callable[[random.Random], Scene]] = {
-    _NAMES.get(function.__name__, function.__name__.replace("_", " ")): function
-    for function in _FUNCTIONS
+    "stiff (fast spin)" if x is stiff else x.__name__.replace("_", " "): x for x in _FUNCTIONS
 }
 """The kinds by name."""
 

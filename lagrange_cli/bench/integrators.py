@@ -238,20 +238,15 @@ def rk4_method(
     return form.integration(problem, run)
 
 
-def _forget_compiled_code(state: Any) -> None:
-    """Clear and disable heyoka's cache of compiled code, so that set-up times are comparable."""
-    state.clear_memcache()
-    if hasattr(state, "set_diskcache_enabled"):
-        state.set_diskcache_enabled(False)
-
-
 def heyoka_method(
     form: Form, top: Top, tol: float, *, limits: tuple[float, float]
 ) -> AngleFunction:
     """Return Taylor's method, compiled for this top; the set-up includes the compilation."""
     import heyoka
 
-    _forget_compiled_code(heyoka.llvm_state)
+    heyoka.llvm_state.clear_memcache()  # compiled code, so that set-up times are comparable
+    if hasattr(heyoka.llvm_state, "set_diskcache_enabled"):
+        heyoka.llvm_state.set_diskcache_enabled(False)
     problem = problem_of(top)
     start = np.array(form.start(problem))
     variables = heyoka.make_vars(*(f"x{i}" for i in range(start.size)))

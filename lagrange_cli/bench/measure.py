@@ -12,12 +12,14 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..inputs.names import ANGLES, check_names
+from ..inputs.top import Top
 from ..motion.regime import Regime
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
@@ -34,12 +36,14 @@ from .method import (
     failure_remark,
     is_out,
 )
-from .reference import ExactAngles, Reference, angle_differences, angle_units
+from .reference import EPS, ExactAngles, Reference, angle_differences, angle_units
 
 JUDGED = 201
 """Number of times that are compared with the reference; the last time is one of them."""
-DIGITS, FEWER_DIGITS = 80, 50
-"""Digits of the reference, and of a second one that checks it."""
+_DIGITS, _MORE_DIGITS, _AGREEMENT = 80, 30, 1e-9
+"""Least digits of the reference, additional digits of its check, and units by which both may
+differ.
+"""
 RUNS, SECONDS_OF_RUNS = 9, 0.3
 """Largest number of repetitions of a timing, and the seconds after which they end."""
 
@@ -55,7 +59,7 @@ class Task(NamedTuple):
     """Indices of the times with exact angles."""
     exact: list[ExactAngles]
     agreement: float
-    """Greatest difference, in radians, between references at two precisions."""
+    """Greatest difference between references at two precisions, in units."""
 
     @property
     def periods(self) -> float:
@@ -119,10 +123,30 @@ def task(
     times = np.linspace(0.0, t_max, count) if count > 1 else np.array([t_max])
     motion.sampler().check(times)
     index = np.unique(np.linspace(0, count - 1, min(judged, count)).round().astype(np.int64))
-    references = [Reference(motion.top, digits) for digits in (DIGITS, FEWER_DIGITS)]
-    pairs = [[r.at(t) for r in references] for t in progress(times[index].tolist(), "reference")]
-    agreement = max(max(angle_differences(one[:3], other)) for one, other in pairs)
-    return Task(scene, motion, times, index, [one for one, _ in pairs], agreement)
+    reference, agreement = settled_reference(motion.top)
+    exact = [reference.at(t) for t in progress(times[index].tolist(), "reference")]
+    return Task(scene, motion, times, index, exact, agreement)
+
+
+def settled_reference(top: Top) -> tuple[Reference, float]:
+    """Return the reference with sufficient digits for a top, and its difference from fewer digits.
+
+    The difference is the greatest of the angles after a quarter of a period, in units.
+    """
+    passes = [abs(float(mpmath.log10(x / y))) for x, y in Reference(top, _DIGITS).gaps]
+    digits = _DIGITS + math.ceil(max(passes))  # to find the side of a pole
+    while True:
+        few, more = Reference(top, digits), Reference(top, digits + _MORE_DIGITS)
+        with suppress(TypeError, ValueError, ZeroDivisionError):  # digits lost by cancellation
+            t = float(more.T) / 4
+            exact = more.at(t)
+            agreement = max(angle_units(few.at(t)[:3], exact))
+            numbers = zip(few.record().values(), more.record().values(), strict=True)
+            if agreement < _AGREEMENT and all(
+                x is None or abs(x - y) <= _AGREEMENT * EPS * abs(y) for x, y in numbers
+            ):
+                return more, agreement
+        digits *= 2
 
 
 def check_scene(motion: Motion) -> None:
@@ -143,7 +167,11 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
     try:
         method.check_package()
         with np.errstate(all="ignore"):  # values that are not finite are reported below
-            sample, setup = _set_up(method, work, setting)
+            if method.package and not method.engine:
+                import_module(method.package)  # before the clock starts
+            begun = time.perf_counter()
+            sample = method.prepare(work.motion.top, setting)
+            setup = time.perf_counter() - begun
             angles, seconds = _run(sample, times)
     except FAILURES as reason:
         failed = row._replace(remark=failure_remark(reason))
@@ -158,14 +186,6 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
     )
     kept = range(times.size) if method.costly else work.judged.tolist()
     return _judged(timed, work, [[angle[i] for angle in angles] for i in kept], method)
-
-
-def _set_up(method: Method, work: Task, setting: Any) -> tuple[AngleFunction, float]:
-    if method.package and not method.engine:
-        import_module(method.package)
-    begun = time.perf_counter()
-    sample = method.prepare(work.motion.top, setting)
-    return sample, time.perf_counter() - begun
 
 
 def _run(sample: AngleFunction, times: Array) -> tuple[SampledAngles, list[float]]:
@@ -202,8 +222,8 @@ def _judged(
     return row._replace(error_rad=max(worst), error_end=max(end), units_max=units, **each)
 
 
-def common_conditions() -> dict[str, str]:
-    """Return the machine, and the versions of Python and of all packages that are used."""
+def common_conditions(agreement: float) -> dict[str, str]:
+    """Return the machine, the versions of Python and of all packages, and the reference."""
     names = []
     with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8") as lines:
         names = [line.partition(":")[2].strip() for line in lines if "model name" in line]
@@ -217,4 +237,6 @@ def common_conditions() -> dict[str, str]:
     return {
         "machine": f"{processor}, {platform.system()} {platform.machine()}",
         "versions": ", ".join(versions),
+        "reference": f"Legendre's third integral by mpmath, {_DIGITS} digits or more; with "
+        f"{_MORE_DIGITS} digits fewer it differs by {agreement:.0e} units at most",
     }

@@ -29,7 +29,7 @@ EVALUATIONS, LONG_EVALUATIONS = 50_000, 5_000_000
 """Limit of the evaluations of the right-hand side in a run."""
 SECONDS = 60.0
 _HAIR = 1e-9
-TIMES = 8
+TIMES_OF_A_SPAN = 8
 """Number of times in each span; errors are the greatest up to its end."""
 PEERS = (
     *("lagtop", "scipy.special", "DOP853-quaternion"),
@@ -114,7 +114,7 @@ def peer_runs(top: Top, reference: Reference, spans: Sequence[float]) -> Iterato
     known = CLOSED_FORMS | integrators(SECONDS, most)
     period = float(reference.T)
     ends = zip((0.1, *spans), spans, strict=False)
-    grids = [np.geomspace(first, last, TIMES + 1)[1:] for first, last in ends]
+    grids = [np.geomspace(first, last, TIMES_OF_A_SPAN + 1)[1:] for first, last in ends]
     exact = [[reference.at(t) for t in (grid * period).tolist()] for grid in grids]
     every = np.concatenate(grids)
     bounds = [*zip(every.tolist(), _conditions(top, every * period), strict=True)]

@@ -106,6 +106,7 @@ def draw_stability(findings: Report, path: str) -> None:
             words = "\n".join(["lost:", *lost]) if lost else ""
             axes.text(0.03, 0.96, words, transform=axes.transAxes, **_NOTE)
             axes.set_title(name, fontsize="medium")
+            axes.minorticks_off()
             axes.set(ylim=(LEAST_ERROR, 2 * MOST_ERROR), xlabel=_LABELS["periods"])
         figure.supylabel("error of the attitude (rad)")
         band = Patch(color="0.85", label="condition")

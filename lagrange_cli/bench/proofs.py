@@ -83,11 +83,8 @@ def bounds_at(proofs: ProvedTable, t: float, computed: Sequence[float]) -> list[
 
     Raises LagtopError if no precision makes an enclosure small compared with its unit.
     """
-    time = Fraction(t)
-
-    return decided(
-        f"the error at t = {t}", lambda digits: _bounds(proofs.sample(time, digits), computed)
-    )
+    sample = partial(proofs.sample, Fraction(t))
+    return decided(f"the error at t = {t}", lambda digits: _bounds(sample(digits), computed))
 
 
 def _bounds(sample: BallSample, computed: Sequence[float]) -> list[float]:

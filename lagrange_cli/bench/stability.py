@@ -20,18 +20,24 @@ from ..output.report import Field, Report, fields_of, short
 from ..sweeps.jobs import in_order
 from .battery import (
     CONTRACT,
-    DIGITS,
     KEY_CONTRACT,
-    MORE_DIGITS,
     Case,
     hard_scene,
     judged_case,
-    settled_reference,
 )
 from .hard_scenes import words_of
-from .measure import common_conditions
+from .measure import common_conditions, settled_reference
 from .method import OURS
-from .peers import EVALUATIONS, LONG_EVALUATIONS, LONG_SPAN, SPANS, VERDICTS, PeerRun, peer_runs
+from .peers import (
+    EVALUATIONS,
+    LONG_EVALUATIONS,
+    LONG_SPAN,
+    SPANS,
+    TIMES_OF_A_SPAN,
+    VERDICTS,
+    PeerRun,
+    peer_runs,
+)
 
 TIMES = 2
 """Random times per scene for lagtop; six more are next to half, quarter and whole periods."""
@@ -126,34 +132,34 @@ def run_battery(
 
     With `certify`, only lagtop is checked, by enclosures, and errors are proved bounds.
     """
-    spans = (*SPANS, LONG_SPAN) if is_long else SPANS
     found: dict[str, list[Judged]] = {name: [] for name in strata}
     scenes = [(name, seed, i) for name in strata for i in range(samples)]
-    work: Any = proved if certify else partial(judged, spans=spans)
+    work = partial(judged, certify=certify, is_long=is_long)
     with closing(in_order(work, scenes, jobs)) as results:
         for name, _, _ in progress(scenes, "scenes"):
             found[name].append(next(results))
     rows = [row for name, x in found.items() for row in stratum_rows(name, x)]
     agreement = max(case.agreement for of_stratum in found.values() for case, _ in of_stratum)
-    conditions = _conditions(strata, samples, seed, None if certify else agreement, is_long)
+    conditions = common_conditions(agreement) | _conditions(strata, samples, seed)
+    if certify:
+        conditions["reference"] = PROVED
+    else:
+        conditions |= _of_methods(LONG_EVALUATIONS if is_long else EVALUATIONS)
     shown = _PROVED if certify else [*_COMPARED, _LONG] if is_long else _COMPARED
     fields = fields_of(StratumRow._fields[:-1], *_ALWAYS, *shown)
     return Report(conditions, fields, rows, _conclusions(rows))
 
 
-def judged(scene: tuple[str, int, int], spans: Sequence[float] = SPANS) -> Judged:
-    """Return the results of a scene, given by stratum, seed and number."""
+def judged(scene: tuple[str, int, int], *, certify: bool, is_long: bool) -> Judged:
+    """Return the results of a scene, given by stratum, seed and number; `certify` for proofs."""
     hard = hard_scene(*scene, TIMES)
-    top = Top(**hard.inputs)
+    if certify:
+        from .proofs import prove
+
+        return prove(hard), []
+    top, spans = Top(**hard.inputs), (*SPANS, LONG_SPAN) if is_long else SPANS
     settled = settled_reference(top)
     return judged_case(hard, settled), list(peer_runs(top, settled[0], spans))
-
-
-def proved(scene: tuple[str, int, int]) -> Judged:
-    """Return the proved bounds of a scene, given by stratum, seed and number."""
-    from .proofs import prove
-
-    return prove(hard_scene(*scene, TIMES)), []
 
 
 def stratum_rows(stratum: str, found: Sequence[Judged]) -> list[StratumRow]:
@@ -193,27 +199,23 @@ def exceeded(report: Report) -> list[str]:
     return [f"{row.stratum}: {row.worst_case}" for row in bad]
 
 
-def _conditions(
-    strata: Sequence[str], samples: int, seed: int, agreement: float | None, is_long: bool
-) -> dict[str, str]:
-    """Return the conditions of the report; if there is no `agreement`, errors are proved bounds."""
-    conditions = common_conditions() | {
+def _conditions(strata: Sequence[str], samples: int, seed: int) -> dict[str, str]:
+    return {
         "scenes": f"{samples} per stratum, seed {seed}; lagtop also at {TIMES} times 1e-9 to 1e14 "
         "periods before or after the start, and at the doubles next to a half period on one side "
         "and to a quarter, half or whole number of periods on the other, from 1 to 1e14",
         "strata": "; ".join(f"{name}: {words_of(name)}" for name in strata),
-        "reference": PROVED
-        if agreement is None
-        else f"Legendre's third integral by mpmath, {DIGITS} digits or more; with "
-        f"{MORE_DIGITS} digits fewer it differs by {agreement:.0e} units at most",
         "promise": f"lagtop: angles and quaternion within {CONTRACT:g} units, every key of the "
         f"record within {KEY_CONTRACT:g} gaps between doubles",
     }
-    if agreement is None:
-        return conditions
-    most = LONG_EVALUATIONS if is_long else EVALUATIONS
-    return conditions | {
-        "errors": "radians, the turn from the exact to the computed attitude",
+
+
+def _of_methods(most: int) -> dict[str, str]:
+    """Return the conditions of the comparison, with a limit of evaluations."""
+    return {
+        "errors": "radians, the turn from the exact to the computed attitude, the greatest of "
+        f"{TIMES_OF_A_SPAN} times from 0.1 to 5 periods, and as many to the end of each further "
+        "span, at equal ratios",
         "condition": "radians by which half a unit in the last place of each input turns it",
         "methods": "each at its tightest setting; a run gives up after "
         f"{most:.0e} evaluations of the right-hand side",

@@ -108,7 +108,7 @@ def bench_command(
     """
     os.environ.update(dict.fromkeys(_THREADS, "1"))  # before the import of these packages
     from ..bench.compare_methods import compare_methods
-    from ..bench.measure import check_scene, chosen_methods
+    from ..bench.measure import chosen_methods
     from ..bench.pictures import draw_methods
     from ..plot.files import check_plot
 
@@ -123,8 +123,6 @@ def bench_command(
     chosen = chosen_methods(methods, float(timeout))
     names: Sequence[str | None] = scenes or [None]
     motions = {name: top.replace(scene=name).solved() for name in names}
-    for motion in motions.values():
-        check_scene(motion)
 
     def find() -> Report:
         report = compare_methods(

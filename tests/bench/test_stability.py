@@ -27,6 +27,7 @@ from lagrange_cli.bench import method as methods
 from lagrange_cli.bench.battery import HardScene, hard_scene
 from lagrange_cli.bench.hard_scenes import STRATA, words_of
 from lagrange_cli.bench.integrators import FORMS, problem_of
+from lagrange_cli.bench.measure import settled_reference
 from lagrange_cli.bench.peers import SPANS, VERDICTS, PeerRun, peer_runs
 from lagrange_cli.bench.reference import EPS, Reference
 from lagrange_cli.motion.over_time.table import rows
@@ -53,7 +54,7 @@ def test_a_reference_with_too_few_digits_is_not_settled() -> None:
     """At 80 digits and at 110 the side of the pole is guessed, alike, and 60 times off."""
     top = Top(theta0_deg=1e-116, thetadot0=1, psidot0=1, r0=18, C=2, A=1, m=1, s=1, g=1)
     exact, guessed = Judge(top.as_dict()).record["T_spin"], Reference(top, 110).record()["T_spin"]
-    settled = battery.settled_reference(top)[0].record()["T_spin"]
+    settled = settled_reference(top)[0].record()["T_spin"]
     assert exact is not None
     assert abs(float(exact) / float(settled) - 1) < 1e-15
     assert abs(float(exact) / float(guessed) - 1) > 0.5
