@@ -127,6 +127,7 @@ def sweep_command(
     blocks = shard_of(todo.blocks, shard)
     parts_folder: Folder | None = None
     with ExitStack() as stack:
+        stack.callback(todo.close)
         client = stack.enter_context(connected(cluster))  # before anything is written
         make: Make = sweep.part
         if folder is not None:

@@ -7,7 +7,7 @@ line that cannot be read becomes an error of its own row and does not affect oth
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from fractions import Fraction
 from io import BufferedIOBase
@@ -202,12 +202,13 @@ def open_tops(
     size: int,
     stream: BufferedIOBase | None = None,
     dialect: Dialect = UNDECIDED,
-) -> tuple[TopsFile, Iterator[Lines]]:
-    """Return the format of a file (standard input for `-`), and its lines, `size` at a time.
+) -> tuple[TopsFile, Iterator[Lines], Callable[[], None]]:
+    """Return the format of a file (standard input for `-`), its lines, and how to close it early.
 
-    Columns named in `computed` are neither read nor copied.  An open `stream` is read in place of
-    the path.  Raises DataError for a file that cannot be read or has neither headings nor an
-    object, and for a wrong unit in a heading.
+    The lines come in blocks of `size`; the file is closed at their end.  Columns named in
+    `computed` are neither read nor copied.  An open `stream` is read in place of the path.  Raises
+    DataError for a file that cannot be read or has neither headings nor an object, and for a wrong
+    unit in a heading.
     """
     name = shown_path(path)
     with ExitStack() as stack:
@@ -220,7 +221,8 @@ def open_tops(
             first = list(_some(name, lines, size))
             lines = chain(first, lines)
             file = _of_objects(head, first, computed)
-        return file, _blocks(file, _while_open(stack.pop_all(), lines), size)
+        opened = stack.pop_all()
+        return file, _blocks(file, _while_open(opened, lines), size), opened.close
 
 
 def _of_headings(head: TableHead, computed: Collection[str]) -> TopsFile:

@@ -114,6 +114,8 @@ class Plan(NamedTuple):
     """Inputs that all tops share, and which of them are defaults."""
     file: str | None = None
     """The file of tops, if there is one."""
+    close: Callable[[], None] = lambda: None
+    """Closes the file, also if not all of its blocks were taken."""
 
 
 def plan(
@@ -147,7 +149,7 @@ def plan(
         raise LagtopError(f"a range of {min(ranges)} and a file of tops exclude each other")
     stream, digest = digested(tables[0]) if described else (None, "")
     computed = {*column_keys(), *column_keys(radians=True), *chosen, "error"}
-    file, lines = open_tops(tables[0], computed, BLOCK_ROWS, stream, dialect)
+    file, lines, close = open_tops(tables[0], computed, BLOCK_ROWS, stream, dialect)
     found, source = file.among(axes, scene, system)
     shared = shared_inputs(found, varying=INPUTS if source.columns is None else source.columns)
     stds = found.stds.only(found.stds.keys() - {*file.named})
@@ -155,7 +157,7 @@ def plan(
     sweep = _with_inputs(wanted, found, shared, stds, varying=file.named, carried=source.carried)
     blocks = (block._replace(file=source) for block in lines)
     description = _described(sweep, inputs=shared, file=digest, parts=None)
-    return Plan(sweep, enumerate(blocks), 0, description, found, tables[0])
+    return Plan(sweep, enumerate(blocks), 0, description, found, tables[0], close)
 
 
 def _of_grid(wanted: Sweep, found: Given) -> Plan:

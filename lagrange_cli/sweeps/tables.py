@@ -122,7 +122,7 @@ def open_tables(
     """
     count, same = request.rows_per_top, _same_times(request)
     at_once = 1 if not count else min(max(_ROWS_PER_TASK // count, 1), _TOPS_AT_ONCE)
-    file, lines = open_tops(path, [*request.headings(), "error"], at_once, dialect=dialect)
+    file, lines, _ = open_tops(path, [*request.headings(), "error"], at_once, dialect=dialect)
     few = same is not None and same.count <= _ROWS_PER_TASK
     times = np.concatenate([*same.blocks()]) if same is not None and few else None
     given, source = file.among(inputs, scene, system)

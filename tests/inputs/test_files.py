@@ -313,7 +313,7 @@ def test_a_key_that_comes_after_the_first_lines_is_refused(tmp_path: Path) -> No
     first = [{"id": i, "r0": i} for i in range(4)]
     later = [{"id": 4, "r0": 4}, {"id": 5, "r0": 5, "T_nutation": 1}, {"id": 6, "name": "x"}]
     path.write_text("".join(json.dumps(row) + "\n" for row in [*first, *later]))
-    file, blocks = open_tops(str(path), {"T_nutation"}, 4)
+    file, blocks, _ = open_tops(str(path), {"T_nutation"}, 4)
     assert file.carried == ["id"]
     rows = [row for block in blocks for row in block.rows()]
     assert [row.line for row in rows] == [1, 2, 3, 4, 5, 6, 7]
