@@ -117,7 +117,7 @@ def theta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) 
         turn = turn * ar.sqrt(ar.mpc(1, -T))
     if ij in _EIGHTH[periods.kind]:
         turn = turn * ar.mpc(1, 1) / ar.sqrt(2)
-    growth = rise * periods.steep + square * periods.lift
+    growth = rise * periods.steepness + square * periods.lift
     angle = ar.pi * 2 * coarse(coordinate_of(ar, half_turns * 0.5).rest)
     wave = ar.mpc(ar.cos(angle), ar.sin(angle)) * (1 - 2 * (parity % 2))
     value = wave * (turn * base_at(ar, inner, at, periods).value)
@@ -141,7 +141,7 @@ def zeta_at_place(ar: ComplexArithmetic, ij: str, at: Place, periods: Lattice) -
         bent = (at.x.total() + at.y.total()) / (1 + T * T)
         real, imag = 2 * ar.pi * T * bent, bent - coarse(at.y.rest)
     slope = slope_in_cell(ar, inner, at, periods)
-    return periods.scale * (slope + ar.mpc(real, -2 * ar.pi * imag))
+    return coarse(periods.scale) * (slope + ar.mpc(real, -2 * ar.pi * imag))
 
 
 def slope_in_cell(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Complex:
@@ -150,12 +150,12 @@ def slope_in_cell(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice
     if periods.circular:
         return slope
     real, imag = coarse(at.x.rest), coarse(at.y.rest)
-    return slope - ar.mpc(2 * periods.steepness * real, 2 * ar.pi * imag)
+    return slope - ar.mpc(2 * coarse(periods.steepness) * real, 2 * ar.pi * imag)
 
 
 def base_at(ar: ComplexArithmetic, inner: str, at: Place, periods: Lattice) -> Base:
     """Return the series of theta_ij at the rests of a place."""
-    x, y, t = at.x.rest, at.y.rest, periods.steepness
+    x, y, t = at.x.rest, at.y.rest, coarse(periods.steepness)
     if periods.circular:
         base = cell_series(ar, inner, x, abs(y), t)
         return base.mirrored(ar, coarse(y) < 0)

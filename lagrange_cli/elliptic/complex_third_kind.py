@@ -111,14 +111,14 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     rise, turns = cell.rise, cell.half_turns(at)
     if bends or not given.periods.circular:
         rise = rise + 2 * (height.rest * other.rest)
-    real, imag = given.periods.steepness * coarse(rise), cell.phase
+    real, imag = coarse(given.periods.steepness) * coarse(rise), cell.phase
     if not given.periods.circular:
         imag = imag + 2 * (r * b + s * a)
         real = real - 2 * ar.pi * T * s * b * (0 if bends else 1)
     if bends:
         x, y, V, W = (end.exactly() for end in (*at, *v))
         share = (x + y) * (V + W) * given.periods.bend
-        real = coarse(rise * given.periods.steep - share * given.periods.lift * 2)
+        real = coarse(rise * given.periods.steepness - share * given.periods.lift * 2)
         waves = y * W + x * v.y.rest + at.y.rest * V - share
         imag = imag - 2 * coarse(waves)
     else:
@@ -130,7 +130,7 @@ def omega_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
 
 def pi_at(ar: ComplexArithmetic, at: Place, given: Parameter) -> Complex:
     """Return Pi_ij at a place."""
-    T, t, u = given.periods.ratio, given.periods.steepness, at.within()
+    T, t, u = given.periods.ratio, coarse(given.periods.steepness), at.within()
     cell = _Cell(ar, u, given)
     r, s = at.coarse_rests()
     height = (u.y if given.periods.circular else u.x).rest

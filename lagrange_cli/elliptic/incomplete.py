@@ -130,7 +130,7 @@ def _quasi_periodic(
     k_prime = ar.where(modulus.k_prime == 0, 1, modulus.k_prime)
     limit = 1 if complete is complete_e else 0  # E = 1 for k = 1, where F is infinite
     if not ar.is_array:
-        quarter = complete(ar, k_prime) if modulus.k_prime else limit
+        quarter = complete(ar, k_prime) if quarters and modulus.k_prime else limit
         return quarters * quarter + within
     import numpy as np
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.protocol import FunctionArithmetic, Numeric
 from ..arithmetic.rounding import triple
@@ -158,20 +158,14 @@ class Lattice(NamedTuple):
     kind: ModulusKind
     circular: bool
     """Whether the series run in the nome of k (k <= k'), not in the nome of k'."""
-    steepness: Numeric
+    steepness: Fine
     """pi K'/K or pi K/K', whichever is at least pi."""
     ratio: Numeric
     """K'/K."""
     scale: Numeric
-    """Half periods along 2K per unit of the argument, stretch/(2K)."""
-    along: Triple
-    """Factor of real parts, to three times the precision of doubles."""
-    up: Triple
-    """Factor of imaginary parts, to three times the precision of doubles."""
+    """Half periods along 2K per unit of the argument, stretch/(2K); a `Triple` in doubles."""
     across: Numeric
-    """stretch/(2K') in many digits."""
-    steep: Fine
-    """The steepness, in the type of rests."""
+    """The same along 2K', stretch/(2K')."""
     bend: Fine
     """1/(1 + (K'/K)^2)."""
     lift: Fine
@@ -182,10 +176,9 @@ class Lattice(NamedTuple):
 
         `ar` is the arithmetic of arrays.
         """
-        doubles = ("steepness", "ratio", "scale", "across")
-        values: dict[str, Any] = {name: float(getattr(self, name)) for name in doubles}
-        values |= {name: fine(ar, getattr(self, name)) for name in ("steep", "bend", "lift")}
-        return self._replace(**values)
+        rests = {name: fine(ar, getattr(self, name)) for name in ("steepness", "bend", "lift")}
+        scale, across = triple(self.scale), triple(self.across)
+        return self._replace(ratio=float(self.ratio), scale=scale, across=across, **rests)
 
 
 def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
@@ -196,17 +189,13 @@ def lattice(ar: ManyDigits, given: AnyModulus) -> Lattice:
     K, K_prime = complete_k(ar, k_prime), complete_k(ar, k)
     circular = bool(K <= K_prime)
     ratio = K_prime / K
-    steepness = ar.pi * (ratio if circular else 1 / ratio)
     return Lattice(
         given.kind,
         circular,
-        steepness,
+        ar.pi * (ratio if circular else 1 / ratio),
         ratio,
         given.stretch / (2 * K),
-        triple(given.stretch / (2 * K)),
-        triple(given.stretch / (2 * K_prime)),
         given.stretch / (2 * K_prime),
-        steepness,
         1 / (1 + ratio * ratio),
         ar.pi * ratio,
     )
@@ -221,7 +210,7 @@ def place_of(ar: FunctionArithmetic, u: Complex, periods: Lattice) -> Place:
         )
     from ..arithmetic.double_double import DoubleDouble
 
-    parts = (reduced(ar.re(u), periods.along), reduced(ar.im(u), periods.up))
+    parts = (reduced(ar.re(u), periods.scale), reduced(ar.im(u), periods.across))
     return Place(*(Coordinate(turns, DoubleDouble(rest, low)) for turns, rest, low in parts))
 
 

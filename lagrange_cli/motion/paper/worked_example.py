@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from typing import Any
 
 from ...arithmetic.numbers import R
 from ..quantity import key, quantity, unit_name
@@ -97,19 +96,13 @@ class WorkedExample(Quarters[R]):
         """The integral E(phi, k') of (7,1), as a sum of positive terms (DLMF 19.25.10)."""
         if not self.follows:
             return None
-        from ...elliptic.carlson import carlson_rd, carlson_rf  # for few keys
+        from ...elliptic.incomplete import Amplitude, e_of  # for few keys
+        from ...elliptic.modulus import Modulus
 
-        ar: Any = self.ar
-        gaps, m = self.gaps, self.kind.m
-        sine2 = gaps.a_u3_u2 / gaps.a_below_u3
-        cosine2 = self.state.a * gaps.below_u2 / gaps.a_below_u3
-        delta2 = self.state.a * gaps.below_u1 / gaps.a_below_u3
-        one = sine2 * 0 + 1
-        mc = self.kind.k_prime * self.kind.k_prime
-        first = carlson_rf(ar, cosine2, delta2, one)
-        second: R = mc * sine2 * carlson_rd(ar, cosine2, one, delta2) / 3
-        size: R = ar.sqrt(sine2)
-        integral: R = size * (m * (first + second) + mc * ar.sqrt(cosine2 / delta2))
+        ar, gaps, whole = self.ar, self.gaps, self.gaps.a_below_u3
+        sine, cosine = ar.sqrt(gaps.a_u3_u2 / whole), ar.sqrt(self.state.a * gaps.below_u2 / whole)
+        amplitude = Amplitude(0, sine, cosine)
+        integral: R = e_of(ar, amplitude, Modulus(self.kind.k_prime, self.kind.k))
         return integral
 
 

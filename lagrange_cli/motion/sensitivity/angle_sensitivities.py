@@ -130,8 +130,8 @@ class Model(Protocol):
 
     max_time: float
 
-    def at(self, t: Array) -> tuple[Array, Array]:
-        """Return angles (3, times) and their derivatives (3, parameters, times)."""
+    def at(self, t: Array) -> tuple[Array, ...]:
+        """Return angles (3, times), their derivatives (3, parameters, times), perhaps sizes."""
 
 
 class AngleDerivatives:
@@ -157,7 +157,9 @@ class AngleDerivatives:
             here = middle_of(partials.here)
             self.models = [(NutationDerivatives(here, tilt, kept, tolerance), kept)]
             if facts.free and not (facts.over_bottom or facts.over_top):
-                self.models.append((TorqueDerivatives(partials), [PARAMETERS.index("a")]))
+                # only the derivative by a is correct
+                beside = middle_of(partials.generic), middle_of(partials.generic_means)
+                self.models.append((SeriesDerivatives(*beside), [PARAMETERS.index("a")]))
         self.max_time = self.models[0][0].max_time
         self.known = {i for _, rows in self.models for i in rows}
         """The indices of the parameters with respect to which the angles have derivatives."""
@@ -169,7 +171,7 @@ class AngleDerivatives:
         angles = np.empty((3, t.size))
         derivatives = np.full((3, len(PARAMETERS), t.size), np.nan)
         for model, rows in reversed(self.models):
-            angles, found = model.at(t)
+            angles, found, *_ = model.at(t)
             derivatives[:, rows] = found[:, rows]
         start = t == 0
         angles[1:, start], derivatives[1:, :, start] = 0.0, 0.0
@@ -234,19 +236,6 @@ class NutationDerivatives:
                     if angle.partials is not None:
                         found[j, :, i] = [float(x) for x in angle.partials]
         return found
-
-
-class TorqueDerivatives:
-    """Angles of a torque-free motion; of their derivatives only the one by a is correct."""
-
-    def __init__(self, partials: Partials) -> None:
-        motion, means = middle_of(partials.generic), middle_of(partials.generic_means)
-        self.series = SeriesDerivatives(motion, means)
-        self.max_time = self.series.max_time
-
-    def at(self, t: Array) -> tuple[Array, Array]:
-        """Return angles (3, times) and their derivatives (3, parameters, times)."""
-        return self.series.at(t)[:2]
 
 
 class Spinning:
