@@ -153,16 +153,17 @@ def bench_command(
 )
 @click.option(
     "--samples",
+    "scenes",  # the help lists it among the options of the command, not those of uncertainty
     type=COUNT,
     default=str(SCENES),
     show_default=True,
     help="Scenes per stratum; 200 make a thorough test.",
 )
-@seed_option(default=str(SEED), show_default=True, help="Seed of the random scenes.")
+@seed_option("first_seed", default=str(SEED), show_default=True, help="Seed of the random scenes.")
 @click.option(
     "--strata",
     type=names_type(late("bench.hard_scenes", "STRATA")),
-    help="Only these kinds of scenes.  [default: all]",
+    help="Use only these strata.  [default: all]",
 )
 @jobs_option
 @click.option("--certify", is_flag=True, help="Print only proven bounds on the errors of lagtop.")
@@ -170,8 +171,8 @@ def bench_command(
 @plot_option
 @output_options("table", "csv", "json", "ndjson", "markdown")
 def stability_command(
-    samples: int,
-    seed: int,
+    scenes: int,
+    first_seed: int,
     strata: list[str] | None,
     jobs: int | None,
     certify: bool,
@@ -181,8 +182,8 @@ def stability_command(
 ) -> None:
     """Compare methods in random scenes; STABILITY is the help."""
     exclude({"--certify": certify, "--long": is_long})
-    if not 1 <= samples <= MOST_SCENES:
-        raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {samples}")
+    if not 1 <= scenes <= MOST_SCENES:
+        raise LagtopError(f"--samples must be in [1, {MOST_SCENES}], got {scenes}")
     from ..bench import stability
     from ..bench.pictures import draw_stability
     from ..plot.files import check_plot
@@ -192,7 +193,7 @@ def stability_command(
 
     def find() -> Report:
         report = stability.run_battery(
-            chosen, samples, seed, with_progress, jobs or 1, certify=certify, is_long=is_long
+            chosen, scenes, first_seed, with_progress, jobs or 1, certify=certify, is_long=is_long
         )
         if plot:
             draw_stability(report, plot)

@@ -123,7 +123,9 @@ function_formats = output_options("table", "csv", "json", "ndjson", "markdown", 
     help="Functions of u: am (with sn, cn, dn), theta, zeta (logarithmic derivatives of theta), "
     "omega, pi (of u and --param, after Chrapan).  [default: am]",
 )
-@click.option("--param", help="Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i.")
+@click.option(
+    "--param", metavar="V", help="Parameter of omega and pi, such as 0.7, 0.7i, 0.2+0.7i."
+)
 @click.option(
     "--phi", type=RANGE, help="Amplitudes: print F(phi, k) and E(phi, k) for a list or a range."
 )

@@ -134,9 +134,9 @@ keys_option = click.option(
 )
 
 
-def seed_option(**how: Any) -> Callable[[Command], Command]:
-    """Add the option --seed."""
-    return click.option("--seed", type=COUNT, **how)
+def seed_option(*name: str, **how: Any) -> Callable[[Command], Command]:
+    """Add the option --seed, for an argument of another `name` if it has one."""
+    return click.option("--seed", *name, type=COUNT, **how)
 
 
 plot_option = click.option("--plot", type=FILE, help="Also draw the report: FILE.svg or FILE.png.")

@@ -35,6 +35,12 @@ STEADY_WORDS = ("steady", "steady-fast")
 """Words accepted as a precession rate: the steady rate of smaller or of larger size."""
 
 
+def steady_refused(word: str) -> str:
+    """Return the message about a word for the rates of many tops, without the name of the input."""
+    keys = "steady_rate_slow and steady_rate_fast"
+    return f"must be a number for many tops, got {word}: see the keys {keys}"
+
+
 class Value(Values):
     """An input as it was given, without any conversion."""
 
@@ -161,7 +167,10 @@ def parse_value(
             return _uncertain(number, parse).replace(unit=unit)
         return Value(parse(number), unit)
     except LagtopError as error:
-        whole = str(error).replace(f"got {quoted(number)}", f"got {quoted(text.strip())}")
+        got = f"got {quoted(text.strip())}"
+        whole = str(error).replace(f"got {quoted(number)}", got)
+        if number in STEADY_WORDS:
+            whole = steady_refused(number)
         raise LagtopError(whole, error.key) from None
 
 

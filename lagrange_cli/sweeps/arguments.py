@@ -15,6 +15,7 @@ from ..inputs.given import gather
 from ..inputs.input_keys import EXAMPLE, overridden, warn_of
 from ..inputs.names import check_names
 from ..inputs.top import INPUTS
+from ..inputs.value import steady_refused
 from .results import ResultColumn, Results, std_columns
 from .top_arrays import TopArrays, top_arrays
 
@@ -31,7 +32,7 @@ class Together:
         """Raise LagtopError for an unknown input, and for inputs that do not fit together."""
         check_names("inputs", list(inputs) or ["m"], INPUTS)
         if word := getattr(inputs.get("psidot0"), "word", None):
-            raise LagtopError(f"psidot0 must be a number for many tops, got {word}", "psidot0")
+            raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
         unlabelled, self._labels = _aligned(inputs)
         read = gather(unlabelled)
         if read.missing:

@@ -25,7 +25,7 @@ from ..inputs.scene_file import is_scene_file
 from ..inputs.text_lines import UNDECIDED, Dialect
 from ..inputs.top import INPUTS
 from ..inputs.tops_file import open_tops
-from ..inputs.value import Stds, Value, value_of
+from ..inputs.value import Stds, Value, steady_refused, value_of
 from ..output.formats import Header, block_text
 from ..output.rows import Columns
 from .records import BLOCK_ROWS, check_keys, column_keys, records
@@ -221,7 +221,7 @@ def shared_inputs(found: Given, *, varying: Collection[str] = ()) -> dict[str, f
         name: x.bounds()[0] if isinstance(x, Points) else x for name, x in found.inputs.items()
     }
     if isinstance(word := numbers.get("psidot0"), str):
-        raise LagtopError(f"psidot0 must be a number for many tops, got {word}", "psidot0")
+        raise LagtopError(f"psidot0 {steady_refused(word)}", "psidot0")
     top = found.replace(inputs=numbers).top(without=loose)
     inputs = {name: float(x) for name, x in top.as_dict().items() if x is not None}
     return overridden(inputs, {name: checked_double(name, x) for name, x in numbers.items()})

@@ -245,6 +245,35 @@ def test_moments_about_the_mass_centre_and_rates_of_phi(lagtop: Lagtop) -> None:
     assert float(found) == 20 * math.pi
 
 
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        (
+            "sweep --r0 60rpm:80rpm:3",
+            "must have its unit once, at the end, as in '60:80:3 rpm', got",
+        ),
+        ("sweep --r0 60rpm,80rpm", "must have its unit once, at the end, as in '60:80:3 rpm', got"),
+        (
+            "find K=2 --r0 60rpm:80rpm",
+            "must have its unit once, at the end, as in '60:80 rpm', got",
+        ),
+        ("sweep --r0 1e3:2e3", "must be a range [log:]start:stop:count, got '1e3:2e3'"),
+    ],
+)
+def test_a_range_has_one_unit(line: str, message: str, lagtop: Lagtop) -> None:
+    assert_one_line(lagtop(*line.split()), 2, f"--r0 {message}")
+
+
+def test_words_of_a_rate_are_for_one_top(lagtop: Lagtop) -> None:
+    for command in ("sweep", "find K=2 --r0 1:9"):
+        assert_one_line(
+            lagtop(*command.split(), "--psidot0", "steady"),
+            2,
+            "--psidot0 must be a number for many tops, got steady: see the keys steady_rate_slow "
+            "and steady_rate_fast",
+        )
+
+
 def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     keys = ["--keys", "m,r0,error"]
     grid = lagtop("sweep", *WORDS[2:], "--m", "1,2 lb", "--r0", "log:60:6000:2 rpm", *keys)
@@ -324,6 +353,7 @@ def test_wrong_headings(header: str, options: list[str], message: str, lagtop: L
         ("--theta0 1m", "--theta0 must have a unit as in 30deg or 0.5rad, got the unit 'm'"),
         ("--theta0 1ppm", "--theta0 must have a unit"),
         ("--m 350g --r0 50", "--r0 must have a unit such as '50 rad/s' or 480rpm, as m has"),
+        ("--r0 60rpm:80rpm:3", "--r0 must be a finite decimal number"),
         ("--units cgs --m 1", "--m must have a unit such as 350g, as a time, a condition or"),
     ],
 )  # fmt: skip
