@@ -38,7 +38,7 @@ STEADY_WORDS = ("steady", "steady-fast")
 def steady_refused(word: str) -> str:
     """Return the message about a word for the rates of many tops, without the name of the input."""
     keys = "steady_rate_slow and steady_rate_fast"
-    return f"must be a number for many tops, got {word}: see the keys {keys}"
+    return f"must be a number unless one top is solved, got {word}: see the keys {keys}"
 
 
 class Value(Values):

@@ -269,8 +269,8 @@ def test_words_of_a_rate_are_for_one_top(lagtop: Lagtop) -> None:
         assert_one_line(
             lagtop(*command.split(), "--psidot0", "steady"),
             2,
-            "--psidot0 must be a number for many tops, got steady: see the keys steady_rate_slow "
-            "and steady_rate_fast",
+            "--psidot0 must be a number unless one top is solved, got steady: see the keys "
+            "steady_rate_slow and steady_rate_fast",
         )
 
 
