@@ -165,7 +165,7 @@ class Lattice(NamedTuple):
     scale: Numeric
     """Half periods along 2K per unit of the argument, stretch/(2K); a `Triple` in doubles."""
     across: Numeric
-    """The same along 2K', stretch/(2K')."""
+    """Half periods along 2iK' per unit of the argument, stretch/(2K')."""
     bend: Fine
     """1/(1 + (K'/K)^2)."""
     lift: Fine
