@@ -50,8 +50,9 @@ from lagrange_cli.motion.over_time.table import rows
 from lagrange_cli.motion.record import NUMBER_KEYS, requested_keys
 from lagrange_cli.sweeps.angles import sweep_angles
 
-UNITS, HALF_ULP, SWEEP_EPS = 4.0, 0.5 + 1e-9, 10.0
-"""The bounds: of an angle or a part of the quaternion, of a key of `solve`, of one of `sweep`."""
+UNITS, WRAPPED, HALF_ULP, SWEEP_EPS = 4.0, 5.0, 0.5 + 1e-9, 10.0
+"""The bounds: of an angle or a part of the quaternion, of an angle without whole turns, of a key of
+`solve`, of one of `sweep`."""
 NAMES = ("theta", "phi", "psi", "quaternion", "dphi", "dpsi", "wrapped")
 NEAR = 5
 """Decades of periods up to which the angles of many tops at once are judged."""
@@ -130,7 +131,8 @@ def judge_angles(tally: Tally, judge: Judge, motion: Motion, times: Sequence[flo
         shown = (*errors[:3], max(errors[3:]), *remainders, turned)
         for name, error in zip(NAMES, shown, strict=True):
             asked = "t,phi,psi --wrap" if name == "wrapped" else f"t,{name}"
-            tally.note(name, error, UNITS, show.format(asked))
+            bound = WRAPPED if name == "wrapped" else UNITS
+            tally.note(name, error, bound, show.format(asked))
 
 
 def number_of(motion: Motion, key: str) -> float | None:
