@@ -28,6 +28,7 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..errors import LagtopError
+from ..inputs.given import checked_double
 from ..inputs.measured import moment
 from ..inputs.names import check_names
 from ..inputs.top import Top
@@ -204,7 +205,7 @@ def known_inputs(
     that a fit cannot use, or one that needs others.
     """
     check_names("known", [*given] or ["m"], [*Top.fields, *_INSTEAD])
-    known, spread = {name: float(x) for name, x in given.items()}, dict(stds or {})
+    known, spread = {name: checked_double(name, x) for name, x in given.items()}, dict(stds or {})
     if "phidot0" in known:
         raise LagtopError("phidot0 is no input of a fit: give r0", "phidot0")
     if "A_cm" in known and not {"m", "s"} <= known.keys():

@@ -290,6 +290,13 @@ def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: s
         assert plain[f"{key}_std"] > 1.5 * fitted[f"{key}_std"], key
 
 
+def test_a_steady_word_is_no_known_rate(lagtop: Lagtop, tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text('r0 = 60\npsidot0 = "steady"\n')
+    refused = lagtop("fit", SAMPLE, scene, "--fix", "psidot0")
+    assert_one_line(refused, 2, "--psidot0 must be a real number, got 'steady'")
+
+
 def test_priors_with_correlations_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text('m = "1.587(2)"\ns = "0.0400(1)"\ng = 9.81\n[correlations]\nm.s = 0.5\n')

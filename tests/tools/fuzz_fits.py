@@ -11,7 +11,9 @@ integrated by DOP853; nothing of the closed form is used.
 
 A fit is right if each of a, b, r0 and of the start is within FAR of its own standard deviations of
 the truth.  Modulo what no fit can know: the spin rate is known up to whole turns per frame.  The
-exit code is 1 if a wrong fit is not called `failed`, or too few are right and called `good`.
+exit code is 1 if a wrong fit is not called `failed`, or too few are right and called `good`, or if
+the share of the fits within one or two standard deviations of the truth is not that of normal
+errors: its binomial standard deviation times CHANCE is the bound, for each number.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ import argparse
 import math
 import sys
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -34,13 +36,16 @@ from engines import Array, Body, dop853
 from scipy.spatial.transform import Rotation
 
 from lagrange_cli import LagtopError, Top, fit
-from lagrange_cli.fits.record import Outcome
+from lagrange_cli.fits.record import FAILED, Outcome
 
 CHANNELS = [("theta", "phi", "psi"), ("theta", "psi"), ("theta", "phi"), ("phi", "psi")]
 FAR = 5.0
 """Standard deviations beyond which a number is wrong: noise does it once in two million."""
 VISIBLE = 3.0
 """Least half range of the tilt over its noise."""
+CHANCE = 3.3
+COVERED = {1: 0.6827, 2: 0.9545}
+"""Shares of normal errors within one and two standard deviations."""
 GOOD_SHARE = 0.96
 """Share of the recordings whose fit must be right and called good."""
 
@@ -133,6 +138,7 @@ class Verdict(NamedTuple):
     word: str
     """The verdict of `fit`, or `refused`."""
     shown: str
+    pulls: Mapping[str, float]
 
 
 def judged(seed: int) -> Verdict:
@@ -142,11 +148,11 @@ def judged(seed: int) -> Verdict:
     try:
         outcome = fit(case.t, **case.angles, sigma=case.sigma)
     except LagtopError as error:
-        return Verdict(seed, names, False, "refused", str(error))
+        return Verdict(seed, names, False, "refused", str(error), {})
     off = pulls(outcome, case)
     right = all(abs(x) < FAR for x in off.values())
     shown = " ".join(f"{name} {x:.1f}" for name, x in off.items())
-    return Verdict(seed, names, right, outcome.verdict, shown)
+    return Verdict(seed, names, right, outcome.verdict, shown, off)
 
 
 def main() -> int:
@@ -160,19 +166,33 @@ def main() -> int:
     seeds = range(options.seed, options.seed + options.recordings)
     begun = time.perf_counter()
     counts: Counter[tuple[str, str]] = Counter()
-    bad = 0
+    bad, errors = 0, defaultdict[str, list[float]](list)
     with ProcessPoolExecutor(options.jobs) as pool:
         for one in pool.map(judged, seeds):
             fate = f"{'right' if one.is_right else 'wrong'}, {one.word}"
             counts["+".join(one.names), fate] += 1
             worst = not one.is_right and one.word not in {"failed", "refused"}
             bad += worst
+            for name, x in one.pulls.items() if one.word != FAILED else ():
+                errors[name].append(abs(x))
             if options.show or fate != "right, good":
                 print(f"{one.seed:6} {'+'.join(one.names):14} {fate}: {one.shown}", flush=True)
     print(*_table(counts), sep="\n")
     print(f"{time.perf_counter() - begun:.0f} s")
     good = sum(n for (_, fate), n in counts.items() if fate == "right, good")
-    return int(bad > 0 or good < GOOD_SHARE * options.recordings)
+    off = [*_miscovered(errors)]
+    return int(bad > 0 or good < GOOD_SHARE * options.recordings or any(off))
+
+
+def _miscovered(errors: Mapping[str, list[float]]) -> Iterator[bool]:
+    """Write the shares of small errors, and yield whether they differ from those of normal errors."""
+    for name, sizes in errors.items():
+        count, shown = len(sizes), []
+        for bound, share in COVERED.items():
+            found = sum(x < bound for x in sizes) / count
+            shown.append(f"within {bound} sigma {found:.3f}")
+            yield abs(found - share) > CHANCE * math.sqrt(share * (1 - share) / count)
+        print(f"{name:10} {', '.join(shown)} of {count}")
 
 
 def _table(counts: Counter[tuple[str, str]]) -> Iterator[str]:

@@ -7,7 +7,8 @@ second.  Tilt, precession and spin have 0.3, 0.5 and 1 degree of noise.  5 % of 
 of 0.4 s are missing.  The equations of motion with the friction torque are integrated by DOP853;
 nothing of the closed form is used.  The exit code is 1 if one of these conditions is broken.  The
 decay time is within one standard deviation of the truth in 58 to 78 % of the recordings, and within
-two in 91 to 99 %.  The mean chi^2/dof is between 0.9 and 1.1.
+two in 91 to 99 %.  The mean chi^2/dof is between 0.9 and 1.1.  At most 2 % are refused, because
+their first window shows no whole period.
 """
 
 from __future__ import annotations
@@ -26,10 +27,13 @@ sys.path.append(str(Path(__file__).parents[1]))  # references and engines of the
 
 from engines import Array
 
+from lagrange_cli import LagtopError
 from lagrange_cli.fits.fit import recording_from
 from lagrange_cli.fits.windows import WindowedFit, fit_windows, split
 
 DECAY, SECONDS, FRAMES, WINDOW = 200.0, 20.0, 60, 0.8
+MOST_REFUSED = 0.02
+"""Greatest share of refused recordings."""
 NOISE = {"theta": math.radians(0.3), "psi": math.radians(0.5), "phi": math.radians(1.0)}
 
 
@@ -110,10 +114,13 @@ class Judged(NamedTuple):
     """Share of the windows with the verdict `good`."""
 
 
-def judged(seed: int) -> Judged:
-    """Return what the fit makes of the recording of a seed."""
+def judged(seed: int) -> Judged | str:
+    """Return what the fit makes of the recording of a seed, or why it refuses the recording."""
     case = drawn(seed)
-    found = fitted(case)
+    try:
+        found = fitted(case)
+    except LagtopError as error:
+        return f"{seed:6} refused: {error}"
     outcome, decay = found.windows[0].outcome, found.decay
     ((ratio, ratio_std),) = (pair for pair in outcome.products() if pair[0].name == "C/A")
     good = sum(window.verdict == "good" for window in found.windows) / len(found.windows)
@@ -136,6 +143,9 @@ def main() -> int:
     rows = []
     with ProcessPoolExecutor(options.jobs) as pool:
         for one in pool.map(judged, seeds):
+            if isinstance(one, str):
+                print(one, flush=True)
+                continue
             rows.append(one)
             shown = " ".join(f"{x:5.2f}" for x in one.pulls)
             print(
@@ -146,9 +156,11 @@ def main() -> int:
     pulls, chi2 = np.abs([one.pull for one in rows]), np.mean([one.chi2_dof for one in rows])
     one_sigma, two_sigma = float(np.mean(pulls < 1)), float(np.mean(pulls < 2))
     good = float(np.mean([one.good for one in rows]))
+    refused = options.recordings - len(rows)
     print(f"within 1 sigma {one_sigma:.3f}, within 2 {two_sigma:.3f}, chi2/dof {chi2:.3f}")
-    print(f"good windows {good:.3f}")
-    bounds = 0.58 <= one_sigma <= 0.78 and 0.91 <= two_sigma <= 0.99 and 0.9 <= chi2 <= 1.1
+    print(f"good windows {good:.3f}, refused recordings {refused}")
+    bounds = refused <= MOST_REFUSED * options.recordings
+    bounds &= 0.58 <= one_sigma <= 0.78 and 0.91 <= two_sigma <= 0.99 and 0.9 <= chi2 <= 1.1
     return int(not bounds)
 
 
