@@ -185,7 +185,7 @@ def main() -> int:
 
 
 def _miscovered(errors: Mapping[str, list[float]]) -> Iterator[bool]:
-    """Write the shares of small errors, and yield whether they differ from those of normal errors."""
+    """Write the shares of small errors; yield whether they differ from those of normal errors."""
     for name, sizes in errors.items():
         count, shown = len(sizes), []
         for bound, share in COVERED.items():
