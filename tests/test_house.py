@@ -70,7 +70,7 @@ def test_the_package_has_these_rooms_and_no_others() -> None:
     assert {path.name for path in PACKAGE.iterdir() if path.name != "__pycache__"} == {
         *("cli", "bench", "judge", "plot", "fits", "sweeps", "motion"),
         *("elliptic", "inputs", "output", "arithmetic"),
-        *("errors.py", "__init__.py", "__main__.py", "alias.py", "py.typed"),
+        *("errors.py", "__init__.py", "__main__.py", "alias.py", "alias.pyi", "py.typed"),
         *("LICENSE", "CHANGES.md", "CITATION.cff"),
     }
 

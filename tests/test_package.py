@@ -115,6 +115,25 @@ def test_the_wheel_works_in_an_empty_folder(distributions: Path, tmp_path: Path)
 
 
 @pytest.mark.slow
+def test_type_checkers_see_the_names_of_the_wheel(distributions: Path, tmp_path: Path) -> None:
+    (wheel,) = distributions.glob("*.whl")
+    with ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    lines = ["from lagtop import Top, solve", "k: float | None = solve(Top()).phase", "Top(mass=3)"]
+    (tmp_path / "user.py").write_text("\n".join(lines))
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "user.py"],
+        cwd=tmp_path,
+        env={**os.environ, "MYPYPATH": "site"},
+        capture_output=True,
+        check=False,
+        text=True,
+    )
+    found = [x for x in done.stdout.splitlines() if x.startswith("user.py") and "note:" not in x]
+    assert found == ['user.py:3: error: Unexpected keyword argument "mass" for "Top"  [call-arg]']
+
+
+@pytest.mark.slow
 def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
     (wheel,), (sdist,) = distributions.glob("*.whl"), distributions.glob("*.tar.gz")
     with ZipFile(wheel) as archive:
@@ -122,8 +141,7 @@ def test_the_distributions_hold_what_they_should(distributions: Path) -> None:
         (metadata,) = (name for name in files if name.endswith("METADATA"))
         readme = archive.read(metadata).decode()
     assert {name.split("/")[0] for name in files if ".dist-info" not in name} == {
-        "lagrange_cli",
-        "lagtop.py",
+        *("lagrange_cli", "lagtop.py", "lagtop-stubs"),
     }
     assert {"lagrange_cli/py.typed", "lagrange_cli/CITATION.cff"} <= set(files)
     assert "Why closed form" in readme
