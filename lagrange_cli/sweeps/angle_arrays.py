@@ -187,7 +187,8 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
         c = theta_constants(motion)
         series = (hyperbolic_series if hyperbolic else circular_series)(PAIRS, c)
         phase, lower, *args = _at_start(motions, series)
-        count, steps = phase.size, 2 / c.period
+        count, period = phase.size, motion.T_nutation
+        steps = 2 / period
         spin, precession = series.spin_slope, series.precession_slope
         slopes = (precession + spin).scaled(0.5), (precession - spin).scaled(0.5)
         x, y = (
@@ -197,7 +198,7 @@ def array_sampler(motions: PairMotions, *, hyperbolic: bool) -> ArraySampler:
         phi = _growth(motion.mean_spin_rate, x - y)
         psi = _growth(motion.mean_precession_rate, x + y)
         return ArraySampler(
-            step=periods_of(Pair(*_columns(c.period / 2, count)), _columns(steps, count)[0]),
+            step=periods_of(Pair(*_columns(period / 2, count)), _columns(steps, count)[0]),
             offset=phase[:, None],
             lower=lower[:, None],
             speed=_columns(series.scale * steps, count)[0],

@@ -46,7 +46,6 @@ def constants(ar: Balls, k2: str, s_plus: str, s_minus: str) -> ThetaConstants:
         for s2 in (s_plus, s_minus)
     ]
     return ThetaConstants(
-        period=one,
         quarter=complete_k(ar, k_prime),
         quarter_prime=complete_k(ar, k),
         m=m,

@@ -9,7 +9,7 @@ common roots, and enclosures exclude the other roots.
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, cast
 
 from ...arithmetic.ball import TooFewDigitsError
@@ -28,21 +28,30 @@ InU3 = Polynomial
 
 @lru_cache(maxsize=8)
 def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are 0 for a nutating top with torque that starts off a pole."""
-    if exact.facts.free or exact.facts.steady or exact.facts.pole:
+    """Return the rates at T/2 that are 0 for a nutating top.
+
+    Without torque u(T/2) = u1 + u2 - u0, where the roots have the sum 2 beta b/(alpha + b^2).
+    """
+    facts = exact.facts
+    if facts.steady or (facts.pole and not facts.free):
         return {}
     a, beta = exact.a, exact.beta
     pairs, total = 2 * exact.b * beta - a, exact.alpha + exact.b * exact.b
-    cubic = Polynomial(exact.alpha - beta * beta, pairs, -1 * total, Polynomial(a))
-    N = Polynomial(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
-    M = Polynomial(-a * U, Polynomial(a))
-    momentum = Polynomial(beta) * M + N * -exact.b  # M (beta - b u)
+    if facts.free:
+        N, M = pairs - U * total, total
+        is_zero = exact.cosine.vanishes
+    else:
+        cubic = Polynomial(exact.alpha - beta * beta, pairs, -1 * total, Polynomial(a))
+        N = Polynomial(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
+        M, beta = Polynomial(-a * U, Polynomial(a)), Polynomial(beta)
+        is_zero = partial(_is_zero_at_u3, exact, cubic)
+    momentum = beta * M + N * -exact.b  # M (beta - b u)
     spin = (M * M - N * N) * exact.r0 - N * momentum
     found = zip(HALF_RATES, (spin, momentum), strict=True)
-    return {key: Fraction(0) for key, P in found if _is_zero_at_u3(exact, P, cubic)}
+    return {key: Fraction(0) for key, P in found if is_zero(P)}
 
 
-def _is_zero_at_u3(exact: Exact, P: InU3, cubic: InU3) -> bool:
+def _is_zero_at_u3(exact: Exact, cubic: InU3, P: InU3) -> bool:
     """Return whether P is exactly 0 at the greatest root of a cubic.
 
     Balls are tried first: they are cheap, and nearly always prove that P is not 0.

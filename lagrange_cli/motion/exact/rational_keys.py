@@ -27,7 +27,7 @@ def known_fraction(exact: Exact, name: str, *, radians: bool = False) -> Fractio
     An angle is in degrees or `radians`.
     """
     keys = rational_keys(exact)
-    if name in HALF_RATES and name not in keys:
+    if name in HALF_RATES and name not in keys and not _half_over_pole(exact):
         keys = keys | vanishing_half_rates(exact)
     known = keys.get(name)
     if not radians or known == 0:
@@ -173,35 +173,20 @@ def _quarter_is_level(exact: Exact) -> bool:
     )
 
 
+def _half_over_pole(exact: Exact) -> bool:
+    """Return whether the axis is on a pole at T/2, where no rate is defined."""
+    below = exact.facts.over_bottom and starts_at_u1(exact)
+    return below or (exact.facts.upper_root == 1 and starts_at_u2(exact))
+
+
 def _half_rates(exact: Exact) -> dict[str, Fraction]:
     """Return the rates at T/2 that are known as fractions."""
     facts = exact.facts
-    below = facts.over_bottom and starts_at_u1(exact)
-    above = facts.upper_root == 1 and starts_at_u2(exact)
-    if below or above:  # on a pole, where no rate is defined
+    if _half_over_pole(exact):
         return {}
     if facts.plane:
         return {"precession_rate_half": Fraction(0), "spin_rate_half": exact.r0}
     if facts.cusp and starts_at_u2(exact):
         return {"precession_rate_half": Fraction(0)}
-    if facts.free:
-        return _free_half_rates(exact)
-    return {"precession_rate_half": exact.a / exact.b} if facts.at_rest and facts.spins else {}
-
-
-def _free_half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are 0 without torque, where u(T/2) = u1 + u2 - u0.
-
-    The roots of (4,9) have the sum 2 beta b/D with D = energy + b^2.  The precession rate vanishes
-    if beta - b u = 0 at u = u(T/2).  The spin rate vanishes if r0 (1 - u^2) - u (beta - b u) = 0.
-    """
-    b = exact.b
-    beta, D = exact.beta, exact.energy + b * b
-    D_u = 2 * b * beta - U * D
-    still = D * beta - b * D_u
-    keys: dict[str, Fraction] = {}
-    if exact.cosine.vanishes(still):
-        keys["precession_rate_half"] = Fraction(0)
-    if exact.cosine.vanishes(exact.r0 * (D * D - D_u * D_u) - D_u * still):
-        keys["spin_rate_half"] = Fraction(0)
-    return keys
+    falls = facts.at_rest and facts.spins and not facts.free
+    return {"precession_rate_half": exact.a / exact.b} if falls else {}

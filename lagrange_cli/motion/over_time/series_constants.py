@@ -36,7 +36,6 @@ def theta_constants(motion: Nutating[R], *, rates: bool = False) -> ThetaConstan
     with ar.working():
         squares = motion.K * motion.K * motion.k_prime * motion.k_prime
         return ThetaConstants(
-            period=motion.T_nutation,
             quarter=motion.K,
             quarter_prime=motion.K_prime,
             m=motion.m,
@@ -105,7 +104,6 @@ def evaluate(
 class SeriesFromStart(NamedTuple):
     """The theta series of a motion, counted from the turning point nearest to its start."""
 
-    constants: ThetaConstants
     series: Series
     frames: list[Frame]
     """The series about that turning point and about the other one."""
@@ -132,7 +130,7 @@ def series_from_start(
     offset = steps - nearest
     frames = [series.frames[(nearest + i) % 2] for i in range(2)]
     _, x_start, _, y_start = evaluate(ar, series, frames[0], offset, direction(motion))
-    return SeriesFromStart(c, series, frames, nearest % 2 == 0, offset, (x_start, y_start))
+    return SeriesFromStart(series, frames, nearest % 2 == 0, offset, (x_start, y_start))
 
 
 class SeparatrixConstants(NamedTuple, Generic[R]):

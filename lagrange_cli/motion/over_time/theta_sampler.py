@@ -213,17 +213,17 @@ def nutating_sampler(motion: Nutating[Decimal]) -> ThetaSampler:
     ar: Any = motion.ar
     with ar.working():
         found = series_from_start(motion, rates=True)
-        c, series = found.constants, found.series
-        steps, spin, precession = 2 / c.period, series.spin_slope, series.precession_slope
+        series, period = found.series, motion.T_nutation
+        steps, spin, precession = 2 / period, series.spin_slope, series.precession_slope
         slopes = (precession + spin) / 2, (precession - spin) / 2
         x, y = (
             start + slope * found.offset for start, slope in zip(found.starts, slopes, strict=True)
         )
         return ThetaSampler(
             tilt=start_tilt(motion),
-            step=period_of(pair(c.period / 2), float(steps)),
+            step=period_of(pair(period / 2), float(steps)),
             offset=float(found.offset),
-            max_time=float(int(MAX_PERIODS) * c.period),
+            max_time=float(int(MAX_PERIODS) * period),
             scale=float(series.scale),
             speed=float(series.scale * steps),
             first=float(series.scale * found.offset),

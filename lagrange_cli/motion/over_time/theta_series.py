@@ -65,7 +65,6 @@ class SquaredRatio(NamedTuple):
 class ThetaConstants(NamedTuple):
     """The constants of a nutating top in its series."""
 
-    period: Numeric
     quarter: Numeric
     """K."""
     quarter_prime: Numeric
