@@ -14,6 +14,7 @@ import click
 from ..arithmetic.numbers import unit_in_radians
 from ..arithmetic.text import parse_number
 from ..errors import LagtopError
+from ..inputs.input_keys import TILT
 from ..inputs.names import check_names
 from ..output.destination import write_bytes
 from ..output.terminal import is_terminal
@@ -44,11 +45,7 @@ if TYPE_CHECKING:
 
 _FORMATS = ("png", "svg", "pdf")
 PAGE_DPI, FILM_DPI = 150.0, 100.0
-HELP = """Draw pictures of one motion.
-
-\b
-{kinds}
-"""
+HELP = "Draw pictures of one motion.\n\n\b\n{kinds}\n"
 
 
 def _kinds_and_scenes() -> list[str]:
@@ -89,11 +86,7 @@ AXIS = Parsed("RANGE", str, _axis_names)
     metavar="LOW:HIGH",
     help="Colour limits of `map`.  [default: 1st and 99th percentile]",
 )
-@click.option(
-    "--camera",
-    metavar="AZ,EL",
-    help="Azimuth and elevation of the camera.",
-)
+@click.option("--camera", metavar="AZ,EL", help="Azimuth and elevation of the camera.")
 @click.option("--dark", is_flag=True, help="Dark background.")
 @click.option("--size", metavar="WxH", help="Size of the page in inches, such as 8x6.")
 @click.option("--dpi", type=NUMBER, help="Pixels per inch, 20 to 1000.  [default: 150, film 100]")
@@ -140,15 +133,15 @@ def plot_command(
     from ..plot.page import Page, page_bytes, show_page
 
     top, times = top.in_seconds(t_max=t_max)
-    found = top.given()
+    found, axes = _given(top, x=x, y=y)
     motion = motion_of(found)
     request = PlotRequest(
         t_max=checked_span(motion, times["t_max"]),
         radians=top.radians,
         system=found.system,
         key=key,
-        x=_input_range("x", x),
-        y=_input_range("y", y),
+        x=axes.get("x"),
+        y=axes.get("y"),
         camera=eye,
         limits=ends,
         progress=with_progress,
@@ -238,13 +231,23 @@ def _first_order(found: Given, motion: Motion) -> FirstOrder | None:
     return first_order(found, motion)
 
 
-def _input_range(name: str, text: str | None) -> InputRange | None:
-    """Return an axis of a map."""
-    if text is None:
-        return None
-    from ..plot.map import parse_input_range  # with the colour bars, which others do not need
+def _given(top: TopOptions, **axes: str | None) -> tuple[Given, dict[str, InputRange]]:
+    """Return the inputs of the top and the axes of a map, in the same units."""
+    texts = {name: text for name, text in axes.items() if text is not None}
+    if not texts:
+        return top.given(), {}
+    from ..plot.map import input_range, parse_axis  # with the colour bars, which others do not need
 
-    return parse_input_range(name, text)
+    parsed = {name: parse_axis(name, text, radians=top.radians) for name, text in texts.items()}
+    try:
+        found = top.given({key: value for key, value in parsed.values() if key != TILT})
+    except LagtopError as error:
+        name = next((name for name, (key, _) in parsed.items() if key == error.key), None)
+        raise LagtopError(f"--{name}: {error}") if name else error from None
+    return found, {
+        name: input_range(name, key, found.others.get(key, value.number))
+        for name, (key, value) in parsed.items()
+    }
 
 
 def _ends(text: str | None) -> tuple[float, float] | None:

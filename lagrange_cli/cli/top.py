@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -57,11 +58,14 @@ class TopOptions(Values):
             if x is not None
         }
 
-    def given(self) -> Given:
-        """Return the inputs of the scene, if any, overridden by the options."""
+    def given(self, others: Mapping[str, Value] = MappingProxyType({})) -> Given:
+        """Return the inputs of the scene, if any, overridden by the options.
+
+        `others` are further values that are converted to the same units.
+        """
         from ..inputs.given import gather  # not for commands without a top
 
-        return gather(self.by_key(), self.scene, system=self.units)
+        return gather(self.by_key(), self.scene, system=self.units, others=others)
 
     def solved(self) -> Motion:
         """Return the motion; warn if uncertainties are not used."""

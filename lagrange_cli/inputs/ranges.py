@@ -40,13 +40,13 @@ def parse_range(text: str, parse: Callable[[str], Fraction] = parse_number) -> P
 
 def parse_values(text: str) -> Points:
     """Return the points of a number, a list `1,2,3` or a range.  Raises LagtopError."""
-    _refuse_units_inside(text, "60:80:3 rpm")
+    refuse_units_inside(text, "60:80:3 rpm")
     if ":" in text:
         return parse_range(text)
     return ListedPoints([parse_number(part) for part in text.split(",")])
 
 
-def _refuse_units_inside(text: str, example: str) -> None:
+def refuse_units_inside(text: str, example: str) -> None:
     """Raise LagtopError for a range or a list with a unit in front of its last number."""
     if re.search(r"\d\s*(?!e[+-]?\d)(?:[^\W\d_]|°)[^:,]*[:,].*\d", text):
         wanted = f"must have its unit once, at the end, as in {example!r}"
@@ -80,7 +80,7 @@ def parse_span(text: str) -> Span:
 
     Raises LagtopError for anything else, and unless the second end is the larger one.
     """
-    _refuse_units_inside(text, "60:80 rpm")
+    refuse_units_inside(text, "60:80 rpm")
     logarithmic, ends = text.startswith("log:"), text.removeprefix("log:").split(":")
     if len(ends) != 2:
         raise LagtopError(f"must be a number or a range [log:]from:to, got {quoted(text)}")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..motion.solve import Motion
+    from .map import InputRange
 
     Places: TypeAlias = Axes | Sequence[Axes] | None
 
@@ -70,10 +71,23 @@ def draw_map(
 
     `x` and `y` are ranges such as `r0=5:120:80`.
     """
-    from .map import parse_input_range
-
     over = [parse_input_range(name, text) if text else None for name, text in (("x", x), ("y", y))]
     return _drawn("map", motion, ax, key=key, x=over[0], y=over[1], dark=dark)
+
+
+def parse_input_range(name: str, text: str) -> InputRange:
+    """Parse a range without a unit, such as `r0=10:100:40` or `r0=log:1:100:40`.
+
+    `name` is the argument to name in errors.  Raises LagtopError as `parse_axis` and `input_range`.
+    """
+    from .map import input_range, parse_axis
+
+    known, value = parse_axis(name, text)
+    if value.unit:
+        from ..errors import LagtopError
+
+        raise LagtopError(f"{name} must have no unit, as the motion has none, got {text!r}", name)
+    return input_range(name, known, value.number)
 
 
 def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any) -> list[Axes]:

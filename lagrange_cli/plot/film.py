@@ -250,7 +250,8 @@ class Film:
         self.clock = self.axes.text(0.03, 0.95, "", transform=self.axes.transAxes)
         place: dict[str, Any] = {"transform": self.axes.transAxes, "zorder": 0}
         turned = np.abs(np.diff(motion.angles(self.times).phi)).max(initial=0.0)
-        foot = f"1 second shows {pace.speed:.3g} of time t"
+        self.unit = f" {request.unit('time')}" if request.system else ""
+        foot = f"1 second shows {pace.speed:.3g}{self.unit or ' of time t'}"
         foot += "; the spin is too fast for these frames" * bool(turned > ALIASED)
         self.axes.text(0.03, 0.02, foot, size="small", **place)
         self.moving = self.body, self.axle, self.far, self.rim, self.near, self.clock
@@ -267,5 +268,5 @@ class Film:
         passed = np.searchsorted(self.path.t, self.times[i], side="right")
         for line, points_of_side in self.trace:
             line.set_data(*points_of_side[:, :passed])
-        self.clock.set_text(f"t = {self.times[i]:.4g}")
+        self.clock.set_text(f"t = {self.times[i]:.4g}{self.unit}")
         self.figure.moving = sorted(self.moving, key=Artist.get_zorder)

@@ -13,14 +13,15 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator
 
-from ..arithmetic.points import LogPoints
+from ..arithmetic.points import LogPoints, Points
 from ..arithmetic.types import Array, Mask
 from ..arithmetic.values import Key
 from ..errors import LagtopError
-from ..inputs.input_keys import DECLARED, NINE
+from ..inputs.input_keys import DECLARED, NINE, TILT
 from ..inputs.names import check_names
-from ..inputs.ranges import parse_range
+from ..inputs.ranges import parse_range, refuse_units_inside
 from ..inputs.top import Top
+from ..inputs.value import Value, parse_value
 from ..motion.quantity import unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
@@ -55,27 +56,38 @@ class InputRange(NamedTuple):
         return f"{self.name}={steps}{first}:{last}:{self.values.size}"
 
 
-def parse_input_range(name: str, text: str) -> InputRange:
-    """Parse a range such as `r0=10:100:40` or `r0=log:1:100:40`.
+def parse_axis(name: str, text: str, *, radians: bool = False) -> tuple[str, Value]:
+    """Return the input and the points of an axis such as `r0=10:100:40` or `r0=60:600:40 rpm`.
 
-    `name` is the argument to name in errors.  Raises LagtopError for an unknown input, and unless
-    the range has 2 to 2000 increasing values.
+    A tilt is converted to degrees or `radians`.  `name` is the argument to name in errors.  Raises
+    LagtopError for an unknown input.
     """
     known, _, grid = text.partition("=")
     if known not in NINE:
         wanted = f"one of {' '.join(NINE)} and ="
         raise LagtopError(f"{name} must begin with {wanted}, got {text!r}", name)
     try:
-        points = parse_range(grid)
+        refuse_units_inside(grid, "60:600:40 rpm")
+        value = parse_value(grid, parse_range)
+        if known == TILT and value.unit:
+            from ..inputs.units import factor_of  # few maps have units
+
+            value = value.scaled(factor_of(known, value, "rad" if radians else "deg"))
+        return known, value
     except LagtopError as error:
         raise LagtopError(f"{name} {error}", name) from None
+
+
+def input_range(name: str, known: str, points: Points) -> InputRange:
+    """Return the values of an input; raise LagtopError unless 2 to 2000 increase."""
     if not 2 <= points.count <= MOST_VALUES:
         raise LagtopError(
             f"{name} must have a count in [2, {MOST_VALUES}], got {points.count}", name
         )
     values = next(points.blocks())
     if not values[0] < values[-1]:
-        raise LagtopError(f"{name} must have start < stop, got {text!r}", name)
+        ends = f"{values[0]:g}:{values[-1]:g}"
+        raise LagtopError(f"{name} must have start < stop, got {known}={ends}", name)
     return InputRange(known, values, isinstance(points, LogPoints) and bool(values[0] > 0))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import shlex
@@ -13,6 +14,8 @@ from typing import Any
 import pytest
 from conftest import ROOT, Lagtop, process
 
+from lagrange_cli import LagtopError, Top, solve
+from lagrange_cli.plot import draw_map
 from lagrange_cli.plot.kinds import help_lines
 
 
@@ -51,6 +54,9 @@ REFUSED = [
     ("remainders --theta0 0 -o x.png", "no remainders: the tilt is constant (sleeping)"),
     ("map --key colour -o x.png", "--key must be among"),
     ("map --x r0=1:2 -o x.png", "--x must be a range [log:]start:stop:count, got '1:2'"),
+    (["map", "--m", "1kg", "--x", "r0=1:2:3", "-o", "x.png"], "--x: r0 must have a unit such as"),
+    (["map", "--x", "s=1:6:4 s", "-o", "x.png"], "--x: s must have a unit as in 4cm"),
+    (["map", "--x", "s=1cm:6cm:4", "-o", "x.png"], "--x must have its unit once, at the end"),
     ("map --x q=1:2:3 -o x.png", "--x must begin with one of m A C s g r0"),
     ("map --x r0=2:1:3 -o x.png", "--x must have start < stop"),
     ("map --x r0=1:2:1 -o x.png", "--x must have a count of 2 or more between"),
@@ -79,11 +85,28 @@ def test_bad_input(
 ) -> None:
     line, message, code = (*row, 2)[:3]
     monkeypatch.chdir(tmp_path)
-    result = lagtop("plot", *line.split())
+    result = lagtop("plot", *(line.split() if isinstance(line, str) else line))
     assert (result.exit_code, result.stdout) == (code, "")
     assert message in result.stderr
     assert result.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_axes_of_a_map_have_units(lagtop: Lagtop, tmp_path: Path) -> None:
+    """Equal ranges in other units give the same picture, which names the units of the system."""
+    same = [
+        ("r0=30:300:4 rpm", "theta0=10:90:3"),
+        ("r0=180:1800:4 deg/s", f"theta0={math.pi / 18}:{math.pi / 2}:3 rad"),
+    ]
+    pictures = []
+    for i, (x, y) in enumerate(same):
+        path = tmp_path / f"{i}.svg"
+        done = lagtop("plot", "map", "--x", x, "--y", y, "--key", "b", "-o", path)
+        assert (done.exit_code, done.stderr) == (0, "")
+        pictures.append(re.sub(r"<dc:date>.*?</dc:date>", "", path.read_text()))
+    assert pictures[0] == pictures[1]
+    with pytest.raises(LagtopError, match="x must have no unit, as the motion has none"):
+        draw_map(solve(Top()), x="r0=30:300:4 rpm")
 
 
 def test_the_help_needs_no_matplotlib_and_a_picture_says_how_to_get_it(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from lagrange_cli import Top, solve
 from lagrange_cli.arithmetic.types import Array
+from lagrange_cli.inputs.units import SYSTEMS
 from lagrange_cli.plot import camera, film
 from lagrange_cli.plot.curves import turn_span
 from lagrange_cli.plot.kinds import PlotRequest
@@ -86,6 +87,11 @@ def test_each_frame_shows_the_top_and_the_path_so_far() -> None:
             assert (drawn[0] | drawn[1]).sum() == passed.sum()
             assert moving.clock.get_text() == f"t = {moving.times[i]:.4g}"
     assert moving.times[-1] == 1.0
+    united = Page(solve(Top()), ["sphere"], PlotRequest(system=SYSTEMS["si"]), LIGHT)
+    shown = film.Film(united, film.Pace(50, 1.0))
+    shown.show(3)
+    assert shown.clock.get_text().endswith(" s")
+    assert any(text.get_text().startswith("1 second shows 0.5 s") for text in shown.axes.texts)
 
 
 def test_a_frame_over_the_background_is_the_whole_picture() -> None:

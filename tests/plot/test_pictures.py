@@ -19,11 +19,12 @@ from scenes import SAMPLES
 
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.errors import NothingToDrawError
+from lagrange_cli.plot import parse_input_range
 from lagrange_cli.plot.camera import best_camera
 from lagrange_cli.plot.cubic import cubic_curve
 from lagrange_cli.plot.curves import sampled_columns, span, sphere_span, tilt_period, turn_span
 from lagrange_cli.plot.kinds import KINDS, ON_THE_SHEET, PlotRequest, help_lines
-from lagrange_cli.plot.map import colour_limits, jumps, key_map, parse_input_range
+from lagrange_cli.plot.map import colour_limits, jumps, key_map
 from lagrange_cli.plot.phase import phase_portrait, separatrix_orbit
 from lagrange_cli.plot.sphere import axis_path
 from lagrange_cli.plot.style import number_text
