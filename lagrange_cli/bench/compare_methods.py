@@ -186,8 +186,8 @@ def with_order(rows: Sequence[MethodRow]) -> list[MethodRow]:
             if row.method == name and row.evaluations
             if ROUNDING < (error := row.error_rad or 0) < LOST
         ]
-        if len(work) > 1 and not name.startswith(VARIABLE_ORDER):
-            (few, large), (many, small) = work[-2:]
+        (few, large), (many, small) = work[-2:] if len(work) > 1 else [(0.0, 0.0)] * 2
+        if many > few and not name.startswith(VARIABLE_ORDER):
             orders[name] = (large - small) / (many - few)
     return [row._replace(order=orders.get(row.method)) for row in rows]
 

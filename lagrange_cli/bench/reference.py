@@ -114,15 +114,6 @@ def key_ulps(computed: float, exact: Many, digits: int) -> float:
         return float(abs(away) / abs(mpmath.mpf(beyond) - mpmath.mpf(computed)))
 
 
-class _Jacobi(NamedTuple):
-    """The number of half periods, and sn, cn, dn of the remaining argument."""
-
-    turns: Many
-    sn: Many
-    cn: Many
-    dn: Many
-
-
 def _three_real_roots(c2: Many, c1: Many, c0: Many) -> list[Many]:
     """Return the roots of u^3 + c2 u^2 + c1 u + c0 = 0, in order, by Viete's cosines."""
     shift, p = c2 / 3, c1 - c2**2 / 3
@@ -190,11 +181,12 @@ class Reference:
         w = mpmath.sqrt(s2) * mpmath.elliprf(max(c2, 0), d2, 1)
         return -w if theta_sign > 0 else w
 
-    def _jacobi(self, t: Many) -> _Jacobi:
+    def _jacobi(self, t: Many) -> tuple[Many, ...]:
+        """Return the half periods until a time, and sn, cn, dn of the remaining argument."""
         w = self.w0 + self.speed * t
         turns = mpmath.nint(w / (2 * self.K))
         rest = w - 2 * turns * self.K
-        return _Jacobi(turns, *(mpmath.ellipfun(f, rest, m=self.m) for f in ("sn", "cn", "dn")))
+        return turns, *(mpmath.ellipfun(f, rest, m=self.m) for f in ("sn", "cn", "dn"))
 
     def _halves(self, t: Many) -> tuple[Many, Many]:
         """Return (psi + phi)/2 and (psi - phi)/2, up to their values at t = 0."""
@@ -210,12 +202,13 @@ class Reference:
         rest = at_u1 / at_u2
         return self.K + (1 - rest) / 3 * mpmath.elliprj(0, self.mc, 1, rest)
 
-    def _third(self, at_u1: Many, at_u2: Many, now: _Jacobi, whole: Many) -> Many:
+    def _third(self, at_u1: Many, at_u2: Many, now: tuple[Many, ...], whole: Many) -> Many:
         """Return the incomplete integral of dt/(at_u2 + (at_u1 - at_u2) sn^2), Legendre's Pi."""
-        sn2, cn2, dn2, rest = now.sn**2, now.cn**2, now.dn**2, at_u1 / at_u2
+        turns, sn, cn, dn = now
+        sn2, cn2, dn2, rest = sn**2, cn**2, dn**2, at_u1 / at_u2
         part = mpmath.elliprf(cn2, dn2, 1)
         part += (1 - rest) / 3 * sn2 * mpmath.elliprj(cn2, dn2, 1, cn2 + rest * sn2)
-        return (2 * now.turns * whole + now.sn * part) / (at_u2 * self.speed)
+        return (2 * turns * whole + sn * part) / (at_u2 * self.speed)
 
     def at(self, t: float) -> ExactAngles:
         """Return the exact angles and rates at a time."""

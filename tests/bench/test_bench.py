@@ -144,6 +144,8 @@ def test_the_order_is_that_of_the_two_finest_settings_above_rounding() -> None:
     found = compare_methods.with_order([*runs("x", fourth), *runs("Taylor", fourth)])
     assert {x.method: x.order for x in found} == {"x": pytest.approx(4), "Taylor": None}
     assert compare_methods.with_order(runs("x", [1e-2, 1e-12]))[0].order is None
+    alike = [x._replace(evaluations=400) for x in runs("x", [1e-3, 1e-3])]
+    assert compare_methods.with_order(alike)[0].order is None
 
 
 def test_the_exponent_of_growth() -> None:
