@@ -25,6 +25,8 @@ from .battery import JUDGED_COLUMNS, Case, HardScene, case_of
 
 _NARROW = 2**10
 """Inverse of the radius of a ball, in units, that gives an error to three digits."""
+_SHARP = Decimal("1e-12")
+"""Radius of the distance of a key, in gaps between doubles; half a gap is the promise."""
 _DIGITS = 40
 """Digits of the period, the unit of the times of a scene."""
 
@@ -75,7 +77,10 @@ def ulps(value: float, exact: Ball) -> float:
     ar = exact.ar
     away = exact - ar.convert(value)
     gap = above if (away > 0) is True else below if (away < 0) is True else min(above, below)
-    return _bound(away, ar.convert(gap))
+    ratio = away / ar.convert(gap)
+    if not ratio.radius < _SHARP:
+        raise TooFewDigitsError
+    return math.nextafter(float(abs(ratio.middle) + ratio.radius), math.inf)
 
 
 def bounds_at(proofs: ProvedTable, t: float, computed: Sequence[float]) -> list[float]:

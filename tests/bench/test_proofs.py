@@ -86,6 +86,21 @@ def test_a_gap_is_that_on_the_side_of_the_exact_value() -> None:
         proofs.ulps(1.0, wide)
 
 
+def test_a_bound_next_to_a_half_is_sharp() -> None:
+    """Nearly a tie: a bound to six digits, 0.500001, would break the promise."""
+    top = Top(
+        A=0.5370460219079735,
+        C=1.074092043815947,
+        m=1,
+        s=1,
+        g=1,
+        r0=-1.3645650635975366,
+        theta0_deg=179.99999998137704,
+    )
+    bound = proofs.key_bound(solve(top), "amplitude_deg", solve(top).amplitude_deg)
+    assert bound == pytest.approx(0.5, abs=battery.KEY_CONTRACT - 0.5)
+
+
 def test_a_tie_and_a_zero_are_judged_by_the_fraction() -> None:
     """Take a = 3 + 3 eps, midway between two doubles, and no spin."""
     motion = solve(Top(**UNIT | {"m": 1 + 2.0**-52, "s": 1.5, "r0": 0.0, "theta0_deg": 60.0}))
