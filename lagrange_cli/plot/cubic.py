@@ -125,14 +125,14 @@ def _draw_roots(axes: Axes, cubic: Cubic, look: Look) -> None:
     if cubic.u1 == cubic.u2:
         known = {"u₁ = u₂": cubic.u1}
     seen = known | ({"u₃": cubic.u3_in_view} if cubic.u3_in_view is not None else {})
-    axes.plot(list(seen.values()), [0.0] * len(seen), "o", ms=points(7), color=look.lines[1])
+    axes.plot(list(seen.values()), [0.0] * len(seen), "o", ms=points(7), color=look.ink)
     for name, root, (right, above) in _named(seen, float(np.ptp(cubic.u))):
         axes.annotate(
             *(name, (root, 0.0), (points(7 if right else -7), points(8 if above else -8))),
             textcoords="offset points",
             ha="left" if right else "right",
             va="bottom" if above else "top",
-            color=look.lines[1],
+            color=look.ink,
         )
     values = [f"{name} = {number_text(root)}" for name, root in known.items()]
     if cubic.u3 is not None:

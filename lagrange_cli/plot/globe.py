@@ -16,6 +16,8 @@ from .style import Look, points, short_text
 
 TIP, NAME = 1.24, 0.1
 """Length of the axes of space in radii of the globe, and distance of their names from the tips."""
+MOST = {"ls": (0, (7, 2, 1, 2))}
+"""Style of the circle of the greatest tilt: dash-dotted."""
 SAME_PLACE = 0.13
 """Distance at which the names of two axes would touch, so that they are joined."""
 INSEPARABLE = math.radians(0.8)
@@ -33,28 +35,29 @@ def draw_globe(
     _draw_circle(axes, camera, math.pi / 2, color=look.quiet, lw=points(0.6))
     _draw_frame(axes, camera, look)
     least, greatest = limits
+    blue: dict[str, Any] = {"color": look.lines[0], "lw": points(1.2)}
     low, high = (_tilt_text(tilt, request.radians) for tilt in limits)
     if greatest == least:
-        _draw_limit(axes, camera, least, look.lines[0], f"tilt ϑ = {low}")
+        _draw_limit(axes, camera, least, f"tilt ϑ = {low}", **blue)
     elif greatest - least < INSEPARABLE:
-        _draw_limit(axes, camera, greatest, look.lines[0], f"tilt ϑ from {low} to {high}")
+        _draw_limit(axes, camera, greatest, f"tilt ϑ from {low} to {high}", **blue)
     else:
-        _draw_limit(axes, camera, least, look.lines[0], f"ϑ min {low}")
-        _draw_limit(axes, camera, greatest, look.lines[1], f"ϑ max {high}")
+        _draw_limit(axes, camera, least, f"ϑ min {low}", **blue)
+        _draw_limit(axes, camera, greatest, f"ϑ max {high}", **blue | MOST)
 
 
 def _tilt_text(tilt: float, radians: bool) -> str:
     return f"{short_text(tilt)} rad" if radians else f"{short_text(math.degrees(tilt))}°"
 
 
-def _draw_limit(axes: Axes, camera: Camera, tilt: float, colour: str, label: str) -> None:
+def _draw_limit(axes: Axes, camera: Camera, tilt: float, label: str, **line: Any) -> None:
     """Draw the circle of a limiting tilt, or a dot if the circle is a pole."""
     if math.sin(tilt) > 1e-3:
-        _draw_circle(axes, camera, tilt, color=colour, lw=points(1.2))
-        axes.plot([], [], color=colour, lw=points(1.2), label=label)
+        _draw_circle(axes, camera, tilt, **line)
+        axes.plot([], [], label=label, **line)
         return
     pole = np.array([[0.0, 0.0, math.cos(tilt)]])
-    dot: dict[str, Any] = {"color": colour, "ms": points(5), "ls": "none", "label": label}
+    dot: dict[str, Any] = {"color": line["color"], "ms": points(5), "ls": "none", "label": label}
     axes.plot(
         *camera.project(pole), "o", alpha=1.0 if camera.faces(pole)[0] else 0.45, zorder=2, **dot
     )

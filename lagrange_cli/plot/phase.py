@@ -88,6 +88,6 @@ def _draw_portrait(axes: Axes, portrait: PhasePortrait, request: PlotRequest, lo
     theta, rate = portrait.separatrix or (np.empty(0), np.empty(0))
     both = np.append(theta, theta[::-1]) * factor, np.append(rate, -rate[::-1])
     dashes = {"lw": points(1.4), "ls": (0, (5, 2))} if theta.size else {"lw": 0.0}
-    axes.plot(*both, color=look.lines[1], label=portrait.why, **dashes)
+    axes.plot(*both, color=look.ink, label=portrait.why, **dashes)
     axes.margins(0.06)
     number_from_left_to_right(axes)

@@ -73,6 +73,9 @@ def test_keys_work_every_control(browser: Browser) -> None:
     browser.ask("arguments[0].focus()", row)
     said = browser.ask("return at.explained.textContent")
     assert said == "T, nutation period: T = 4 K/√(a (u3 - u2))  (5,1)  (key T_nutation)"
+    below = "at.record.parentElement.scrollTop > 0 && at.explained.getBoundingClientRect().top"
+    section = browser.ask("return at.record.parentElement.getBoundingClientRect().top")
+    assert browser.ask(f"return {below}") == pytest.approx(section, abs=1)
     t = browser.ask("return page.clock.t")
     row.send_keys(DOWN)
     assert browser.ask("return page.clock.t") == t

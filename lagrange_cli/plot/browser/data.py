@@ -58,6 +58,7 @@ TITLES: list[tuple[dict[str, Any], str]] = [
     ({"regime": "steady precession"}, "Steady precession"),
     ({"plane": True}, "Plane pendulum"),
     ({"regime": "no spin"}, "Spherical pendulum"),
+    ({"constant": True}, "Almost steady precession"),
     ({"fast": True}, "Pseudo-regular precession"),
     ({"path": "cusped"}, "Regular motion with cusps"),
     ({"path": "looping"}, "Regular motion with loops"),

@@ -80,10 +80,10 @@ function drawRoots(context, look, place, { u1, u2, u3 }, near, width) {
   if (near) roots.push(["u₃", u3, 13, 13]);
   else if (u3 !== null) {
     write(context, `u₃ = ${tickText(u3, 1e-4 * Math.abs(u3))} →`,
-      [width - MARGIN.right, MARGIN.top + 8], look.red, { size: 12, align: "right" });
+      [width - MARGIN.right, MARGIN.top + 8], look.ink, { size: 12, align: "right" });
   }
   for (const [name, u, right, down] of roots) {
-    dot(context, [place.x(u), place.y(0)], 4, look.red);
-    write(context, name, [place.x(u) + right, place.y(0) + down], look.red, { size: 13 });
+    dot(context, [place.x(u), place.y(0)], 4, look.ink);
+    write(context, name, [place.x(u) + right, place.y(0) + down], look.ink, { size: 13 });
   }
 }

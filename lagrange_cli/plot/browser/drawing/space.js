@@ -56,7 +56,7 @@ function drawCircles(context, view, look, { theta_min_deg, theta_max_deg }, near
   const circles = [
     [90, { colour: look.quiet, width: 0.6 }],
     [theta_min_deg, { colour: look.blue, width: 1.1 }],
-    [theta_max_deg, { colour: look.red, width: 1.1 }],
+    [theta_max_deg, { colour: look.blue, width: 1.1, dash: [9, 3, 2, 3] }],
   ];
   const faded = near ? {} : { alpha: 0.4, dash: [3, 3] };
   for (const [tilt, style] of circles) {
