@@ -60,16 +60,14 @@ def _parse_step_sizes(text: str) -> list[float]:
 @click.option(
     "--align",
     type=names_type(late("judge.alignment", "WORDS"), "WORD,..."),
-    help="Frames: axis=y, up=y, or start, body, space or time as in the first row.",
+    help="Convert the frame: axis=y, up=y; or match the first row: start, body, space, time.",
 )
 @click.option(
     "--step-sizes",
     type=Parsed("X,...", _parse_step_sizes),
     help="Step sizes of the trajectories, for the order of convergence.",
 )
-@click.option(
-    "--max-error", type=NUMBER, help="Largest error that is fine, in rad.  [default: 0.001]"
-)
+@click.option("--max-error", type=NUMBER, help="Largest acceptable error in rad.  [default: 0.001]")
 @click.option("--exit-zero", is_flag=True, help="Exit with 0 even if a trajectory is not fine.")
 @text_options
 @plot_option

@@ -115,7 +115,8 @@ def eta_command(
 
     Give the outer roots of the right-hand side with --p and --q (0.7i for a complex pair), or by
     their gaps from delta and delta*.  If you give one gap, the other root is at infinity, as for
-    Lagrange's top.  If you give neither, both roots are at infinity.
+    Lagrange's top.  If you give no
+    outer root, both are at infinity.
 
     Without --tau, the constants are printed.  At tau = 0, eta is delta*.  h1, theta and xi' are
     defined in (3.2.9) to (3.2.11).

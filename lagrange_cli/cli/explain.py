@@ -151,8 +151,8 @@ class _Scene(NamedTuple):
 def scenes_command(out: Output) -> None:
     """List the built-in scenes.
 
-    Every command accepts their names as SCENE.  You can write your own scene: a TOML file with
-    inputs by name, such as r0 = 40 or theta0 = "30 deg".
+    Commands that solve a top accept these names as SCENE.  You can write your own scene: a TOML
+    file with inputs by name, such as r0 = 40 or theta0 = "30 deg".
     """
     rows = [_Scene(name, scene_remark(name)) for name in scene_names()]
     fields = [_NAME, _text("remark", "remark")]
