@@ -134,7 +134,8 @@ def needs_unit(key: str, value: Value) -> bool:
     number = value.number
     if DIMENSIONS.get(key, TIME) == TIME or value.unit or key == TILT or isinstance(number, str):
         return False
-    return number.bounds() != [0.0, 0.0] if isinstance(number, Points) else number != 0
+    is_zero = number.bounds() == [0.0, 0.0] if isinstance(number, Points) else number == 0
+    return not (is_zero.all() if hasattr(is_zero, "all") else is_zero)  # of an array
 
 
 def factor_of(
