@@ -101,8 +101,8 @@ def bench_command(
 
     The methods are closed forms, integrators and physics engines, each on one thread.  The
     reference has 80 digits and shares no formula with lagtop.  The setting of an engine is its
-    number of steps per nutation period, or a tolerance.  A * marks the Pareto front: no other run is both faster
-    and more accurate.  Several scenes make one table and one picture.
+    number of steps per nutation period, or a tolerance.  A * marks the Pareto front: no other run
+    is both faster and more accurate.  Several scenes make one table and one picture.
 
     Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method needs heyoka.
     """

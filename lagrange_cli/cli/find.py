@@ -66,8 +66,9 @@ def find_command(
     code is 1 if no solution is found.
 
     Without an unknown, give theta_min, theta_max, T_nutation and mean_precession_rate, and
-    mean_spin_rate if you know it.  They determine a = 2mgs/A and b = C r0/A.  You may also give inputs of the
-    body.  Undetermined inputs are set to 1, or so that C = A.  The tops start at their least tilt.
+    mean_spin_rate if you know it.  They determine a = 2mgs/A and b = C r0/A.  You may also give
+    inputs of the body.  Undetermined inputs are set to 1, or so that C = A.  The tops start at
+    their least tilt.
     """
     from ..inputs.names import check_names
     from ..inputs.ranges import Span

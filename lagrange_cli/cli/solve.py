@@ -73,8 +73,8 @@ def solve_command(
     number is correctly rounded, or has N correct digits with --digits N.  A quantity that a regime
     does not have is null in JSON and empty in CSV.
 
-    Inputs may have units ('480 rpm').  Give units for all inputs that you set, or for none; the tilt
-    needs none.  An input may have an uncertainty ('1587(2)').
+    Inputs may have units ('480 rpm').  Give units for all inputs that you set, or for none; the
+    tilt needs none.  An input may have an uncertainty ('1587(2)').
     """
     exclude({"--get": keys, "--derivation": derivation, "--budget": budget, "--samples": samples})
     if keys is not None:
