@@ -10,7 +10,15 @@ from ..errors import LagtopError
 from .app import Command, complain
 from .options import COUNT, Parsed, keys_option, output_options
 from .progress import with_progress
-from .top import TopOptions, scene_among, top_options, value_type, warn_missing, warn_unused
+from .top import (
+    TopOptions,
+    headings,
+    scene_among,
+    top_options,
+    value_type,
+    warn_missing,
+    warn_unused,
+)
 
 if TYPE_CHECKING:
     from ..inputs.units import System
@@ -131,4 +139,5 @@ def _write(
         if system is not None and record.get("remark"):
             record["remark"] = system.in_words(record["remark"])
     columns = [[record[key] for record in records] for key in keys]
-    out.blocks(keys, [block_text(columns, keys, out.fmt)])
+    names = headings(keys, system, out.fmt, radians=radians)
+    out.blocks(names, [block_text(columns, keys, out.fmt)])

@@ -24,7 +24,7 @@ from .options import (
     text_options,
 )
 from .progress import with_progress
-from .top import SCENE, TopOptions, top_options, value_type, warn_missing, warn_no_tops
+from .top import SCENE, TopOptions, headings, top_options, value_type, warn_missing, warn_no_tops
 
 if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
@@ -146,7 +146,8 @@ def sweep_command(
             parts_folder.write(passing)
         else:
             texts = (part.text for part in passing)
-            out.blocks(sweep.header, texts)
+            names = headings(sweep.header, sweep.system, out.fmt, radians=top.radians)
+            out.blocks(names, texts)
     if parts_folder and parts_folder.found:
         complain(f"Resumed: {parts_folder.found} parts were already in {folder}")
     tally.check()

@@ -18,6 +18,7 @@ from .options import Command, Parsed, late, rad_option
 if TYPE_CHECKING:
     from ..inputs.given import Given
     from ..inputs.input_keys import Input
+    from ..inputs.units import System
     from ..inputs.value import Value
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
@@ -180,6 +181,19 @@ def motion_of(found: Given, *, exact: bool = False) -> Motion:
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")
     return motion
+
+
+def headings(
+    names: Sequence[str], system: System | None, fmt: str, *, radians: bool
+) -> Sequence[str]:
+    """Return the headings of keys: with units in a table for people, if inputs have units."""
+    if system is None or fmt not in {"table", "markdown"}:
+        return names
+    from ..motion.record import shown_keys
+    from ..output.report import with_unit
+
+    keys = shown_keys(radians=radians, named=system.named, requested=True)
+    return [with_unit(name, keys[name].unit) if name in keys else name for name in names]
 
 
 def warn_missing(found: Given) -> None:

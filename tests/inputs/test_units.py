@@ -274,6 +274,15 @@ def test_words_of_a_rate_are_for_one_top(lagtop: Lagtop) -> None:
         )
 
 
+def test_tables_of_many_tops_name_units(lagtop: Lagtop) -> None:
+    keys = ["--keys", "r0,theta0_deg,T_nutation,regime"]
+    swept = lagtop("sweep", "--r0", "60:180:3 rpm", *keys, "--format", "markdown").stdout
+    assert swept.startswith("| r0 [rad/s] | theta0_deg | T_nutation [s] | regime |\n")
+    words = ["find", "--r0", "60:1600 rpm", "T_precession=800ms", "--keys", "T_precession"]
+    assert lagtop(*words, "--format", "table").stdout.startswith("T_precession [s]\n")
+    assert lagtop(*words).stdout.startswith("T_precession\n")
+
+
 def test_sweeps(tmp_path: Path, lagtop: Lagtop) -> None:
     keys = ["--keys", "m,r0,error"]
     grid = lagtop("sweep", *WORDS[2:], "--m", "1,2 lb", "--r0", "log:60:6000:2 rpm", *keys)
