@@ -7,7 +7,7 @@ It also gives the remaining time exactly, however large the time is.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -147,6 +147,17 @@ def sqrt_pair(high: Array, low: Array) -> tuple[Array, Array]:
     return root, ((high - square) - error + low) / np.where(root > 0, 2 * root, 1.0)
 
 
+def _compared(high: Any, low: Any) -> Callable[[DoubleDouble, DoubleDouble | float], Mask]:
+    """Return a comparison of the high parts or, if they are equal, of the low parts."""
+
+    def holds(x: DoubleDouble, other: DoubleDouble | float) -> Mask:
+        other = DoubleDouble._like(other)
+        mask: Mask = high(x.high, other.high) | (x.high == other.high) & low(x.low, other.low)
+        return mask
+
+    return holds
+
+
 class DoubleDouble:
     """The numbers high + low, where high is the double nearest to the sum.
 
@@ -221,24 +232,8 @@ class DoubleDouble:
     def __rtruediv__(self, other: float) -> DoubleDouble:
         return self._like(other) / self
 
-    def _ordered(self, other: DoubleDouble | float, compare: Any, strictly: Any) -> Mask:
-        """Return a comparison of the high parts or, if they are equal, of the low parts."""
-        other = self._like(other)
-        equal = self.high == other.high
-        holds: Mask = strictly(self.high, other.high) | equal & compare(self.low, other.low)
-        return holds
-
-    def __gt__(self, other: DoubleDouble | float) -> Mask:
-        return self._ordered(other, np.greater, np.greater)
-
-    def __ge__(self, other: DoubleDouble | float) -> Mask:
-        return self._ordered(other, np.greater_equal, np.greater)
-
-    def __lt__(self, other: DoubleDouble | float) -> Mask:
-        return self._ordered(other, np.less, np.less)
-
-    def __le__(self, other: DoubleDouble | float) -> Mask:
-        return self._ordered(other, np.less_equal, np.less)
+    __gt__, __ge__ = _compared(np.greater, np.greater), _compared(np.greater, np.greater_equal)
+    __lt__, __le__ = _compared(np.less, np.less), _compared(np.less, np.less_equal)
 
     def sqrt(self) -> DoubleDouble:
         """Return the square root of numbers >= 0."""

@@ -87,6 +87,11 @@ class Facts(Values):
         return bool(self.upper_root) or self.regime is Regime.SEPARATRIX
 
     @property
+    def meets_a_pole(self) -> bool:
+        """The axis passes over a pole, or starts there and nutates."""
+        return self.over_bottom or self.upper_root == 1
+
+    @property
     def plane(self) -> bool:
         """The axis moves in a vertical plane, over the lower pole: beta = b = 0."""
         return self.over_bottom and not self.spins

@@ -73,10 +73,6 @@ class SpinPrecession(Nutation[R]):
     def _mean(self, from_u1: R, from_u2: R, at_u1: R, at_u2: R) -> R:
         return mean_over(self.ar, self.k_prime, (from_u1, from_u2), (at_u1, at_u2))
 
-    @property
-    def _meets_a_pole(self) -> bool:
-        return self.facts.over_bottom or self.facts.upper_root == 1
-
     @quantity
     def _whole_south(self) -> R:
         """The mean of (beta - b u)/(2 (1 + u))."""
@@ -101,14 +97,14 @@ class SpinPrecession(Nutation[R]):
             return self.state.spin_drift + self.ar.where(self.r0 < 0, -half_turn, half_turn)
         if self.facts.drifts:
             return self.state.spin_drift
-        if self.facts.free or self._meets_a_pole:
+        if self.facts.free or self.facts.meets_a_pole:
             return self.state.pole_drift + self._south - self._north
         return self.r0 + self._whole_south - self._whole_north
 
     @mean_rate_key("ψ' mean", "mean precession rate", "(7,3)", f"(P + Q)/(2*K) {_POLES}")
     def mean_precession_rate(self) -> R:
         """The mean precession rate (7,3)."""
-        if self.facts.free or self._meets_a_pole:
+        if self.facts.free or self.facts.meets_a_pole:
             return self._south + self._north
         return self._whole_south + self._whole_north
 

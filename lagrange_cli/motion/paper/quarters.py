@@ -128,9 +128,9 @@ class Quarters(EnergyMomentum[R]):
         kind = self.nutating
         if kind is None or kind.precession_rate_half is None:
             return Turned()
-        half, gaps, facts = kind.T_nutation / 2, self.gaps, self.facts
+        half, gaps = kind.T_nutation / 2, self.gaps
         turning = not (gaps.u1_u > 0 and gaps.u_u2 > 0)
-        if turning and not facts.over_bottom and facts.upper_root != 1:
+        if turning and not self.facts.meets_a_pole:
             return Turned(kind.mean_spin_rate * half, kind.mean_precession_rate * half)
         from ..over_time.series_constants import pose_of  # start-up: not for a record
 
@@ -141,7 +141,7 @@ class Quarters(EnergyMomentum[R]):
     def next_to_u1(self) -> Turned[R]:
         """The mean rates in the quarter after a passage of u1; None over a pole."""
         kind = self.nutating
-        if kind is None or self.facts.over_bottom or self.facts.upper_root == 1:
+        if kind is None or self.facts.meets_a_pole:
             return Turned()
         from ..over_time import series_constants as series  # start-up: not for a record
 

@@ -30,7 +30,7 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
     if known.get("u2") == 0:
         keys |= {"u2_criterion": Fraction(0), "u2_twice": Fraction(0)}
     turning = starts_at_u1(exact) or starts_at_u2(exact)
-    even = turning and not (exact.facts.over_bottom or exact.facts.upper_root == 1)
+    even = turning and not exact.facts.meets_a_pole
     for angle, rate in (("phi", "mean_spin_rate"), ("psi", "mean_precession_rate")):
         if known.get(rate) == 0:
             keys[f"{angle}_period_deg"] = Fraction(0)

@@ -17,6 +17,7 @@ import numpy as np
 from ...arithmetic.arrays import ARRAYS
 from ...arithmetic.double_double import period_of, whole_periods
 from ...arithmetic.duals import Dual
+from ...arithmetic.numbers import polynomial
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
@@ -137,7 +138,7 @@ class SeriesDerivatives:
         z = phase * self.scales[0]
         S, C = (np.sinh(z), np.cosh(z)) if self.hyperbolic else (np.sin(z), np.cos(z))
         odd = np.remainder(step, 2.0) != 0
-        rate = np.where(odd, *(_value(part, S * S) for part in self.rates_of_tilt[::-1])) * S * C
+        rate = np.where(odd, *(polynomial(x, S * S) for x in self.rates_of_tilt[::-1])) * S * C
         norm = x2 + y2
         theta = rate / (2.0 * norm * np.sqrt(x2 * y2))
         spinning = self.about_means.at(phase, odd, 2.0 * x2 / norm, 2.0 * y2 / norm)
@@ -167,7 +168,7 @@ class SeriesDerivatives:
 
 def _in_doubles(
     ar: Any, found: SeriesFromStart
-) -> tuple[list[tuple[Polynomials, Polynomials]], list[Array]]:
+) -> tuple[list[tuple[Polynomials, Polynomials]], list[list[float]]]:
     """Return X and Y, and the rate of the tilt, about both turning points as rows of doubles.
 
     Negligible coefficients are omitted.
@@ -181,8 +182,8 @@ def _in_doubles(
         real, imag = (_rows([x / Dual(size) for x in part]) for part in parts)
         return Polynomials(real, imag, c.even)
 
-    def rate(coefficients: Coefficients) -> Array:
-        return np.array([float(x.value / size**4) for x in _kept(coefficients, greatest)])
+    def rate(coefficients: Coefficients) -> list[float]:
+        return [float(x.value / size**4) for x in _kept(coefficients, greatest)]
 
     frames = [(component(frame.x), component(frame.y)) for frame in found.frames]
     return frames, [rate(frame.rate) for frame in found.frames]
@@ -204,15 +205,15 @@ def _component(component: Polynomials, z: Array, hyperbolic: bool) -> list[tuple
     return parts
 
 
-def _kept(polynomial: Coefficients, greatest: Decimal) -> Coefficients:
+def _kept(coefficients: Coefficients, greatest: Decimal) -> Coefficients:
     """Return the coefficients that are not negligible up to the greatest argument."""
-    sizes = [abs(x.value) for x in polynomial]
-    return polynomial[: count_needed(sizes, greatest, _NEGLIGIBLE)]
+    sizes = [abs(x.value) for x in coefficients]
+    return coefficients[: count_needed(sizes, greatest, _NEGLIGIBLE)]
 
 
-def _rows(polynomial: Coefficients) -> Array:
+def _rows(coefficients: Coefficients) -> Array:
     """Return coefficients as columns of their value and derivatives."""
-    return np.array([_row(x) for x in polynomial]).T
+    return np.array([_row(x) for x in coefficients]).T
 
 
 def _row(x: Dual | Decimal) -> Array:
@@ -220,10 +221,6 @@ def _row(x: Dual | Decimal) -> Array:
     partials = x.partials if isinstance(x, Dual) else None
     none = [Decimal(0)] * len(PARAMETERS)
     return np.array([float(_decimal(x)), *map(float, partials or none)])
-
-
-def _value(polynomial: Array, s: Array) -> Array:
-    return np.asarray(np.polynomial.polynomial.polyval(s, polynomial), dtype=float)
 
 
 def _decimal(x: Any) -> Decimal:
