@@ -14,28 +14,22 @@ import numpy as np
 
 from ..arithmetic.types import Array
 from ..inputs.top import Top
+from ..motion.record import KEYS, requested_keys
 from ..motion.sensitivity.sensitivities import sensitivities
 from ..motion.solve import solve
 from .model import STATE, inputs_of
 
 _SPIN = "mean_spin_rate"
-_MEANINGS = {
-    "T_nutation": "nutation period",
-    "T_precession": "period of the mean precession",
-    "mean_precession_rate": "mean precession rate",
-    _SPIN: "mean spin rate",
-    "theta_min_deg": "least tilt",
-    "theta_max_deg": "greatest tilt",
-    "stability_factor": "b^2/2a",
-    "T_nutation_elementary": "2 pi A/(C |r0|)",
-    "precession_rate_elementary": "mgs/(C r0)",
-}
-"""Keys of the record that are derived, and their meanings."""
 _STANDS_FOR = {
     "T_nutation_elementary": "T_nutation",
     "precession_rate_elementary": "mean_precession_rate",
 }
 """The exact numbers that elementary formulas stand for."""
+_DERIVED = [
+    *f"T_nutation T_precession mean_precession_rate {_SPIN} theta_min_deg theta_max_deg".split(),
+    *("stability_factor", *_STANDS_FOR),
+]
+"""Keys of the record that are derived."""
 _BY = {"a": ("g", 0.5), "b": ("r0", 1.0), "theta0": ("theta0_rad", 1.0)}
 """The inputs of a top with A = C = m = s = 1 that stand for a, b and theta0, and their slopes."""
 
@@ -74,8 +68,9 @@ def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[Der
     Keys that the motion does not have are omitted.
     """
     top = Top(**inputs_of(*(values[name] for name in STATE)))
-    motion, slopes = solve(top), sensitivities(top, list(_MEANINGS)).derivatives
-    for key, meaning in _MEANINGS.items():
+    motion, slopes = solve(top), sensitivities(top, _DERIVED).derivatives
+    declared = KEYS | requested_keys()
+    for key in _DERIVED:
         if key not in slopes or (key == _SPIN and not spins):
             continue
         by = [_BY.get(name, (name, 1.0)) for name in STATE]
@@ -84,4 +79,4 @@ def derived_numbers(values: Mapping[str, float], *, spins: bool) -> Iterator[Der
         if key == _SPIN:  # the top has r0 = b: the spin of the body grows by (r0 - b) t more
             value += values["r0"] - values["b"]
             gradient |= {"r0": 1.0, "b": gradient["b"] - 1}
-        yield DerivedNumber(key, value, gradient, meaning, _STANDS_FOR.get(key, ""))
+        yield DerivedNumber(key, value, gradient, declared[key].meaning, _STANDS_FOR.get(key, ""))

@@ -169,7 +169,9 @@ class Outcome(HasRecord):
         for x, deviation, off in self.derived:
             angle = x.key.endswith("_deg")
             scale = math.radians(1.0) if angle and self.radians else 1.0
-            meaning = x.meaning if off is None else f"{x.meaning}: {off:+.1f} sigma off"
+            meaning = x.meaning
+            if off is not None:
+                meaning += f", {off:+.{int(abs(off) < 10)}f} sigma"
             key = unit_name(x.key, radians=self.radians)
             yield key, x.value * scale, deviation * scale, meaning
 
