@@ -71,7 +71,7 @@ def _parse_window(text: str) -> tuple[float, bool]:
     """,
 )
 @click.argument("words", nargs=-1, required=True, type=FILE, metavar="[SCENE] RECORDING")
-@top_options(UNCERTAIN, scene=False, units=False, whole=False)
+@top_options(UNCERTAIN, scene=False, whole=False)
 @click.option("--fix", type=ANY_NAMES, help="Inputs of the scene that are known, such as m,g.")
 @click.option(
     "--sigma",

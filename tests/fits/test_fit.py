@@ -290,6 +290,16 @@ def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: s
         assert plain[f"{key}_std"] > 1.5 * fitted[f"{key}_std"], key
 
 
+def test_units_of_the_output(lagtop: Lagtop) -> None:
+    known = ["--m", "1.587kg", "--g", "9.81m/s^2", "--s", "4cm", "--format", "json"]
+    si, cgs = (
+        json.loads(lagtop("fit", SAMPLE, *known, "--units", x).stdout) for x in ("si", "cgs")
+    )
+    assert cgs["A"] == pytest.approx(1e7 * si["A"], rel=1e-9)
+    assert (si["units"]["A"], cgs["units"]["A"]) == ("kg m²", "g cm²")
+    assert cgs["r0_std"] == pytest.approx(si["r0_std"], rel=1e-6)
+
+
 def test_a_steady_word_is_no_known_rate(lagtop: Lagtop, tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text('r0 = 60\npsidot0 = "steady"\n')
