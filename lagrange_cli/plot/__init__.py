@@ -102,19 +102,12 @@ def draw(motion: Motion, kind: str = "sphere", ax: Places = None, **options: Any
     from ..errors import check_type
     from ..inputs.names import check_names
     from ..motion.solve import Motion
+    from .kinds import KINDS
 
     check_type("motion", motion, Motion)
     check_type("kind", kind, str)
-    functions = {
-        "sphere": draw_sphere,
-        "angles": draw_angles,
-        "remainders": draw_remainders,
-        "cubic": draw_cubic,
-        "phase": draw_phase,
-        "map": draw_map,
-    }
-    check_names("kind", [kind], functions)
-    drawn: list[Axes] = functions[kind](motion, ax, **options)
+    check_names("kind", [kind], KINDS)
+    drawn: list[Axes] = globals()[f"draw_{kind}"](motion, ax, **options)
     return drawn
 
 

@@ -111,6 +111,17 @@ def test_motion_starts_only_for_readers_who_want_it(
     assert browser.ask("return document.getAnimations().length") == 0
 
 
+def test_paper_shows_no_controls(browser: Browser, page_file: Path) -> None:
+    """The rules of narrow screens must not win over those of paper."""
+    browser.open(page_file, width=720)
+    browser.command("Emulation.setEmulatedMedia", {"media": "print"})
+    shown = f"{CONTROLS}.filter((part) => part.matches('button, select, [type=range], h2 *'))"
+    height, left = browser.ask(f"return [at.space.clientHeight, {shown}.map({NAME})]")
+    browser.command("Emulation.setEmulatedMedia", {"media": ""})
+    assert left == []
+    assert height < 90 / 25.4 * 96
+
+
 @pytest.mark.parametrize(("width", "zoom"), [(1280, 2), (1280, 4), (820, 2)])
 def test_nothing_is_lost_if_the_page_is_enlarged(
     browser: Browser, page_file: Path, width: int, zoom: int
