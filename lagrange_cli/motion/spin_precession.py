@@ -53,37 +53,27 @@ class SpinPrecession(Nutation[R]):
         return self.ar.pi / self.T_nutation
 
     @quantity
-    def _south(self) -> R:
-        """The mean of (beta + b)/(2 (1 + u)); half a turn per period over the lower pole."""
-        gaps = self.gaps
-        if self.facts.free or self.facts.over_bottom:
-            half_turn: R = self.facts.sign_plus * self.half_turn_rate
-            return half_turn
-        return self._mean(gaps.below_u1, gaps.below_u2, gaps.beta_plus_b, gaps.beta_plus_b)
+    def mean_parts(self) -> tuple[R, R, R]:
+        """The constant part of the mean spin rate, and the means of south and north.
 
-    @quantity
-    def _north(self) -> R:
-        """The mean of (beta - b)/(2 (1 - u)); half a turn per period over the upper pole."""
-        gaps = self.gaps
-        if self.facts.free or self.facts.upper_root == 1:
-            half_turn: R = self.facts.sign_minus * self.half_turn_rate
-            return half_turn
-        return self._mean(gaps.above_u1, gaps.above_u2, gaps.beta_minus_b, gaps.beta_minus_b)
+        Without torque, and over a pole, b/2 is taken out of south and of north.  Each of them then
+        is half a turn per period if the axis passes over its pole.
+        """
+        facts, gaps = self.facts, self.gaps
+        below, above = (gaps.below_u1, gaps.below_u2), (gaps.above_u1, gaps.above_u2)
+        momenta = gaps.momentum_u1, gaps.momentum_u2
+        if not (facts.free or facts.meets_a_pole):
+            return self.r0, self._mean(below, momenta), self._mean(above, momenta)
+        south: R = facts.sign_plus * self.half_turn_rate
+        north: R = facts.sign_minus * self.half_turn_rate
+        if not (facts.free or facts.over_bottom):
+            south = self._mean(below, (gaps.beta_plus_b, gaps.beta_plus_b))
+        if not (facts.free or facts.upper_root == 1):
+            north = self._mean(above, (gaps.beta_minus_b, gaps.beta_minus_b))
+        return self.state.pole_drift, south, north
 
-    def _mean(self, from_u1: R, from_u2: R, at_u1: R, at_u2: R) -> R:
-        return mean_over(self.ar, self.k_prime, (from_u1, from_u2), (at_u1, at_u2))
-
-    @quantity
-    def _whole_south(self) -> R:
-        """The mean of (beta - b u)/(2 (1 + u))."""
-        gaps = self.gaps
-        return self._mean(gaps.below_u1, gaps.below_u2, gaps.momentum_u1, gaps.momentum_u2)
-
-    @quantity
-    def _whole_north(self) -> R:
-        """The mean of (beta - b u)/(2 (1 - u))."""
-        gaps = self.gaps
-        return self._mean(gaps.above_u1, gaps.above_u2, gaps.momentum_u1, gaps.momentum_u2)
+    def _mean(self, distances: Sequence[R], values: Sequence[R]) -> R:
+        return mean_over(self.ar, self.k_prime, distances, values)
 
     @mean_rate_key("φ' mean", "mean spin rate", "(6,3)", f"r0 - b - (P - Q)/(2*K) {_POLES}")
     def mean_spin_rate(self) -> R:
@@ -97,16 +87,14 @@ class SpinPrecession(Nutation[R]):
             return self.state.spin_drift + self.ar.where(self.r0 < 0, -half_turn, half_turn)
         if self.facts.drifts:
             return self.state.spin_drift
-        if self.facts.free or self.facts.meets_a_pole:
-            return self.state.pole_drift + self._south - self._north
-        return self.r0 + self._whole_south - self._whole_north
+        constant, south, north = self.mean_parts
+        return constant + south - north
 
     @mean_rate_key("ψ' mean", "mean precession rate", "(7,3)", f"(P + Q)/(2*K) {_POLES}")
     def mean_precession_rate(self) -> R:
         """The mean precession rate (7,3)."""
-        if self.facts.free or self.facts.meets_a_pole:
-            return self._south + self._north
-        return self._whole_south + self._whole_north
+        _, south, north = self.mean_parts
+        return south + north
 
     @period_key(
         "Tφ",
