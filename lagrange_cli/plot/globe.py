@@ -16,8 +16,8 @@ from .style import Look, points, short_text
 
 TIP, NAME = 1.24, 0.1
 """Length of the axes of space in radii of the globe, and distance of their names from the tips."""
-MOST = {"ls": (0, (7, 2, 1, 2))}
-"""Style of the circle of the greatest tilt: dash-dotted."""
+DASH_DOTTED = {"ls": (0, (7, 2, 1, 2))}
+"""Style of the circle of the greatest tilt."""
 SAME_PLACE = 0.13
 """Distance at which the names of two axes would touch, so that they are joined."""
 INSEPARABLE = math.radians(0.8)
@@ -43,7 +43,7 @@ def draw_globe(
         _draw_limit(axes, camera, greatest, f"tilt ϑ from {low} to {high}", **blue)
     else:
         _draw_limit(axes, camera, least, f"ϑ min {low}", **blue)
-        _draw_limit(axes, camera, greatest, f"ϑ max {high}", **blue | MOST)
+        _draw_limit(axes, camera, greatest, f"ϑ max {high}", **blue | DASH_DOTTED)
 
 
 def _tilt_text(tilt: float, radians: bool) -> str:
