@@ -12,7 +12,7 @@ from .options import COUNT, Parsed, keys_option, output_options
 from .progress import with_progress
 from .top import (
     TopOptions,
-    headings,
+    key_headings,
     scene_among,
     top_options,
     value_type,
@@ -139,5 +139,5 @@ def _write(
         if system is not None and record.get("remark"):
             record["remark"] = system.in_words(record["remark"])
     columns = [[record[key] for record in records] for key in keys]
-    names = headings(keys, system, out.fmt, radians=radians)
+    names = key_headings(keys, system, out.fmt, radians=radians)
     out.blocks(names, [block_text(columns, keys, out.fmt)])

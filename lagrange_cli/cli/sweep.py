@@ -24,7 +24,15 @@ from .options import (
     text_options,
 )
 from .progress import with_progress
-from .top import SCENE, TopOptions, headings, top_options, value_type, warn_missing, warn_no_tops
+from .top import (
+    SCENE,
+    TopOptions,
+    key_headings,
+    top_options,
+    value_type,
+    warn_missing,
+    warn_no_tops,
+)
 
 if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
@@ -146,7 +154,7 @@ def sweep_command(
             parts_folder.write(passing)
         else:
             texts = (part.text for part in passing)
-            names = headings(sweep.header, sweep.system, out.fmt, radians=top.radians)
+            names = key_headings(sweep.header, sweep.system, out.fmt, radians=top.radians)
             out.blocks(names, texts)
     if parts_folder and parts_folder.found:
         complain(f"Resumed: {parts_folder.found} parts were already in {folder}")

@@ -183,7 +183,7 @@ def motion_of(found: Given, *, exact: bool = False) -> Motion:
     return motion
 
 
-def headings(
+def key_headings(
     names: Sequence[str], system: System | None, fmt: str, *, radians: bool
 ) -> Sequence[str]:
     """Return the headings of keys: with units in a table for people, if inputs have units."""
