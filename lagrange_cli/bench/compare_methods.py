@@ -27,9 +27,7 @@ from .method import OURS, Method, MethodRow, is_done, is_out
 PERIODS = 20.3
 """Default span in nutation periods."""
 SPANS = [10.0**power + 0.3 for power in range(7)]
-"""Growing spans; like the default one, none ends at a turning point, at which approximations are
-best.
-"""
+"""Growing spans.  None ends at a turning point, at which approximations are best."""
 _JUDGED_IN_A_SPAN = 21
 
 ROUNDING, LOST = 1e-11, 0.1
@@ -112,8 +110,8 @@ def _rows(
         if before and is_out(before):
             continue
         if is_long and before and not is_done(before):
-            row = MethodRow(work.scene, name, setting, work.periods)
-            rows.append(row._replace(remark="not run: it failed over a shorter span"))
+            remark = "not run: it failed over a shorter span"
+            rows.append(MethodRow(work.scene, name, setting, work.periods, remark=remark))
         else:
             rows.append(measure(work, name, methods[name], setting))
     return rows

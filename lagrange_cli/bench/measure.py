@@ -189,21 +189,15 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
 
 
 def _run(sample: AngleFunction, times: Array) -> tuple[SampledAngles, list[float]]:
-    """Return the angles of a first run, and the seconds of later, warm runs.
-
-    A run that takes long is not repeated.
-    """
+    """Return the angles, and the seconds of warm runs; a run that takes long is not repeated."""
     seconds: list[float] = []
-    begun = time.perf_counter()
-    angles = sample(times)
-    first = time.perf_counter() - begun
-    if first > SECONDS_OF_RUNS:
-        return angles, [first]
-    while len(seconds) < RUNS and sum(seconds) < SECONDS_OF_RUNS:
+    while True:
         begun = time.perf_counter()
-        sample(times)
+        angles = sample(times)
         seconds.append(time.perf_counter() - begun)
-    return angles, seconds
+        first, *warm = seconds
+        if first > SECONDS_OF_RUNS or len(warm) == RUNS or sum(warm) >= SECONDS_OF_RUNS:
+            return angles, warm or seconds
 
 
 def _judged(

@@ -46,6 +46,21 @@ VERDICTS = {
 """The words of the verdict and their meanings, from good to bad."""
 
 
+def peer_conditions(*, is_long: bool) -> dict[str, str]:
+    """Return the conditions of the comparison."""
+    most = LONG_EVALUATIONS if is_long else EVALUATIONS
+    return {
+        "errors": "radians, the turn from the exact to the computed attitude, the greatest of "
+        f"{TIMES_OF_A_SPAN} times from 0.1 to 5 periods, and as many to the end of each further "
+        "span, at equal ratios",
+        "condition": "radians by which half a unit in the last place of each input turns it",
+        "methods": "each at its tightest setting; a run gives up after "
+        f"{most:.0e} evaluations of the right-hand side, or {SECONDS:g} s",
+        "conserved": "changes of energy and Lz since the start, over the sum of their terms",
+        "verdicts": "; ".join(f"{word}: {meaning}" for word, meaning in VERDICTS.items()),
+    }
+
+
 class PeerRun(NamedTuple):
     """One method in one scene."""
 

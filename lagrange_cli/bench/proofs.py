@@ -112,10 +112,9 @@ def _sizes(sample: BallSample, angles: Sequence[Ball]) -> list[Ball]:
     theta_rate = ar.sqrt(square) if (square > 0) is True else 0 * square
     turning = ar.sqrt(theta_rate * theta_rate + across * across + r0 * r0) / 2
     rates = theta_rate, sample.phi_rate(), sample.psi_rate()
-    least = [max(angle.least, Decimal(1)) for angle in angles]
     sizes = [
-        ar.exact(size) + ar.exact((tau * rate).least)
-        for size, rate in zip(least, rates, strict=True)
+        ar.exact(max(angle.least, Decimal(1))) + ar.exact((tau * rate).least)
+        for angle, rate in zip(angles, rates, strict=True)
     ]
     return [*sizes, *[1 + ar.exact((tau * turning).least)] * 4]
 

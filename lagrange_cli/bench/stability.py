@@ -28,16 +28,7 @@ from .battery import (
 from .hard_scenes import words_of
 from .measure import common_conditions, settled_reference
 from .method import OURS
-from .peers import (
-    EVALUATIONS,
-    LONG_EVALUATIONS,
-    LONG_SPAN,
-    SPANS,
-    TIMES_OF_A_SPAN,
-    VERDICTS,
-    PeerRun,
-    peer_runs,
-)
+from .peers import LONG_SPAN, SPANS, VERDICTS, PeerRun, peer_conditions, peer_runs
 
 TIMES = 2
 """Random times per scene for lagtop; six more are next to half, quarter and whole periods."""
@@ -144,7 +135,7 @@ def run_battery(
     if certify:
         conditions["reference"] = PROVED
     else:
-        conditions |= _of_methods(LONG_EVALUATIONS if is_long else EVALUATIONS)
+        conditions |= peer_conditions(is_long=is_long)
     shown = _PROVED if certify else [*_COMPARED, _LONG] if is_long else _COMPARED
     fields = fields_of(StratumRow._fields[:-1], *_ALWAYS, *shown)
     return Report(conditions, fields, rows, _conclusions(rows))
@@ -207,20 +198,6 @@ def _conditions(strata: Sequence[str], samples: int, seed: int) -> dict[str, str
         "strata": "; ".join(f"{name}: {words_of(name)}" for name in strata),
         "promise": f"lagtop: angles and quaternion within {CONTRACT:g} units, every key of the "
         f"record within {KEY_CONTRACT:g} gaps between doubles",
-    }
-
-
-def _of_methods(most: int) -> dict[str, str]:
-    """Return the conditions of the comparison, with a limit of evaluations."""
-    return {
-        "errors": "radians, the turn from the exact to the computed attitude, the greatest of "
-        f"{TIMES_OF_A_SPAN} times from 0.1 to 5 periods, and as many to the end of each further "
-        "span, at equal ratios",
-        "condition": "radians by which half a unit in the last place of each input turns it",
-        "methods": "each at its tightest setting; a run gives up after "
-        f"{most:.0e} evaluations of the right-hand side",
-        "conserved": "changes of energy and Lz since the start, over the sum of their terms",
-        "verdicts": "; ".join(f"{word}: {meaning}" for word, meaning in VERDICTS.items()),
     }
 
 
