@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+from ..inputs.files import shown_path
 from ..inputs.names import ANGLES
 from ..motion.solve import Motion
 from ..output.report import Field, Report, short
@@ -93,13 +94,13 @@ def _conclusions(comparison: Comparison) -> Iterator[str]:
         elif found.order < LEAST_ORDER:
             yield "The error depends on the step, but shows no order: give runs of one method."
         else:
-            yield f"The error falls with the step to the power of {found.order:.2f}."
+            yield f"The error falls with the step; the order of convergence is {found.order:.2f}."
     if found is None or not found.falls:
         yield from _explanations(comparison.judgements)
 
 
 def _name(judgement: Judgement) -> str:
-    return one_line(judgement.file or "")
+    return one_line(shown_path(judgement.file or ""))
 
 
 def _sentence(judgement: Judgement) -> str:
@@ -135,7 +136,7 @@ def _explanations(judgements: Sequence[Judgement]) -> Iterator[str]:
     if explained:
         best = min(explained, key=lambda x: x.explained_error or 0.0)
         yield (
-            f"Most likely cause: {best.explained_by}. Without it, the error of "
+            f"Most likely cause: {best.explained_by}. If that is corrected, the error of "
             f"{_name(best)} is at most {best.explained_error:.1e} rad."
         )
     elif any(x.verdict in {ANOTHER, DRIFTS, OFF} for x in judgements):
