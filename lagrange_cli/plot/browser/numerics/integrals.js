@@ -1,5 +1,6 @@
 // Elliptic integrals: the complete ones, which times and rates are multiplied with, in 32 digits,
-// and those of places on the way in doubles.  Every loop adds and multiplies positive numbers only.
+// and those of places on the way in doubles.  Every loop adds and multiplies positive numbers only,
+// and ends at NaN as well, which no comparison finds larger.
 
 import { pair, PI } from "./pair.js";
 
