@@ -47,20 +47,15 @@ def tilt_period(motion: Motion) -> float | None:
     return None if same or motion.regime is Regime.STEADY else motion.T_nutation
 
 
-def swings_in_a_plane(motion: Motion) -> bool:
-    """Return whether the top is a plane pendulum, whose axis returns along the same arc."""
-    top = motion.top
-    return not top.r0 and (not top.psidot0 or top.inputs()["theta0_deg"] in (0, 180))
-
-
 def motion_in_words(motion: Motion) -> str:
     """Return a few words on a motion: its path, or its regime if that is more informative.
 
     Upright and hanging tops are called stable or unstable.
     """
-    regime, remark = motion.regime, motion.remark or ""
+    regime = motion.regime
     if regime in (Regime.SLEEPING, Regime.HANGING):
-        return f"{regime.value}, {'unstable' if 'unstable' in remark else 'stable'}"
+        stable = regime is Regime.HANGING or motion.exact.facts.stable
+        return f"{regime.value}, {'stable' if stable else 'unstable'}"
     if regime is Regime.SEPARATRIX:
         return "separatrix, rises to upright for ever"
     if regime is Regime.REGULAR:
@@ -96,7 +91,7 @@ def sphere_span(motion: Motion) -> float:
     A fast top hardly precesses during a nutation, so it is shown for three.
     """
     nutation, turn = tilt_period(motion), turn_span(motion)
-    if nutation and swings_in_a_plane(motion):
+    if nutation and motion.exact.facts.plane:
         return nutation
     if nutation and abs(motion.mean_precession_rate or 1.0) * turn < math.radians(20):
         return 3 * nutation
