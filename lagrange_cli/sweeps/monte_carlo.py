@@ -31,7 +31,7 @@ COVERAGE = 1.959963984540054
 HOLDS, OPEN, FAILS = "yes", "undecided", "no"
 _MISSING = 1e-3
 """Share of samples without a key, beyond which linear propagation counts as failed."""
-_HALF_TURN, _TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}, 2.0
+_HALF_TURN = {"theta0_deg": 180.0, "theta0_rad": math.pi}
 
 
 class Spread(NamedTuple):
@@ -69,7 +69,7 @@ class Propagated(NamedTuple):
 
 def propagate(
     inputs: Mapping[str, float],
-    stds: Mapping[str, float],
+    stds: Stds,
     numbers: Mapping[str, tuple[float, float | None]],
     *,
     samples: int,
@@ -87,7 +87,7 @@ def propagate(
         raise LagtopError(f"samples must be in {limits}, got {samples}", "samples")
     if seed is not None and seed < 0:
         raise LagtopError(f"seed must be >= 0, got {seed}", "seed")
-    rng, spread = np.random.default_rng(seed), stds if isinstance(stds, Stds) else Stds(stds)
+    rng = np.random.default_rng(seed)
     keys = [unit_name(key, radians=radians) for key in numbers]
     columns: dict[str, list[Array]] = {key: [] for key in keys}
     regimes: Counter[str] = Counter()
@@ -95,7 +95,7 @@ def propagate(
         range(0, samples, SAMPLES_AT_ONCE), "samples", samples, lambda _: SAMPLES_AT_ONCE
     ):
         count = min(SAMPLES_AT_ONCE, samples - first)
-        drawn = _drawn(rng, inputs, spread, count)
+        drawn = _drawn(rng, inputs, stds, count)
         wanted = [*keys, "regime", "remark", "error"]
         tops: dict[str, Any] = {**inputs, **drawn}
         found = sweep(keys=wanted, radians=radians, **tops)
@@ -123,7 +123,7 @@ def _drawn(
     drawn = {name: inputs[name] + stds[name] * x for name, x in drawn.items()}
     for name, half in _HALF_TURN.items():
         if name in drawn:
-            drawn[name] = half - np.abs(half - np.abs(drawn[name]) % (_TURN * half))
+            drawn[name] = half - np.abs(half - np.abs(drawn[name]) % (2 * half))
     return drawn
 
 

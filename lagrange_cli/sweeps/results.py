@@ -13,6 +13,7 @@ from ..arithmetic.types import Array
 from ..errors import LagtopError, UnavailableError
 from ..inputs.top import Top
 from ..inputs.units import System
+from ..inputs.value import Stds
 from ..motion.notebook import html_table
 from ..motion.record import KEYS, TEXT_KEYS, requested_keys
 from .top_arrays import TopArrays
@@ -128,7 +129,7 @@ def std_columns(
     columns: Mapping[str, ResultColumn],
     tops: TopArrays,
     given: Mapping[str, Array | float],
-    stds: Mapping[str, float],
+    stds: Stds,
 ) -> dict[str, Array]:
     """Return `KEY_std` for each number of some records, NaN if there is none.
 

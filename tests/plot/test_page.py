@@ -125,7 +125,7 @@ def test_no_title_is_cut_off(
 
 def test_the_numbers_beside_pictures_have_uncertainties() -> None:
     motion = solve(Top())
-    uncertain = FirstOrder(motion.top, {"theta0_deg": 1.0}, ["theta0_deg"])
+    uncertain = FirstOrder(motion.top, Stds({"theta0_deg": 1.0}), ["theta0_deg"])
     figure = drawn(motion, ["cubic", "phase"], PlotRequest(uncertain=uncertain))
     texts = {text.get_text() for text in figure.subfigs[0].texts}
     assert {"30.0(1.0) deg", "73.9(8) deg", "50 rad/time", "0.429(8) time"} <= texts

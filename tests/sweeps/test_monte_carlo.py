@@ -9,6 +9,7 @@ import pytest
 from scenes import UNIT
 
 from lagrange_cli import LagtopError, Top, solve, sweep
+from lagrange_cli.inputs.value import Stds
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.sensitivity.uncertainty import FirstOrder
 from lagrange_cli.sweeps.monte_carlo import (
@@ -26,10 +27,10 @@ def outcome(
 ) -> Propagated:
     """Return what becomes of samples of a top, of which some keys are looked at."""
     top = Top(**inputs)
-    uncertain, motion = FirstOrder(top, stds, inputs), solve(top)
+    uncertain, motion = FirstOrder(top, Stds(stds), inputs), solve(top)
     numbers = {key: (getattr(motion, key), uncertain.std(key)) for key in keys}
     given = {name: float(x) for name, x in top.as_dict().items() if x is not None}
-    return propagate(given, stds, numbers, samples=samples, seed=1)
+    return propagate(given, Stds(stds), numbers, samples=samples, seed=1)
 
 
 def test_samples_and_first_order_agree_where_both_hold() -> None:
@@ -94,7 +95,8 @@ def test_numbers_correlate_with_inputs_by_the_signs_of_the_derivatives(regime: s
         free = {"r0": rng.uniform(0.5, 3), "theta0_deg": rng.uniform(30, 150)}
         free |= {"C": rng.uniform(0.2, 1), "s": rng.uniform(0.5, 1.5)}
         inputs: dict[str, Any] = UNIT | ({} if fixed else free) | own
-        uncertain = FirstOrder(Top(**inputs), {x: 1e-6 * abs(inputs[x]) for x in names}, inputs)
+        stds = Stds({x: 1e-6 * abs(inputs[x]) for x in names})
+        uncertain = FirstOrder(Top(**inputs), stds, inputs)
         motion = solve(uncertain.top)
         assert motion.regime == regime
         record = motion.numbers()
@@ -134,4 +136,4 @@ def test_the_verdict_knows_its_own_noise() -> None:
     assert first_order_holds(normal, 0.6, 1.0) == FAILS
     assert first_order_holds(np.zeros(100), 0.0, 0.0) == HOLDS
     with pytest.raises(LagtopError, match=r"samples must be in \[100, 1000000\]"):
-        propagate({}, {}, {}, samples=3)
+        propagate({}, Stds({}), {}, samples=3)

@@ -50,14 +50,12 @@ class FirstOrder:
     count as 0.
     """
 
-    def __init__(self, top: Top, stds: Mapping[str, float], given: Collection[str]) -> None:
+    def __init__(self, top: Top, stds: Stds, given: Collection[str]) -> None:
         """Take the uncertainties of the inputs as given, and the names of all given inputs.
 
-        Inputs are uncorrelated unless `stds` are `Stds` with correlations.  Raises LagtopError for
-        an impossible start.
+        Raises LagtopError for an impossible start.
         """
-        self.stds = stds if isinstance(stds, Stds) else Stds(stds)
-        self.top, self.given = top, given
+        self.top, self.stds, self.given = top, stds, given
         self.motion = Numbers(exact(top))
         self.slopes = Slopes(self.motion.exact)
 
