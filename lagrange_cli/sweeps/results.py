@@ -15,7 +15,7 @@ from ..inputs.top import Top
 from ..inputs.units import System
 from ..inputs.value import Stds
 from ..motion.notebook import html_table
-from ..motion.record import KEYS, TEXT_KEYS, requested_keys
+from ..motion.record import TEXT_KEYS, shown_keys
 from .top_arrays import TopArrays
 
 ResultColumn = Array | NDArray[np.object_]
@@ -97,11 +97,9 @@ class Results(dict[str, ResultColumn]):
 
     def _attributes(self, name: str) -> dict[str, str]:
         """Return the unit of a column, if it has one."""
-        key = KEYS.get(name.replace("_rad", "_deg")) or requested_keys().get(name)
-        unit = key.unit if key else ""
-        if unit == "angle":
-            unit = "rad" if name.endswith("_rad") else "deg"
-        return {"units": self._system.named(unit) if self._system else unit} if unit else {}
+        named = self._system.named if self._system else str
+        keys = shown_keys(radians=name.endswith("_rad"), named=named, requested=True)
+        return {"units": keys[name].unit} if name in keys and keys[name].unit else {}
 
     def _repr_html_(self) -> str:
         """Return the first rows as a table for a notebook."""

@@ -53,6 +53,8 @@ def test_dimensions_of_a_grid_are_its_inputs() -> None:
     assert float(at.T_nutation) == pytest.approx(period(r0=60.0, theta0_deg=30.0), rel=1e-14)
     assert found.r0.attrs["units"] == "rad/time"
     assert found.theta0_deg.attrs["units"] == "deg"
+    on_request = sweep(keys=["phi_half_rad"], radians=True).to_xarray()
+    assert on_request.phi_half_rad.attrs["units"] == "rad"
 
 
 def test_paired_inputs_share_a_dimension() -> None:
