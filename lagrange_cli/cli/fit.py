@@ -279,7 +279,7 @@ def _write_scene(outcome: Outcome, source: str, path: str) -> None:
 def _draw(found: list[Outcome], path: str, radians: bool) -> None:
     from ..fits.report import curves_of
     from ..output.destination import write_bytes
-    from ..plot.reports import FittedCurve, draw_fit
+    from ..plot.reports import draw_fit
 
-    curves = [FittedCurve(*x) for outcome in found for x in curves_of(outcome)]
+    curves = [curve for outcome in found for curve in curves_of(outcome)]
     write_bytes(path, partial(draw_fit, curves, "rad" if radians else "deg", path))

@@ -29,8 +29,6 @@ _FIELDS = [
 ]
 _FINE = 1200
 """Points of a curve."""
-Curve = tuple[str, Array, Array, Array, Array, Array]
-"""Name, times, data, fine times, motion at the fine times, and data minus motion."""
 
 
 class ReportRow(NamedTuple):
@@ -40,6 +38,21 @@ class ReportRow(NamedTuple):
     key: str
     value: str
     meaning: str
+
+
+class FittedCurve(NamedTuple):
+    """One channel of a recording and the fitted motion, in the unit of angles in use."""
+
+    name: str
+    """`theta`, `phi` or `psi`; with several recordings, after the name of one and a colon."""
+    t: Array
+    data: Array
+    """Measured values; NaN if missing."""
+    fine_t: Array
+    curve: Array
+    """The motion at the fine times."""
+    residual: Array
+    """Residuals (data minus motion) at the times t."""
 
 
 def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
@@ -203,7 +216,7 @@ def _spread_of_inputs(outcome: Outcome) -> tuple[dict[str, float], Array]:
     return stds, np.clip(correlations, -1.0, 1.0)
 
 
-def curves_of(outcome: Outcome) -> Iterator[Curve]:
+def curves_of(outcome: Outcome) -> Iterator[FittedCurve]:
     """Yield the curves of one recording, in the unit of angles in use.
 
     The measured angles are shifted by whole turns to the fitted motion.
@@ -218,7 +231,6 @@ def curves_of(outcome: Outcome) -> Iterator[Curve]:
             data = at_rows[name] + left
             start = recording.t_start
             label = f"{recording.name}: {name}" if recording.name else name
-            yield (
-                *(label, t + start, data * scale),
-                *(fine + start, at_fine[name] * scale, left * scale),
+            yield FittedCurve(
+                label, t + start, data * scale, fine + start, at_fine[name] * scale, left * scale
             )

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from ..arithmetic.types import Array
     from ..fits.record import Outcome
+    from ..fits.report import FittedCurve
 
 _DASHES = ("-", "--", "-.", ":")
 _MARKS = "os^Dv<>pP*X"
@@ -115,21 +116,6 @@ def _draw_convergence(
     axes.set_title("Convergence")
 
 
-class FittedCurve(NamedTuple):
-    """One channel of a recording and the fitted motion, in the unit of the labels."""
-
-    name: str
-    """`theta`, `phi` or `psi`; with several recordings, after the name of one and a colon."""
-    t: Array
-    data: Array
-    """Measured values; NaN if missing."""
-    fine_t: Array
-    curve: Array
-    """The motion at the fine times."""
-    residual: Array
-    """Residuals (data minus motion) at the times t."""
-
-
 def draw_fit(curves: Sequence[FittedCurve], unit: str, path: str) -> bytes:
     """Return the picture of a fit in the format given by its file name."""
     size = 7.5, 1.0 + 3.0 * len(curves)
@@ -153,8 +139,7 @@ def draw_outcome(outcome: Outcome, figure: Figure | None = None) -> Figure:
 
     check_type("outcome", outcome, Outcome)
     figure = figure or new_figure()
-    curves = [FittedCurve(*x) for x in curves_of(outcome)]
-    draw_fit_panels(figure, curves, "rad" if outcome.radians else "deg")
+    draw_fit_panels(figure, list(curves_of(outcome)), "rad" if outcome.radians else "deg")
     return figure
 
 

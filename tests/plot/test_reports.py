@@ -10,7 +10,8 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from lagrange_cli.plot.reports import ErrorCurve, FittedCurve, draw_error_panels, draw_fit_panels
+from lagrange_cli.fits.report import FittedCurve
+from lagrange_cli.plot.reports import ErrorCurve, draw_error_panels, draw_fit_panels
 from lagrange_cli.plot.style import LIGHT, styled
 
 T = np.linspace(0, 1, 11)
