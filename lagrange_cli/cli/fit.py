@@ -254,12 +254,9 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
     if out.fmt in {"table", "markdown"}:
         write_report(out, lambda: windows_report(found, source, system))
     elif out.fmt == "json":
-        import orjson
+        from ..arithmetic.text import json_text
 
-        from ..output.destination import write_bytes
-
-        option = orjson.OPT_APPEND_NEWLINE
-        write_bytes(out.path, lambda: orjson.dumps(found.record(), option=option))
+        out.text(f"{json_text(found.record())}\n")
     else:
         from ..output.formats import block_text
 
