@@ -16,7 +16,9 @@ import numpy as np
 from ..arithmetic.types import Array
 from ..errors import LagtopError
 from ..inputs.value import Stds
+from ..motion.degenerate import vertical_remark
 from ..motion.quantity import unit_name
+from ..motion.regime import Regime
 from ..output.progress import Progress, silent
 from .records import sweep
 
@@ -131,9 +133,10 @@ def _regime(regime: str | None, remark: str | None) -> str:
     """Return the regime of a sample, with the stability of a sleeping top."""
     if regime is None:
         return "no top"
-    if regime != "sleeping" or not remark:
+    if regime != Regime.SLEEPING:
         return regime
-    return f"{regime}, {'un' * ('unstable' in remark)}stable"
+    stable = remark == vertical_remark(Regime.SLEEPING, stable=True)
+    return f"{regime}, {'stable' if stable else 'unstable'}"
 
 
 def _spread(key: str, ordered: Array, value: float, std: float | None, samples: int) -> Spread:

@@ -223,9 +223,7 @@ def cases(motion: Motion) -> dict[str, bool]:
         "if |r0| < r0_steady_min, or if r0 = 0 at 90 degrees": too_slow or (level and not top.r0),
         "unless the top nutates": not nutates,
         "unless the top nutates after release from rest": not (nutates and facts.at_rest),
-        "unless the top nutates, and if it passes over a pole": not nutates
-        or facts.over_bottom
-        or facts.upper_root == 1,
+        "unless the top nutates, and if it passes over a pole": not nutates or facts.meets_a_pole,
         "unless the top nutates, and if the axis is vertical half a period after the start": (
             not nutates or half_on_pole
         ),
