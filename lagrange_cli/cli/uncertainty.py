@@ -10,7 +10,7 @@ from ..arithmetic.text import NumberText
 from ..errors import AbsentError, LagtopError
 from ..inputs.input_keys import STANDS_FOR
 from ..inputs.names import check_names
-from ..motion.quantity import unit_name
+from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, shown_keys
 from ..motion.sensitivity.sensitivities import DIFFERENTIABLE
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
@@ -61,7 +61,7 @@ def with_stds(
     stds = stds_of(record, uncertain)
     lost = [key for key in record if record[key] is not None and f"{key}_std" in stds]
     if lost := [key for key in lost if stds[f"{key}_std"] is None]:
-        known = next((key for key in map(uncertain.name_of, lost) if key in DIFFERENTIABLE), None)
+        known = next((key for key in map(degree_name, lost) if key in DIFFERENTIABLE), None)
         reason = "keys on request have none" if known is None else uncertain.slopes.reason(known)
         complain(f"Warning: no uncertainty of {', '.join(lost)}: {reason}")
     if not shown:
@@ -107,7 +107,7 @@ def _budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
         raise AbsentError(f"{key} is undefined {motion.absence(key)}")
     whole = uncertain.std(key)
     if whole is None:
-        reason = uncertain.slopes.reason(uncertain.name_of(key))
+        reason = uncertain.slopes.reason(degree_name(key))
         raise AbsentError(f"no uncertainty of first order: {reason}")
     given = {x: float(found.inputs[x]) for x in found.stds}
     units = _units(found, [key, *given])

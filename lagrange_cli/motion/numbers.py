@@ -14,6 +14,7 @@ from ..arithmetic.rounding import Settled, decided, rounding_of, settled
 from ..inputs.top import Top
 from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
 from .kinds import Kind, kind_of
+from .quantity import degree_name
 from .record import NUMBER_KEYS, number_key
 from .regime import Exact, Facts, Regime
 
@@ -129,7 +130,7 @@ class Numbers:
 
     def absence(self, name: str) -> str:
         """Return why the motion has no number of this key: `in the regime ...` or `if ...`."""
-        name = name.replace("_rad", "_deg")
+        name = degree_name(name)
         key = number_key(name)
         if key is None or not key.absent or name in self.kind_class.lacks:
             return f"in the regime {self.regime.value!r}"

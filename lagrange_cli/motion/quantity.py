@@ -60,3 +60,8 @@ def keys_of(owner: type) -> dict[str, Key]:
 def unit_name(name: str, *, radians: bool) -> str:
     """Return the name of a key in degrees or `radians`: `_deg` becomes `_rad`."""
     return f"{name.removesuffix('_deg')}_rad" if radians and name.endswith("_deg") else name
+
+
+def degree_name(name: str) -> str:
+    """Return the name of a key in degrees: `_rad` becomes `_deg`."""
+    return f"{name.removesuffix('_rad')}_deg" if name.endswith("_rad") else name

@@ -22,7 +22,7 @@ from ..inputs.names import check_names
 from ..inputs.ranges import parse_range, refuse_units_inside
 from ..inputs.top import Top
 from ..inputs.value import Value, parse_value
-from ..motion.quantity import unit_name
+from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, number_key, requested_keys
 from ..motion.solve import Motion
 from ..output.progress import Progress, silent
@@ -161,7 +161,7 @@ def map_drawing(motion: Motion, request: PlotRequest) -> Drawing:
     usual = default_ranges(motion.top, radians=request.radians)
     x, y = request.x or usual[0], request.y or usual[1]
     chart = key_map(motion, request.key, x, y, request.progress, radians=request.radians)
-    key = number_key(chart.key.replace("_rad", "_deg"))
+    key = number_key(degree_name(chart.key))
     assert key is not None
     unit = request.unit_of(key)
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from matplotlib.figure import Figure, FigureBase, SubFigure
 
 from ..errors import LagtopError, NothingToDrawError
+from ..motion.quantity import degree_name
 from ..motion.record import KEYS
 from ..motion.sensitivity.uncertainty import stds_of
 from ..motion.solve import Motion
@@ -165,7 +166,7 @@ def _write_numbers(panel: SubFigure, page: Page) -> None:
     height = 0.955
     for name, value in shown.items():
         height -= step
-        key = KEYS.get(name.replace("_rad", "_deg"))
+        key = KEYS.get(degree_name(name))
         symbol, unit = (key.symbol, page.request.unit_of(key)) if key else ("", "")
         std = stds.get(f"{name}_std")
         text = value if isinstance(value, str) else number_text(float(value))

@@ -23,6 +23,7 @@ from ..motion import record as motion_record
 from ..motion.degenerate import vertical_remark
 from ..motion.kinds import fast_remark, kind_of
 from ..motion.numbers import gaps_of
+from ..motion.quantity import degree_name
 from ..motion.regime import FAST, Regime
 from ..motion.solve import record_in_range, solve
 from .arguments import Together
@@ -165,7 +166,7 @@ class _Block:
     def _write_numbers(self, rows: Any, number: Callable[[str], Array | None]) -> None:
         """Write the numbers of some rows, from a function of the key with angles in degrees."""
         for key in self.numbers:
-            value = number(key.replace("_rad", "_deg"))
+            value = number(degree_name(key))
             if value is not None:
                 self.columns[key][rows] = np.radians(value) if key.endswith("_rad") else value
 

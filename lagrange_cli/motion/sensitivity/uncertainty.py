@@ -20,6 +20,7 @@ from ...arithmetic.rounding import rounded
 from ...inputs.top import Top
 from ...inputs.value import Stds
 from ..numbers import Numbers
+from ..quantity import degree_name
 from ..record import TEXT_KEYS
 from ..regime import exact
 from .sensitivities import DIFFERENTIABLE, Slopes
@@ -59,14 +60,9 @@ class FirstOrder:
         self.motion = Numbers(exact(top))
         self.slopes = Slopes(self.motion.exact)
 
-    @staticmethod
-    def name_of(key: str) -> str:
-        """Return the name of a key in degrees."""
-        return f"{key.removesuffix('_rad')}_deg" if key.endswith("_rad") else key
-
     def has(self, key: str) -> bool:
         """Return whether a key is an input, or a number that the motion has."""
-        name = self.name_of(key)
+        name = degree_name(key)
         if name in self.top.fields or name in self.given:
             return True
         return name in DIFFERENTIABLE and self.slopes.has(name)
@@ -76,7 +72,7 @@ class FirstOrder:
         ar = balls(digits)
         row = by_given(ar, self.top, self.given)[name]
         tilt = "theta0_deg" if self.top.theta0_rad is None else "theta0_rad"
-        same = tilt if self.name_of(key) == "theta0_deg" else self.name_of(key)
+        same = tilt if degree_name(key) == "theta0_deg" else degree_name(key)
         if same in self.slopes.chain or same in self.given:
             total = row.get(same, ar.convert(0))
         else:
@@ -114,7 +110,7 @@ class FirstOrder:
 
         `given` holds the values of the inputs.
         """
-        value, whole = self.motion.number(self.name_of(key)), self.std(key)
+        value, whole = self.motion.number(degree_name(key)), self.std(key)
         assert value is not None
         lines = [
             Contribution(
@@ -132,7 +128,7 @@ class FirstOrder:
 
     def _elasticity(self, key: str, name: str, given: Mapping[str, float], digits: int) -> Ball:
         """Return the relative change of a key over the relative change of an input."""
-        in_degrees = self.name_of(key)
+        in_degrees = degree_name(key)
         value = self.motion.enclosure(in_degrees, digits)
         assert value is not None
         slope = self.slope(in_degrees, name, digits)
