@@ -122,7 +122,9 @@ def bench_command(
     check_plot(plot, out.path)
     chosen = chosen_methods(methods, float(timeout))
     names: Sequence[str | None] = scenes or [None]
-    motions = {name: top.replace(scene=name).solved() for name in names}
+    motions, units = {}, dict[str, str]()
+    for name in names:
+        motions[name], units = top.replace(scene=name).solved_in_units()
 
     def find() -> Report:
         report = compare_methods(
@@ -136,7 +138,7 @@ def bench_command(
         )
         if plot:
             draw_methods(report, plot, is_long=is_long)
-        return report
+        return report._replace(conditions=units | report.conditions)
 
     write_report(out, find)
 

@@ -115,7 +115,7 @@ def compare_command(
         names, conventions, alignment(align or []), limit, step_sizes, dialect
     )
     is_named = scene is not None or bool(top.by_key())
-    motion = top.solved()
+    motion, units = top.solved_in_units()
 
     def find() -> Report:
         comparison = compare_files(motion, trajectories, request, with_progress, is_named=is_named)
@@ -125,7 +125,8 @@ def compare_command(
             complain("Warning: no scene and no inputs: compared with the worked example")
         if plot:
             _draw(comparison, limit, plot)
-        return comparison_report(comparison.motion, comparison, request)
+        found = comparison_report(comparison.motion, comparison, request)
+        return found._replace(conditions=units | found.conditions)
 
     report = write_report(out, find)
     if not exit_zero:

@@ -70,9 +70,15 @@ class TopOptions(Values):
 
     def solved(self) -> Motion:
         """Return the motion; warn if uncertainties are not used."""
+        return self.solved_in_units()[0]
+
+    def solved_in_units(self) -> tuple[Motion, dict[str, str]]:
+        """Return the motion, and the units of its inputs, if any, as a condition of a report."""
         found = self.given()
         warn_unused(found.stds)
-        return motion_of(found)
+        system = found.system
+        units = {} if system is None else {"inputs": f"in {system.mass}, {system.length} and s"}
+        return motion_of(found), units
 
     def in_seconds(self, **times: Value | None) -> tuple[TopOptions, dict[str, Any]]:
         """Return the options, and times as numbers, in seconds if they have units.

@@ -178,6 +178,15 @@ def test_the_scene_may_be_a_file(lagtop: Lagtop, right: Path, tmp_path: Path) ->
     assert "right.csv: fine" in lagtop("compare", right, *how).stdout
 
 
+def test_the_report_names_the_units_of_the_inputs(lagtop: Lagtop, tmp_path: Path) -> None:
+    body = ["--m", "2kg", "--A", "5kg*m^2", "--C", "3kg*m^2", "--s", "1m", "--g", "10m/s^2"]
+    words = [*body, "--r0", "20rpm", "--theta0", "30deg"]
+    path = tmp_path / "own.csv"
+    lagtop("table", *words, "--columns", "t,theta,phi,psi", "-o", path)
+    result = lagtop("compare", path, *words)
+    assert result.stdout.startswith("inputs     in kg, m and s\nscene      --m 2.0 ")
+
+
 def test_standard_input(lagtop: Lagtop, right: Path) -> None:
     result = lagtop("compare", "-", *OPTIONS, input=right.read_bytes())
     assert "\nstandard input: fine, at most" in result.stdout
