@@ -231,7 +231,7 @@ def any_spin(rng: random.Random) -> Scene:
 
 
 def thresholds(rng: random.Random) -> Scene:
-    """Return a start next to k = k', no torque or rest."""
+    """Return a start close to k = k', to no torque or to rest."""
     kind, miss = rng.randrange(3), 1 + signed(rng, ten_to(rng, -15, -3))
     if kind == 0:
         scene = _body(rng) | {"theta0_deg": rng.uniform(1, 85)}
@@ -248,7 +248,7 @@ def half_periods(rng: random.Random) -> Scene:
 
 
 def far_times(rng: random.Random) -> Scene:
-    """Return a start of another kind, 1e11 to 1e14 periods away."""
+    """Return a start as in other strata, 1e11 to 1e14 periods away."""
     return rng.choice([ordinary, stiff, slow, tiny_tilt, near_a_pole, near_steady])(rng)
 
 

@@ -244,9 +244,9 @@ def main(ctx: click.Context) -> None:
       128 + N  ended by signal N
 
     \b
-    Completion, in ~/.bashrc (in ~/.zshrc with zsh_source):
+    Completion with Tab: add to ~/.bashrc (for zsh to ~/.zshrc, with zsh_source):
       eval "$(_LAGTOP_COMPLETE=bash_source lagtop)"
-    and for fish:
+    For fish, run:
       _LAGTOP_COMPLETE=fish_source lagtop > ~/.config/fish/completions/lagtop.fish
 
     Use lagtop COMMAND --help for the options of a command.

@@ -45,7 +45,7 @@ in the last place of its inputs.  The strata of scenes are:
 \b
 {strata}
 
-lagtop itself is tested in 80 digits or more, at times up to 1e14 periods away.  Its keys must be
+lagtop itself is checked against 80 digits or more, at times up to 1e14 periods.  Its keys must be
 correctly rounded, and its angles within 4 units.  The exit code is 1 if a bound is exceeded.
 """
 
@@ -100,9 +100,10 @@ def bench_command(
     """Measure the error of many methods against their run time.
 
     The methods are closed forms, integrators and physics engines, each on one thread.  The
-    reference has 80 digits and shares no formula with lagtop.  The setting of an engine is its
-    number of steps per nutation period, or a tolerance.  A * marks the Pareto front: no other run
-    is both faster and more accurate.  Several scenes make one table and one picture.
+    reference has 80 digits and shares no formula with lagtop.  The column `setting` holds the
+    tolerance of a method, or its number of steps per nutation period.  A * marks the Pareto
+    front: no other run is both faster and more accurate.  Several scenes make one table
+    and one picture.
 
     Engines need their packages (pip install 'lagtop[engines]'), and Taylor's method needs heyoka.
     """

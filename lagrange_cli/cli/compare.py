@@ -60,7 +60,8 @@ def _parse_step_sizes(text: str) -> list[float]:
 @click.option(
     "--align",
     type=names_type(late("judge.alignment", "WORDS"), "WORD,..."),
-    help="Convert the frame: axis=y, up=y; or match the first row: start, body, space, time.",
+    help="Other axes: axis=y, up=y.  From the first row: start (zero of spin and precession), time "
+    "(zero of t), body or space (a constant rotation).",
 )
 @click.option(
     "--step-sizes",

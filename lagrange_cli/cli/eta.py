@@ -108,7 +108,7 @@ def eta_command(
     digits: int | None,
     out: Output,
 ) -> None:
-    """Compute Aksenov's coordinate eta of a satellite (section 3.2).
+    """Compute the coordinate eta of a satellite (Aksenov 1977, section 3.2).
 
     Eta oscillates between delta* and delta:
     (d eta/d tau)^2 = g (delta - eta) (eta - delta*) (q^2 - (eta - p)^2).

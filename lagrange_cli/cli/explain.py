@@ -47,8 +47,8 @@ def explain_command(words: tuple[str, ...], top: TopOptions, out: Output) -> Non
 
     A key is the name of a result.  Each formula is shown in symbols and with the numbers of the
     top.  Without KEY, all keys and columns are listed.  The record of solve has most keys; others
-    are computed on request.  Pass keys to solve --get, sweep --keys, find and plot --key, and
-    columns to table --columns.
+    are computed on request.  Keys go to solve --get, sweep --keys, find --keys and plot --key;
+    columns go to table --columns.
     """
     from ..motion.explanation import explanations, listed
 

@@ -75,8 +75,8 @@ def find_command(
 
     Without an unknown, give theta_min, theta_max, T_nutation and mean_precession_rate, and
     mean_spin_rate if you know it.  They determine a = 2mgs/A and b = C r0/A.  You may also give
-    inputs of the body.  Undetermined inputs are set to 1, or so that C = A.  The tops start at
-    their least tilt.
+    inputs of the body.  lagtop chooses those left open, such as A = 1 and C = A.  Each top found
+    starts at its least tilt.
     """
     from ..inputs.names import check_names
     from ..inputs.ranges import Span

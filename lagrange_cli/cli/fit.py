@@ -82,8 +82,8 @@ def _parse_window(text: str) -> tuple[float, bool]:
 @click.option(
     "--window",
     type=Parsed("N|TIME", _parse_window),
-    help="Fit N windows, or windows of a duration with a decimal point, such as 1.5.  They have "
-    "one body; the spin may decay.",
+    help="Fit N windows, or windows of TIME, which needs a decimal point (2.0).  All share one "
+    "body; the spin may decay.",
 )
 @click.option("--by", metavar="COLUMN", help="Column that names the recording of each row.")
 @click.option("--together", is_flag=True, help="Fit one body to all recordings of --by.")
@@ -108,12 +108,12 @@ def fit_command(
 ) -> None:
     """Fit a top to a recording, with uncertainties.
 
-    A recording is a file as in lagtop compare, or - for standard input: times with tilt, spin and
-    precession, the axis or the attitude.  Cells may be missing, and angles may be wrapped.
+    A recording is a file as in lagtop compare, or - for standard input.  Each row holds a time
+    with tilt, spin and precession, or with the axis, or with the attitude.  Cells may be missing,
+    and angles may be wrapped.
 
     Known inputs are the inputs given as options, and the inputs of a scene that --fix names.
-
-    -o FILE.toml writes the fitted top as a scene, unless the fit fails.
+    With -o FILE.toml the fitted top is written as a scene, unless the fit fails.
     """
     from ..fits.record import FAILED
     from ..fits.recording import Reading, read_recordings

@@ -154,8 +154,8 @@ def jacobi_command(
     Without --u and --phi, the constants of the modulus are printed.
 
     The error of a value f is at most 4 units, and in small tables every value is correctly rounded.
-    A unit is 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), where v = --param.  In this unit, whole
-    periods of u and of a real v do not count.  For k > 1 this holds only for am, sn, cn and dn.
+    A unit is 2^-52 (max(1, |f|) + |u df/du| + |v df/dv|), where v = --param.  Whole
+    periods are first removed from u and from a real v; for k > 1 only in am, sn, cn and dn.
 
     u and a real v may be up to 2^50 periods, an imaginary v up to K'.  An empty cell is a pole.
 

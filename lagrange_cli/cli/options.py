@@ -229,7 +229,7 @@ def text_options(command: Command) -> Command:
         decorated = click.option(
             f"--{name}",
             type=Parsed("MARK", _mark(marks), lambda marks=marks: marks),  # type: ignore[misc]
-            help=f"{', '.join(marks)}.  [default: detected]",
+            help=f"Input: {', '.join(marks)}.  [default: detected]",
         )(decorated)
     return decorated  # type: ignore[no-any-return]
 

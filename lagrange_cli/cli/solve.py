@@ -46,7 +46,9 @@ if TYPE_CHECKING:
     "--get", "keys", type=KEY_NAMES, help="Print only the values of these keys, one per line."
 )
 @click.option(
-    "--derivation", is_flag=True, help="Print the steps of the paper's worked example (section 8)."
+    "--derivation",
+    is_flag=True,
+    help="Print the steps of section 8 of the paper, for a top released from rest.",
 )
 @digits_option(MOST_RECORD_DIGITS)
 @certify_option

@@ -95,11 +95,12 @@ def sweep_command(
     An input is a number, a list 1,2,3 or a range [log:]start:stop:count, with its unit at the end:
     --r0 '1e3:9e3:5 rpm'.  The grid has every combination of values; the last option varies fastest.
 
-    A file of tops is CSV with a header, or JSON lines, and names inputs by key.  Options and the
+    A file of tops is CSV with a header, or JSON lines, with names such as r0.  Options and the
     scene supply the inputs that it lacks.  Its other columns are copied.  A heading may have a
     unit: m [g].  If a top cannot be solved, its row shows the error, and the exit code is 1.
 
-    A folder of --parts holds one sweep; repeat the command to resume a run that was killed.
+    A sweep is computed in parts of 4096 tops.  A folder of --parts holds the parts of one sweep;
+    repeat the command to resume a run that was killed.
     """
     from ..output.rows import check_parquet
     from ..sweeps.cluster import computed, connected

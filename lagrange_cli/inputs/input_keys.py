@@ -49,7 +49,8 @@ theta0 | ϑ0 | tilt at the start
     | tilt from the upward vertical | 0 to 180 degrees | angle | 30
 thetadot0 | ϑ'0 | nutation rate at start | nutation rate at start | | rad/time | 0
 psidot0 | ψ'0 | precession rate at start
-    | precession rate at start | or the word steady or steady-fast, to keep the tilt | rad/time | 0
+    | precession rate at start | or the word steady (slow) or steady-fast, to keep the tilt
+    | rad/time | 0
 """
 
 
