@@ -34,7 +34,6 @@ COUNTS = {1: 1000, 2: 60, 3: 20}
 MOST_TOPS = 10_000_000
 _WORDS = {"regime": [regime.value for regime in Regime], "path": ["cusped", "looping", "wavy"]}
 """Keys that hold a word, and the words."""
-_ANGLES = {"deg", "°", "rad", "degree", "radian"}
 _BOUNDS: Mapping[str, Callable[[float, float], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 
@@ -130,8 +129,13 @@ def _number(key: str, text: str, radians: bool, system: System | None) -> float:
 
 def system_asked(conditions: Iterable[str]) -> str | None:
     """Return `si` if a condition has a unit other than that of an angle, else None."""
-    units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions}
-    return "si" if units - {"", *_ANGLES} else None
+    units = {split_unit(re.split("[<>=]+", text)[-1])[1] for text in conditions} - {""}
+    if not units:
+        return None
+    from ..inputs.units import UNITS  # few searches have units
+
+    angles = {x for x, unit in UNITS.items() if not any(unit.dimensions)}
+    return "si" if units - angles - {"degree", "radian"} else None
 
 
 def condition_texts(conditions: Mapping[str, float | str] | Sequence[str]) -> Sequence[str]:

@@ -236,6 +236,10 @@ def test_a_unit_of_a_condition_needs_those_of_the_inputs(lagtop: Lagtop) -> None
     words = ["find", "--r0", "10:200", "T_precession=500ms"]
     message = "--r0 must have a unit such as '50 rad/s' or 480rpm, as a time, a condition or"
     assert_one_line(lagtop(*words), 2, message)
+    tilts = [
+        lagtop("find", "--r0", "10:200", f"theta_max={x}").stdout for x in ("63deg", "0.175turn")
+    ]
+    assert tilts[0] == tilts[1] != ""
     seen = ["theta_min=3deg", "theta_max=6", "T_nutation=4ms", "mean_precession_rate=5000rpm"]
     found = lagtop("find", *seen, "--keys", "T_nutation,mean_precession_rate").stdout
     assert found.splitlines()[1].startswith("0.0040000000000000")
