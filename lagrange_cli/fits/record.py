@@ -54,17 +54,17 @@ class Outcome(HasRecord):
     def __init__(self, found: Fit, index: int, *, radians: bool = False) -> None:
         self.fit, self.index, self.radians = found, index, radians
         self.recording = found.recordings[index]
-        self.known = found.solution.parameters.known
-        self.stds = found.solution.parameters.stds
+        parameters = found.solution.parameters
+        self.stds = parameters.stds
         values, covariance = found.solution.quantities(index)
-        self.labels = list(found.solution.parameters.labels)
+        self.labels = list(parameters.labels)
         self.values = dict(zip(self.labels, values.tolist(), strict=True))
         self.covariance = covariance
         deviations = np.sqrt(np.maximum(np.diag(covariance), 0))
         self.deviations = dict(zip(self.labels, deviations.tolist(), strict=True))
-        self.known = {x: self.values.get(x, y) for x, y in self.known.items()}
-        exact, spins = self.known.keys() - self.stds.keys(), found.solution.parameters.spins
-        shown = {"a", "b", "b/a", *["r0"] * spins} - exact
+        self.known = {x: self.values.get(x, y) for x, y in parameters.known.items()}
+        exact = self.known.keys() - self.stds.keys()
+        shown = {"a", "b", "b/a", *["r0"] * parameters.spins} - exact
         self.shown = {x: y for x, y in self.values.items() if x in shown}
         self.determined = determined_products(self.shown, self.known)
         self.residuals_by_row = found.solution.residuals[index]

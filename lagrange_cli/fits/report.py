@@ -12,7 +12,7 @@ from ..arithmetic.numbers import per_radian
 from ..arithmetic.types import Array
 from ..inputs.rotations import within_half_turn
 from ..motion.quantity import unit_name
-from ..motion.record import KEYS
+from ..motion.record import shown_keys
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..output.terminal import one_line
 from .least_squares import chi2_bounds
@@ -60,14 +60,12 @@ def outcome_units(outcome: Outcome, system: System) -> dict[str, str]:
     units = {"t_start": system.named("time")}
     for product, _ in outcome.products():
         units[product.name] = system.unit_of(product.powers)
-    for number, *_ in outcome.derived:
-        if number.exact:
-            units[number.key] = system.named(KEYS[number.exact].unit)
+    declared = shown_keys(named=system.named, requested=True)
     for key in outcome.record():
         if key.endswith(("_deg", "_rad")):
             units[key] = key[-3:]
-        elif key in KEYS:
-            units[key] = system.named(KEYS[key].unit)
+        elif key in declared:
+            units[key] = declared[key].unit
     return {key: unit for key, unit in units.items() if unit}
 
 
