@@ -264,16 +264,6 @@ def test_a_range_has_one_unit(line: str, message: str, lagtop: Lagtop) -> None:
     assert_one_line(lagtop(*line.split()), 2, f"--r0 {message}")
 
 
-def test_words_of_a_rate_are_for_one_top(lagtop: Lagtop) -> None:
-    for command in ("sweep", "find K=2 --r0 1:9"):
-        assert_one_line(
-            lagtop(*command.split(), "--psidot0", "steady"),
-            2,
-            "--psidot0 must be a number unless one top is solved, got steady: see the keys "
-            "steady_rate_slow and steady_rate_fast",
-        )
-
-
 def test_tables_of_many_tops_name_units(lagtop: Lagtop) -> None:
     keys = ["--keys", "r0,theta0_deg,T_nutation,regime"]
     swept = lagtop("sweep", "--r0", "60:180:3 rpm", *keys, "--format", "markdown").stdout
