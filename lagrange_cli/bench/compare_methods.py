@@ -107,7 +107,7 @@ def _rows(
     rows: list[MethodRow] = []
     for name, work, setting in progress(runs, "methods"):
         before = rows[-1] if rows and rows[-1].method == name else None
-        if before and is_out(before):
+        if before and is_out(before.remark):
             continue
         if is_long and before and not is_done(before):
             remark = "not run: it failed over a shorter span"

@@ -175,7 +175,7 @@ def measure(work: Task, name: str, method: Method, setting: Any) -> MethodRow:
             angles, seconds = _run(sample, times)
     except FAILURES as reason:
         failed = row._replace(remark=failure_remark(reason))
-        return failed._replace(setting="") if is_out(failed) else failed
+        return failed._replace(setting="") if is_out(failed.remark) else failed
     timed = row._replace(
         setup_s=setup,
         ns_min=min(seconds) / times.size * 1e9,

@@ -147,6 +147,6 @@ def is_done(row: MethodRow) -> bool:
     return row.error_rad is not None and row.ns_min is not None
 
 
-def is_out(row: MethodRow) -> bool:
-    """Return whether the method cannot do the scene, at any setting."""
-    return (row.remark or "").startswith(NOT_APPLICABLE)
+def is_out(remark: str | None) -> bool:
+    """Return whether a remark states that the method cannot do the scene, at any setting."""
+    return (remark or "").startswith(NOT_APPLICABLE)

@@ -20,7 +20,7 @@ from ..motion.sensitivity.angle_sensitivities import angle_sensitivities
 from .closed_forms import CLOSED_FORMS
 from .compare_methods import LOST, growth_of
 from .integrators import integrators
-from .method import FAILURES, NOT_APPLICABLE, Drift, FailedError, Work, failure_remark
+from .method import FAILURES, Drift, FailedError, Work, failure_remark, is_out
 from .reference import ExactAngles, Reference
 
 SPANS, LONG_SPAN = (5.0, 100.0), 1e4
@@ -79,18 +79,13 @@ class PeerRun(NamedTuple):
 
         It is None for a missing method, and for a span that was not compared.
         """
-        if self.is_missing or not _reaches(self.bounds, span):
+        if is_out(self.remark) or not _reaches(self.bounds, span):
             return None
         return _greatest(self.points, span) if _reaches(self.points, span) else math.inf
 
     def condition(self, span: float) -> float:
         """Return the greatest condition in a span."""
         return _greatest(self.bounds, span)
-
-    @property
-    def is_missing(self) -> bool:
-        """Whether the package of the method is not installed."""
-        return (self.remark or "").startswith(NOT_APPLICABLE)
 
     @property
     def growth(self) -> float | None:
@@ -100,7 +95,7 @@ class PeerRun(NamedTuple):
     @property
     def verdict(self) -> str:
         """A word of VERDICTS, for the longest span that was computed; "" for a missing method."""
-        if self.is_missing:
+        if is_out(self.remark):
             return ""
         span = self.points[-1][0] if self.points else SPANS[0]
         worst, condition = self.error(SPANS[0]), self.condition(span)
