@@ -117,7 +117,7 @@ def test_odd_arguments(call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert list(tmp_path.iterdir()) == []
 
 
-def test_all_functions_are_called_so() -> None:
+def test_every_public_function_has_an_example_call() -> None:
     functions = {name for name in package.__all__ if name[0].islower()}
     assert functions <= {name.partition("(")[0] for name in CALLS}
 

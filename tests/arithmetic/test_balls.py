@@ -314,7 +314,7 @@ def test_a_bound_widens_and_one_that_diverges_says_nothing() -> None:
     assert not AR.widened(one, lambda: (3 * small,), lambda x: x / (1 - 2 * x)).radius.is_finite()
 
 
-def test_balls_owe_nothing_to_the_context_of_the_host() -> None:
+def test_balls_do_not_depend_on_the_decimal_context_of_the_host() -> None:
     def numbers(ar: Balls) -> list[str]:
         x = ar.convert(0.7)
         values = [getattr(ar, name)(x / 3) for name in FUNCTIONS]

@@ -74,7 +74,7 @@ def test_random_numbers_are_rounded_as_python_rounds_fractions() -> None:
         assert value_of(settled("x", noisy(value), nearest_double("x"))) == float(value)
 
 
-def test_a_zero_is_one_only_if_it_is_exact() -> None:
+def test_zero_is_returned_only_if_it_is_exact() -> None:
     def cancels(digits: int) -> Ball:
         one = balls(digits).exact(1)
         return (one + balls(digits).exact(Decimal("1e-100"))) - one

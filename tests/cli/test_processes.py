@@ -318,6 +318,6 @@ def test_completion(line: str, completed: list[str]) -> None:
     assert {item.type for item in items} == {"file" if line == "plot scene" else "plain"}
 
 
-def test_bash_is_answered() -> None:
+def test_bash_gets_completions() -> None:
     asked = {"_LAGTOP_COMPLETE": "bash_complete", "COMP_WORDS": "lagtop so", "COMP_CWORD": "1"}
     assert b"solve" in process(env=os.environ | asked).stdout

@@ -155,7 +155,7 @@ WITHOUT_WHAT_WINDOWS_LACKS = """if True:
         "bench --n 3 --t-max 1 --methods lagtop,theta-series",
     ],
 )
-def test_commands_run_without_what_windows_lacks(line: str, tmp_path: Path) -> None:
+def test_commands_run_without_features_that_windows_lacks(line: str, tmp_path: Path) -> None:
     (tmp_path / "times.txt").write_text("1\n")
     (tmp_path / "tops.csv").write_text("r0\n1\n")
     (tmp_path / "solved.json").write_text("old")

@@ -234,7 +234,7 @@ def test_many_digits_of_carlson() -> None:
     assert abs(carlson_rd(ar, x, y, z) / ar.elliprd(x, y, z) - 1) < 1e-57
 
 
-def test_no_number_ends() -> None:
+def test_loops_end_at_nan() -> None:
     """Loops that wait for convergence do not wait for NaN."""
     nan = np.array([1.0, math.nan])
     with np.errstate(all="ignore"):

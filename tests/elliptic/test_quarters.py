@@ -193,7 +193,7 @@ def test_grammar(text: str, multiple: Multiple) -> None:
 
 
 @pytest.mark.parametrize("text", ["2K/0", "K/-2", "K/", "2KK", "K2", "aK", "1/2K", "2*K", "k", ""])
-def test_what_is_no_multiple(text: str) -> None:
+def test_invalid_multiples_are_refused(text: str) -> None:
     with pytest.raises(LagtopError, match=r"must be a (multiple of K such as|finite decimal)"):
         parse_multiple(text)
 

@@ -445,7 +445,7 @@ def test_what_cannot_be_told_apart_is_named() -> None:
 
 
 @pytest.mark.parametrize("off", [-12, 12])
-def test_the_last_bits_are_walked(monkeypatch: pytest.MonkeyPatch, off: int) -> None:
+def test_a_root_is_corrected_in_its_last_bits(monkeypatch: pytest.MonkeyPatch, off: int) -> None:
     exact = math.sqrt(2)
     wrong = exact + off * math.ulp(exact)
     monkeypatch.setattr("lagrange_cli.fits.roots.crossing", lambda *_: wrong)

@@ -37,7 +37,7 @@ def test_another_program_describes_nothing() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "m", "mass = 1", "m = x", "m = -1, A = 2", "m = 1 = 2"])
-def test_scenes_that_are_none(text: str) -> None:
+def test_invalid_scenes_in_descriptions_are_refused(text: str) -> None:
     with pytest.raises(DataError, match=r"^file: the scene in its description is invalid: "):
         scene_in({"scene": text}, "file")
 

@@ -39,7 +39,7 @@ def test_a_scene_is_a_top(tmp_path: Path) -> None:
     assert known == Top()
 
 
-def test_who_is_to_blame(tmp_path: Path) -> None:
+def test_errors_name_the_scene_file_or_the_argument(tmp_path: Path) -> None:
     path = scene(tmp_path, "r0 = 60\nm = -1\n")
     with pytest.raises(SceneError, match=r"scene.toml, line 2: m must be > 0, got -1.0$"):
         read_scene(path)
@@ -89,7 +89,9 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
         ("theta0_deg = 1\ntheta0_rad = 1\n", "line 2: theta0_rad and theta0_deg are both given"),
     ],
 )
-def test_scenes_that_are_none(text: str, message: str, tmp_path: Path, lagtop: Lagtop) -> None:
+def test_invalid_scene_files_are_refused(
+    text: str, message: str, tmp_path: Path, lagtop: Lagtop
+) -> None:
     path = scene(tmp_path, text)
     for more in ([], ["--digits", "30"]):
         result = lagtop("solve", path, *more)

@@ -82,7 +82,7 @@ def test_the_line_is_ready_to_be_typed(lagtop: Lagtop) -> None:
     assert again.stdout == lagtop("solve", *PARTS, "--format", "json").stdout
 
 
-def test_once_per_grid_and_once_per_file(tmp_path: Path, lagtop: Lagtop) -> None:
+def test_the_warning_appears_once_per_grid_and_per_file(tmp_path: Path, lagtop: Lagtop) -> None:
     keys = ["--keys", "m", "--r0"]
     assert lagtop("sweep", *PARTS, *keys, "1:9:5000").stderr == SAID
     assert lagtop("sweep", *WHOLE, *keys, "1:9:3").stderr == ""

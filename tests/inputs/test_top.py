@@ -89,7 +89,7 @@ def test_numbers_of_many_types(value: Any) -> None:
 
 
 @pytest.mark.parametrize("value", [Decimal("0.1"), 2**60 + 1, np.int64(2**60 + 1)])
-def test_what_is_no_double_is_not_rounded(value: Any) -> None:
+def test_numbers_that_are_not_doubles_are_not_rounded(value: Any) -> None:
     exact = Fraction(value if isinstance(value, Decimal) else int(value))
     third: Any = np.longdouble(1) / 3
     top = Top(r0=value, thetadot0=third)

@@ -421,7 +421,7 @@ def test_json_has_units_only_where_inputs_have(lagtop: Lagtop) -> None:
         ("--m 1kg --C 2", "--C must have a unit such as '2 kg*m^2', as m has, got none"),
     ],
 )
-def test_units_that_people_type_are_answered(option: str, hint: str, lagtop: Lagtop) -> None:
+def test_common_mistakes_in_units_get_a_hint(option: str, hint: str, lagtop: Lagtop) -> None:
     result = lagtop("solve", *option.split())
     assert (result.exit_code, result.stdout) == (2, "")
     assert hint in result.stderr

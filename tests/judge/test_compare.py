@@ -150,7 +150,7 @@ def test_an_error_of_known_size_is_measured(size: float) -> None:
 
 
 @pytest.mark.parametrize("rate", [1e-6, -0.1, 25.0])
-def test_what_grows_is_told_from_what_does_not(rate: float) -> None:
+def test_drift_is_separated_from_oscillation(rate: float) -> None:
     """The wobble's mean square about its line is computed here by polyfit."""
     wobble = 1e-3 * np.sin(7 * T)
     judgement = compare(TOP, T, phi=ANGLES[:, 0] + rate * T + wobble, theta=ANGLES[:, 1])

@@ -80,13 +80,13 @@ OF_THE_EXAMPLE = {
 
 
 @pytest.mark.parametrize(("arguments", "text"), MUST_PRINT.values(), ids=MUST_PRINT)
-def test_what_two_precisions_had_wrong(arguments: str, text: str, lagtop: Lagtop) -> None:
+def test_numbers_once_wrong_in_two_precisions(arguments: str, text: str, lagtop: Lagtop) -> None:
     """Each value is of Arb or of mpmath in 400 digits, by other formulas."""
     assert lagtop("solve", *BODY, *arguments.split()).stdout == f"{text}\n"
 
 
 @pytest.mark.parametrize(("arguments", "text"), OF_THE_EXAMPLE.values(), ids=OF_THE_EXAMPLE)
-def test_what_two_precisions_had_wrong_of_the_example(
+def test_numbers_of_the_example_once_wrong_in_two_precisions(
     arguments: str, text: str, lagtop: Lagtop
 ) -> None:
     assert lagtop("solve", *arguments.split()).stdout == f"{text}\n"
@@ -161,7 +161,7 @@ def test_radii_need_no_package_and_no_other_digits(lagtop: Lagtop) -> None:
     assert f"{radii['T_nutation_radius']}" in drawn
 
 
-def test_a_number_that_underflows_is_no_zero(lagtop: Lagtop) -> None:
+def test_a_number_that_underflows_is_not_printed_as_zero(lagtop: Lagtop) -> None:
     """A printed 0 is exactly 0: what is smaller than all doubles is null, and digits print it."""
     motion = solve(Top(r0=1e90))
     with pytest.warns(OutOfRangeWarning, match="nome must be 0 or at least 5e-324"):

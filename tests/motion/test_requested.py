@@ -88,7 +88,7 @@ def test_angles_and_quarters_are_those_of_the_motion(motion: Motion) -> None:
     assert abs(2 * ours["psi_half_deg"] - ours["psi_period_deg"]) < 1e-35
 
 
-def test_halves_from_anywhere_are_those_of_the_angles() -> None:
+def test_half_period_angles_hold_for_any_start() -> None:
     """Half a period after a start between the turning points, the waves are not at rest."""
     motion = solve(Top(**UNIT | {"r0": 2, "theta0_deg": 70, "thetadot0": 0.7, "psidot0": 0.4}))
     angles = motion.angles(float(motion.T_nutation) / 2)
@@ -175,7 +175,7 @@ def test_a_record_has_them_only_when_they_are_asked_for(lagtop: Lagtop) -> None:
     assert set(requested_keys()) <= set(dir(motion))
 
 
-def test_none_where_there_is_none(lagtop: Lagtop) -> None:
+def test_undefined_quantities_are_none(lagtop: Lagtop) -> None:
     sleeping, pendulum = solve(Top(theta0_deg=0)), solve(Top(r0=0))
     assert sleeping.Lz == 872900.0
     assert sleeping.u2_criterion is sleeping.phi_half_deg is sleeping.roots_sum is None

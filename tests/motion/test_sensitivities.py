@@ -118,7 +118,7 @@ def test_a_top_without_torque_that_stands_still_has_no_means() -> None:
 
 @pytest.mark.parametrize("tilt", [0, 180])
 @pytest.mark.parametrize("r0", [0, 3])
-def test_on_the_vertical_without_torque_a_answers_to_gravity(tilt: float, r0: float) -> None:
+def test_without_torque_on_the_vertical_a_depends_on_gravity(tilt: float, r0: float) -> None:
     top = Top(**UNIT | {"C": 0.5, "g": 0, "r0": r0, "theta0_deg": tilt})
     assert sensitivities(top, ["a"]).derivatives["a"]["g"] == 2.0
 

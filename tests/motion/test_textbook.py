@@ -243,7 +243,7 @@ def test_derivatives_follow_the_steady_motions() -> None:
     assert "psidot0" not in found.inputs
 
 
-def test_the_word_is_kept(tmp_path: Path) -> None:
+def test_a_top_keeps_the_word_steady(tmp_path: Path) -> None:
     path = tmp_path / "steady.toml"
     path.write_text('r0 = 60\npsidot0 = "steady"\n')
     top = read_scene(path)

@@ -143,7 +143,7 @@ def test_nothing_is_lost_if_the_page_is_enlarged(
     assert browser.ask(f"return {texts}.filter((part) => {cut}).map((x) => x.textContent)") == []
 
 
-def test_the_page_runs_no_script_but_its_own_and_asks_nobody(
+def test_the_page_runs_only_its_own_script_and_sends_no_requests(
     browser: Browser, page_file: Path
 ) -> None:
     """Nothing is requested, whatever a reader does; nothing could be, because of the policy."""

@@ -50,7 +50,7 @@ CLOSE = {
 """Scenes whose first and third roots all but touch."""
 
 
-def test_the_page_complains_of_nothing_and_asks_nobody(session: Browser, page_file: Path) -> None:
+def test_the_page_logs_no_errors_and_sends_no_requests(session: Browser, page_file: Path) -> None:
     session.complaints()
     session.requests()
     session.open(page_file)
@@ -397,7 +397,7 @@ def luminance(colour: str) -> float:
     return float(np.dot([0.2126, 0.7152, 0.0722], linear))
 
 
-def test_letters_have_contrast(browser: Browser, page_file: Path) -> None:
+def test_text_has_enough_contrast(browser: Browser, page_file: Path) -> None:
     for dark in (False, True):
         browser.open(page_file, dark=dark)
         look = browser.ask("return page.look")
@@ -407,7 +407,7 @@ def test_letters_have_contrast(browser: Browser, page_file: Path) -> None:
             assert (high + 0.05) / (low + 0.05) >= 4.5, (name, dark)
 
 
-def test_controls_of_a_phone_can_be_touched(browser: Browser, page_file: Path) -> None:
+def test_controls_are_large_enough_to_touch_on_a_phone(browser: Browser, page_file: Path) -> None:
     browser.open(page_file, width=390, height=844)
     sizes = browser.ask(
         """return [...document.querySelectorAll("input, button, select")].map((part) => {
@@ -510,7 +510,7 @@ def test_a_frame_computes_one_attitude(browser: Browser) -> None:
     assert browser.ask("return page.evaluations") <= 20
 
 
-def test_hands_and_keys_turn_the_view(browser: Browser) -> None:
+def test_mouse_and_keys_turn_the_view(browser: Browser) -> None:
     def eye() -> list[float]:
         seen: list[float] = browser.ask(
             "return [page.camera.azimuth, page.camera.elevation, page.camera.zoom]"
@@ -530,7 +530,7 @@ def test_hands_and_keys_turn_the_view(browser: Browser) -> None:
     assert eye() == start
 
 
-def test_two_fingers_come_nearer(browser: Browser) -> None:
+def test_pinching_zooms_in(browser: Browser) -> None:
     browser.command("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
 
     def fingers(kind: str, *places: int) -> None:

@@ -50,7 +50,7 @@ def test_every_kind_has_its_function() -> None:
     assert {f"draw_{kind}" for kind in KINDS} == functions
 
 
-def test_a_map_of_ones_own() -> None:
+def test_a_map_draws_its_own_axes_and_colour_bar() -> None:
     (axes,) = draw("map", key="T_nutation", **MAP)
     assert axes.get_title() == "T: nutation period (5,1), in time"
     figure = axes.get_figure()
@@ -73,7 +73,7 @@ def test_a_new_figure_where_no_axes_are_given() -> None:
     pyplot.close("all")
 
 
-def test_what_cannot_be_drawn_is_said() -> None:
+def test_impossible_drawings_are_refused() -> None:
     ax = Figure().add_subplot()
     with pytest.raises(LagtopError, match="ax must be 3 axes, got 1"):
         draw_angles(solve(Top()), ax)

@@ -214,7 +214,7 @@ def test_letters_shrink_with_the_page_and_fit_it() -> None:
     assert all(upper[0].y0 > lower[0].y0 for upper, lower in pairwise(boxes))
 
 
-def test_a_factor_of_all_numbers_is_a_power_of_ten() -> None:
+def test_axis_numbers_share_a_power_of_ten() -> None:
     """Numbers without a factor are plain texts, which cost a third of those through mathtext."""
     factor, plain = (
         page_bytes(Page(solve(Top(r0=r0)), ["cubic"], PlotRequest(), LIGHT), "svg", 100).decode()

@@ -47,7 +47,7 @@ def test_modules_of_the_page_are_small() -> None:
     assert sum(len(path.read_text().splitlines()) for path in numerics) <= 800
 
 
-def test_numbers_do_not_draw() -> None:
+def test_numerical_modules_do_not_touch_the_document() -> None:
     for path in (FOLDER / "numerics").glob("*.js"):
         assert not re.search(r"document|window|\.\./(?!data\.js)", path.read_text()), path.name
 

@@ -205,7 +205,7 @@ def test_a_worker_that_would_compute_otherwise_is_refused(kind: str, tmp_path: P
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", BAD_WORKERS)
-def test_so_is_one_that_joins_later(kind: str, tmp_path: Path) -> None:
+def test_a_bad_worker_that_joins_later_is_refused(kind: str, tmp_path: Path) -> None:
     init = BAD_WORKERS[kind][0]
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         options = ["-m", "lagrange_cli", "sweep", "--r0", "1:100:1e8", "--parts", "out", "--dask"]
@@ -245,7 +245,7 @@ def test_a_scheduler_that_is_not_there() -> None:
     ("who", "number"),
     [("scheduler", signal.SIGSTOP), ("scheduler", signal.SIGKILL), ("worker", signal.SIGKILL)],
 )
-def test_what_is_lost_while_it_computes(number: int, who: str, tmp_path: Path) -> None:
+def test_a_lost_scheduler_or_worker_is_reported(number: int, who: str, tmp_path: Path) -> None:
     """A stopped worker is not among them: the scheduler waits for it as long as it likes."""
     file = tmp_path / "scheduler.json"
     options = ["--scheduler-file", str(file)]

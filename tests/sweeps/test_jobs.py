@@ -65,7 +65,9 @@ def test_results_come_in_the_order_of_the_work() -> None:
 
 
 @pytest.mark.slow
-def test_results_find_no_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_results_that_cannot_be_written_are_reported(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     for number in range(100):  # where the files were to be
         (tmp_path / str(number)).mkdir()
     folder = nullcontext(str(tmp_path))
@@ -74,7 +76,7 @@ def test_results_find_no_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -
         list(in_order(number_and_place, MANY, 2))
 
 
-def test_no_folder_can_be_made(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_temporary_folder_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", "/nonexistent")
     with pytest.raises(CannotWriteError, match=r"^cannot write temporary files: No such file"):
         list(in_order(number_and_place, MANY, 2))
@@ -98,7 +100,7 @@ def test_jobs() -> None:
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "1.5", "many", "1025", "²", "9" * 5000])
-def test_what_is_no_number_of_jobs(text: str, lagtop: Lagtop) -> None:
+def test_invalid_numbers_of_jobs_are_refused(text: str, lagtop: Lagtop) -> None:
     result = lagtop("sweep", f"--jobs={text}")
     assert_one_line(result, 2, "--jobs must be auto or in [1, 1024], got")
     assert len(result.stderr) < 200

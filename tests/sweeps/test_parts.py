@@ -315,7 +315,7 @@ def test_a_damaged_description_is_refused(content: bytes, tmp_path: Path, lagtop
 
 @pytest.mark.parametrize("name", ["part-000000.csv", "errors-000000.json", "sweep.json"])
 @pytest.mark.parametrize("kind", ["folder", "pipe"])
-def test_what_is_no_regular_file_is_refused(
+def test_parts_that_are_not_regular_files_are_refused(
     name: str, kind: str, tmp_path: Path, lagtop: Lagtop
 ) -> None:
     """A folder of the name of a part counted as done; a pipe was waited for."""

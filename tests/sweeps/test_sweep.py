@@ -446,7 +446,7 @@ def test_what_a_sweep_wrote_can_be_swept_again(tmp_path: Path, lagtop: Lagtop) -
         ('r0,"x\n1,2\n', "a quoted cell must end with its quote"),
     ],
 )
-def test_files_that_are_none(text: str, message: str, lagtop: Lagtop) -> None:
+def test_invalid_files_of_tops_are_refused(text: str, message: str, lagtop: Lagtop) -> None:
     result = lagtop("sweep", "-", input=text)
     assert (result.exit_code, result.stdout) == (65, "")
     assert message in result.stderr
