@@ -95,18 +95,24 @@ class Numbers:
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
         if name not in NUMBER_KEYS:
-            from .paper.requested import BY_U1, fraction_by_u1, requested_fractions  # start-up
+            from .paper.requested import fraction_by_roots, requested_fractions  # start-up
 
             found = requested_fractions(self.exact).get(name)
-            if found is not None or name not in BY_U1:
+            if found is not None:
                 return found
-            return fraction_by_u1(self.exact, name, self.fraction("u1", digits))
-        from .exact.rational_keys import known_fraction, rational_u  # start-up: for few tops
+            return fraction_by_roots(self.exact, name, lambda u: self.fraction(u, digits))
+        from .exact.half_rates import HALF_RATES  # start-up: for few tops
+        from .exact.rational_keys import known_fraction, rational_half_rate, rational_u
+
+        def enclosure(x: str) -> Ball | None:
+            return self.enclosure(x, 2 * digits + 80)
 
         known = known_fraction(self.exact, name, radians=radians)
-        if known is not None or name not in {"u1", "u2", "u3"}:
-            return known
-        return rational_u(self.exact, name, lambda x: self.enclosure(x, 2 * digits + 80))
+        if known is None and name in {"u1", "u2", "u3"}:
+            return rational_u(self.exact, name, enclosure)
+        if known is None and name in HALF_RATES:
+            return rational_half_rate(self.exact, name, enclosure(name))
+        return known
 
     def enclosure(self, name: str, digits: int, *, radians: bool = False) -> Ball | None:
         """Return a ball that contains a number, by key; None if the motion has no such number.

@@ -258,3 +258,68 @@ def test_polynomials_in_the_upper_root_may_be_midway(digits: int, start: dict[st
             assert abs(mpmath.mpf(text) - mpmath.re(right[key])) <= half * (
                 1 + mpmath.mpf(10) ** -40
             ), key
+
+
+@pytest.mark.parametrize(
+    ("digits", "key", "start"),
+    [
+        (12, "roots_gap_squared", {"m": "0.5", "A": "2", "g": "2", "r0": "-0.25"}),
+        (6, "roots_gap_squared", {"m": "1.8", "r0": "1.5", "theta0_deg": "120"}),
+        (5, "roots_product_fourfold", {"m": "2", "A": "3", "C": "4.5", "g": "2", "r0": "-3"}),
+        (8, "roots_product", {"m": "2", "A": "3", "C": "0.75", "g": "4", "r0": "-1"}),
+        (5, "u3_twice", {"m": "189/4120", "r0": "189/1648", "theta0_deg": "120"}),
+        (5, "spin_rate_half", {"m": "555/896", "r0": "185/224", "theta0_deg": "90"}),
+        (6, "spin_rate_half", {"m": "81/40960", "C": "0.5", "r0": "-9/64"}),
+        (6, "precession_rate_half", {"m": "27/8192", "C": "1.5", "r0": "3/64", "psidot0": "15/64"}),
+    ],
+)
+def test_numbers_of_rational_roots_may_be_midway(
+    digits: int, key: str, start: dict[str, str]
+) -> None:
+    """No number of digits tells a tie.  The roots are those of mpmath, and u(T/2) by cn^2/dn^2."""
+    tilt = {"theta0_deg": "90" if "A" in start and "C" not in start else "60"}
+    given = UNIT | tilt | {"psidot0": "0"} | start
+    top = Top(**{name: Fraction(x) for name, x in given.items()})
+    text = solve(top).record(digits=digits, keys=[key])[key]
+    with mpmath.workdps(120):
+        numbers = {
+            name: mpmath.mpf(Fraction(x).numerator) / Fraction(x).denominator
+            for name, x in top.as_dict().items()
+            if x is not None
+        }
+        m, A, C, s, g, r0, psi_rate = (numbers[x] for x in "m A C s g r0 psidot0".split())
+        u0 = mpmath.cos(mpmath.radians(numbers["theta0_deg"]))
+        a, b = 2 * m * g * s / A, C * r0 / A
+        alpha, beta = psi_rate**2 * (1 - u0**2) + a * u0, psi_rate * (1 - u0**2) + b * u0
+        cubic = [alpha - beta**2, 2 * beta * b - a, -(alpha + b**2), a]
+        roots = mpmath.polyroots(cubic, maxsteps=500, extraprec=500, asc=True)
+        u2, u1, u3 = sorted(map(mpmath.re, roots))
+        sn2, k2 = (u0 - u2) / (u1 - u2), (u1 - u2) / (u3 - u2)
+        u = u2 + (u1 - u2) * (1 - sn2) / (1 - k2 * sn2)
+        turn = (beta - b * u) / (1 - u**2)
+        right = {
+            "roots_product": u2 * u3,
+            "roots_product_fourfold": -4 * u2 * u3,
+            "roots_gap_squared": (u3 - u2) ** 2,
+            "u3_twice": 2 * u3,
+            "precession_rate_half": turn,
+            "spin_rate_half": r0 - u * turn,
+        }[key]
+        half = mpmath.mpf(10) ** (Decimal(text).adjusted() + 1 - digits) / 2
+        assert abs(abs(mpmath.mpf(text) - right) / half - 1) < mpmath.mpf(10) ** -40
+
+
+def test_numbers_at_irrational_cosines_may_be_midway() -> None:
+    """Worked out by hand: (alpha + b^2)^2 without torque, 2a squared and psi' without spin."""
+    free = UNIT | {"g": 0, "C": 2, "r0": -3.5, "theta0_deg": 30, "psidot0": -1, "thetadot0": -8}
+    assert solve(Top(**free)).record(digits=8, keys=["discriminant"]) == {
+        "discriminant": "12825.562"  # 64.25 + 49, squared: 12825.5625
+    }
+    plane = UNIT | {"m": 49 / 512, "r0": 0, "theta0_deg": 165, "thetadot0": 7 / 16}
+    assert solve(Top(**plane)).record(digits=13, keys=["discriminant"]) == {
+        "discriminant": "0.1465454101562"  # 4 (49/256)^2 = 0.14654541015625
+    }
+    still = UNIT | {"g": 0, "r0": 0, "theta0_deg": 126, "psidot0": 15 / 64, "thetadot0": 35 / 32}
+    assert solve(Top(**still)).record(digits=5, keys=["precession_rate_half"]) == {
+        "precession_rate_half": "0.23438"  # 15/64 = 0.234375
+    }

@@ -1,15 +1,15 @@
-"""Decide in fractions which rates at T/2 are exactly 0.
+"""Decide in fractions which rates at T/2 are exactly 0, or midway between two roundings.
 
 Half a period on, sn^2 becomes cn^2/dn^2, so that u(T/2) = (u3 (u1 + u2) - u1 u2 - u0 u3)/(u3 - u0).
-By the sums and products of the roots of (4,9) this is N(x)/M(x) with x = u3.  A rate (4,7), (4,8)
-is 0 if a polynomial P(x) is 0.  The greatest common divisor of P and the cubic gives the number of
-common roots, and enclosures exclude the other roots.
+By the sums and products of the roots of (4,9) this is N(x)/M(x) with x = u3.  Without torque it is
+u1 + u2 - u0.  A rate (4,7), (4,8) is 0 if a polynomial P(x) is 0.  The greatest common divisor of P
+and the cubic gives the number of common roots, and enclosures exclude the other roots.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any, cast
 
 from ...arithmetic.ball import TooFewDigitsError
@@ -28,34 +28,47 @@ InU3 = Polynomial
 
 @lru_cache(maxsize=8)
 def vanishing_half_rates(exact: Exact) -> dict[str, Fraction]:
-    """Return the rates at T/2 that are 0 for a nutating top.
-
-    Without torque u(T/2) = u1 + u2 - u0, where the roots have the sum 2 beta b/(alpha + b^2).
-    """
+    """Return the rates at T/2 that are 0 for a nutating top."""
     facts = exact.facts
     if facts.steady or (facts.pole and not facts.free):
         return {}
-    a, beta = exact.a, exact.beta
-    pairs, total = 2 * exact.b * beta - a, exact.alpha + exact.b * exact.b
-    if facts.free:
-        N, M = pairs - U * total, total
-        is_zero = exact.cosine.vanishes
-    else:
-        cubic = Polynomial(exact.alpha - beta * beta, pairs, -1 * total, Polynomial(a))
-        N = Polynomial(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
-        M, beta = Polynomial(-a * U, Polynomial(a)), Polynomial(beta)
-        is_zero = partial(_is_zero_at_u3, exact, cubic)
-    momentum = beta * M + N * -exact.b  # M (beta - b u)
-    spin = (M * M - N * N) * exact.r0 - N * momentum
-    found = zip(HALF_RATES, (spin, momentum), strict=True)
-    return {key: Fraction(0) for key, P in found if is_zero(P)}
+    zero = Fraction(0)
+    return {key: zero for key in HALF_RATES if is_half_rate(exact, key, zero)}
 
 
-def _is_zero_at_u3(exact: Exact, cubic: InU3, P: InU3) -> bool:
-    """Return whether P is exactly 0 at the greatest root of a cubic.
+def is_half_rate(exact: Exact, name: str, value: Fraction) -> bool:
+    """Return whether a rate at T/2 of a nutating top is exactly a fraction close to it."""
+    N, M = _half_cosine(exact)
+    momentum = Polynomial(exact.beta) * M + N * -exact.b  # M (beta - b u)
+    rate = momentum * M if name == "precession_rate_half" else N * -1 * momentum
+    constant = value if name == "precession_rate_half" else value - exact.r0
+    return _is_zero_at_u3(exact, rate - (M * M - N * N) * constant)
+
+
+def _half_cosine(exact: Exact) -> tuple[InU3, InU3]:
+    """Return N and M for u(T/2) = N(u3)/M(u3); they are constants without torque."""
+    a, (pairs, total) = exact.a, _sums(exact)
+    if exact.facts.free:
+        return Polynomial(pairs - U * total), Polynomial(total)
+    N = Polynomial(-1 * pairs, 2 * total - a * U, Polynomial(-2 * a))
+    return N, Polynomial(-a * U, Polynomial(a))
+
+
+def _sums(exact: Exact) -> tuple[Polynomial, Polynomial]:
+    """Return a times the sums of products of two roots, and of the roots."""
+    return 2 * exact.b * exact.beta - exact.a, exact.alpha + exact.b * exact.b
+
+
+def _is_zero_at_u3(exact: Exact, P: InU3) -> bool:
+    """Return whether P is exactly 0 at the greatest root of the cubic.
 
     Balls are tried first: they are cheap, and nearly always prove that P is not 0.
     """
+    if exact.facts.free:
+        return exact.cosine.vanishes(P.coefficients[0])
+    pairs, total = _sums(exact)
+    product = exact.alpha - exact.beta * exact.beta
+    cubic = Polynomial(product, pairs, -1 * total, Polynomial(exact.a))
     if not _zeros_possible(exact, P, cubic, FIRST_DIGITS)[0]:
         return False
     shared = _shared_roots(exact, cubic, P)

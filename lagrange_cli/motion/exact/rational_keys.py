@@ -15,7 +15,7 @@ from functools import lru_cache
 from ...arithmetic.ball import Ball
 from ...arithmetic.exact_cosine import U
 from ..regime import Exact
-from .half_rates import HALF_RATES, vanishing_half_rates
+from .half_rates import HALF_RATES, is_half_rate, vanishing_half_rates
 
 _RATE_OF = {"T_spin": "mean_spin_rate", "T_precession": "mean_precession_rate"}
 """The mean rate of each period."""
@@ -123,21 +123,33 @@ def rational_u(exact: Exact, name: str, enclosure: Callable[[str], Ball | None])
     others = [other for other in roots.values() if other is not None]
     if ball is None or any((ball - other).least == 0 for other in others):
         return None
-    low, high = ball.ends()
-    u = _simplest(Fraction(low), Fraction(high))
+    u = _simplest(ball)
     around = exact.beta - exact.b * u
     value = (1 - u * u) * (exact.alpha - exact.a * u) - around * around
     return u if exact.cosine.vanishes(value) else None
 
 
-def _simplest(low: Fraction, high: Fraction) -> Fraction:
-    """Return the fraction with the smallest denominator between two numbers."""
+def rational_half_rate(exact: Exact, name: str, ball: Ball | None) -> Fraction | None:
+    """Return a rate at T/2 in an enclosure if it is a fraction, such as a tie between doubles."""
+    if ball is None or exact.facts.steady:
+        return None
+    value = _simplest(ball)
+    return value if is_half_rate(exact, name, value) else None
+
+
+def _simplest(ball: Ball) -> Fraction:
+    """Return the fraction with the smallest denominator in a ball."""
+    low, high = ball.ends()
+    return _simplest_between(Fraction(low), Fraction(high))
+
+
+def _simplest_between(low: Fraction, high: Fraction) -> Fraction:
     if high < 0:
-        return -_simplest(-high, -low)
+        return -_simplest_between(-high, -low)
     whole = Fraction(max(math.ceil(low), 0))
     if whole <= high:
         return whole
-    return whole - 1 + 1 / _simplest(1 / (high - whole + 1), 1 / (low - whole + 1))
+    return whole - 1 + 1 / _simplest_between(1 / (high - whole + 1), 1 / (low - whole + 1))
 
 
 def _zeros_of_roots(exact: Exact) -> dict[str, Fraction]:

@@ -7,7 +7,9 @@ These modules are imported only when one of their keys is requested.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
+from inspect import signature
 
 from ...arithmetic.exact_cosine import Polynomial, U
 from ..exact.rational_keys import rational_keys, starts_at_u1, starts_at_u2
@@ -40,25 +42,62 @@ def requested_fractions(exact: Exact) -> dict[str, Fraction]:
             keys[f"{angle}_half_deg"] = Fraction(0)
     if exact.facts.at_rest and exact.a:
         total = exact.b * exact.b / exact.a
+        product = total * U - 1
         keys |= {"roots_sum": total, "roots_sum_squared": total * total}
-        if exact.cosine.vanishes(total * U - 1):
-            keys |= {"roots_product": Fraction(0), "roots_product_fourfold": Fraction(0)}
+        keys |= _fractions(
+            exact,
+            {
+                "roots_product": product,
+                "roots_product_fourfold": -4 * product,
+                "roots_gap_squared": total * total - 4 * product,
+            },
+        )
     return keys
 
 
-BY_U1 = ("f_slope_u1", "u2_criterion", "discriminant")
+_OF_ROOTS: dict[str, Callable[..., Fraction]] = {
+    "u2_twice": lambda u2: 2 * u2,
+    "u3_twice": lambda u3: 2 * u3,
+    "roots_gap": lambda u2, u3: u3 - u2,
+    "k_squared": lambda u1, u2, u3: (u1 - u2) / (u3 - u2),
+}
+"""Formulas of keys whose values are fractions if the roots are, by the names of the roots."""
+
+
+def fraction_by_roots(
+    exact: Exact, name: str, root: Callable[[str], Fraction | None]
+) -> Fraction | None:
+    """Return a key that follows from the roots of (4,9), if it is a fraction.
+
+    `root` returns a root by its name, or None if the root is not rational.
+    """
+    if name in _BY_U1:
+        return _fraction_by_u1(exact, name, root("u1"))
+    formula = _OF_ROOTS.get(name)
+    if formula is None:
+        return None
+    roots = {u: root(u) for u in signature(formula).parameters}
+    return None if None in roots.values() else formula(**roots)
+
+
+_BY_U1 = ("f_slope_u1", "u2_criterion", "discriminant")
 """The keys that are polynomials in the root u1."""
 
 
-def fraction_by_u1(exact: Exact, name: str, rational: Fraction | None) -> Fraction | None:
+def _fraction_by_u1(exact: Exact, name: str, rational: Fraction | None) -> Fraction | None:
     """Return a key that is a polynomial in the root u1 (4,9), if it is a fraction.
 
-    The root is a `rational` number or the cosine of the start, else the result is None.  The cubic
-    is a u^3 - (alpha + b^2) u^2 + (2 beta b - a) u + alpha - beta^2.
+    The root is a `rational` number or a polynomial in the cosine of the start, else the result is
+    None.  The cubic is a u^3 - (alpha + b^2) u^2 + (2 beta b - a) u + alpha - beta^2.
     """
-    if rational is None and not starts_at_u1(exact):
+    if rational is not None:
+        u1 = Polynomial(rational)
+    elif starts_at_u1(exact):
+        u1 = U
+    elif exact.facts.plane and exact.a:
+        u1 = exact.alpha * (1 / exact.a)
+    else:
         return None
-    u1 = U if rational is None else Polynomial(rational)
     square = exact.alpha + exact.b * exact.b
     pairs = 2 * exact.b * exact.beta - exact.a
     if name == "f_slope_u1":
@@ -86,8 +125,15 @@ def _constants(exact: Exact) -> dict[str, Fraction]:
         "f_upright": -1 * (beta - exact.b) * (beta - exact.b),
         "f_hanging": -1 * (beta + exact.b) * (beta + exact.b),
     }
+    wide = exact.energy + exact.b * exact.b - 2 * exact.a * U
+    if steady or exact.facts.free:
+        polynomials["discriminant"] = wide * wide
     if steady:
-        wide = exact.energy + exact.b * exact.b - 2 * exact.a * U
-        polynomials |= {"discriminant": wide * wide, "u2_criterion": U * (wide + exact.a * U)}
+        polynomials["u2_criterion"] = U * (wide + exact.a * U)
+    return keys | _fractions(exact, polynomials)
+
+
+def _fractions(exact: Exact, polynomials: dict[str, Polynomial]) -> dict[str, Fraction]:
+    """Return the polynomials in cos(theta0) whose values are fractions, with these values."""
     values = {name: exact.cosine.fraction(value) for name, value in polynomials.items()}
-    return keys | {name: value for name, value in values.items() if value is not None}
+    return {name: value for name, value in values.items() if value is not None}
