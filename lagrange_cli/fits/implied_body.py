@@ -95,10 +95,10 @@ def _reduced(rows: list[list[Fraction]], width: int) -> list[list[Fraction]]:
 def completed_body(
     seen: Mapping[str, float], known: Mapping[str, float], products: list[DeterminedProduct]
 ) -> dict[str, float]:
-    """Return all six inputs of a body with this motion; undetermined inputs are 1, or C = A.
+    """Return all six inputs of a body with this motion.
 
-    The first input of a determined product takes its value.  A product of m and s is split so that
-    m s^2 = A/10, which a real body can have.
+    Undetermined inputs are A = 1, C = A and g = 1.  The first input of a determined product takes
+    its value.  A product of m and s is split so that m s^2 = A/10, which a real body can have.
     """
     others = {"r0": seen["b"], "A": known.get("C", 1.0)}
     inputs = {name: others.get(name, 1.0) for name in BODY_INPUTS} | dict(known)

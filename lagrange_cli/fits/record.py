@@ -269,7 +269,7 @@ class Outcome(HasRecord):
         }
 
     def inputs(self) -> dict[str, float]:
-        """Return inputs of `Top` with this motion; undetermined ones are 1, or such that C = A."""
+        """Return inputs of `Top` with this motion; undetermined ones as in `completed_body`."""
         return self.inputs_at(self.values)
 
     def inputs_at(self, values: Mapping[str, float]) -> dict[str, float]:
