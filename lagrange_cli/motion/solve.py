@@ -134,8 +134,13 @@ class Motion(Numbers):
         are then taken as decimals.  `radii` adds KEY_radius, a bound of the distance from the
         number under KEY to its exact value.  A number beyond the range of doubles is None, and an
         OutOfRangeWarning names it.  `keys` selects some keys; such a number then raises
-        OutOfRangeError.  Raises LagtopError if no precision distinguishes a number from 0.
+        OutOfRangeError.  Raises LagtopError for an unknown key, and if no precision distinguishes a
+        number from 0.
         """
+        if keys is not None:
+            from ..inputs.names import check_names  # start-up: not for the whole record
+
+            check_names("keys", list(keys), all_keys(radians=radians))
         record, beyond = record_in_range(
             self, digits=digits, radii=radii, radians=radians, keys=keys
         )

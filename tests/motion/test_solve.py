@@ -258,3 +258,8 @@ def test_the_remark_is_in_radians_where_the_record_is() -> None:
     nods, nods_in_radians = (float(text.split()[4]) for text in (degrees, radians))
     assert (" deg in " in degrees, " rad in " in radians) == (True, True)
     assert math.radians(nods) == pytest.approx(nods_in_radians, rel=0.01)
+
+
+def test_an_unknown_key_is_refused() -> None:
+    with pytest.raises(LagtopError, match=r"'T_nutatoin' \(did you mean 'T_nutation'\?\)"):
+        solve(Top()).record(keys=["T_spin", "T_nutatoin"])

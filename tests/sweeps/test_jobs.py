@@ -250,7 +250,7 @@ def test_a_signal_to_the_whole_group(name: str, tmp_path: Path) -> None:
     number = getattr(signal, f"SIG{name}")
     with sharing(tmp_path) as running:
         os.killpg(running.pid, number)
-        assert running.communicate(timeout=60)[1] == b""
+        assert running.communicate(timeout=180)[1] == b""
     assert running.returncode == -number
     assert list(tmp_path.iterdir()) == []
 
