@@ -103,13 +103,14 @@ def solve_command(
     summed = _summary(record, motion.exact.facts, found.system) if is_summed else {}
     bare = keys is not None and not on_command_line("fmt")
     if found.stds:
-        record = uncertainty.with_stds(found, motion, record, out.fmt == "table" and not bare)
+        drawn = out.fmt in {"table", "markdown"} and not bare
+        record = uncertainty.with_stds(found, motion, record, drawn)
     if keys is not None:
         values = _numbers(motion, record, keys)
         if out.fmt == "table":
             out.values(values.values())
         else:
-            out.record(values, lambda: _keys(found.system, top.radians, requested=True))
+            out.record(values, lambda: _with_stds(_keys(found.system, top.radians, requested=True)))
     elif derivation:
         more = {x: record[x] for x in record if x.endswith("_radius") or x == "remark"}
         steps = {name: record[name] for name in chosen or ()}
@@ -132,6 +133,15 @@ def _check_keys(keys: list[str], radians: bool) -> None:
 def _keys(system: System | None, radians: bool, *, requested: bool = False) -> dict[str, Key]:
     named = str if system is None else system.named
     return shown_keys(radians=radians, named=named, requested=requested)
+
+
+def _with_stds(keys: dict[str, Key]) -> dict[str, Key]:
+    """Return keys and those of their uncertainties."""
+    stds = {
+        f"{name}_std": key.replace(symbol="", meaning=f"uncertainty of {name}", equation="")
+        for name, key in keys.items()
+    }
+    return keys | stds
 
 
 def _chain(system: System | None, radians: bool) -> dict[str, Key]:
@@ -179,9 +189,12 @@ def _record(
 def _numbers(motion: Motion, record: dict[str, Any], keys: list[str]) -> dict[str, Any]:
     """Return values of the record, each with its radius, if any.
 
-    Raises AbsentError if the motion has no such number.
+    Raises AbsentError if the motion has no such number, LagtopError for the uncertainty of a text.
     """
     for key in keys:
+        if key not in record:
+            text = key.removesuffix("_std")
+            raise LagtopError(f"{text} has no uncertainty: leave {key} out of --get")
         if record[key] is None:
             raise AbsentError(f"{key} is undefined {motion.absence(key)}")
     return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}

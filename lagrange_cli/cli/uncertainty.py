@@ -53,7 +53,7 @@ def asked_report(
 def with_stds(
     found: Given, motion: Motion, record: Mapping[str, Any], shown: bool
 ) -> dict[str, Any]:
-    """Return a record with uncertainties: `shown` as `value(uncertainty)`, or as keys KEY_std.
+    """Return a record with the keys KEY_std; values are `shown` as `value(uncertainty)` or bare.
 
     A warning names the numbers that have none.
     """
@@ -71,7 +71,7 @@ def with_stds(
         for name, value in record.items()
         if value is not None and (std := stds.get(f"{name}_std"))
     }
-    return dict(record) | texts
+    return dict(record) | stds | texts
 
 
 def first_order(found: Given, motion: Motion) -> FirstOrder:

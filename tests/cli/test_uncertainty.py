@@ -36,6 +36,30 @@ def test_uncertain_numbers_are_written_and_read_as_by_uncertainties() -> None:
         assert float(read.std or 0) == pytest.approx(judge.s, rel=1e-12)
 
 
+def test_an_uncertainty_on_request_is_in_every_format(lagtop: Lagtop) -> None:
+    uncertain = ["solve", "--r0", "50(1)", "--get", "T_nutation,T_nutation_std"]
+    value, std = lagtop(*uncertain).stdout.splitlines()
+    assert lagtop(*uncertain, "--format", "csv").stdout.splitlines()[1] == f"{value},{std}"
+    shown = uncertain_text(float(value), float(std))
+    assert lagtop(*uncertain, "--format", "table").stdout == f"{shown}\n{std}\n"
+    markdown = lagtop(*uncertain, "--format", "markdown").stdout
+    assert f"| {shown} | time |" in markdown
+    assert f"| uncertainty of T_nutation | {std} | time |" in markdown
+
+
+@pytest.mark.parametrize(
+    ("key", "inputs"),
+    [
+        ("regime", ["--r0", "50(1)"]),
+        ("remark", ["--r0", "50(1)"]),
+        ("psidot0", ["--r0", "60(1)", "--psidot0", "steady"]),
+    ],
+)
+def test_texts_have_no_uncertainty(lagtop: Lagtop, key: str, inputs: list[str]) -> None:
+    result = lagtop("solve", *inputs, "--get", f"{key}_std")
+    assert_one_line(result, 2, f"{key} has no uncertainty: leave {key}_std out of --get")
+
+
 def test_the_record_carries_uncertainties(lagtop: Lagtop) -> None:
     text = lagtop("solve", *BODY, "--theta0", "30(1)", "--format", "json").stdout
     record = json.loads(text)
