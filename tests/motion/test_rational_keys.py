@@ -159,6 +159,25 @@ def test_without_torque_and_spin_the_other_turning_point_is_opposite(
     assert [known_fraction(level, key) for key in ("u1", "u2")] == [Fraction(1, 2), Fraction(-1, 2)]
 
 
+@pytest.mark.parametrize(
+    ("psi_rate", "r0", "key", "printed"),
+    [
+        ("-13/16", "13/16", "mean_spin_rate", "1.2188"),  # 13/16 - 13/64 + 39/64
+        ("-13/16", "-13/16", "mean_precession_rate", "-0.60938"),  # -39/64
+        ("13/16", "13/16", "mean_precession_rate", "0.60938"),
+        ("13/16", "-13/16", "mean_spin_rate", "-1.2188"),
+    ],
+)
+def test_mean_rates_without_torque_may_be_midway(
+    psi_rate: str, r0: str, key: str, printed: str
+) -> None:
+    """By hand the angular momentum over A has the size 39/64; cos 30 degrees is not rational."""
+    start = {"r0": r0, "psidot0": psi_rate, "thetadot0": "-13/32"}
+    given = {name: Fraction(x) for name, x in start.items()}
+    top = Top(m=1, A=1, C=Fraction(1, 4), s=1, g=0, theta0_deg=30, **given)
+    assert solve(top).record(digits=5, keys=[key]) == {key: printed}
+
+
 def test_roots_that_are_fractions_may_be_midway() -> None:
     """By hand b^2/a = 1/x - x with x = 1 - 2^-54, and u2 = -x is midway between two doubles."""
     motion = solve(

@@ -62,13 +62,26 @@ def rational_keys(exact: Exact) -> dict[str, Fraction]:
         keys["mean_precession_rate"] = exact.psi_rate
         return keys | ({} if spin is None else {"mean_spin_rate": spin})
     if facts.free or (facts.upper_root == 1 and facts.over_bottom):  # half turns about both poles
+        turn = _turn_rate(exact) if facts.free else None
         if facts.sign_plus == facts.sign_minus:
             keys["mean_spin_rate"] = exact.r0 - exact.b
+            keys |= {} if turn is None else {"mean_precession_rate": facts.sign_plus * turn}
         else:
             keys["mean_precession_rate"] = Fraction(0)
+            drift = exact.r0 - exact.b
+            keys |= {} if turn is None else {"mean_spin_rate": drift + facts.sign_plus * turn}
     if facts.drifts:
         keys["mean_spin_rate"] = exact.r0 - exact.b / 2
     return keys | _zeros_of_roots(exact) | _half_rates(exact)
+
+
+def _turn_rate(exact: Exact) -> Fraction | None:
+    """Return the size of the angular momentum over A of a torque-free top, if it is a fraction."""
+    square = exact.cosine.fraction(exact.energy + exact.b * exact.b)
+    if square is None:
+        return None
+    rate = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
+    return rate if rate * rate == square else None
 
 
 def _tilt_keys(exact: Exact) -> dict[str, Fraction]:
