@@ -24,7 +24,7 @@ from .ranges import InputArrays
 from .text_lines import UNDECIDED, Dialect, Numbered, decoded_row, has_row, json_object, shown_json
 from .text_tables import TableHead, read_head
 from .top import INPUTS
-from .value import Value
+from .value import STEADY_WORDS, Value, steady_refused
 
 LARGEST_BLOCK = 1 << 27
 """Most bytes of lines kept in memory at a time."""
@@ -185,6 +185,7 @@ def _double(name: str, text: str, dialect: Dialect, factor: Fraction | None = No
         return checked_double(name, parse_number(plain) * (1 if factor is None else factor))
     except LagtopError as error:
         wrong = str(error).replace(quoted(plain.strip()), quoted(text.strip()))
+        wrong = steady_refused(text.strip()) if text.strip() in STEADY_WORDS else wrong
         if hint := dialect.remedy(text.strip()):
             wrong = f"{wrong.partition(' (')[0]}{hint}"
         raise LagtopError(f"{name} {wrong}") from None
@@ -193,6 +194,8 @@ def _double(name: str, text: str, dialect: Dialect, factor: Fraction | None = No
 def _json_double(name: str, value: Any) -> float:
     if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
+    if value in STEADY_WORDS:
+        raise LagtopError(f"{name} {steady_refused(value)}")
     raise LagtopError(f"{name} must be a finite number, got {shown_json(value)}")
 
 

@@ -171,7 +171,17 @@ def parse_value(
         whole = str(error).replace(f"got {quoted(number)}", got)
         if number in STEADY_WORDS:
             whole = steady_refused(number)
+        elif steady and not re.search(r"\d", number):
+            whole = f"must be a number, {' or '.join(STEADY_WORDS)}, {got}"
+        elif not uncertain and any(re.fullmatch(form, number) for form in _FORMS):
+            whole = f"must have no uncertainty in this command, {got}: leave out {_spread(number)}"
         raise LagtopError(whole, error.key) from None
+
+
+def _spread(text: str) -> str:
+    """Return the uncertainty of an uncertain number as it is written, such as `(2)`."""
+    found = re.search(r"\([\d.]+\)|(\+/?-|±)\s*[^\s)%]+(\s*%)?", text)
+    return found[0] if found else "the uncertainty"
 
 
 def split_unit(text: str) -> tuple[str, str]:

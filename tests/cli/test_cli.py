@@ -236,6 +236,8 @@ BAD = {
     "--r0 1_000": "(leave out the underscores)",
     "--r0 ٣": "--r0 must be a finite decimal number, got '٣'",
     "--r0 0x10": "--r0 must have a unit as in '50 rad/s' or 480rpm, got the unit 'x10'",
+    "--psidot0 Steady": "--psidot0 must be a number, steady or steady-fast, got 'Steady'",
+    "--psidot0 slow": "--psidot0 must be a number, steady or steady-fast, got 'slow'",
     "--m 0": "m must be > 0, got 0.0",
     "--A -1": "A must be > 0, got -1.0",
     "--C 0": "C must be > 0, got 0.0",
@@ -284,6 +286,13 @@ def test_options_win_over_the_file(solved: Solved, tmp_path: Path) -> None:
     record = solved(path, "--r0", "8", "--theta0", "20")
     assert (record["r0"], record["theta0_deg"], record["m"]) == (8, 20, 1500)
     assert solved(path)["theta0_deg"] == pytest.approx(math.degrees(1))
+
+
+@pytest.mark.parametrize("fmt", ["csv", "ndjson"])
+def test_a_file_of_tops_has_a_number_in_place_of_the_word_steady(fmt: str, lagtop: Lagtop) -> None:
+    record = lagtop("solve", "--r0", "60", "--psidot0", "steady", "--format", fmt).stdout
+    result = lagtop("sweep", "-", "--keys", "T_nutation", input=record)
+    assert "psidot0 must be a number unless one top is solved, got steady: see" in result.stderr
 
 
 def test_bad_line_of_times(lagtop: Lagtop) -> None:

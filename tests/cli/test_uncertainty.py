@@ -60,6 +60,21 @@ def test_texts_have_no_uncertainty(lagtop: Lagtop, key: str, inputs: list[str]) 
     assert_one_line(result, 2, f"{key} has no uncertainty: leave {key}_std out of --get")
 
 
+@pytest.mark.parametrize(
+    ("text", "spread"),
+    [
+        ("180(2)rpm", "(2)"),
+        ("50+/-1", "+/-1"),
+        ("50 ± 0.1 %", "± 0.1 %"),
+        ("(5.0+-0.1)e1", "+-0.1"),
+    ],
+)
+def test_commands_without_uncertainties_say_so(lagtop: Lagtop, text: str, spread: str) -> None:
+    said = f"--r0 must have no uncertainty in this command, got {text!r}: leave out {spread}\n"
+    for command in (["view", "-o", "-"], ["find", "T_nutation=0.4"]):
+        assert_one_line(lagtop(*command, "--r0", text), 2, said)
+
+
 def test_the_record_carries_uncertainties(lagtop: Lagtop) -> None:
     text = lagtop("solve", *BODY, "--theta0", "30(1)", "--format", "json").stdout
     record = json.loads(text)
