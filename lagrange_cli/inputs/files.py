@@ -9,7 +9,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from io import BufferedIOBase, BufferedReader, BytesIO, RawIOBase
+from io import BufferedIOBase, BufferedReader, RawIOBase
 from typing import Any, BinaryIO, cast
 
 from ..errors import CannotWriteError, DataError
@@ -27,7 +27,9 @@ def reading(path: str) -> Iterator[BufferedIOBase]:
     """
     try:
         if path == "-":
-            yield cast(BufferedIOBase, sys.stdin.buffer) if sys.stdin else BytesIO()
+            if sys.stdin is None:
+                raise OSError("it is closed: give a file in place of -")
+            yield cast(BufferedIOBase, sys.stdin.buffer)
             return
         with open(path, "rb") as file:
             yield file

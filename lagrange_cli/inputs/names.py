@@ -35,6 +35,7 @@ def check_names(key: str, names: Sequence[str], known: Iterable[str]) -> list[st
             if len(listed := ", ".join(known)) <= _MOST_CHARACTERS:
                 raise LagtopError(f"{key} must be among {listed}, {wrong}", key)
             some = f"{', '.join(known[:_FIRST])} and {len(known) - _FIRST} more"
+            some += ", see lagtop explain" if "T_nutation" in known else ""  # a list of keys
             raise LagtopError(f"{key} must be among {len(known)} names, {wrong}: {some}", key)
     if (twice := repeated(names)) is not None:
         raise LagtopError(f"{key} must not repeat a name, got {twice!r} twice", key)
@@ -54,13 +55,13 @@ def repeated(names: Iterable[str]) -> str | None:
 def suggestion(name: object, known: Iterable[str]) -> str:
     """Return ` (did you mean 'x'?)` with the known name closest to a wrong one, or an empty text.
 
-    Names with the same words in another order come first, then names that begin with the wrong one,
-    then similar names.
+    A name without its unit of an angle, or with its words in another order, comes first.  Then come
+    names that begin with the wrong one, then similar names.
     """
     from difflib import get_close_matches
 
     known, wrong = list(known), str(name)[:80]
-    same = [x for x in known if _words(x) == _words(wrong)]
+    same = [x for x in known if wrong in (f"{x}_deg", f"{x}_rad") or _words(x) == _words(wrong)]
     longer = [x for x in known if len(wrong) > 2 and x.startswith(wrong)]
     nearest = same or longer or get_close_matches(wrong, known, 1)
     return f" (did you mean {nearest[0]!r}?)" if nearest else ""

@@ -73,7 +73,8 @@ class SceneFile:
             _check_dots(self.text)
             table = tomllib.loads(self.text, parse_float=_parsed)
         except (ValueError, RecursionError) as error:  # broken TOML or UTF-8, too many digits
-            why = f"{error}{_remedy(str(error), self.text)}"
+            is_text = not isinstance(error, UnicodeDecodeError)
+            why = f"{error}{_remedy(str(error), self.text)}" if is_text else "it is no UTF-8 text"
             raise SceneError(f"{self.name}: not a TOML file: {why}") from None
         correlated = table.pop(_CORRELATIONS, {})
         found = {key: self._value(key, value) for key, value in table.items()}

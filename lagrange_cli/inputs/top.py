@@ -272,7 +272,7 @@ def _check_ranges(top: Top) -> None:
     _require(top.g >= 0, "g", ">= 0", top.g, "for upward gravity use 180 - theta0 and -r0")
     twice = 2 * Fraction(top.A)
     _require(twice >= top.C, "C", f"<= 2 A = {_shown(twice)}", top.C, "no rigid body has more")
-    for name, most in (("theta0_deg", "180"), ("theta0_rad", "pi")):
+    for name, most in (("theta0_deg", "180"), ("theta0_rad", "pi rad")):
         tilt = getattr(top, name)
         if tilt is not None:
             _require(0 <= tilt and _is_at_most(tilt, most), name, f"in [0, {most}]", tilt)
@@ -280,7 +280,7 @@ def _check_ranges(top: Top) -> None:
 
 
 def _is_at_most(tilt: Number, most: str) -> bool:
-    """Return whether a tilt is at most 180 degrees, or pi."""
+    """Return whether a tilt is at most 180 degrees, or pi rad."""
     return tilt <= 180 if most == "180" else tilt < 3 or below_quarters(2, Fraction(tilt)) > 0
 
 

@@ -246,12 +246,14 @@ BAD = {
     "--C 80000": "C must be <= 2 A = 78064.0, got 80000.0 (no rigid body has more)",
     "--theta0 -1": "--theta0 must be in [0, 180], got -1.0",
     "--theta0 181": "--theta0 must be in [0, 180], got 181.0",
-    "--theta0 3.15 --rad": "--theta0 must be in [0, pi], got 3.15",
+    "--theta0 3.15 --rad": "--theta0 must be in [0, pi rad], got 3.15",
+    "--theta0 30rad": "--theta0 must be in [0, pi rad], got 30.0",
     "--theta 3": "unknown option --theta (did you mean",
     "--format xml": "--format must be one of ",
     "a.toml b.toml": "unexpected argument b.toml: see lagtop",
 }
 BAD_TIMES = {
+    "--columns psi_deg": "got 'psi_deg' (did you mean 'psi'?)",
     "--n 0": "--n must be >= 1, got 0",
     "--n -3": "--n must be >= 1, got -3",
     "--n 1.5": "--n must be a whole number, got 1.5",
@@ -272,6 +274,12 @@ BAD_TIMES = {
     ("line", "message"),
     [(f"solve {line}", message) for line, message in BAD.items()]
     + [(f"table {line}", message) for line, message in (BAD | BAD_TIMES).items()]
+    + [
+        (
+            "solve --get x",
+            "r0, theta0_deg, thetadot0, psidot0, regime, a, b and 64 more, see lagtop explain",
+        )
+    ]
     + [("solv", "unknown command 'solv' (did you mean 'solve'?): see lagtop --help")],
 )
 def test_bad_input(line: str, message: str, lagtop: Lagtop) -> None:

@@ -56,6 +56,14 @@ def test_closed_standard_error(name: str, tmp_path: Path, lagtop: Lagtop) -> Non
         assert len(closed.stdout) > 100
 
 
+@pytest.mark.parametrize("line", ["table -", "sweep -", "compare -", "table --times -"])
+def test_closed_standard_input(line: str, tmp_path: Path) -> None:
+    result = run(line, "2>said <&-", tmp_path)
+    assert (result.returncode, result.stdout) == (65, b"")
+    wrong = "Error: standard input: it is closed: give a file in place of -\n"
+    assert (tmp_path / "said").read_text() == wrong
+
+
 HELP = ["--help", "--version", "", "solve --help"]
 
 

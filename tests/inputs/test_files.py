@@ -77,7 +77,7 @@ def test_options_mend_a_scene_in_every_command(tmp_path: Path, lagtop: Lagtop) -
         ("[" * 20_000, "not a TOML file"),
         ("r0 = 1\n" + "#" * 70_000, "a scene file must have at most 64 KiB"),
         ("#" * (1 << 21), "a scene file must have at most 64 KiB"),
-        ("\udcff\udcfe\x00", "not a TOML file"),
+        ("\udcff\udcfe\x00", "not a TOML file: it is no UTF-8 text\n"),
         ("m = 1\nmass = 2\n", "line 2: unknown key 'mass'"),
         ("m = 1\n[top]\nr0 = 3\n", "line 2: unknown key 'top'"),
         ("m = 1\nA == 2\n", "not a TOML file: Invalid value (at line 2, column 4)"),
