@@ -46,7 +46,8 @@ in the last place of its inputs.  The strata of scenes are:
 {strata}
 
 lagtop itself is checked against 80 digits or more, at times up to 1e14 periods.  Its keys must be
-correctly rounded, and its angles within 4 units.  The exit code is 1 if a bound is exceeded.
+correctly rounded, and its angles within 4 units, which lagtop table --help defines.  The exit code
+is 1 if a bound is exceeded.
 """
 
 
