@@ -83,7 +83,7 @@ class TopOptions(Values):
     def in_seconds(self, **times: Value | None) -> tuple[TopOptions, dict[str, Any]]:
         """Return the options, and times as numbers, in seconds if they have units.
 
-        A time with a unit requires units of all inputs, as --units does.
+        A time with a unit requires units of all given inputs, as --units does.
         """
         given = {name: x for name, x in times.items() if x is not None}
         top = self
