@@ -72,7 +72,6 @@ def listed(*, radians: bool = False, named: Callable[[str], str] = str) -> list[
             *(key.unit, key.equation, _shown(key.formula, symbols), key.formula),
         )
         for name, key in keys.items()
-        if key.meaning
     ]
     angle = "rad" if radians else "deg"
     for name, column in COLUMNS.items():
@@ -122,7 +121,7 @@ def explanations(
     found = []
     for row, used in zip(chosen, parts, strict=True):
         own = [row.name] if row.kind != "column" else []
-        absent = [x for x in dict.fromkeys([*own, *used]) if record[x] is None]
+        absent = [x for x in dict.fromkeys([*own, *used]) if record[x] is None and x != "remark"]
         found.append(
             row._replace(
                 numbers="" if absent or not used else _shown(row.text, texts, "·"),

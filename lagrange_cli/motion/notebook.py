@@ -47,7 +47,7 @@ class HasRecord:
 def record_html(record: Mapping[str, Any]) -> str:
     """Return the record of a motion as an HTML table: key, symbol, meaning, value and unit."""
     rows = (
-        (name, KEYS[name].symbol, KEYS[name].meaning or name, value, KEYS[name].unit)
+        (name, KEYS[name].symbol, KEYS[name].meaning, value, KEYS[name].unit)
         for name, value in record.items()
         if value is not None
     )

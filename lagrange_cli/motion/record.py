@@ -35,7 +35,7 @@ KEYS = (
     _INPUTS
     | {"regime": Key("Constants", "", "regime"), "path": Key("Constants", "", "path of the axis")}
     | _NUMBERS
-    | {"remark": Key("Remark", "", "")}
+    | {"remark": Key("Remark", "", "special properties of the motion, if any")}
 )
 """The declaration of each key by name, in the order of the groups of a table."""
 

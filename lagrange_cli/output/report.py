@@ -94,13 +94,13 @@ class Report(NamedTuple):
 
 
 def record_cells(record: Mapping[str, Any], keys: Keys, view: View) -> dict[str, list[list[str]]]:
-    """Return five cells for each key that has a value, by group.
+    """Return five cells for each key that has a value, by group; a remark is no cell.
 
     If there is a radius, it replaces the equation.
     """
     groups: dict[str, list[list[str]]] = {}
     for name, key in keys.items():
-        if record.get(name) is not None and key.meaning:
+        if record.get(name) is not None and name != "remark":
             last = record.get(f"{name}_radius") or key.equation
             cells = (key.symbol, key.meaning, value_text(record[name]), key.unit, last)
             groups.setdefault(key.group, []).append([spelt(cell, view) for cell in cells])

@@ -71,7 +71,7 @@ def test_table_shows_every_number_in_full(lagtop: Lagtop, solved: Solved) -> Non
     assert {str(value) for value in numbers} <= words
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
-    groups = dict.fromkeys(key.group for key in SHOWN.values() if key.meaning)
+    groups = dict.fromkeys(key.group for name, key in SHOWN.items() if name != "remark")
     order = [shown.index(f" {group}\n") for group in groups]
     assert order == sorted(order)
 
@@ -370,7 +370,9 @@ def test_help_shows_the_defaults_of_the_inputs(lagtop: Lagtop) -> None:
 def test_explain_lists_every_key_and_every_column(lagtop: Lagtop) -> None:
     listed = lagtop("explain", "--format", "csv").stdout
     names = [row["name"] for row in csv.DictReader(io.StringIO(listed))]
-    assert sorted(names) == sorted([*(key for key in all_keys() if key != "remark"), *COLUMNS])
+    assert sorted(names) == sorted([*all_keys(), *COLUMNS])
+    assert lagtop("explain", "remark").stdout == f"remark: {SHOWN['remark'].meaning}\n"
+    assert "pseudo-regular" in lagtop("explain", "remark", "fast-gyroscope").stdout
 
 
 def test_scenes_are_found_by_name(
