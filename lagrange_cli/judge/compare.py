@@ -28,9 +28,11 @@ from .mistakes import explanation
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-FINE, DRIFTS, OFF, ANOTHER, LOST = "fine", "drifts", "off from the start", "another top", "lost"
+FINE, RATES, DRIFTS = "fine", "other rates", "drifts"
+OFF, ANOTHER, LOST = "off from the start", "another top", "lost"
 JUDGEMENTS = {
     FINE: "the error stays below the limit, 1e-3 rad or --max-error",
+    RATES: "the attitude is fine, but its angular velocity, over the size of the rates, is not",
     DRIFTS: "the first row is right, but the error grows beyond the limit",
     ANOTHER: "the error exceeds the limit and does not fall with the step, or a mistake causes it",
     OFF: "the first row already exceeds the limit: another start, or other frames",
@@ -170,7 +172,9 @@ def _verdict(judgement: Judgement, limit: float, found: Convergence | None) -> s
         return OFF
     if judgement.explained_by or (beyond and found is not None and not found.falls):
         return ANOTHER
-    return DRIFTS if beyond else FINE
+    if beyond:
+        return DRIFTS
+    return RATES if judgement.rate_error_relative > limit else FINE
 
 
 class ComparisonRequest(NamedTuple):

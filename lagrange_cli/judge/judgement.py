@@ -100,6 +100,8 @@ class Judgement(HasRecord):
 
     error_start: float = field(default=math.nan, compare=False)
     """Error at the first row."""
+    rate_error_relative: float = field(default=math.nan, compare=False)
+    """Greatest error of the angular velocity over the size of the rates; NaN without rates."""
     t: Array | None = field(default=None, compare=False)
     """Times of at most 4096 rows, spread evenly."""
     error: Array | None = field(default=None, compare=False)
@@ -259,6 +261,7 @@ class _Tally:
             lost_at=self.lost_at,
             quaternion_order=self.proved,
             error_start=self.start,
+            rate_error_relative=self._extreme("rate").greatest / self.deviations.rate_scale,
             t=kept["t"][:, 0] - self.frames.time,
             error=kept["error"][:, 0],
             **passages,

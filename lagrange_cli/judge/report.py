@@ -10,7 +10,7 @@ from ..inputs.names import ANGLES
 from ..motion.solve import Motion
 from ..output.report import Field, Report, short
 from ..output.terminal import one_line
-from .compare import ANOTHER, DRIFTS, FINE, LOST, OFF, Comparison, ComparisonRequest
+from .compare import ANOTHER, DRIFTS, FINE, LOST, OFF, RATES, Comparison, ComparisonRequest
 from .convergence import LEAST_ORDER
 from .judgement import JUDGEMENT_KEYS, LIMIT, Judgement
 
@@ -85,7 +85,7 @@ def _conclusions(comparison: Comparison) -> Iterator[str]:
         yield f"{_name(judgement)}: {_sentence(judgement)}"
     found = comparison.convergence
     if found is not None:
-        if not found.falls and all(x.verdict == FINE for x in comparison.judgements):
+        if not found.falls and all(x.verdict in {FINE, RATES} for x in comparison.judgements):
             yield "The error does not fall with the step: the numbers may have been rounded."
         elif not found.falls:
             yield "The error does not fall with the step: this is the motion of another top."
@@ -109,12 +109,17 @@ def _sentence(judgement: Judgement) -> str:
     most = "" if error is None else f"at most {error:.1e} {unit} off"
     told = {
         FINE: f"fine, {most}",
+        RATES: f"its angular velocities are {_rates(judgement)} off, its attitude {most}",
         DRIFTS: f"drifts, {most}{_drift(judgement)}",
         OFF: f"off from the start by {judgement.error_start:.1e} {unit}, {most}",
         ANOTHER: f"moves like another top, {most}",
         LOST: f"lost at t = {judgement.lost_at}" + (f", {most} elsewhere" if most else ""),
     }
     return told[judgement.verdict] + "."
+
+
+def _rates(judgement: Judgement) -> str:
+    return f"{judgement.rate_error_max or 0.0:.1e} rad per unit of time"
 
 
 def _drift(judgement: Judgement) -> str:

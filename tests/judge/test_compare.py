@@ -149,6 +149,16 @@ def test_an_error_of_known_size_is_measured(size: float) -> None:
     assert most(spun.axis_error_max, 2e-12)
 
 
+def test_wrong_rates_of_a_right_attitude_are_not_fine() -> None:
+    wrong = np.tile([7.0, 8.0, 9.0], (len(T), 1))
+    judgement = compare(TOP, T, quaternion=Q, rates=wrong)
+    assert judgement.verdict == "other rates"
+    assert most(judgement.error_max, 1e-9)
+    assert compare(TOP, T, quaternion=Q, rates=1.0001 * RATES).verdict == "fine"
+    assert compare(TOP, T, quaternion=Q, rates=1.01 * RATES).verdict == "other rates"
+    assert compare(TOP, T, quaternion=Q, rates=1.01 * RATES, max_error=0.02).verdict == "fine"
+
+
 @pytest.mark.parametrize("rate", [1e-6, -0.1, 25.0])
 def test_drift_is_separated_from_oscillation(rate: float) -> None:
     """The wobble's mean square about its line is computed here by polyfit."""

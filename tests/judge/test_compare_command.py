@@ -104,6 +104,17 @@ def test_a_trajectory_that_is_not_fine_is_a_failure(
     assert "Error: 2 of 2 trajectories failed; the first: " in both.stderr
 
 
+def test_wrong_rates_of_a_right_attitude_are_named(lagtop: Lagtop, tmp_path: Path) -> None:
+    t, states = rk4(Body.of(TOP), 1e-3, 1)
+    states[:, 4:] = [7, 8, 9]
+    path = write(tmp_path / "rates.csv", (t, states))
+    shown = lagtop("compare", path, *OPTIONS)
+    assert shown.exit_code == 1
+    assert " rad per unit of time off, its attitude at most " in shown.stderr
+    assert "its angular velocities are " in shown.stdout
+    assert "common mistakes" not in shown.stdout
+
+
 def test_an_angle_whose_turns_cannot_be_counted_is_named(lagtop: Lagtop, tmp_path: Path) -> None:
     """The last line named psi, which drifts by 1e-17 rad, where it is phi that drifts."""
     t, path = np.linspace(0, 20, 200), tmp_path / "run.csv"
