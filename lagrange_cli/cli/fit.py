@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..arithmetic.numbers import unit_in_radians
-from ..errors import LagtopError
+from ..errors import LagtopError, SomeFailedError
 from ..inputs.names import split_names
 from .app import Command, complain, fail_for, write_report
 from .options import (
@@ -264,6 +264,8 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
         out.blocks(list(rows[0]), [block_text(columns, list(rows[0]), out.fmt)])
     failed = [window.outcome for window in found.windows if window.verdict == FAILED]
     fail_for([outcome.failure() for outcome in failed], len(rows), "windows")
+    if not found.is_described:
+        raise SomeFailedError(f"{source}: no window is described: use shorter windows")
 
 
 def _write_scene(outcome: Outcome, source: str, path: str) -> None:

@@ -28,6 +28,8 @@ _ANGLES = ("theta0", "psi_zero", "phi_zero")
 FAILED = "failed"
 _MUCH = 2.0
 """Residuals of a channel, over its noise, beyond which a fit has failed."""
+MUCH_CHI2 = 100.0
+"""Chi^2 per degree of freedom beyond which a fit has failed: residuals are ten times sigma."""
 _SURE = 4.0
 """Number of standard deviations from which b counts as not 0."""
 
@@ -92,13 +94,16 @@ class Outcome(HasRecord):
             found.append(f"the recording does not determine {' and '.join(solution.unknown)}")
         if not solution.converged:
             found.append("the least squares do not converge")
+        remedy = "the spin may decay: try --window" if self.fit.noise[0] else "use shorter windows"
+        if self.fit.sigma_known and self.chi2_dof > MUCH_CHI2:
+            found.append(f"no motion fits the recording: chi2/dof = {self.chi2_dof:.3g}; {remedy}")
         unit, scale = "rad" if self.radians else "deg", per_radian(radians=self.radians)
         for channel, noise in self.fit.noise[self.index].items():
             rms = self.residuals[channel].rms
-            if rms > _MUCH * noise:
+            if rms > min(_MUCH * noise, 1.0):  # a radian: then harmonics do not fit either
                 found.append(
                     f"no motion fits the recording: {channel} is "
-                    f"{rms * scale:.3g} {unit} off, plain harmonics {noise * scale:.3g}"
+                    f"{rms * scale:.3g} {unit} off, plain harmonics {noise * scale:.3g}; {remedy}"
                 )
         if not self._leaves_noise:
             found += [f"no motion fits the recording: {x}" for x in self._impossible()]
@@ -258,8 +263,7 @@ class Outcome(HasRecord):
             "chi2_dof_low": low,
             "chi2_dof_high": high,
         }
-        degrees = per_radian(radians=self.radians)
-        suffix = "rad" if self.radians else "deg"
+        degrees, suffix = per_radian(radians=self.radians), "rad" if self.radians else "deg"
         for channel, left in self.residuals.items():
             record[f"{channel}_rms_{suffix}"] = left.rms * degrees
             record[f"{channel}_lag1"] = left.lag1

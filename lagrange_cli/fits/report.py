@@ -16,7 +16,7 @@ from ..motion.record import shown_keys
 from ..output.report import Field, Report, uncertain_text, with_unit
 from ..output.terminal import one_line
 from .least_squares import chi2_bounds
-from .record import Outcome
+from .record import MUCH_CHI2, Outcome
 from .windows import WindowedFit
 
 if TYPE_CHECKING:
@@ -159,7 +159,12 @@ def windows_report(found: WindowedFit, source: str, system: System | None) -> Re
 
 def _windows_conclusions(found: WindowedFit) -> Iterator[str]:
     decay, outcome = found.decay, found.windows[0].outcome
-    if decay.time is None:
+    if not found.is_described:
+        yield "No window is described, so no decay is known: use shorter windows."
+    elif decay.chi2_dof > MUCH_CHI2:
+        shown = f"chi2/dof of the exponential: {decay.chi2_dof:.3g}"
+        yield f"{decay.quantity} does not change exponentially; {shown}."
+    elif decay.time is None:
         shown = uncertain_text(decay.rate, decay.rate_std)
         yield f"{decay.quantity} does not decay: its relative rate of decay is {shown}."
     else:

@@ -87,6 +87,12 @@ class WindowedFit(NamedTuple):
         words = {window.verdict for window in self.windows}
         return next((word for word in (FAILED, "doubtful") if word in words), "good")
 
+    @property
+    def is_described(self) -> bool:
+        """Whether the closed form leaves only noise in a window; sigma may be wrong."""
+        left = [x.outcome.residuals.values() for x in self.windows if x.verdict != FAILED]
+        return any(all(one.is_noise for one in channels) for channels in left)
+
     def record(self) -> dict[str, Any]:
         """Return the body, the decay, and the windows, by key."""
         first = self.windows[0].outcome

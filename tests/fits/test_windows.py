@@ -107,3 +107,24 @@ def test_the_command(lagtop: Lagtop, tmp_path: Path, short: fuzz_windows.Slowed)
     ):
         assert_one_line(lagtop(*options, *words), 2, message)
     assert_one_line(lagtop(*options[:-1], 0), 2, "--window must be > 0, got 0")
+
+
+@pytest.mark.slow
+def test_one_motion_for_a_decaying_spin_fails(lagtop: Lagtop, tmp_path: Path) -> None:
+    """The spin loses a fourth in 20 s, so one motion without friction misses by tens of turns."""
+    spin, t = 50 * fuzz_windows.DECAY, np.arange(0, 20, 0.02)
+    psi, phi = 7 * t + t**2 / 20, spin * (1 - np.exp(-t / fuzz_windows.DECAY))
+    theta = 0.6 + 0.05 * np.cos(21 * t - t**2 / 20)
+    rows = np.column_stack([t, *np.degrees([theta, psi, phi])])
+    path = tmp_path / "decay.csv"
+    np.savetxt(path, rows, delimiter=",", header="t,theta,psi,phi", comments="", fmt="%.6g")
+    for sigma in (["--sigma", 0.3], []):
+        shown = lagtop("fit", path, *sigma)
+        assert shown.exit_code == 1
+        assert "the spin may decay: try --window" in shown.stderr
+    for sigma in (["--sigma", 0.3], []):
+        shown = lagtop("fit", path, *sigma, "--window", 3)
+        assert shown.exit_code == 1
+        assert "use shorter windows" in shown.stderr
+        assert "decays with" not in shown.stdout
+        assert "does not decay" not in shown.stdout
