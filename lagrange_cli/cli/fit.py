@@ -150,7 +150,7 @@ def fit_command(
     found = _fitted(groups, known, stds, recording, radians)
     failed = [outcome for outcome in found if outcome.verdict == FAILED]
     if scene_path and not failed:
-        _write_scene(found[0], recording, scene_path)
+        _write_scene(found[0], recording, system, scene_path)
     if plot:
         _draw(found, plot, radians)
     _write(found, recording, system, out.replace(path="-") if scene_path else out)
@@ -268,11 +268,11 @@ def _write_windows(found: WindowedFit, source: str, system: System | None, out: 
         raise SomeFailedError(f"{source}: no window is described: use shorter windows")
 
 
-def _write_scene(outcome: Outcome, source: str, path: str) -> None:
+def _write_scene(outcome: Outcome, source: str, system: System | None, path: str) -> None:
     from ..fits.report import scene_text
     from ..output.destination import write_bytes
 
-    write_bytes(path, lambda: scene_text(outcome, source).encode())
+    write_bytes(path, lambda: scene_text(outcome, source, system).encode())
 
 
 def _draw(found: list[Outcome], path: str, radians: bool) -> None:

@@ -180,8 +180,8 @@ def _windows_conclusions(found: WindowedFit) -> Iterator[str]:
         yield f"{text[0].upper()}{text[1:]}."
 
 
-def scene_text(outcome: Outcome, source: str) -> str:
-    """Return a scene file of the motion, which every command reads."""
+def scene_text(outcome: Outcome, source: str, system: System | None = None) -> str:
+    """Return a scene file of the motion, with units if a `system` is given."""
     lines = [
         f"# Found by `lagtop fit` from {one_line(source)}: the start is its first row, at "
         f"t = {outcome.recording.t_start!r}.",
@@ -189,9 +189,12 @@ def scene_text(outcome: Outcome, source: str) -> str:
         *(f"# Warning: {text}." for text in outcome.warnings()),
     ]
     stds, correlations = _spread_of_inputs(outcome)
+    units = {} if system is None else outcome_units(outcome, system)
     for name, value in outcome.inputs().items():
-        shown = f'"{value!r} +/- {stds[name]!r}"' if name in stds else repr(value)
-        lines.append(f"{name} = {shown}")
+        shown = f"{value!r} +/- {stds[name]!r}" if name in stds else repr(value)
+        is_united = name in units and not name.startswith("theta0")  # whose key names its unit
+        united = f"{shown} {units[name]}" if is_united else shown
+        lines.append(f"{name} = {shown}" if united == repr(value) else f'{name} = "{united}"')
     lines += ["", "[correlations]"] if len(stds) > 1 else []
     for i, (name, row) in enumerate(zip(stds, correlations.tolist(), strict=True)):
         others = [f"{x} = {r!r}" for x, r in list(zip(stds, row, strict=True))[i + 1 :]]

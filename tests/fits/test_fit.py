@@ -269,6 +269,7 @@ DERIVED = (
         "--m 1.587(2) --g 9.81 --s 0.04",
         "--m 1.6(2) --g 9.81 --s 0.040(5) --A-cm 0.00137(3)",
         "--C 1.7458e-3 --r0 50.0(2) --theta0 41.0(1)",
+        "--m 1587(2)g --g 9.81m/s^2 --s 4cm",
     ],
 )
 def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: str) -> None:
@@ -277,6 +278,7 @@ def test_the_scene_keeps_the_covariance(lagtop: Lagtop, tmp_path: Path, known: s
     shown = lagtop("fit", SAMPLE, *known.split(), *sigma, "--format", "json", "-o", path)
     fitted = json.loads(shown.stdout)
     solved = json.loads(lagtop("solve", path, "--format", "json").stdout)
+    assert fitted.get("units", {}).get("r0") == solved.get("units", {}).get("r0")
     keys = [*DERIVED, "a", "b", "r0", "theta0_deg", "thetadot0", "psidot0"]
     keys += [x for x in ("m", "s", "A", "C") if f"{x}_std" in fitted]
     more = ["--get", "stability_factor,stability_factor_std", "--format", "json"]
