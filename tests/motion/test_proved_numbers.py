@@ -207,7 +207,7 @@ def test_tilts_in_radians_keep_their_relative_accuracy(theta0: str) -> None:
 def test_a_tilt_beyond_pi_is_refused() -> None:
     pi = "3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803"
     assert Top(theta0_rad=Fraction(pi)).theta0_rad
-    with pytest.raises(ValueError, match=r"theta0_rad must be in \[0, pi\]"):
+    with pytest.raises(ValueError, match=r"theta0_rad must be in \[0, pi rad\]"):
         Top(theta0_rad=Fraction(pi) + Fraction(1, 10**80))
 
 

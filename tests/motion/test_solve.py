@@ -160,7 +160,7 @@ def test_no_precession_on_the_vertical(inputs: dict[str, float]) -> None:
         ({"s": -4}, "s must be >= 0, got -4.0"),
         ({"g": -1}, "g must be >= 0"),
         ({"theta0_deg": 180.1}, r"theta0_deg must be in \[0, 180\], got 180.1"),
-        ({"theta0_rad": 3.2}, r"theta0_rad must be in \[0, pi\], got 3.2"),
+        ({"theta0_rad": 3.2}, r"theta0_rad must be in \[0, pi rad\], got 3.2"),
         ({"theta0_rad": 1, "theta0_deg": 1}, "leave one out"),
         ({"r0": math.nan}, "r0 must be finite, got nan"),
         ({"r0": math.inf}, "r0 must be finite, got inf"),

@@ -223,10 +223,14 @@ def children(process: int) -> dict[int, str]:
     return {int(pid): Path(f"/proc/{pid}/cmdline").read_text() for pid in found}
 
 
+HEEDING = ["env", "--default-signal=HUP,INT,QUIT"]
+"""Undoes what `nohup` and the background of a shell ignore: ignored signals stay ignored."""
+
+
 @contextmanager
 def sharing(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
     """Start a long sweep in a process group of its own, and wait until it shares work."""
-    command = [*LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "3"]
+    command = [*HEEDING, *LAGTOP, "sweep", "--r0", "1:100:1e8", "--jobs", "3"]
     running = subprocess.Popen(
         [*command, "-o", str(folder / "out.csv")],
         stderr=subprocess.PIPE,
