@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from ..inputs.text_lines import Dialect
     from ..inputs.units import System
     from ..inputs.value import Value
-    from ..motion.over_time.times import TableRequest
+    from ..motion.over_time.columns import TableRequest
     from ..motion.solve import Motion
     from ..output.destination import Output
     from ..output.formats import Header
@@ -109,8 +109,7 @@ def table_command(
     max(1 rad, |angle|), or more if the axis passes near the vertical.  If inputs are uncertain, the
     last columns are the uncertainties of the angles.
     """
-    from ..motion.over_time.columns import DEFAULT_COLUMNS
-    from ..motion.over_time.times import DEFAULT_ROWS, TableRequest
+    from ..motion.over_time.columns import DEFAULT_COLUMNS, DEFAULT_ROWS, TableRequest
 
     top, interval = top.in_seconds(t_min=t_min, t_max=t_max, dt=dt)
     exclude({"--n": count, "--dt": dt})
@@ -192,7 +191,7 @@ def _same(times: Points, _: Motion) -> Points:
 
 
 def _grid(motion: Motion, **interval: Any) -> Points:
-    from ..motion.over_time.times import grid
+    from ..motion.over_time.columns import grid
 
     return grid(motion, **interval)
 

@@ -170,31 +170,18 @@ class Attitude(NamedTuple):
 
     def phi(self, *, wrap: bool = False, out: Array | None = None) -> Array:
         """Return the spin, arg X - arg Y."""
-        return self._grown(self.growths.phi, np.subtract(*self._args(), out=out), wrap)
+        return self._grown(self.growths.phi, np.subtract(*self.args, out=out), wrap)
 
     def psi(self, *, wrap: bool = False, out: Array | None = None) -> Array:
         """Return the precession, arg X + arg Y."""
-        return self._grown(self.growths.psi, np.add(*self._args(), out=out), wrap)
-
-    def phi_remainder(self) -> Array:
-        """Return the spin minus its mean rate times t (6,4)."""
-        return self.growths.phi.since_start(np.subtract(*self._args()), self.times)
-
-    def psi_remainder(self) -> Array:
-        """Return the precession minus its mean rate times t (7,4)."""
-        return self.growths.psi.since_start(np.add(*self._args()), self.times)
-
-    def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """Return arg X and arg Y, each reduced by half turns, with the signs of X and Y."""
-        x, y = (arg.copy() for arg in self._args())
-        assert self.growths.halves is not None
-        of_x, of_y = self.growths.halves()
-        return of_x.within_a_quarter(x, self.times), of_y.within_a_quarter(y, self.times)
+        return self._grown(self.growths.psi, np.add(*self.args, out=out), wrap)
 
     def _grown(self, growth: Growth, periodic: Array, wrap: bool) -> Array:
         return (growth.wrapped if wrap else growth.unwrapped)(periodic, self.times)
 
-    def _args(self) -> tuple[Array, Array]:
+    @property
+    def args(self) -> tuple[Array, Array]:
+        """The periodic parts of arg X and arg Y."""
         return needed(self.spinor.arg_x), needed(self.spinor.arg_y)
 
 

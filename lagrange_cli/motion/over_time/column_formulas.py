@@ -1,6 +1,6 @@
 """The formulas of the columns of `lagtop table`: rates, attitude and conserved quantities.
 
-Each column is computed from the attitude
+Each column is an attribute with its name, computed from the attitude
 
     X = cos(theta/2) exp(i (psi + phi)/2),    Y = sin(theta/2) exp(i (psi - phi)/2)
 
@@ -67,10 +67,7 @@ def column_constants(kind: Kind[R], exact: Exact) -> ColumnConstants[R]:
 
 
 class ColumnFormulas(Over[R]):
-    """A motion at one or several times; each quantity is computed once, on first use.
-
-    `columns` names the method of each column.
-    """
+    """A motion at one or several times; each column, and each part, is computed on first use."""
 
     ar: Arithmetic[R]
     t: R
@@ -86,46 +83,48 @@ class ColumnFormulas(Over[R]):
         """The precession, up to whole turns."""
         raise NotImplementedError
 
+    @property
+    @abstractmethod
+    def dphi(self) -> R:
+        """The periodic part of the spin (6,4)."""
+
+    @property
+    @abstractmethod
+    def dpsi(self) -> R:
+        """The periodic part of the precession (7,4)."""
+
     @cached_property
     @abstractmethod
-    def theta_rate(self) -> R:
-        """The nutation rate."""
+    def thetadot(self) -> R:
+        """The nutation rate (5,3)."""
+
+    @abstractmethod
+    def over(self, value: R, divisor: R) -> R:
+        """Return a quotient, and 0 for 0/0: on a pole the momentum about it is 0."""
 
     @cached_property
     def args(self) -> tuple[R, R]:
         """(psi + phi)/2 and (psi - phi)/2, up to whole turns of both or half a turn of both."""
         return (self.around + self.within) / 2, (self.around - self.within) / 2
 
-    @abstractmethod
-    def phi_remainder(self) -> R:
-        """Return the periodic part of the spin (6,4)."""
-
-    @abstractmethod
-    def psi_remainder(self) -> R:
-        """Return the periodic part of the precession (7,4)."""
-
-    @abstractmethod
-    def over(self, value: R, divisor: R) -> R:
-        """Return a quotient, and 0 for 0/0: on a pole the momentum about it is 0."""
-
+    @property
     def theta(self) -> R:
-        """Return the tilt."""
+        """The tilt."""
         return 2 * self.ar.atan2(self.y, self.x)
 
+    @property
     def phi(self) -> R:
-        """Return the spin."""
+        """The spin."""
         return self.within
 
+    @property
     def psi(self) -> R:
-        """Return the precession."""
+        """The precession."""
         return self.around
 
-    def times(self) -> R:
-        """Return the time."""
-        return self.t
-
+    @property
     def r(self) -> R:
-        """Return the angular velocity about the figure axis, which is constant."""
+        """The angular velocity about the figure axis, which is constant."""
         return self.constants.r0
 
     @cached_property
@@ -158,8 +157,9 @@ class ColumnFormulas(Over[R]):
         """cos(theta) (4,6)."""
         return (self.x2 - self.y2) / self.norm
 
-    def cosine(self) -> R:
-        """Return cos(theta) (4,6)."""
+    @property
+    def axis_z(self) -> R:
+        """The z part of the figure axis in space."""
         return self.u
 
     @cached_property
@@ -175,19 +175,17 @@ class ColumnFormulas(Over[R]):
             self.over(self.constants.minus * self.norm, 2 * self.y2),
         )
 
-    def phi_rate(self) -> R:
-        """Return the spin rate (4,8)."""
+    @property
+    def phidot(self) -> R:
+        """The spin rate (4,8)."""
         south, north = self.poles
         return self.constants.drift + south - north
 
-    def psi_rate(self) -> R:
-        """Return the precession rate (4,7)."""
+    @property
+    def psidot(self) -> R:
+        """The precession rate (4,7)."""
         south, north = self.poles
         return south + north
-
-    def nutation_rate(self) -> R:
-        """Return the nutation rate (5,3)."""
-        return self.theta_rate
 
     @cached_property
     def across(self) -> R:
@@ -200,29 +198,34 @@ class ColumnFormulas(Over[R]):
         """Sine and cosine of the spin."""
         return self.ar.sin(self.within), self.ar.cos(self.within)
 
+    @property
     def p(self) -> R:
-        """Return the angular velocity about the body's x axis (4,1)."""
+        """The angular velocity about the body's x axis (4,1)."""
         sin, cos = self.turned
-        return self.across * sin + self.theta_rate * cos
+        return self.across * sin + self.thetadot * cos
 
+    @property
     def q(self) -> R:
-        """Return the angular velocity about the body's y axis (4,1)."""
+        """The angular velocity about the body's y axis (4,1)."""
         sin, cos = self.turned
-        return self.across * cos - self.theta_rate * sin
+        return self.across * cos - self.thetadot * sin
 
+    @property
     def moment(self) -> R:
-        """Return mgs sin(theta), the only component of the moment s k' x (-mg k) of section 4 a.
+        """mgs sin(theta), the only component of the moment s k' x (-mg k) of section 4 a.
 
         The moment acts about the line of nodes, at psi in the horizontal plane.
         """
         return self.constants.torque * self.sine
 
+    @property
     def axis_x(self) -> R:
-        """Return the x part of the figure axis in space."""
+        """The x part of the figure axis in space."""
         return self.sine * self.ar.sin(self.around)
 
+    @property
     def axis_y(self) -> R:
-        """Return the y part of the figure axis in space."""
+        """The y part of the figure axis in space."""
         return -self.sine * self.ar.cos(self.around)
 
     @cached_property
@@ -231,29 +234,35 @@ class ColumnFormulas(Over[R]):
         size = self.ar.sqrt(self.norm)
         return self.x / size, self.y / size
 
+    @property
     def quaternion_w(self) -> R:
-        """Return the real part of X = w + i z, of the rotation from body to space."""
+        """The real part of X = w + i z, of the rotation from body to space."""
         return self.unit[0] * self.ar.cos(self.args[0])
 
+    @property
     def quaternion_x(self) -> R:
-        """Return the real part of Y = x + i y."""
+        """The real part of Y = x + i y."""
         return self.unit[1] * self.ar.cos(self.args[1])
 
+    @property
     def quaternion_y(self) -> R:
-        """Return the imaginary part of Y = x + i y."""
+        """The imaginary part of Y = x + i y."""
         return self.unit[1] * self.ar.sin(self.args[1])
 
+    @property
     def quaternion_z(self) -> R:
-        """Return the imaginary part of X = w + i z."""
+        """The imaginary part of X = w + i z."""
         return self.unit[0] * self.ar.sin(self.args[0])
 
+    @property
     def energy(self) -> R:
-        """Return A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs cos(theta) (4,2)."""
+        """A (theta'^2 + psi'^2 sin^2 theta)/2 + C r0^2/2 + mgs cos(theta) (4,2)."""
         c = self.constants
-        swing = self.theta_rate * self.theta_rate + self.across * self.across
+        swing = self.thetadot * self.thetadot + self.across * self.across
         return c.half_A * swing + c.half_C * c.r0 * c.r0 + c.torque * self.u
 
-    def vertical_momentum(self) -> R:
-        """Return A psi' sin^2 theta + C r0 cos(theta), constant (4,3)."""
+    @property
+    def Lz(self) -> R:
+        """A psi' sin^2 theta + C r0 cos(theta), constant (4,3)."""
         c = self.constants
         return 2 * c.half_A * self.across * self.sine + 2 * c.half_C * c.r0 * self.u

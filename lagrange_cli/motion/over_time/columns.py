@@ -1,31 +1,24 @@
-"""The columns of `lagtop table` by name: their headings, and the method that computes each."""
+"""The columns of `lagtop table` by name, and requests for a table: its columns and its times."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import reduce
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ...arithmetic.points import EvenPoints, Points
+from ...errors import LagtopError
 from ...inputs.names import ANGLES, check_names
+from ..numbers import Numbers
 
+if TYPE_CHECKING:
+    from ...arithmetic.types import Array
 
-class Needs(NamedTuple):
-    """The parts of X and Y (see `samplers`) that columns need; no others are computed."""
-
-    tilt: bool = False
-    moduli: bool = False
-    arguments: bool = False
-    rate: bool = False
-
-    def __or__(self, other: Needs) -> Needs:
-        """Return the parts that either needs."""
-        return Needs(*(one or another for one, another in zip(self, other, strict=True)))
-
-
-NOTHING, TILT, TURN = Needs(), Needs(tilt=True), Needs(arguments=True)
-MODULI = Needs(moduli=True)
-ATTITUDE, SWING = MODULI | TURN, MODULI | Needs(rate=True)
-
+Needs = frozenset[str]
+"""The parts of X and Y (see `samplers`) that columns need; no others are computed."""
+NOTHING: Needs = frozenset()
+TILT, MODULI, TURN = frozenset({"tilt"}), frozenset({"moduli"}), frozenset({"arguments"})
+ATTITUDE, SWING = MODULI | TURN, MODULI | {"rate"}
 
 _FORMULAS = {
     "theta": "acos(u)",
@@ -55,12 +48,10 @@ _FORMULAS = {
 
 
 class ScalarColumn(NamedTuple):
-    """One column."""
+    """One column; `column_formulas` computes it under its name."""
 
     heading: str
     """The heading; `*` is replaced by the unit of angles."""
-    method: str
-    """The method of `table.Sample` that computes the column."""
     needs: Needs
     unit: str = ""
     """A unit such as `rad/time`, unless the column is an angle."""
@@ -68,9 +59,14 @@ class ScalarColumn(NamedTuple):
     equation: str = ""
 
     @property
+    def name(self) -> str:
+        """The heading without a unit."""
+        return self.heading.removesuffix("_*")
+
+    @property
     def formula(self) -> str:
         """The formula; empty for the time."""
-        return _FORMULAS.get(name_of(self), "")
+        return _FORMULAS.get(self.name, "")
 
 
 class Column(NamedTuple):
@@ -89,64 +85,42 @@ _WAVE = "less its mean rate times t, a wave"
 _ABOUT = "angular velocity about the"
 _CONSTANT = "constant except for rounding"
 COLUMNS: dict[str, Column] = {
-    "t": _one("time", "t", "times", NOTHING, "time", "t"),
-    "theta": _one("tilt", "theta_*", "theta", TILT, "", "ϑ", "(4,9)"),
-    "phi": _one("spin", "phi_*", "phi", TURN, "", "φ", "(6,1)"),
-    "psi": _one("precession", "psi_*", "psi", TURN, "", "ψ", "(7,1)"),
-    "dphi": _one(f"spin {_WAVE}", "dphi_*", "phi_remainder", TURN, "", "Δφ", "(6,4)"),
-    "dpsi": _one(f"precession {_WAVE}", "dpsi_*", "psi_remainder", TURN, "", "Δψ", "(7,4)"),
-    "u": _one("cos ϑ", "u", "cosine", MODULI, "", "u", "(4,30)"),
-    "thetadot": _one("nutation rate", "thetadot", "nutation_rate", SWING, _RATE, "ϑ'", "(4,2)"),
-    "phidot": _one("spin rate", "phidot", "phi_rate", MODULI, _RATE, "φ'", "(4,8)"),
-    "psidot": _one("precession rate", "psidot", "psi_rate", MODULI, _RATE, "ψ'", "(4,7)"),
-    "p": _one(f"{_ABOUT} body's x axis", "p", "p", SWING | TURN, _RATE, "p", "(4,1)"),
-    "q": _one(f"{_ABOUT} body's y axis", "q", "q", SWING | TURN, _RATE, "q", "(4,1)"),
-    "r": _one(f"{_ABOUT} figure axis", "r", "r", NOTHING, _RATE, "r", "(4,1)"),
-    "moment": _one(
-        "moment of the weight about the line of nodes", "moment", "moment", MODULI, _ENERGY, "M"
-    ),
+    "t": _one("time", "t", NOTHING, "time", "t"),
+    "theta": _one("tilt", "theta_*", TILT, "", "ϑ", "(4,9)"),
+    "phi": _one("spin", "phi_*", TURN, "", "φ", "(6,1)"),
+    "psi": _one("precession", "psi_*", TURN, "", "ψ", "(7,1)"),
+    "dphi": _one(f"spin {_WAVE}", "dphi_*", TURN, "", "Δφ", "(6,4)"),
+    "dpsi": _one(f"precession {_WAVE}", "dpsi_*", TURN, "", "Δψ", "(7,4)"),
+    "u": _one("cos ϑ", "u", MODULI, "", "u", "(4,30)"),
+    "thetadot": _one("nutation rate", "thetadot", SWING, _RATE, "ϑ'", "(4,2)"),
+    "phidot": _one("spin rate", "phidot", MODULI, _RATE, "φ'", "(4,8)"),
+    "psidot": _one("precession rate", "psidot", MODULI, _RATE, "ψ'", "(4,7)"),
+    "p": _one(f"{_ABOUT} body's x axis", "p", SWING | TURN, _RATE, "p", "(4,1)"),
+    "q": _one(f"{_ABOUT} body's y axis", "q", SWING | TURN, _RATE, "q", "(4,1)"),
+    "r": _one(f"{_ABOUT} figure axis", "r", NOTHING, _RATE, "r", "(4,1)"),
+    "moment": _one("moment of the weight about the line of nodes", "moment", MODULI, _ENERGY, "M"),
     "axis": Column(
         "figure axis in space: axis_x, axis_y, axis_z",
-        [
-            ScalarColumn("axis_x", "axis_x", ATTITUDE),
-            ScalarColumn("axis_y", "axis_y", ATTITUDE),
-            ScalarColumn("axis_z", "cosine", MODULI),
-        ],
+        [ScalarColumn(f"axis_{x}", MODULI if x == "z" else ATTITUDE) for x in "xyz"],
     ),
     "quaternion": Column(
         "from body to space, scalar first: quaternion_w, quaternion_x, ...",
-        [ScalarColumn(f"quaternion_{x}", f"quaternion_{x}", ATTITUDE) for x in "wxyz"],
+        [ScalarColumn(f"quaternion_{x}", ATTITUDE) for x in "wxyz"],
     ),
-    "energy": _one(f"energy; {_CONSTANT}", "energy", "energy", SWING, _ENERGY, "E", "(4,2)"),
-    "Lz": _one(
-        f"vertical angular momentum; {_CONSTANT}",
-        "Lz",
-        "vertical_momentum",
-        MODULI,
-        _MOMENTUM,
-        "c2",
-        "(4,3)",
-    ),
+    "energy": _one(f"energy; {_CONSTANT}", "energy", SWING, _ENERGY, "E", "(4,2)"),
+    "Lz": _one(f"vertical angular momentum; {_CONSTANT}", "Lz", MODULI, _MOMENTUM, "c2", "(4,3)"),
 }
 DEFAULT_COLUMNS = ("t", *ANGLES)
+DEFAULT_ROWS = 101
 
-_SINGLE = {
-    part.heading: [part]
-    for column in COLUMNS.values()
-    if len(column.parts) > 1
-    for part in column.parts
-}
-"""Each column of a group by its own name."""
-
-
-def name_of(part: ScalarColumn) -> str:
-    """Return the heading of a column without a unit."""
-    return part.heading.removesuffix("_*")
+_PARTS = {name: column.parts for name, column in COLUMNS.items()}
+_PARTS |= {part.name: [part] for parts in list(_PARTS.values()) for part in parts}
+"""The columns of each name; those of a group have names of their own too."""
 
 
 def column_names() -> list[str]:
     """Return the names of all columns, groups first."""
-    return [*COLUMNS, *_SINGLE]
+    return list(_PARTS)
 
 
 def chosen_columns(names: Sequence[str]) -> list[ScalarColumn]:
@@ -154,23 +128,72 @@ def chosen_columns(names: Sequence[str]) -> list[ScalarColumn]:
 
     Raises LagtopError for an unknown or repeated name.
     """
-    check_names("columns", names, column_names())
-    chosen = [
-        part
-        for name in names
-        for part in (_SINGLE[name] if name in _SINGLE else COLUMNS[name].parts)
-    ]
+    check_names("columns", names, _PARTS)
+    chosen = [part for name in names for part in _PARTS[name]]
     headings = [part.heading for part in chosen]
     check_names("columns", headings, headings)
     return chosen
-
-
-def needs_of(chosen: Sequence[ScalarColumn]) -> Needs:
-    """Return the parts that some columns need together."""
-    return reduce(Needs.__or__, (part.needs for part in chosen), NOTHING)
 
 
 def headings(columns: Sequence[str], *, radians: bool = False) -> list[str]:
     """Return the headings of some columns.  Raises LagtopError for an unknown one."""
     unit = "rad" if radians else "deg"
     return [column.heading.replace("*", unit) for column in chosen_columns(columns)]
+
+
+class TableRequest(NamedTuple):
+    """The times and columns to tabulate for every top."""
+
+    times: Callable[[Any], Points]
+    """Returns the times for a motion."""
+    columns: Sequence[str]
+    radians: bool
+    wrap: bool
+    rows_per_top: int | None
+    """The number of times, if it is known from the options."""
+    same: bool
+    """Whether all tops have the same times."""
+
+    def headings(self) -> list[str]:
+        """Return the names of the columns, with the units of angles."""
+        return headings(self.columns, radians=self.radians)
+
+    def rows(
+        self, motion: Numbers, times: Points, stds: Callable[[Array], Array] | None = None
+    ) -> tuple[list[str], Iterator[Array]]:
+        """Return the header and blocks of rows of one motion, as `rows` does."""
+        from .table import rows  # start-up: loads NumPy
+
+        return rows(motion, times, self.columns, radians=self.radians, wrap=self.wrap, stds=stds)
+
+
+def grid(
+    motion: Numbers,
+    t_min: Fraction | None = None,
+    t_max: Fraction | None = None,
+    *,
+    n: int | None = None,
+    dt: Fraction | None = None,
+) -> EvenPoints:
+    """Return n times from t_min to t_max, or as many steps dt as fit, counted exactly.
+
+    The default is 101 times over one nutation period from 0, or over a unit of time if the motion
+    has no period.  Raises LagtopError unless the interval, n and dt give a grid of 1 to 1e9 rows.
+    """
+    t_min = Fraction(0) if t_min is None else t_min
+    t_max = t_min + Fraction(motion.T_nutation or 1) if t_max is None else t_max
+    if not t_max >= t_min:
+        raise LagtopError(f"t_max must be >= t_min = {float(t_min)}, got {float(t_max)}", "t_max")
+    if n is not None and n < 1:
+        raise LagtopError(f"n must be >= 1, got {n}", "n")
+    if dt is not None:
+        if not dt > 0:
+            raise LagtopError(f"dt must be > 0, got {float(dt)}", "dt")
+        count, step = int((t_max - t_min) / dt) + 1, dt
+    else:
+        count = n or (DEFAULT_ROWS if t_max > t_min else 1)
+        step = (t_max - t_min) / (count - 1) if count > 1 else Fraction(0)
+    try:
+        return EvenPoints(t_min, step, count)
+    except LagtopError as error:
+        raise LagtopError(f"the grid of times {error}") from None

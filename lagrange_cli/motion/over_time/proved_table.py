@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from ..exact.rational_columns import known_column
 from ..exact.rational_keys import known_fraction
 from ..numbers import Numbers
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import ScalarColumn, chosen_columns, headings, name_of
+from .columns import ScalarColumn, chosen_columns, headings
 from .series_constants import Pose, pose_of
 
 if TYPE_CHECKING:
@@ -60,25 +60,24 @@ class BallSample(ColumnFormulas[Ball]):
             return ar.pi * (ar.nint(angle / ar.pi) % 2)
         return angle - 2 * ar.pi * ar.ceiling(angle / (2 * ar.pi) - ar.convert(Fraction(1, 2)))
 
-    @cached_property
-    def growths(self) -> tuple[Ball, Ball]:
-        """The mean rates times t of spin and precession, or their limits on the separatrix."""
-        kind = self.kind
-        if isinstance(kind, Separatrix):
-            return kind.state.spin_drift * self.t, kind.b / 2 * self.t
-        still = known_fraction(self.exact, "mean_spin_rate") == 0
-        spin = 0 * self.t if still else kind.mean_spin_rate * self.t
-        return spin, kind.mean_precession_rate * self.t
+    @property
+    def dphi(self) -> Ball:
+        """The periodic part of the spin (6,4)."""
+        return self._periodic(self.within, "mean_spin_rate", self.kind.state.spin_drift)
 
-    def phi_remainder(self) -> Ball:
-        """Return the periodic part of the spin (6,4)."""
-        constant = isinstance(self.kind, Constant)
-        return 0 * self.t if constant else self.within - self.growths[0]
+    @property
+    def dpsi(self) -> Ball:
+        """The periodic part of the precession (7,4)."""
+        return self._periodic(self.around, "mean_precession_rate", self.kind.b / 2)
 
-    def psi_remainder(self) -> Ball:
-        """Return the periodic part of the precession (7,4)."""
-        constant = isinstance(self.kind, Constant)
-        return 0 * self.t if constant else self.around - self.growths[1]
+    def _periodic(self, angle: Ball, name: str, limit: Ball) -> Ball:
+        """Return an angle less its mean rate times t; on the separatrix the rate is its limit."""
+        if isinstance(self.kind, Constant):
+            return 0 * self.t
+        if known_fraction(self.exact, name) == 0:
+            return angle
+        rate = limit if isinstance(self.kind, Separatrix) else getattr(self.kind, name)
+        return angle - rate * self.t
 
     @cached_property
     def theta_square(self) -> Ball:
@@ -86,8 +85,8 @@ class BallSample(ColumnFormulas[Ball]):
         return self.constants.alpha - self.constants.a * self.u - self.across * self.across
 
     @cached_property
-    def theta_rate(self) -> Ball:
-        """The nutation rate theta', with the sign of `tilting`."""
+    def thetadot(self) -> Ball:
+        """The nutation rate, with the sign of `tilting`."""
         if not self.tilting:
             return 0 * self.t
         speed = self.ar.sqrt(self.theta_square)
@@ -131,35 +130,35 @@ class ProvedTable:
         Raises TooFewDigitsError if they do not separate the roots or the half periods.
         """
         t, state = balls(digits).convert(time), self.motion.kind(digits).state
-        at = Pose(state.cos_half, state.sin_half, t, t, state.theta_rate)
-        if time:
-            at = self._pose(digits)(t)
+        start = Pose(state.cos_half, state.sin_half, t, t, state.theta_rate)
+        at = self._pose(digits)(t) if time else start
         return BallSample(self.motion, digits, self._constants(digits), t, at)
 
     def _number(
         self, part: ScalarColumn, time: Fraction, sample: Callable[[int], BallSample]
     ) -> Settled:
         """Return a column at a time; `sample` returns the motion there in a number of digits."""
-        what = f"{name_of(part)} at t = {float(time)}"
+        what = f"{part.name} at t = {float(time)}"
         rounding = rounding_of(what, self.digits)
-        if part.method == "times":
+        if part.name == "t":
             return Settled(rounding(time), (time,))
-        units = {"radians": self.radians, "wrap": self.wrap}
         number = settled(
             what,
             lambda digits: self._enclosure(part, sample(digits)),
             rounding,
             digits=self.digits or 0,
             more=self._digits_of(time),
-            exactly=partial(known_column, self.motion.exact, part.method, time, **units),
+            exactly=lambda: known_column(
+                self.motion.exact, part.name, time, radians=self.radians, wrap=self.wrap
+            ),
         )
         assert number is not None
         return number
 
     def _enclosure(self, part: ScalarColumn, sample: BallSample) -> Ball:
         """Return a ball that contains a column, with angles in the unit in use."""
-        value: Ball = getattr(sample, part.method)()
-        if self.wrap and part.method in {"phi", "psi"}:
+        value: Ball = getattr(sample, part.name)
+        if self.wrap and part.name in {"phi", "psi"}:
             value = sample.wrapped(value)
         in_degrees = part.heading.endswith("*") and not self.radians
         return value * 180 / sample.t.ar.pi if in_degrees else value

@@ -20,13 +20,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
-from ...arithmetic.points import MAX_PERIODS
+from ...arithmetic.points import MAX_PERIODS, MAX_TIME
 from ...arithmetic.types import Array
+from ...errors import LagtopError
 from ..degenerate import Constant, Separatrix
 from .attitude import Attitude, Growths, Spinor, Times, growths
 from .columns import TILT, TURN, Needs
 from .series_constants import SeparatrixConstants, separatrix_constants
-from .times import check_times
 
 
 class Angles(NamedTuple):
@@ -111,6 +111,23 @@ class SeparatrixSampler(Sampler):
         falling = -4.0 * self.speed * y * y * tanh
         spinor = Spinor(tilt_of(x2, y * y), x2, y * y, arg_x, zero, falling)
         return Attitude(self.growths, Times(t, farthest, space[12:, : t.size]), spinor)
+
+
+def check_times(times: Array, most: float, name: str = "t") -> float:
+    """Return the greatest |t|.
+
+    Raises LagtopError, with the `name` of the argument, if a time is not finite, or so large that
+    its phase is lost.
+    """
+    if not times.size:
+        return 0.0
+    limit, low, high = min(most, MAX_TIME), float(times.min()), float(times.max())
+    if low >= -limit and high <= limit:
+        return max(-low, high)
+    bad = times[~(abs(times) <= limit)]
+    raise LagtopError(
+        f"{name} must be finite and within 2^50 periods = {limit:.3g}, got {bad.flat[0]}", name
+    )
 
 
 def constant_sampler(motion: Constant[Decimal]) -> ConstantSampler:

@@ -76,7 +76,7 @@ def phase_at_start(motion: Nutating[R]) -> R:
         return since - 1 if motion.state.theta_rate < 0 < since else since
 
 
-def direction(motion: Nutating[R] | Separatrix[R]) -> int:
+def direction(motion: Kind[R]) -> int:
     """Return the sign of the nutation rate at t = 0, or 1 if the rate is 0."""
     return -1 if motion.state.theta_rate < 0 else 1
 

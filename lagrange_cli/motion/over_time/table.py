@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import cache, cached_property
 from typing import Any
@@ -17,8 +17,9 @@ from ...inputs.names import ANGLES
 from ..numbers import Numbers
 from .attitude import Attitude, needed
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
-from .columns import DEFAULT_COLUMNS, ScalarColumn, chosen_columns, headings, name_of, needs_of
+from .columns import DEFAULT_COLUMNS, NOTHING, ScalarColumn, chosen_columns, headings
 from .proved_table import ProvedTable
+from .series_constants import direction
 
 
 class Sample(ColumnFormulas[Array]):
@@ -27,58 +28,53 @@ class Sample(ColumnFormulas[Array]):
     ar: Any = ARRAYS
 
     def __init__(
-        self,
-        t: Array,
-        attitude: Attitude,
-        constants: ColumnConstants[Array],
-        rises: int,
-        wrap: bool,
+        self, attitude: Attitude, constants: ColumnConstants[Array], rises: int, wrap: bool
     ) -> None:
-        self.t, self.attitude, self.constants, self.wrap = t, attitude, constants, wrap
-        self.rises = rises
+        self.growths, self.times, self.spinor = self.attitude = attitude
+        self.t, self.constants, self.rises, self.wrap = self.times.t, constants, rises, wrap
 
-    def write(self, part: ScalarColumn, target: Array) -> None:
-        """Write a column into an array."""
-        target[:] = getattr(self, part.method)()
-
+    @property
     def theta(self) -> Array:
-        """Return the tilt."""
+        """The tilt."""
         return self.attitude.theta()
 
+    @property
     def phi(self) -> Array:
-        """Return the spin."""
+        """The spin."""
         return self.attitude.phi(wrap=self.wrap)
 
+    @property
     def psi(self) -> Array:
-        """Return the precession."""
+        """The precession."""
         return self.attitude.psi(wrap=self.wrap)
 
-    def phi_remainder(self) -> Array:
-        """Return the periodic part of the spin (6,4)."""
-        return self.attitude.phi_remainder()
+    @property
+    def dphi(self) -> Array:
+        """The periodic part of the spin (6,4)."""
+        return self.growths.phi.since_start(np.subtract(*self.attitude.args), self.times)
 
-    def psi_remainder(self) -> Array:
-        """Return the periodic part of the precession (7,4)."""
-        return self.attitude.psi_remainder()
+    @property
+    def dpsi(self) -> Array:
+        """The periodic part of the precession (7,4)."""
+        return self.growths.psi.since_start(np.add(*self.attitude.args), self.times)
 
-    @cached_property
+    @property
     def x2(self) -> Array:
         """|X|^2."""
-        return needed(self.attitude.spinor.x2)
+        return needed(self.spinor.x2)
 
-    @cached_property
+    @property
     def y2(self) -> Array:
         """|Y|^2."""
-        return needed(self.attitude.spinor.y2)
+        return needed(self.spinor.y2)
 
     @cached_property
-    def theta_rate(self) -> Array:
+    def thetadot(self) -> Array:
         """The nutation rate (5,3); on a pole by the energy (4,2), with the sign of the start."""
         product = 2.0 * self.norm * self.x * self.y
-        rate = needed(self.attitude.spinor.rate)
         speed = np.sqrt(np.maximum(self.constants.alpha - self.constants.a * self.u, 0.0))
         speed *= self.rises
-        return np.divide(rate, product, out=speed, where=product != 0.0)
+        return np.divide(needed(self.spinor.rate), product, out=speed, where=product != 0.0)
 
     @cached_property
     def within(self) -> Array:
@@ -91,11 +87,13 @@ class Sample(ColumnFormulas[Array]):
         return self.attitude.psi(wrap=True)
 
     @cached_property
-    def quarters(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    def quarters(self) -> Sequence[tuple[Array, Array]]:
         """(psi + phi)/2 and (psi - phi)/2, reduced by half turns, with the signs of X and Y."""
-        return self.attitude.quarters()
+        assert self.growths.halves is not None
+        halves = zip(self.growths.halves(), self.attitude.args, strict=True)
+        return [half.within_a_quarter(arg.copy(), self.times) for half, arg in halves]
 
-    @cached_property
+    @property
     def args(self) -> tuple[Array, Array]:
         """(psi + phi)/2 and (psi - phi)/2, reduced by half turns."""
         (arg_x, _), (arg_y, _) = self.quarters
@@ -120,15 +118,15 @@ def samples(
 
     The next sample overwrites the one before.
     """
-    sampler, needs, kind = motion.sampler(), needs_of(chosen), motion.middle()
+    sampler, kind = motion.sampler(), motion.middle()
+    needs = NOTHING.union(*(column.needs for column in chosen))
     constants = ColumnConstants(*(np.array(float(x)) for x in column_constants(kind, motion.exact)))
-    rises = -1 if kind.state.theta_rate < 0 else 1
     farthest = sampler.check(t)
     with workspace(min(t.size, BLOCK)) as space:
         for part in blocks(t.size):
             with ARRAYS.working():
                 attitude = sampler.attitude(t[part], needs, farthest, space)
-            yield part, Sample(t[part], attitude, constants, rises, wrap)
+            yield part, Sample(attitude, constants, direction(kind), wrap)
 
 
 def rows(
@@ -153,18 +151,13 @@ def rows(
     angles = [i for i, name in enumerate(ANGLES) if stds is not None and name in columns]
     names = [f"{heading}_std" for i in angles for heading in headings([ANGLES[i]], radians=radians)]
 
-    start = _start(motion, columns, radians=radians, wrap=wrap)
+    write = _writer(motion, columns, radians=radians, wrap=wrap)
 
     def blocks() -> Iterator[Array]:
         for t in times.blocks():
             for _, sample in samples(motion, t, chosen, wrap=wrap):
                 block = np.empty((sample.t.size, len(chosen) + len(angles)))
-                for column, heading, target in zip(chosen, header, block.T, strict=False):
-                    sample.write(column, target)
-                    if heading.endswith("_deg"):
-                        np.degrees(target, out=target)
-                if (first := sample.t == 0).any():
-                    block[first, : len(chosen)] = start()
+                write(sample, block.T)
                 if stds is not None:
                     spread = stds(sample.t)[angles]
                     block.T[len(chosen) :] = spread if radians else np.degrees(spread)
@@ -180,26 +173,34 @@ def table(
     chosen, times = chosen_columns(columns), doubles_of("t", t)
     motion.sampler().check(times)
     flat = np.ascontiguousarray(times).reshape(-1)
-    found = {name_of(column): np.empty_like(flat) for column in chosen}
+    found = {column.name: np.empty_like(flat) for column in chosen}
+    write = _writer(motion, columns, radians=True, wrap=wrap)
     with ARRAYS.working():
         for part, sample in samples(motion, flat, chosen, wrap=wrap):
-            for column in chosen:
-                sample.write(column, found[name_of(column)][part])
-    if (first := flat == 0).any():
-        row = _start(motion, columns, radians=True, wrap=wrap)()
-        for values, value in zip(found.values(), row, strict=True):
-            values[first] = value
+            write(sample, [values[part] for values in found.values()])
     return {name: values.reshape(times.shape) for name, values in found.items()}
 
 
-def _start(
+def _writer(
     motion: Numbers, columns: Sequence[str], *, radians: bool, wrap: bool
-) -> Callable[[], list[float]]:
-    """Return a function for the correctly rounded columns at t = 0, computed at most once."""
+) -> Callable[[Sample, Iterable[Array]], None]:
+    """Return a function that writes the columns of a sample into arrays, one for each column."""
+    chosen = chosen_columns(columns)
 
     @cache
-    def row() -> list[float]:
+    def start() -> list[float]:
+        """Return the correctly rounded columns at t = 0."""
         table = ProvedTable(motion, columns, radians=radians, wrap=wrap)
         return [number.value for number in table.row(Fraction(0))]
 
-    return row
+    def write(sample: Sample, targets: Iterable[Array]) -> None:
+        first = sample.t == 0
+        at_start = bool(first.any())
+        for i, (column, target) in enumerate(zip(chosen, targets, strict=False)):
+            target[:] = getattr(sample, column.name)
+            if column.heading.endswith("*") and not radians:
+                np.degrees(target, out=target)
+            if at_start:
+                target[first] = start()[i]
+
+    return write

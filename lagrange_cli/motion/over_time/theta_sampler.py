@@ -26,7 +26,7 @@ from ...arithmetic.types import Array
 from ..degenerate import Separatrix
 from ..kinds import Kind, Nutating
 from .attitude import Attitude, Spinor, Times, growths
-from .columns import NOTHING, Needs
+from .columns import Needs
 from .samplers import Sampler, constant_sampler, separatrix_sampler, start_tilt, tilt_of
 from .series_constants import series_from_start
 from .theta_series import Coefficients, Component, Frame, Series
@@ -70,7 +70,7 @@ class ThetaSampler(Sampler):
         """Return the attitude at a block of times, by the series about the nearer turning point."""
         space = space[:, : t.size]
         times = Times(t, farthest, space[12:])
-        if needs == NOTHING:
+        if not needs:
             return Attitude(self.growths, times, Spinor())
         step, argument, lost = whole_periods(t, self.step, farthest, space[:3], self.offset or None)
         argument -= lost
@@ -101,7 +101,7 @@ class ThetaSampler(Sampler):
         pieces = list(zip((slice(even), slice(even, None)), self.frames, strict=True))
         for rows, frame in pieces:
             self._write_parts(frame, functions[:, rows], parts[:, rows])
-        if needs.arguments:
+        if "arguments" in needs:
             arguments = arguments_of(parts, space[7:9])
             if self.over_a_pole:
                 for rows, frame in pieces:
@@ -110,13 +110,13 @@ class ThetaSampler(Sampler):
             found |= zip(
                 ARGUMENTS, unwound(arguments, self.slopes, argument, space[10]), strict=True
             )
-        if needs.tilt or needs.moduli:
+        if "tilt" in needs or "moduli" in needs:
             x2, y2 = moduli_of(parts)
-            if needs.tilt:
+            if "tilt" in needs:
                 found["tilt"] = tilt_of(x2, y2, out=parts[1])
-            if needs.moduli:
+            if "moduli" in needs:
                 found |= {"x2": x2, "y2": y2}
-        if needs.rate:
+        if "rate" in needs:
             found["rate"] = rate = space[9]
             for rows, frame in pieces:
                 _write_polynomial(frame.rate, functions[2][rows], rate[rows])

@@ -31,9 +31,8 @@ from ...inputs.top import Top
 from ...inputs.value import Stds
 from ..kinds import Nutating
 from ..numbers import Numbers, middle_of
-from ..over_time.samplers import Angles
+from ..over_time.samplers import Angles, check_times
 from ..over_time.series_constants import Pose, nutating_pose
-from ..over_time.times import check_times
 from ..regime import Exact, Regime, exact
 from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .sensitivities import Partials
