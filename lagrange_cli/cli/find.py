@@ -129,7 +129,7 @@ def _write(
     motions: list[Motion], system: System | None, keys: list[str], radians: bool, out: Output
 ) -> None:
     """Write the records as `lagtop sweep` does, a row for each motion."""
-    from ..motion.solve import record_in_range
+    from ..motion.numbers import record_in_range
     from ..output.formats import block_text
 
     records: list[dict[str, Any]] = [

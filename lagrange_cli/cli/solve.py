@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import AbsentError, LagtopError
+from ..motion.numbers import Numbers, record_in_range
 from ..motion.record import all_keys, record_keys, shown_keys
-from ..motion.solve import record_in_range
+from ..motion.regime import exact
 from .app import Command, complain, write_report
 from .options import (
     COUNT,
@@ -22,13 +23,12 @@ from .options import (
     output_options,
     seed_option,
 )
-from .top import UNCERTAIN, TopOptions, motion_of, top_options
+from .top import UNCERTAIN, TopOptions, top_options, warned
 
 if TYPE_CHECKING:
     from ..arithmetic.values import Key
     from ..inputs.units import System
     from ..motion.regime import Facts
-    from ..motion.solve import Motion
     from ..output.destination import Output
 
 
@@ -89,7 +89,7 @@ def solve_command(
         from . import uncertainty
 
         uncertainty.check(found, digits, derivation, certify)
-    motion = motion_of(found, exact=digits is not None)
+    motion = warned(Numbers(exact(found.top(exact=digits is not None))), found)
     if budget is not None or samples is not None:
         find = uncertainty.asked_report(found, motion, budget, samples, seed, top.radians)
         write_report(out, find)
@@ -173,7 +173,7 @@ def _write(record: dict[str, Any], system: System | None, radians: bool, out: Ou
 
 
 def _record(
-    motion: Motion, digits: int | None, radians: bool, keys: list[str] | None, certify: bool
+    motion: Numbers, digits: int | None, radians: bool, keys: list[str] | None, certify: bool
 ) -> dict[str, Any]:
     """Return the record, or some keys of it; warn of numbers beyond the range of doubles."""
     record, beyond = record_in_range(
@@ -186,7 +186,7 @@ def _record(
     return record
 
 
-def _numbers(motion: Motion, record: dict[str, Any], keys: list[str]) -> dict[str, Any]:
+def _numbers(motion: Numbers, record: dict[str, Any], keys: list[str]) -> dict[str, Any]:
     """Return values of the record, each with its radius, if any.
 
     Raises AbsentError if the motion has no such number, LagtopError for the uncertainty of a text.
@@ -200,7 +200,7 @@ def _numbers(motion: Motion, record: dict[str, Any], keys: list[str]) -> dict[st
     return {x: record[x] for key in keys for x in (key, f"{key}_radius") if x in record}
 
 
-def _steps(motion: Motion, radians: bool) -> list[str]:
+def _steps(motion: Numbers, radians: bool) -> list[str]:
     """Return the keys of the steps of section 8.  Raises AbsentError if they do not hold."""
     from ..motion.paper.worked_example import derivation_keys
 

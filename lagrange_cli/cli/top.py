@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -20,8 +20,11 @@ if TYPE_CHECKING:
     from ..inputs.input_keys import Input
     from ..inputs.units import System
     from ..inputs.value import Value
+    from ..motion.numbers import Numbers
     from ..motion.sensitivity.angle_sensitivities import AngleStds
     from ..motion.solve import Motion
+
+M = TypeVar("M", bound="Numbers")
 
 _scenes = late("inputs.scene_file", "scene_names")
 SCENE = Parsed("SCENE", str, _scenes)
@@ -176,13 +179,17 @@ def scene_among(
 
 
 def motion_of(found: Given, *, exact: bool = False) -> Motion:
-    """Return the motion of some inputs, `exact` for inputs that are kept as decimals.
-
-    Warnings name defaults that are mixed with other inputs, and bodies that cannot be built.
-    """
+    """Return the motion of some inputs, which are kept as decimals if `exact`; see `warned`."""
     from ..motion.solve import solve
 
-    motion = solve(found.top(exact=exact))
+    return warned(solve(found.top(exact=exact)), found)
+
+
+def warned(motion: M, found: Given) -> M:
+    """Return a motion, after warnings about its inputs.
+
+    They name defaults that are mixed with other inputs, and bodies that cannot be built.
+    """
     warn_missing(found)
     if caveat := motion.top.caveat():
         complain(f"Warning: {caveat}")

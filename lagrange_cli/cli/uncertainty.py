@@ -14,6 +14,7 @@ from ..motion.quantity import degree_name, unit_name
 from ..motion.record import NUMBER_KEYS, shown_keys
 from ..motion.sensitivity.sensitivities import DIFFERENTIABLE
 from ..motion.sensitivity.uncertainty import FirstOrder, stds_of
+from ..motion.solve import Motion
 from ..output.report import Field, Report, uncertain_text, with_unit
 from .app import complain
 from .options import exclude
@@ -21,7 +22,7 @@ from .progress import with_progress
 
 if TYPE_CHECKING:
     from ..inputs.given import Given
-    from ..motion.solve import Motion
+    from ..motion.numbers import Numbers
     from ..sweeps.monte_carlo import Propagated
 
 
@@ -36,7 +37,7 @@ def check(found: Given, digits: int | None, derivation: bool, certify: bool) -> 
 
 def asked_report(
     found: Given,
-    motion: Motion,
+    motion: Numbers,
     key: str | None,
     samples: int | None,
     seed: int | None,
@@ -51,7 +52,7 @@ def asked_report(
 
 
 def with_stds(
-    found: Given, motion: Motion, record: Mapping[str, Any], shown: bool
+    found: Given, motion: Numbers, record: Mapping[str, Any], shown: bool
 ) -> dict[str, Any]:
     """Return a record with the keys KEY_std; values are `shown` as `value(uncertainty)` or bare.
 
@@ -74,7 +75,7 @@ def with_stds(
     return dict(record) | stds | texts
 
 
-def first_order(found: Given, motion: Motion) -> FirstOrder:
+def first_order(found: Given, motion: Numbers) -> FirstOrder:
     """Return the first-order uncertainties of a motion."""
     return FirstOrder(motion.top, found.stds, found.inputs.keys())
 
@@ -97,14 +98,15 @@ class _BudgetLine(NamedTuple):
         return self.std
 
 
-def _budget(found: Given, motion: Motion, key: str, radians: bool) -> Report:
+def _budget(found: Given, motion: Numbers, key: str, radians: bool) -> Report:
     """Return the budget of a key: the contribution of each uncertain input, and the key itself.
 
     Raises AbsentError if the motion has no such key, or it has no derivative.
     """
-    value, uncertain = motion.record(radians=radians, keys=[key])[key], first_order(found, motion)
+    value = Motion(motion.exact).record(radians=radians, keys=[key])[key]
     if value is None:
         raise AbsentError(f"{key} is undefined {motion.absence(key)}")
+    uncertain = first_order(found, motion)
     whole = uncertain.std(key)
     if whole is None:
         reason = uncertain.slopes.reason(degree_name(key))
@@ -166,11 +168,13 @@ def _names(key: str, units: Mapping[str, str]) -> Field:
     return Field(key, key, lambda x: with_unit(x, units.get(x)), is_text=True, names_the_row=True)
 
 
-def _sampled(found: Given, motion: Motion, samples: int, seed: int | None, radians: bool) -> Report:
+def _sampled(
+    found: Given, motion: Numbers, samples: int, seed: int | None, radians: bool
+) -> Report:
     """Return the report on random samples of the inputs."""
     from ..sweeps import monte_carlo
 
-    uncertain, record = first_order(found, motion), motion.record(radians=radians)
+    uncertain, record = first_order(found, motion), Motion(motion.exact).record(radians=radians)
     numbers = {}
     for key in NUMBER_KEYS:
         name = unit_name(key, radians=radians)
@@ -194,7 +198,7 @@ def _sampled(found: Given, motion: Motion, samples: int, seed: int | None, radia
     return Report(conditions, fields, outcome.spreads, _verdicts(outcome), units)
 
 
-def _all_inputs(found: Given, motion: Motion) -> dict[str, float]:
+def _all_inputs(found: Given, motion: Numbers) -> dict[str, float]:
     """Return every input once, as given or as computed."""
     inputs = {name: float(x) for name, x in motion.top.as_dict().items() if x is not None}
     for measured, solved in STANDS_FOR.items():

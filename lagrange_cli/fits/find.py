@@ -19,8 +19,9 @@ from ..errors import AbsentError, LagtopError, check_type
 from ..inputs.input_keys import warn_of
 from ..inputs.names import check_names
 from ..inputs.top import INPUTS
+from ..motion.numbers import record_in_range
 from ..motion.record import record_keys
-from ..motion.solve import Motion, record_in_range, solve
+from ..motion.solve import Motion, solve
 from ..output.progress import Progress, silent
 from ..sweeps.results import TEXTS, ResultColumn, Results
 from .roots import roots

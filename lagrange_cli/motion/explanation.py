@@ -14,10 +14,11 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 from ..inputs.names import check_names
+from .numbers import record_in_range
 from .over_time.columns import COLUMNS, Column
 from .quantity import unit_name
 from .record import KEYS, all_keys, shown_keys
-from .solve import Motion, record_in_range
+from .solve import Motion
 
 _NAME = r"[A-Za-z_]\w*"
 _WORDS = {

@@ -1,101 +1,101 @@
-"""The kinds of motion, each with the numbers of its record by key.
+"""The kinds of motion that do not nutate: constant tilt, the vertical, and the separatrix.
 
-Only `kind_of` selects a kind.  `lacks` names the keys that a kind does not have.
+`lacks` names the keys that a kind does not have.  Equation numbers are Chrapan's.
 """
 
 from __future__ import annotations
 
-from decimal import Decimal
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
-from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.numbers import R
 from .quantity import quantity
-from .regime import Facts, Regime
-from .spin_precession import SpinPrecession
-
-if TYPE_CHECKING:
-    from .degenerate import Separatrix, Steady, Vertical
-
-Real = float | Decimal
-Kind: TypeAlias = "Nutating[R] | Steady[R] | Vertical[R] | Separatrix[R]"
-"""Any kind of motion."""
+from .spin_precession import Nutating, SpinPrecession
+from .summary import vertical_remark
 
 
-class Nutating(SpinPrecession[R]):
-    """A top whose tilt oscillates between u1 and u2."""
+class Constant(SpinPrecession[R]):
+    """A motion at constant tilt, with constant rates of spin and precession."""
 
-    def remark(self, *, radians: bool = False) -> str | None:
-        """Return a line on a fast top, with its nutation in degrees or `radians`; else None.
+    lacks = frozenset("amplitude_deg alpha u_quarter spin_rate_half precession_rate_half".split())
 
-        Raises TooFewDigitsError if the ends of an enclosure would be printed differently.
-        """
-        if not self.facts.fast:
+    @quantity
+    def T_nutation(self) -> Any:
+        """The period (5,1) of a small nutation; None if nothing moves."""
+        moves = self.argument_rate > 0
+        if not self.ar.anywhere(moves):
             return None
-        nodding, *others = self.fast_numbers
-        numbers: Any = nodding if radians else nodding / self.degree, *others
-        lines = {
-            fast_remark(*ends, radians=radians)
-            for ends in zip(*(number.ends() for number in numbers), strict=True)
-        }
-        if len(lines) > 1:
-            raise TooFewDigitsError
-        return lines.pop()
-
-    @property
-    def fast_numbers(self) -> tuple[R, R, R, R]:
-        """The numbers in the remark on a fast top, see `fast_remark`; angles in radians."""
-        return self.nodding, self.T_nutation, self.elementary_rate, self.excess
+        return 2 * self.K / self.ar.where(moves, self.argument_rate, self.ar.nan)
 
     @quantity
-    def nodding(self) -> R:
-        """The amplitude theta_max - theta_min in radians, computed without a subtraction."""
-        ar, gaps = self.ar, self.gaps
-        across = ar.sqrt(gaps.above_u2 * gaps.below_u1) + ar.sqrt(gaps.below_u2 * gaps.above_u1)
-        along = ar.sqrt(gaps.below_u1 * gaps.below_u2) + ar.sqrt(gaps.above_u1 * gaps.above_u2)
-        return 2 * ar.atan2(2 * gaps.u1_u2 / across, along)
+    def theta_min_deg(self) -> R:
+        """The tilt, in degrees."""
+        return 2 * self.ar.atan2(self.state.sin_half, self.state.cos_half) / self.degree
 
     @quantity
-    def elementary_rate(self) -> R:
-        """The precession rate mgs/(C r0) = a/2b of the elementary theory of fast tops."""
-        return self.state.a / (2 * self.state.b)
+    def theta_max_deg(self) -> R:
+        """The tilt, in degrees."""
+        return self.theta_min_deg
 
     @quantity
-    def excess(self) -> R:
-        """The relative excess of the mean precession rate (7,3) over the elementary rate."""
-        return self.mean_precession_rate / self.elementary_rate - 1
+    def mean_spin_rate(self) -> R:
+        """The constant spin rate (4,8); on the vertical all rotation counts as spin."""
+        return self.r0 if self.facts.pole else self.r0 - self.state.psi_rate * self.state.cos
+
+    @quantity
+    def spin_rate_start(self) -> R | None:
+        """The spin rate, which is constant."""
+        return self.mean_spin_rate
+
+    @quantity
+    def mean_precession_rate(self) -> R:
+        """The precession rate, which is constant."""
+        return self.state.psi_rate
 
 
-def fast_remark(
-    nodding: Real, period: Real, elementary: Real, excess: Real, *, radians: bool
-) -> str:
-    """Return the remark on a pseudo-regular precession.
+class Steady(Constant[R]):
+    """A steady precession, or a torque-free top that rotates about a fixed axis."""
 
-    `nodding` is the amplitude theta_max - theta_min in degrees or radians, `excess` the relative
-    excess of the mean precession rate over the elementary rate.
-    """
-    parts = round(Fraction(excess) * 10**6)
-    where = f"{abs(parts)} ppm {'below' if parts < 0 else 'above'}" if parts else "within 1 ppm of"
-    return (
-        f"pseudo-regular precession: nutates by {_figures(nodding)} {'rad' if radians else 'deg'} "
-        f"in {_figures(period)} time; its mean is {where} mgs/(C r0) = {_figures(elementary)} "
-        "rad/time"
+
+class Vertical(Constant[R]):
+    """An upright or hanging top: only phi + psi or phi - psi is defined."""
+
+    lacks = Constant.lacks | set(
+        "u3 k k_prime modular_angle_deg nome K K_prime E T_nutation "
+        "mean_precession_rate precession_rate_start T_precession".split()
     )
 
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return a line on the defined combination of angles and on stability."""
+        return vertical_remark(self.facts.regime, bool(self.facts.stable))
 
-def _figures(x: Real) -> str:
-    """Return a number as text with three significant digits."""
-    return f"{float(f'{x:.3g}'):.3g}"
+
+class Separatrix(SpinPrecession[R]):
+    """The swing up to the vertical in infinite time: u1 = u3 = 1, k = 1."""
+
+    lacks = frozenset(
+        "amplitude_deg alpha K T_nutation T_spin T_precession u_quarter mean_spin_rate "
+        "mean_precession_rate spin_rate_half precession_rate_half".split()
+    )
+
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return a line on the motion at late times."""
+        return "rises to the vertical in infinite time"
+
+    @quantity
+    def m(self) -> R:
+        """The parameter k^2, which is 1."""
+        return 0 * self.a + 1
+
+    @quantity
+    def nome(self) -> R:
+        """The nome, which is 1."""
+        return self.m
+
+    @quantity
+    def E(self) -> R:
+        """The complete integral of the second kind, which is 1."""
+        return self.m
 
 
-def kind_of(facts: Facts) -> type[Kind[Any]]:
-    """Return the class of the motion with these facts."""
-    vertical = facts.regime in {Regime.SLEEPING, Regime.HANGING}
-    if not (vertical or facts.steady or facts.regime is Regime.SEPARATRIX):
-        return Nutating
-    from .degenerate import Separatrix, Steady, Vertical  # start-up: for few tops
-
-    if vertical:
-        return Vertical
-    return Steady if facts.steady else Separatrix
+Kind: TypeAlias = Nutating[R] | Steady[R] | Vertical[R] | Separatrix[R]
+"""Any kind of motion."""

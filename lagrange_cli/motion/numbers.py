@@ -1,8 +1,8 @@
-"""The numbers of one motion: enclosures in any precision, and the sampler of its angles."""
+"""The numbers of one motion: enclosures in any precision, the record, and the sampler of angles."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from ..arithmetic.ball import Ball, TooFewDigitsError
 from ..arithmetic.balls import balls
 from ..arithmetic.numbers import R
-from ..arithmetic.rounding import Settled, decided, rounding_of, settled
+from ..arithmetic.rounding import FIRST_DIGITS, Settled, decided, rounding_of, settled
+from ..errors import OutOfRangeError
 from ..inputs.top import Top
 from .gaps import Gaps, State, are_told_apart, gaps_from_rest, state
-from .kinds import Kind, kind_of
-from .quantity import degree_name
-from .record import NUMBER_KEYS, number_key
+from .quantity import degree_name, unit_name
+from .record import NUMBER_KEYS, all_keys, number_key, record_keys, requested_keys
 from .regime import Exact, Facts, Regime
+from .spin_precession import Nutating
 
 if TYPE_CHECKING:
+    from .kinds import Kind
     from .over_time.samplers import Sampler
 
 _S = TypeVar("_S")
@@ -34,6 +36,18 @@ def gaps_of(ar: Any, facts: Facts, start: State[R], find_root: Any = None) -> Ga
     from .any_start import gaps_from_start  # start-up: not for a release from rest
 
     return gaps_from_start(ar, start, facts, find_root)
+
+
+def kind_of(facts: Facts) -> type[Kind[Any]]:
+    """Return the class of the motion with these facts."""
+    vertical = facts.regime in {Regime.SLEEPING, Regime.HANGING}
+    if not (vertical or facts.steady or facts.regime is Regime.SEPARATRIX):
+        return Nutating
+    from .kinds import Separatrix, Steady, Vertical  # start-up: for few tops
+
+    if vertical:
+        return Vertical
+    return Steady if facts.steady else Separatrix
 
 
 class Numbers:
@@ -204,3 +218,62 @@ def middle_of(kind: Any) -> Any:
     """Return a motion in decimals, from the midpoints of the balls of its start and its gaps."""
     middles = (type(x)(*(number.middle for number in x)) for x in (kind.state, kind.gaps))
     return type(kind)(kind.ar.middles, kind.facts, *middles)
+
+
+def record_in_range(
+    motion: Numbers,
+    *,
+    digits: int | None = None,
+    radii: bool = False,
+    radians: bool = False,
+    keys: Collection[str] | None = None,
+) -> tuple[dict[str, Any], list[OutOfRangeError]]:
+    """Return `Motion.record`, and an error for each number beyond the range of doubles."""
+    names, numbers = record_keys(radians=radians), NUMBER_KEYS
+    wanted = set(names if keys is None else keys)
+    if not wanted <= set(names):
+        from ..inputs.names import check_names  # start-up: for keys on request
+
+        names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
+        check_names("keys", list(dict.fromkeys(keys or ())), names)
+    found, beyond = _inputs(motion.top, digits, radians=radians), []
+    for name in numbers:
+        shown = unit_name(name, radians=radians)
+        if shown in wanted:
+            try:
+                found[shown] = motion.number(name, digits, radians=radians)
+            except OutOfRangeError as error:
+                found[shown] = None
+                beyond.append(error)
+    values = {name: None if number is None else number.value for name, number in found.items()}
+    values["regime"] = motion.regime.value
+    if motion.top.steady_word:
+        values["psidot0"] = motion.top.steady_word
+    if "path" in wanted:
+        values["path"] = motion.decide("path", lambda kind: kind.path)
+    if "remark" in wanted:
+        values["remark"] = motion.decide("remark", lambda kind: kind.remark(radians=radians))
+    record = {name: values[name] for name in names if name in wanted}
+    if radii:
+        known = {name: found[name] for name in record if name in found}
+        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
+    return record, beyond
+
+
+def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
+    """Return the inputs as they are printed; None for a word."""
+
+    def shown(name: str, value: Any) -> Settled | None:
+        rounding = rounding_of(name, digits)
+        if not isinstance(value, Ball):
+            return Settled(rounding(Fraction(value)), (Fraction(value),))
+        return settled(
+            name,
+            lambda working: top.inputs(radians=radians, ar=balls(working))[name],
+            rounding,
+            digits=digits or 0,
+        )
+
+    given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))
+    words = {"psidot0": None} if top.steady_word else {}
+    return {name: shown(name, value) for name, value in given.items()} | words

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Collection, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.ball import Ball
-from ..arithmetic.balls import balls
-from ..arithmetic.rounding import FIRST_DIGITS, Settled, rounded, rounding_of, settled
-from ..errors import LagtopError, OutOfRangeError, OutOfRangeWarning
+from ..arithmetic.rounding import rounded
+from ..errors import LagtopError, OutOfRangeWarning
 from ..inputs.top import Top
-from .kinds import Nutating
-from .numbers import Numbers
-from .quantity import unit_name
-from .record import NUMBER_KEYS, all_keys, record_keys, requested_keys
+from .numbers import Numbers, record_in_range
+from .record import NUMBER_KEYS, requested_keys
 from .regime import Regime, exact
+from .spin_precession import Nutating
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -137,10 +133,6 @@ class Motion(Numbers):
         OutOfRangeError.  Raises LagtopError for an unknown key, and if no precision distinguishes a
         number from 0.
         """
-        if keys is not None:
-            from ..inputs.names import check_names  # start-up: not for the whole record
-
-            check_names("keys", list(keys), all_keys(radians=radians))
         record, beyond = record_in_range(
             self, digits=digits, radii=radii, radians=radians, keys=keys
         )
@@ -231,60 +223,3 @@ class Motion(Numbers):
         from .over_time.table import table
 
         return table(self, t, columns, wrap=wrap)
-
-
-def record_in_range(
-    motion: Motion,
-    *,
-    digits: int | None = None,
-    radii: bool = False,
-    radians: bool = False,
-    keys: Collection[str] | None = None,
-) -> tuple[dict[str, Any], list[OutOfRangeError]]:
-    """Return `Motion.record`, and an error for each number beyond the range of doubles."""
-    names = record_keys(radians=radians)
-    wanted = set(names if keys is None else keys)
-    numbers = NUMBER_KEYS
-    if not wanted <= set(names):
-        names, numbers = all_keys(radians=radians), [*NUMBER_KEYS, *requested_keys()]
-    found, beyond = _inputs(motion.top, digits, radians=radians), []
-    for name in numbers:
-        shown = unit_name(name, radians=radians)
-        if shown in wanted:
-            try:
-                found[shown] = motion.number(name, digits, radians=radians)
-            except OutOfRangeError as error:
-                found[shown] = None
-                beyond.append(error)
-    values = {name: None if number is None else number.value for name, number in found.items()}
-    values["regime"] = motion.regime.value
-    if motion.top.steady_word:
-        values["psidot0"] = motion.top.steady_word
-    if "path" in wanted:
-        values["path"] = motion.path
-    if "remark" in wanted:
-        values["remark"] = motion.decide("remark", lambda kind: kind.remark(radians=radians))
-    record = {name: values[name] for name in names if name in wanted}
-    if radii:
-        known = {name: found[name] for name in record if name in found}
-        record |= {f"{name}_radius": x and x.radius for name, x in known.items()}
-    return record, beyond
-
-
-def _inputs(top: Top, digits: int | None, *, radians: bool) -> dict[str, Settled | None]:
-    """Return the inputs as they are printed; None for a word."""
-
-    def shown(name: str, value: Any) -> Settled | None:
-        rounding = rounding_of(name, digits)
-        if not isinstance(value, Ball):
-            return Settled(rounding(Fraction(value)), (Fraction(value),))
-        return settled(
-            name,
-            lambda working: top.inputs(radians=radians, ar=balls(working))[name],
-            rounding,
-            digits=digits or 0,
-        )
-
-    given = top.inputs(radians=radians, ar=balls(FIRST_DIGITS))
-    words = {"psidot0": None} if top.steady_word else {}
-    return {name: shown(name, value) for name, value in given.items()} | words

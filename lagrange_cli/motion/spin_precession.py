@@ -12,12 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.ball import TooFewDigitsError
 from ..arithmetic.numbers import R, absolute
 from ..elliptic.complete import period_mean
 from .nutation import Nutation, period_key
 from .quantity import key, quantity
+from .summary import fast_remark
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic
@@ -185,6 +187,45 @@ class SpinPrecession(Nutation[R]):
         if facts.cusp:
             return "cusped"
         return "looping" if self.b * gaps.momentum_u1 < 0 < self.b * gaps.momentum_u2 else "wavy"
+
+
+class Nutating(SpinPrecession[R]):
+    """A top whose tilt oscillates between u1 and u2."""
+
+    def remark(self, *, radians: bool = False) -> str | None:
+        """Return a line on a fast top, with its nutation in degrees or `radians`; else None.
+
+        Raises TooFewDigitsError if the ends of an enclosure would be printed differently.
+        """
+        if not self.facts.fast:
+            return None
+        nodding: Any = self.nodding if radians else self.nodding / self.degree
+        numbers: Any = nodding, self.T_nutation, self.elementary_rate, self.excess
+        lines = {
+            fast_remark(*ends, radians=radians)
+            for ends in zip(*(number.ends() for number in numbers), strict=True)
+        }
+        if len(lines) > 1:
+            raise TooFewDigitsError
+        return lines.pop()
+
+    @quantity
+    def nodding(self) -> R:
+        """The amplitude theta_max - theta_min in radians, computed without a subtraction."""
+        ar, gaps = self.ar, self.gaps
+        across = ar.sqrt(gaps.above_u2 * gaps.below_u1) + ar.sqrt(gaps.below_u2 * gaps.above_u1)
+        along = ar.sqrt(gaps.below_u1 * gaps.below_u2) + ar.sqrt(gaps.above_u1 * gaps.above_u2)
+        return 2 * ar.atan2(2 * gaps.u1_u2 / across, along)
+
+    @quantity
+    def elementary_rate(self) -> R:
+        """The precession rate mgs/(C r0) = a/2b of the elementary theory of fast tops."""
+        return self.state.a / (2 * self.state.b)
+
+    @quantity
+    def excess(self) -> R:
+        """The relative excess of the mean precession rate (7,3) over the elementary rate."""
+        return self.mean_precession_rate / self.elementary_rate - 1
 
 
 def mean_over(ar: Arithmetic[R], k_prime: R, distances: Sequence[R], values: Sequence[R]) -> R:

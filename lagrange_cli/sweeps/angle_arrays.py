@@ -19,7 +19,6 @@ from ..arithmetic.types import Array, Mask
 from ..elliptic.carlson import carlson_rf
 from ..elliptic.complete import cosine_and_sine, hyperbolic_cosine_and_sine
 from ..motion.gaps import Gaps, State, gaps_from_rest
-from ..motion.kinds import Nutating
 from ..motion.over_time.attitude import Attitude, Growth, Growths, Spinor, Times
 from ..motion.over_time.samplers import tilt_of
 from ..motion.over_time.series_constants import theta_constants
@@ -32,6 +31,7 @@ from ..motion.over_time.theta_series import (
     hyperbolic_series,
 )
 from ..motion.regime import Regime
+from ..motion.spin_precession import Nutating
 from .start_arrays import FACTS, PAIR_EPS, StartArrays
 from .top_arrays import TopArrays, facts_at_rest
 

@@ -20,12 +20,11 @@ from ..errors import LagtopError
 from ..inputs.names import check_names
 from ..inputs.top import Top
 from ..motion import record as motion_record
-from ..motion.degenerate import vertical_remark
-from ..motion.kinds import fast_remark, kind_of
-from ..motion.numbers import gaps_of
+from ..motion.numbers import gaps_of, kind_of, record_in_range
 from ..motion.quantity import degree_name
 from ..motion.regime import FAST, Regime
-from ..motion.solve import record_in_range, solve
+from ..motion.solve import solve
+from ..motion.summary import fast_remark, vertical_remark
 from .arguments import Together
 from .results import TEXTS, ResultColumn, Results
 from .start_arrays import StartArrays

@@ -19,9 +19,8 @@ from ..arithmetic.double_double import DoubleDouble
 from ..arithmetic.types import Array, Mask
 from ..motion.any_start import gaps_from_start
 from ..motion.gaps import Gaps
-from ..motion.kinds import Nutating
 from ..motion.regime import Facts, Regime
-from ..motion.spin_precession import mean_over
+from ..motion.spin_precession import Nutating, mean_over
 from .top_arrays import TopArrays
 
 PAIR_EPS = 2.0**-100

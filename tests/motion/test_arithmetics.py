@@ -17,8 +17,7 @@ from lagrange_cli.arithmetic.numbers import DOUBLES
 from lagrange_cli.elliptic.many_digits import ManyDigits
 from lagrange_cli.motion.any_start import gaps_from_start
 from lagrange_cli.motion.gaps import State, gaps_from_rest, state
-from lagrange_cli.motion.kinds import kind_of
-from lagrange_cli.motion.numbers import gaps_of
+from lagrange_cli.motion.numbers import gaps_of, kind_of
 from lagrange_cli.motion.record import NUMBER_KEYS
 from lagrange_cli.motion.regime import exact as exact_of
 

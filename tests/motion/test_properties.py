@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 from lagrange_cli import LagtopError, Top, solve
 from lagrange_cli.arithmetic.text import csv_text, double_text, parse_number, value_text
 from lagrange_cli.cli.app import main
+from lagrange_cli.motion.numbers import record_in_range
 from lagrange_cli.motion.record import NUMBER_KEYS
-from lagrange_cli.motion.solve import record_in_range
 from lagrange_cli.output.formats import FORMATS, block_text
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)

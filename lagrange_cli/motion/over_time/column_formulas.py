@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING
 
 from ...arithmetic.numbers import R
 from ...arithmetic.values import Over, Values
-from ..degenerate import Vertical
-from ..kinds import Kind
+from ..kinds import Kind, Vertical
 
 if TYPE_CHECKING:
     from ...arithmetic.protocol import Arithmetic

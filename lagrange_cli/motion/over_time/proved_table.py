@@ -17,9 +17,9 @@ from ...arithmetic.balls import Balls, balls
 from ...arithmetic.numbers import Number
 from ...arithmetic.rounding import Settled, rounding_of, settled
 from ...arithmetic.text import NumberText, double_text
-from ..degenerate import Constant, Separatrix
 from ..exact.rational_columns import known_column
 from ..exact.rational_keys import known_fraction
+from ..kinds import Constant, Separatrix
 from ..numbers import Numbers
 from .column_formulas import ColumnConstants, ColumnFormulas, column_constants
 from .columns import ScalarColumn, chosen_columns, headings

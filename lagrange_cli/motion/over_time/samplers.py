@@ -23,7 +23,7 @@ from ...arithmetic.arrays import ARRAYS, BLOCK, blocks, doubles_of, workspace
 from ...arithmetic.points import MAX_PERIODS, MAX_TIME
 from ...arithmetic.types import Array
 from ...errors import LagtopError
-from ..degenerate import Constant, Separatrix
+from ..kinds import Constant, Separatrix
 from .attitude import Attitude, Growths, Spinor, Times, growths
 from .columns import TILT, TURN, Needs
 from .series_constants import SeparatrixConstants, separatrix_constants

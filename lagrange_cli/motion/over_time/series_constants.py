@@ -12,8 +12,8 @@ from typing import Any, Generic, NamedTuple
 from ...arithmetic.numbers import R, polynomial
 from ...arithmetic.protocol import FunctionArithmetic, Numeric
 from ...elliptic.complete import place
-from ..degenerate import Constant, Separatrix
-from ..kinds import Kind, Nutating
+from ..kinds import Constant, Kind, Separatrix
+from ..spin_precession import Nutating
 from .theta_series import (
     TERMS,
     Component,

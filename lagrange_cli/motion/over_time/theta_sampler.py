@@ -23,8 +23,8 @@ from ...arithmetic.double_double import Period, period_of, whole_periods
 from ...arithmetic.points import MAX_PERIODS
 from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
-from ..degenerate import Separatrix
-from ..kinds import Kind, Nutating
+from ..kinds import Kind, Separatrix
+from ..spin_precession import Nutating
 from .attitude import Attitude, Spinor, Times, growths
 from .columns import Needs
 from .samplers import Sampler, constant_sampler, separatrix_sampler, start_tilt, tilt_of

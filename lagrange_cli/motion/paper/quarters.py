@@ -15,9 +15,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Generic, NamedTuple
 
 from ...arithmetic.numbers import R
-from ..kinds import Kind, Nutating
+from ..kinds import Kind
 from ..quantity import key, quantity
-from ..spin_precession import HALF_OVER_POLE
+from ..spin_precession import HALF_OVER_POLE, Nutating
 
 if TYPE_CHECKING:
     from ..regime import Exact

@@ -29,11 +29,11 @@ from ...arithmetic.types import Array
 from ...inputs.names import ANGLES, check_names
 from ...inputs.top import Top
 from ...inputs.value import Stds
-from ..kinds import Nutating
 from ..numbers import Numbers, middle_of
 from ..over_time.samplers import Angles, check_times
 from ..over_time.series_constants import Pose, nutating_pose
 from ..regime import Exact, Regime, exact
+from ..spin_precession import Nutating
 from .neighbourhood import PARAMETERS, by_inputs, smallness
 from .sensitivities import Partials
 from .series_derivatives import SeriesDerivatives

@@ -20,10 +20,10 @@ from ...arithmetic.values import Values
 from ...inputs.names import check_names
 from ...inputs.top import Top
 from ..any_start import cubic
-from ..degenerate import Steady
 from ..exact.rational_keys import is_endless
 from ..gaps import Gaps, State
-from ..kinds import kind_of
+from ..kinds import Steady
+from ..numbers import kind_of
 from ..paper.textbook import TEXTBOOK
 from ..quantity import quantity
 from ..record import NUMBER_KEYS

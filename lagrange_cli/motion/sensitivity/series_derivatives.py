@@ -23,11 +23,11 @@ from ...arithmetic.rounding import pair
 from ...arithmetic.types import Array
 from ...elliptic.jacobi import jacobi
 from ...elliptic.modulus import Modulus
-from ..kinds import Nutating
 from ..over_time.attitude import Growths, Times, growths
 from ..over_time.series_constants import SeriesFromStart, series_from_start
 from ..over_time.theta_sampler import count_needed, greatest_argument
 from ..over_time.theta_series import Coefficients, Component
+from ..spin_precession import Nutating
 from .neighbourhood import PARAMETERS
 
 _NEGLIGIBLE = Decimal(2) ** -100
