@@ -108,18 +108,21 @@ class Numbers:
 
     def fraction(self, name: str, digits: int = 0, *, radians: bool = False) -> Fraction | None:
         """Return a number known as a fraction, else None; a root may be a tie in `digits`."""
+
+        def enclosure(x: str) -> Ball | None:
+            return self.enclosure(x, 2 * digits + 80)
+
         if name not in NUMBER_KEYS:
             from .paper.requested import fraction_by_roots, requested_fractions  # start-up
 
             found = requested_fractions(self.exact).get(name)
             if found is not None:
                 return found
-            return fraction_by_roots(self.exact, name, lambda u: self.fraction(u, digits))
+            return fraction_by_roots(
+                self.exact, name, lambda u: self.fraction(u, digits), enclosure
+            )
         from .exact.half_rates import HALF_RATES  # start-up: for few tops
         from .exact.rational_keys import known_fraction, rational_half_rate, rational_u
-
-        def enclosure(x: str) -> Ball | None:
-            return self.enclosure(x, 2 * digits + 80)
 
         known = known_fraction(self.exact, name, radians=radians)
         if known is None and name in {"u1", "u2", "u3"}:

@@ -8,12 +8,12 @@ exactly 0, or may be such a tie.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from functools import lru_cache
 
 from ...arithmetic.ball import Ball
-from ...arithmetic.exact_cosine import U
+from ...arithmetic.exact_cosine import Polynomial, U
 from ..regime import Exact
 from .half_rates import HALF_RATES, is_half_rate, vanishing_half_rates
 
@@ -132,14 +132,45 @@ def rational_u(exact: Exact, name: str, enclosure: Callable[[str], Ball | None])
     if exact.psi_rate is None:
         return None
     roots = {root: enclosure(root) for root in ("u1", "u2", "u3")}
-    ball = roots.pop(name)
-    others = [other for other in roots.values() if other is not None]
-    if ball is None or any((ball - other).least == 0 for other in others):
+
+    def cubic(u: Fraction) -> Polynomial:
+        around = exact.beta - exact.b * u
+        return (1 - u * u) * (exact.alpha - exact.a * u) - around * around
+
+    return _rational_root(exact, cubic, roots.pop(name), roots.values())
+
+
+def rational_criterion(exact: Exact, enclosure: Callable[[str], Ball | None]) -> Fraction | None:
+    """Return a u2 u3, the criterion of (4,12), if it is a fraction, such as a tie.
+
+    With it, a u1 u3 and a u1 u2 are the roots of a cubic, whose coefficients follow from (4,9).
+    """
+    if exact.psi_rate is None:
         return None
-    u = _simplest(ball)
-    around = exact.beta - exact.b * u
-    value = (1 - u * u) * (exact.alpha - exact.a * u) - around * around
-    return u if exact.cosine.vanishes(value) else None
+    a, u1, u2, u3 = (enclosure(key) for key in ("a", "u1", "u2", "u3"))
+    if a is None or u1 is None or u2 is None or u3 is None:
+        return None
+    square, pairs = exact.alpha + exact.b * exact.b, 2 * exact.b * exact.beta - exact.a
+    level = exact.alpha - exact.beta * exact.beta
+
+    def cubic(w: Fraction) -> Polynomial:
+        return ((w - pairs) * w - level * square) * w - exact.a * level * level
+
+    others = (a * u1 * u3, a * u1 * u2)
+    return _rational_root(exact, cubic, enclosure("u2_criterion"), others)
+
+
+def _rational_root(
+    exact: Exact,
+    equation: Callable[[Fraction], Polynomial],
+    ball: Ball | None,
+    others: Iterable[Ball | None],
+) -> Fraction | None:
+    """Return the root of an equation in a ball if it is a fraction and apart from the others."""
+    if ball is None or any(other is not None and (ball - other).least == 0 for other in others):
+        return None
+    value = _simplest(ball)
+    return value if exact.cosine.vanishes(equation(value)) else None
 
 
 def rational_half_rate(exact: Exact, name: str, ball: Ball | None) -> Fraction | None:

@@ -11,8 +11,14 @@ from collections.abc import Callable
 from fractions import Fraction
 from inspect import signature
 
+from ...arithmetic.ball import Ball
 from ...arithmetic.exact_cosine import Polynomial, U
-from ..exact.rational_keys import rational_keys, starts_at_u1, starts_at_u2
+from ..exact.rational_keys import (
+    rational_criterion,
+    rational_keys,
+    starts_at_u1,
+    starts_at_u2,
+)
 from ..quantity import keys_of
 from ..regime import Exact
 from .textbook import TEXTBOOK, Textbook, textbook_fractions
@@ -65,14 +71,20 @@ _OF_ROOTS: dict[str, Callable[..., Fraction]] = {
 
 
 def fraction_by_roots(
-    exact: Exact, name: str, root: Callable[[str], Fraction | None]
+    exact: Exact,
+    name: str,
+    root: Callable[[str], Fraction | None],
+    enclosure: Callable[[str], Ball | None],
 ) -> Fraction | None:
     """Return a key that follows from the roots of (4,9), if it is a fraction.
 
-    `root` returns a root by its name, or None if the root is not rational.
+    `root` returns a root by its name, or None if the root is not rational; `enclosure` returns a
+    ball by its key.
     """
     if name in _BY_U1:
-        return _fraction_by_u1(exact, name, root("u1"))
+        known = _fraction_by_u1(exact, name, root("u1"))
+        by_cubic = known is None and name == "u2_criterion"
+        return rational_criterion(exact, enclosure) if by_cubic else known
     formula = _OF_ROOTS.get(name)
     if formula is None:
         return None
